@@ -5,7 +5,8 @@
 
 namespace tumble::scenarios {
 
-/// Where the files stand that are read at run time; the caller says where (the program finds it, a test names it).
+/// Folders of the files that are read at run time. The caller supplies the root: the program searches for it, a test
+/// names it.
 struct DataRoot {
   std::filesystem::path root;
   std::filesystem::path models() const { return root / "models"; }

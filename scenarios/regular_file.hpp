@@ -12,20 +12,20 @@
 
 namespace tumble::scenarios {
 
-/// Throws BadInput unless something stands at `path`, symbolic links followed, that is no folder: what is read once,
-/// from its beginning to its end, may be a pipe.
+/// Throws BadInput if `path` is missing or a folder. Follows symbolic links. Pipes are accepted, because the caller
+/// reads the input once, from beginning to end.
 inline std::filesystem::file_status require_file(const std::filesystem::path& path) {
   std::error_code error;
   const std::filesystem::file_status found = std::filesystem::status(path, error);
-  // a path that leads through a file, and a link to nothing, are absent too
+  // A path that leads through a file, and a dangling link, also count as missing.
   if (found.type() == std::filesystem::file_type::not_found) throw BadInput(path.string() + ": no such file");
   if (error) throw BadInput(path.string() + ": cannot be read: " + error.message());
   if (std::filesystem::is_directory(found)) throw BadInput(path.string() + ": is a folder, must be a file");
   return found;
 }
 
-/// Throws BadInput unless a regular file stands at `path`, symbolic links followed; the message says what does instead.
-/// Asked before a file is opened: to open a pipe that nobody writes to waits for ever, and devices have no end.
+/// Throws BadInput if `path` is not a regular file. Follows symbolic links; the message states what was found. Call it
+/// before opening a file: opening a pipe without a writer blocks for ever, and devices have no end.
 inline void require_regular_file(const std::filesystem::path& path) {
   switch (require_file(path).type()) {
     case std::filesystem::file_type::regular:
@@ -39,7 +39,7 @@ inline void require_regular_file(const std::filesystem::path& path) {
   }
 }
 
-/// A regular file, opened to be read by bytes. Throws BadInput: no regular file (above), or no permission.
+/// Opens a regular file for binary reading. Throws BadInput if it is not a regular file or cannot be read.
 inline std::ifstream open_regular_file(const std::filesystem::path& path) {
   require_regular_file(path);
   errno = 0;

@@ -3,7 +3,6 @@
 
 namespace tumble::scenarios {
 
-/// One g.
 inline constexpr double kStandardGravity_m_s2 = 9.80665;
 
 }  // namespace tumble::scenarios

@@ -10,19 +10,19 @@
 
 namespace tumble::scenarios {
 
-/// Whether a text is a number and nothing else, which `value` is then.
+/// Parses `text` into `value`; false if it is not exactly one number.
 template <typename Number>
 bool read_number(std::string_view text, Number& value) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   return error == std::errc() && end == text.data() + text.size();
 }
 
-/// A text of a file as a message has room for it: of a longer one the beginning.
+/// Shortens a text for a message: keeps the beginning of a long text.
 inline std::string shortened(std::string_view text, std::size_t most = 120) {
   return text.size() <= most ? std::string(text) : std::string(text.substr(0, most)) + "...";
 }
 
-/// A message as it may stand in one line of a table.
+/// Converts a message to one line, for a table.
 inline std::string one_line(std::string text) {
   std::replace_if(
       text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r' || c == '\t'; }, ' ');

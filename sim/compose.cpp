@@ -23,13 +23,13 @@ using SpecPtr = std::unique_ptr<mjSpec, SpecDeleter>;
 constexpr double kStep_s = 0.0005;
 constexpr int kFewPairs = 100;
 
-/// That memory was short says nothing of the situation, which simulates where there is more.
+/// Running out of memory is not an error of the situation, which may simulate on a larger machine.
 void refuse_for_memory(std::string_view message) {
   if (message.find("ould not allocate") != std::string_view::npos) throw std::bad_alloc();
 }
 
-/// Without handlers the engine writes a log file beside the program and ends the process on an error. Its warnings are
-/// counted in mjData and checked after every step.
+/// Without handlers, the engine writes a log file and ends the process on an error. Its warnings are counted in mjData
+/// and checked after every step.
 void install_handlers() {
   static const bool kInstalled = [] {
     mju_user_warning = [](const char*) {};
@@ -46,7 +46,7 @@ bool touches(const mjModel& model, int geom) {
   return model.geom_contype[geom] != 0 || model.geom_conaffinity[geom] != 0;
 }
 
-/// Pairs of a geom that moves and one that does not.
+/// Counts the pairs of a moving and a static geom.
 int count_pairs(const mjModel& model) {
   int moving = 0, all = 0;
   for (int i = 0; i < model.ngeom; ++i) {
@@ -56,8 +56,8 @@ int count_pairs(const mjModel& model) {
   return moving * (all - moving);
 }
 
-/// Whether contacts of a robot of one geom come in the same order out of the engine's tree as from asking each pair:
-/// the tree sorts by the pair's first geom, which is the one whose type comes first.
+/// True if the engine's tree returns the contacts of a robot with one geom in the same order as a test of every pair.
+/// The tree sorts by the first geom of a pair, which is the one whose type comes first.
 bool sorts_as_asked(const mjModel& model) {
   int robot = -1;
   for (int i = 0; i < model.ngeom; ++i) {
@@ -76,7 +76,7 @@ bool sorts_as_asked(const mjModel& model) {
   return true;
 }
 
-/// Whether nothing but gravity, contacts and the motion's wrench acts on what moves.
+/// True if only gravity, contacts and the wrench of the motion act on the moving bodies.
 bool moves_freely(const mjModel& model) {
   const auto none = [](const mjtNum* numbers, int count) {
     return std::all_of(numbers, numbers + count, [](mjtNum number) { return number == 0.0; });
@@ -87,19 +87,18 @@ bool moves_freely(const mjModel& model) {
          none(model.dof_frictionloss, model.nv);
 }
 
-/// Leaves out what the engine would work out for nobody; no bit of a motion depends on any of it. Its sleeping is on
-/// for what comes with it: what cannot move is then placed once and not at every stage of a step. The robot never
-/// sleeps.
+/// Disables computations whose results are not used; the motion stays bit-identical. Sleeping is enabled because the
+/// engine then places static bodies only once instead of at every stage of a step. The robot never sleeps.
 void spare_work(mjModel& model) {
   model.opt.enableflags |= mjENBL_SLEEP;
   std::fill(model.tree_sleep_policy, model.tree_sleep_policy + model.ntree, static_cast<int>(mjSLEEP_NEVER));
-  model.opt.disableflags |= mjDSBL_ISLAND;  // one robot is one island
-  // a height field is under every strut: its box is not asked for, as that of a plane is not
+  model.opt.disableflags |= mjDSBL_ISLAND;  // the robot is a single island
+  // a height field is below every strut, so its bounding box is not tested, as for a plane
   for (int i = 0; i < model.ngeom; ++i) {
     if (model.geom_type[i] == mjGEOM_HFIELD)
       std::fill(model.geom_aabb + 6 * i + 3, model.geom_aabb + 6 * i + 6, mjMAXVAL);
   }
-  // a tree over the world's geoms costs more than it saves where there are few pairs, unless it holds near ones alone
+  // for few pairs, a tree over the world's geoms costs more than it saves, unless it contains only near geoms
   if (count_pairs(model) <= kFewPairs && !(NearGeoms::serves(model) && sorts_as_asked(model))) {
     model.opt.disableflags |= mjDSBL_MIDPHASE;
   }
@@ -132,7 +131,8 @@ World compose(const ResolvedSituation& situation, const std::filesystem::path& m
   World world;
   const SpecPtr spec = parse(models / robot_type.file);
   spec->option.timestep = kStep_s;
-  spec->option.integrator = mjINT_RK4;  // the only integrator here that keeps energy and momentum of a tumbling body
+  spec->option.integrator = mjINT_RK4;  // the only integrator here that preserves energy and momentum of a tumbling
+                                        // body
   spec->compiler.usethread = 0;
   robot_type.shape(spec.get(), situation->robot.values, world);
   world_type.build(spec.get(), situation->world.values, situation->seed, world);

@@ -11,18 +11,18 @@
 
 namespace tumble::sim {
 
-/// A number that a component of a situation takes: its one default, its bounds, unit and meaning.
-/// Switches are numbers too: 0 off, 1 on.
+/// A number that a component of a situation takes, with default, bounds, unit and meaning. Switches are numbers: 0 off,
+/// 1 on.
 struct Parameter {
-  std::string_view name;  ///< ends in its unit where it has one: slope_rad, mass_kg
+  std::string_view name;  ///< ends in its unit if it has one: slope_rad, mass_kg
   double default_value;
   double low;
   double high;
-  std::string_view unit;  ///< "1" when dimensionless
+  std::string_view unit;  ///< "1" if dimensionless
   std::string_view doc;   ///< meaning and source, one sentence
 };
 
-/// Two tables of parameters as one.
+/// Concatenates two tables of parameters.
 template <std::size_t M, std::size_t N>
 constexpr std::array<Parameter, M + N> joined(const std::array<Parameter, M>& first,
                                               const std::array<Parameter, N>& second) {
@@ -32,18 +32,19 @@ constexpr std::array<Parameter, M + N> joined(const std::array<Parameter, M>& fi
   return all;
 }
 
-/// Thrown for a value out of bounds, an unknown name or an unknown component; says place, value and bound.
+/// Thrown for a value out of bounds, an unknown name or an unknown component. The message states place, value and
+/// bound.
 class InvalidSituation : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Numbers by name, complete and within bounds once `resolve` has returned them.
+/// Numbers by name; complete and within bounds if returned by `resolve`.
 class Values {
  public:
   void set(const std::string& name, double value) { numbers_[name] = value; }
   bool has(const std::string& name) const { return numbers_.contains(name); }
-  /// Throws InvalidSituation when the name is absent.
+  /// Throws InvalidSituation if the name is absent.
   double at(std::string_view name) const;
   const std::map<std::string, double>& all() const { return numbers_; }
   bool operator==(const Values&) const = default;
@@ -52,11 +53,11 @@ class Values {
   std::map<std::string, double> numbers_;
 };
 
-/// Fills defaults, refuses unknown names (naming the nearest known one), NaN and values out of bounds.
-/// `place` begins the message: "world.hill".
+/// Fills in defaults. Refuses unknown names (suggesting the nearest known one), NaN and values out of bounds. Messages
+/// start with `place`, for example "world.hill".
 Values resolve(const std::string& place, const Values& given, std::span<const Parameter> known);
 
-/// The known name nearest to `name` by edit distance; empty when nothing is near.
+/// Returns the known name nearest to `name` by edit distance; empty if none is similar.
 std::string nearest_name(std::string_view name, std::span<const std::string> known);
 
 /// A kind of world, robot, motion or sensor: one entry of a registry.
@@ -66,7 +67,7 @@ struct ComponentType {
   std::span<const Parameter> parameters;
 };
 
-/// A component of a situation: its type's name and its numbers.
+/// A component of a situation: the name of its type and its numbers.
 struct Component {
   std::string type;
   Values values;

@@ -9,9 +9,9 @@
 
 #include "sim/sensors.hpp"
 
-/// What a simulation leaves, the truth beside the sensors: data types only. Frames and units as in docs/design.md: W
-/// world (z up), B body at the centre of mass, I an IMU, L the lidar, X any other sensor, G the sphere's geometric
-/// centre; SI; int64 nanoseconds from the start.
+/// Results of a simulation, with the truth separate from the sensors: data types only. Frames and units are as in
+/// docs/design.md: W world (z up), B body at the centre of mass, I an IMU, L the lidar, X any other sensor, G the
+/// sphere's geometric centre; SI; int64 nanoseconds from the start.
 namespace tumble::sim {
 
 /// State of contact, over a window that bridges chatter.
@@ -21,23 +21,23 @@ enum class ContactLabel : std::uint8_t { air, grip, slip, slide };
 struct ContactTruth {
   std::int64_t time_ns = 0;
   Eigen::Vector3d point_W_m;
-  Eigen::Vector3d normal_W;             ///< unit, into the robot
-  Eigen::Vector3d slip_velocity_W_m_s;  ///< of the robot's material point against the world, tangential
+  Eigen::Vector3d normal_W;             ///< unit vector, into the robot
+  Eigen::Vector3d slip_velocity_W_m_s;  ///< tangential velocity of the robot's material point relative to the world
   double normal_force_n = 0;
   std::int32_t surface_id = -1;
 };
 
-/// What truly happened at one IMU: the same windows and time stamps as the readings.
+/// True quantities at one IMU, for the same windows and time stamps as its readings.
 struct ImuTruth {
   std::string name;
   Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();  ///< true mounting
-  std::vector<Eigen::Vector3d> rate_rad_s;                 ///< exact: rotation over the window over its length
-  std::vector<Eigen::Vector3d> specific_force_m_s2;        ///< exact: velocity gained less gravity, in half-way axes
-  std::vector<Eigen::Vector3d> gyro_unclipped_rad_s;       ///< the reading with all errors but the rail
+  std::vector<Eigen::Vector3d> rate_rad_s;                 ///< exact: rotation over the window divided by its duration
+  std::vector<Eigen::Vector3d> specific_force_m_s2;        ///< exact: velocity change minus gravity, in midway axes
+  std::vector<Eigen::Vector3d> gyro_unclipped_rad_s;       ///< readings with all errors except saturation
   std::vector<Eigen::Vector3d> accel_unclipped_m_s2;
-  std::vector<Eigen::Vector3d> gyro_bias_rad_s;  ///< bias in force at each sample
+  std::vector<Eigen::Vector3d> gyro_bias_rad_s;  ///< bias at each sample
   std::vector<Eigen::Vector3d> accel_bias_m_s2;
-  /// The sensing elements (sim/imu/elements.hpp): three rows of the matrix M, which the rail acts behind; empty:
+  /// Sensing elements (sim/imu/elements.hpp): the three rows of the matrix M, behind which saturation acts; empty if
   /// upright.
   std::vector<Eigen::Vector3d> gyro_elements, accel_elements;
   Eigen::Vector3d gyro_element_offset_rad_s = Eigen::Vector3d::Zero();
@@ -45,29 +45,29 @@ struct ImuTruth {
   std::vector<Eigen::Vector3d> magnetic_field_t;  ///< true mean over the window, disturbances included
 };
 
-/// Exact lidar: parallel to LidarRecord's points.
+/// Exact lidar returns, parallel to LidarRecord's points.
 struct LidarTruth {
   std::string name;
   Eigen::Isometry3d T_BL = Eigen::Isometry3d::Identity();
   std::vector<Eigen::Vector3f> hit_W_m;
-  std::vector<std::int32_t> surface_id;  ///< into Truth::surfaces; -2 the robot's own cage
+  std::vector<std::int32_t> surface_id;  ///< index into Truth::surfaces; -2 is the robot's own cage
 };
 
 /// Parallel to a Quantity.
 struct QuantityTruth {
   std::string name;
   std::string unit;
-  std::vector<double> values;  ///< exact means over the readings' windows
+  std::vector<double> values;  ///< exact means over the windows of the readings
 };
 
-/// What a SeriesRecord would say without any error.
+/// Readings of a SeriesRecord without any error.
 struct SeriesTruth {
   std::string name;
   Eigen::Isometry3d T_BX = Eigen::Isometry3d::Identity();  ///< true mounting
   std::vector<QuantityTruth> quantities;
 };
 
-/// What truly happened; physics samples every `period_ns` from time 0.
+/// True motion and contacts; physics samples every `period_ns` from time 0.
 struct Truth {
   std::int64_t period_ns = 500000;
   std::vector<Eigen::Vector3d> p_WB_m;
@@ -76,7 +76,7 @@ struct Truth {
   std::vector<Eigen::Vector3d> w_WB_B_rad_s;
   std::vector<Eigen::Vector3d> f_B_m_s2;  ///< specific force at the centre of mass, mean over the step that ends here
   std::vector<ContactLabel> label;
-  std::vector<ContactTruth> contacts;                ///< in time order; several or none per physics sample
+  std::vector<ContactTruth> contacts;                ///< in time order; any number per physics sample
   Eigen::Vector3d p_BG_m = Eigen::Vector3d::Zero();  ///< geometric centre in B (sphere)
   std::vector<std::string> surfaces;                 ///< name of surface id i: "terrain", "rock_3", "trunk_7"
   std::vector<ImuTruth> imus;                        ///< in the order of Sensors::imus

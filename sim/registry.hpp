@@ -10,8 +10,8 @@
 
 namespace tumble::sim {
 
-/// The entry of a registry whose component has this name. `what` begins the message ("world"); throws InvalidSituation
-/// naming the nearest known entry.
+/// Returns the registry entry of that name. Messages start with `what` ("world"). Throws InvalidSituation that suggests
+/// the nearest known entry.
 template <typename Type>
 const Type& find_entry(std::span<const Type* const> registry, std::string_view name, const std::string& what) {
   std::vector<std::string> names;
@@ -24,7 +24,7 @@ const Type& find_entry(std::span<const Type* const> registry, std::string_view n
                          (near.empty() ? "" : "; did you mean '" + near + "'?"));
 }
 
-/// The components of a registry, as the public lists show them.
+/// Returns the components of a registry for the public lists.
 template <typename Type>
 std::vector<ComponentType> components(std::span<const Type* const> registry) {
   std::vector<ComponentType> list;

@@ -31,22 +31,20 @@ void add_lidar(const SensorContext& context, Recording& recording) {
 }
 
 const SensorType& imu_sensor() {
-  static const SensorType kType{{"imu", "gyroscope and accelerometer, magnetometer where asked for", imu_parameters()},
-                                add_imu,
-                                check_imu_values};
+  static const SensorType kType{
+      {"imu", "gyroscope, accelerometer and optional magnetometer", imu_parameters()}, add_imu, check_imu_values};
   return kType;
 }
 
 const SensorType& spinning_lidar_sensor() {
   static const SensorType kType{
-      {"spinning_lidar", "column of lasers turning about an axis", spinning_lidar_parameters()}, add_lidar};
+      {"spinning_lidar", "column of lasers that rotates about an axis", spinning_lidar_parameters()}, add_lidar};
   return kType;
 }
 
 const SensorType& rosette_lidar_sensor() {
   static const SensorType kType{
-      {"rosette_lidar", "beam that draws a rosette, one or several side by side", rosette_lidar_parameters()},
-      add_lidar};
+      {"rosette_lidar", "rosette scanner with one or several adjacent units", rosette_lidar_parameters()}, add_lidar};
   return kType;
 }
 

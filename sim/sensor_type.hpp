@@ -12,28 +12,28 @@
 
 namespace tumble::sim {
 
-/// What a sensor is simulated from; all outlive the call.
+/// Input of a sensor's simulation; all members outlive the call.
 struct SensorContext {
   const engine::World& world;
   const SensorSpec& sensor;             ///< resolved
   const Eigen::Isometry3d& T_BX;        ///< true mounting of the sensor's frame X
-  const Eigen::Isometry3d& given_T_BX;  ///< the calibration that an estimator is given
+  const Eigen::Isometry3d& given_T_BX;  ///< calibration that an estimator receives
   double gravity_m_s2;
   std::uint64_t seed;
   int threads;
 };
 
-/// A kind of sensor: its parameters, how its readings and its truth are added to a recording that holds the body's
-/// truth, and, unless null, what refuses resolved numbers that contradict each other (`place` begins its message).
+/// A kind of sensor: its parameters, and the function that adds its readings and truth to a recording with the body's
+/// truth. An optional check refuses resolved numbers that contradict each other; its message starts with `place`.
 struct SensorType {
   ComponentType component;
   void (*simulate)(const SensorContext& context, Recording& recording);
   void (*check)(const Values& values, const std::string& place) = nullptr;
 };
 
-/// All kinds, in the order of registration.
+/// All kinds in the order of registration.
 std::span<const SensorType* const> all_sensor_types();
-/// Throws InvalidSituation, naming the nearest known kind.
+/// Throws InvalidSituation for an unknown name, with the nearest known kind.
 const SensorType& find_sensor_type(std::string_view kind);
 
 }  // namespace tumble::sim

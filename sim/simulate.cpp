@@ -11,7 +11,7 @@ namespace tumble::sim {
 
 namespace {
 
-/// Pose of a site in the true body frame.
+/// Returns the pose of a site in the true body frame.
 Eigen::Isometry3d site_pose(const engine::World& world, const SensorSpec& sensor) {
   const mjModel& model = *world.model;
   const int site = mj_name2id(&model, mjOBJ_SITE, sensor.site.c_str());
@@ -25,7 +25,8 @@ Eigen::Isometry3d site_pose(const engine::World& world, const SensorSpec& sensor
                            (near.empty() ? " (known: " + known + ")" : "; did you mean '" + near + "'?"));
   }
   if (model.site_bodyid[site] != world.robot_body) {
-    throw InvalidSituation("sensors." + sensor.name + ": site '" + sensor.site + "' is not on the body of the sensors");
+    throw InvalidSituation("sensors." + sensor.name + ": site '" + sensor.site +
+                           "' is not on the body that carries the sensors");
   }
   const mjtNum* p = model.site_pos + 3 * site;
   const mjtNum* q = model.site_quat + 4 * site;
@@ -35,8 +36,8 @@ Eigen::Isometry3d site_pose(const engine::World& world, const SensorSpec& sensor
   return T_BX;
 }
 
-/// The calibration that an estimator is given: the mounting in the design frame, whose origin is the nominal centre of
-/// mass (a sphere's: the geometric centre), plus the error of calibration.
+/// Returns the calibration that an estimator receives: the mounting in the design frame plus the calibration error. The
+/// origin of the design frame is the nominal centre of mass (for a sphere the geometric centre).
 Eigen::Isometry3d given_pose(const engine::World& world, const SensorSpec& sensor, const Eigen::Isometry3d& T_BX) {
   const Values& error = sensor.mount_error;
   Eigen::Isometry3d given = T_BX;
@@ -51,9 +52,10 @@ Eigen::Isometry3d given_pose(const engine::World& world, const SensorSpec& senso
 
 Recording simulate(const BuiltSituation& built, int threads) {
   const Situation& situation = built.situation();
-  engine::World world = engine::copy_of(built.world());  // the floor's friction changes as the robot goes
+  engine::World world = engine::copy_of(built.world());  // the floor's friction changes with the robot's position
   const auto motion = find_motion_type(situation.motion.type).make(situation.motion.values, world);
-  std::vector<Eigen::Isometry3d> mountings;  // before the long work: an unknown site is reported at once
+  std::vector<Eigen::Isometry3d> mountings;  // computed before the long simulation, so that an unknown site is reported
+                                             // immediately
   for (const SensorSpec& sensor : situation.sensors) mountings.push_back(site_pose(world, sensor));
 
   Recording recording;

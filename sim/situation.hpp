@@ -12,23 +12,23 @@
 
 namespace tumble::sim {
 
-/// A sensor of the robot: where it is mounted, which device it is, and how far the estimator's calibration is off.
+/// A sensor of the robot: its mounting, its device, and the error of the estimator's calibration.
 struct SensorSpec {
   std::string name;    ///< unique in the situation: "imu", "imu_reference", "lidar"
   std::string kind;    ///< registry entry: "imu", "spinning_lidar", "barometer"
-  std::string device;  ///< data sheet that the values came from: "mti30"; kept for the record
-  std::string site;    ///< site of the robot's MJCF that carries it
-  Values values;       ///< numbers of the device (data sheet, then the scenario's changes)
-  /// Calibration minus design: x_m y_m z_m (B axes), roll_rad pitch_rad yaw_rad (small angles, I axes). A centre of
-  /// mass off its nominal place adds to it what nobody calibrates.
+  std::string device;  ///< data sheet from which the values come ("mti30"); for information
+  std::string site;    ///< site of the robot's MJCF at which the sensor is mounted
+  Values values;       ///< numbers of the device (data sheet with the scenario's changes)
+  /// Calibration minus design: x_m y_m z_m (B axes), roll_rad pitch_rad yaw_rad (small angles, I axes). An offset of
+  /// the centre of mass adds to this error.
   Values mount_error;
   bool operator==(const SensorSpec&) const = default;
 };
 
-/// A draw: one situation with every number fixed. Equal situations give equal recordings, bit for bit. As written it
-/// may leave out what is default; `resolve` completes and checks it.
+/// A draw: one situation with every number fixed. Equal situations give bit-identical recordings. Defaults may be
+/// omitted; `resolve` completes and checks the situation.
 struct Situation {
-  std::string scenario;  ///< name of the scenario that it was drawn from
+  std::string scenario;  ///< name of the scenario from which it was drawn
   std::uint64_t seed = 0;
   double duration_s = 10.0;
   Component world;
@@ -46,15 +46,15 @@ std::span<const ComponentType> sensor_types();
 /// Parameters of SensorSpec::mount_error.
 std::span<const Parameter> mount_error_parameters();
 
-/// A situation that is complete and checked. Only `resolve` makes one, so that whoever is given one need not ask again.
-/// It reads as a Situation; to change a number take a copy, change that and resolve it.
+/// A complete and checked situation. Only `resolve` creates one, so receivers need no further checks. It can be read as
+/// a Situation. To change a number, copy the Situation, change the copy and resolve it.
 class ResolvedSituation {
  public:
   const Situation* operator->() const { return &situation_; }
   operator const Situation&() const& { return situation_; }
   operator Situation() && { return std::move(situation_); }
 
-  /// The same without the sensors that `left_out` names: what is left is as complete as it was.
+  /// Returns the same situation without the sensors for which `left_out` is true.
   ResolvedSituation without_sensors(const std::function<bool(const SensorSpec&)>& left_out) const;
 
   bool operator==(const ResolvedSituation&) const = default;
@@ -66,7 +66,7 @@ class ResolvedSituation {
   Situation situation_;
 };
 
-/// Completes every component with its defaults and checks it; throws InvalidSituation with the place.
+/// Completes every component with its defaults and checks it. Throws InvalidSituation with the place of the error.
 ResolvedSituation resolve(const Situation& situation);
 
 }  // namespace tumble::sim

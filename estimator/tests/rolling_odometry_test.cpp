@@ -156,6 +156,7 @@ TEST(RollingOdometry, TheOnlyUnitIsRefusedWithTheNameOfItsFrozenAxis) {
   }
   EXPECT_EQ(status.trouble, Trouble::out_of_range);
   EXPECT_NE(status.message().find("unit 1's gyro y"), std::string::npos) << status.message();
+  EXPECT_EQ(odometry.doubt().message(), status.message());
 }
 
 TEST(RollingOdometry, TroubleIsAValue) {

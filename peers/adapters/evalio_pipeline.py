@@ -6,7 +6,7 @@ order of calls is that of evalio's Experiment.setup. Its poses are of the IMU.
 MAD-ICP: deskewing on, since points have times; `realtime` off, which cuts work short by the clock.
 
 `shift_s=T` is ours: what a pipeline's stamps are off by, where the sweep's start that they state is not the instant of the pose. Each was
-measured on `stroll`, where the error is least (docs/peers.md). A pose that repeats the last one to the bit is left out: LIO-SAM passes over
+measured on `stroll`, where the error is least. A pose that repeats the last one to the bit is left out: LIO-SAM passes over
 sweeps that come within its mappingProcessInterval."""
 import numpy as np
 from evalio import pipelines, types

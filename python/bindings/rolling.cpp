@@ -281,6 +281,10 @@ void bind_door(nb::module_& m) {
           "reset", [](Object& self) { self.run([](Door& door) { door.odometry.reset(); }); },
           "Begins a new run: at the origin, at rest.")
       .def_prop_ro(
+          "rejected_readings",
+          [](Object& self) { return self.run([](Door& door) { return door.odometry.rejected_readings(); }); },
+          "number of readings that were rejected because they are wild, over all units")
+      .def_prop_ro(
           "mended_jitter_s",
           [](Object& self) { return self.run([](Door& door) { return door.odometry.mended_jitter_s(); }); },
           "standard deviation of the stamps about a regular clock, while that clock's times count for them; else None")

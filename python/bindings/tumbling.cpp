@@ -184,6 +184,12 @@ void bind_talk(Class& bound) {
           },
           "that the mapper did not take with their rates: 0 unless something is wrong")
       .def_prop_ro(
+          "rejected_readings",
+          [](TumblingDoor& self) {
+            return self.run([](TumblingOdometry& odometry) { return odometry.rejected_readings(); });
+          },
+          "number of samples that were rejected because their readings or stamps are wild")
+      .def_prop_ro(
           "newest_ns",
           [](TumblingDoor& self) { return self.run([](TumblingOdometry& odometry) { return odometry.newest_ns(); }); },
           "time of the newest sample that was taken in; None before the first")

@@ -13,23 +13,23 @@
 
 namespace tumble::scenarios {
 
-/// What a method reached on one draw of a bench suite.
+/// Result of one method on one draw of a bench suite.
 struct BenchDraw {
   std::string scenario;
   std::uint64_t seed = 0;
-  std::string group;      ///< class of the suite: "mild"
-  std::string recording;  ///< digest of what it was given
+  std::string group;      ///< class in the suite: "mild"
+  std::string recording;  ///< digest of the input
   OutcomeStatus status = OutcomeStatus::failed;
-  std::map<std::string, double> values;  ///< what the gate holds and the suite shows, and the cost; finite
+  std::map<std::string, double> values;  ///< gate metrics, the suite's metrics, and the cost; finite
   bool is(const BenchDraw& other) const { return scenario == other.scenario && seed == other.seed; }
 };
 
-/// What one method reached on a bench suite: one line of JSON that can be published. README.md has the schema.
+/// Result of one method on a bench suite, published as one line of JSON. Schema: README.md.
 struct BenchResult {
-  std::string suite, suite_digest;  ///< bench.hpp
+  std::string suite, suite_digest;  ///< see bench.hpp
   Kind kind = Kind::rate;
   std::string method;
-  std::string version;  ///< of a method that is not of the build; else empty
+  std::string version;  ///< of an external method, else empty
   std::string source;   ///< paper or "ours"
   std::string build;    ///< provenance/build_id.hpp
   std::string command, date;
@@ -37,20 +37,20 @@ struct BenchResult {
   const BenchDraw* find(const BenchDraw& draw) const;
 };
 
-/// One line, not ended.
+/// Returns one line of JSON without newline.
 std::string to_line(const BenchResult& result);
 
-/// Reads it back. Throws BadInput that begins with `place`: not JSON, another format or version of it, a key that is
-/// missing or of another type, an unknown kind or status, a draw that stands twice.
+/// Parses such a line. Throws BadInput, with a message that starts with `place`: not JSON, another format or version, a
+/// missing key or wrong type, an unknown kind or status, a repeated draw.
 BenchResult parse_bench_result(const std::string& line, const std::string& place);
 
-/// Of the results that the tree holds of a suite: SUITE.jsonl.
+/// Returns the path of a suite's stored results: SUITE.jsonl.
 std::filesystem::path bench_results_file(const DataRoot& data, const std::string& suite);
 
-/// The results in a file, a line each; empty lines are passed over. None where there is no such file.
+/// Returns the results in a file, one per line, ignoring empty lines; none if the file does not exist.
 std::vector<BenchResult> read_bench_results(const std::filesystem::path& file);
 
-/// Puts the results into the file, each in the place of the one of its method.
+/// Stores results in the file; each replaces the one of its method.
 void store_bench_results(const std::filesystem::path& file, const std::vector<BenchResult>& results);
 
 }  // namespace tumble::scenarios

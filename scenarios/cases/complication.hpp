@@ -10,21 +10,22 @@
 
 namespace tumble::scenarios {
 
-/// Something that a draw could do without: an error of a sensor, stones, a spin. Numbers of the scenario, and what they
-/// are where it is not there.
+/// Something that a draw could omit: a sensor error, stones, a spin. Contains numbers of the scenario and their ideal
+/// values.
 struct Complication {
   std::string name;                                     ///< "sensors.imu: white noise", "world: rocks"
-  std::vector<std::pair<std::string, double>> without;  ///< place (fixed_number.hpp) and value, of those not so yet
-  std::optional<double> amount;                         ///< of a single number that may also be made smaller
+  std::vector<std::pair<std::string, double>> without;  ///< place (fixed_number.hpp) and ideal value of the numbers
+                                                        ///< that are not ideal
+  std::optional<double> amount;                         ///< value of a single number that can also be reduced
   bool whole = false;                                   ///< the amount is a count
 };
 
-/// What can be simpler in a scenario whose numbers are all fixed (fixed_scenario.hpp), by parts of the scenario, what
-/// belongs together side by side: world, robot, motion, then each sensor's errors. One line of registration each
-/// (complication.cpp). What is ideal already is left out.
+/// Returns what can be simplified in a scenario with fixed numbers (fixed_scenario.hpp), ordered by part: world, robot,
+/// motion, then each sensor's errors. Related complications are adjacent. Registered in one line each
+/// (complication.cpp). Omits what is already ideal.
 std::vector<Complication> complications(const Scenario& scenario);
 
-/// The scenario without this complication.
+/// Removes this complication from the scenario.
 void take_away(const Complication& complication, Scenario& scenario);
 
 }  // namespace tumble::scenarios

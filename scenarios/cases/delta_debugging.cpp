@@ -19,7 +19,7 @@ Indices without(const Indices& kept, std::size_t first, std::size_t count) {
   return out;
 }
 
-/// Asks each question once.
+/// Caches the answer to each trial.
 class Asked {
  public:
   explicit Asked(const FailsWith& fails) : fails_(fails) {}
@@ -51,7 +51,7 @@ LeastSet least_failing_set(std::size_t count, const FailsWith& fails) {
       if (!still) return out;
       if (*still) {
         out.kept = without(out.kept, first, chunk);
-        out.needed.clear();  // it was of a larger set
+        out.needed.clear();  // it belonged to a larger set
         removed = true;
         continue;
       }

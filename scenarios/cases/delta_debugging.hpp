@@ -6,37 +6,37 @@
 #include <optional>
 #include <vector>
 
-/// Searches for the least that still fails. Whoever asks runs the trials; none: there is no run left for it, and the
-/// search ends with the best that it has.
+/// Searches for the smallest failing configuration. The caller runs the trials; an empty answer means that the budget
+/// is used up, and the search ends with its best result.
 namespace tumble::scenarios {
 
-/// Whether what is kept, indices that rise, still fails.
+/// Returns true if the kept items (ascending indices) still fail.
 using FailsWith = std::function<std::optional<bool>(const std::vector<std::size_t>& kept)>;
 
 struct LeastSet {
   std::vector<std::size_t> kept;    ///< fails
-  std::vector<std::size_t> needed;  ///< of these: what is kept does not fail without this one
+  std::vector<std::size_t> needed;  ///< items of `kept` without which the rest does not fail
   bool complete = false;            ///< all of `kept` are needed: the set is 1-minimal
 };
 
-/// Of the things 0 to `count` - 1, which fail together, a set that fails and no longer does when any one of it is taken
-/// away: delta debugging (Zeller and Hildebrandt, IEEE Trans. Software Eng. 28:183, 2002, algorithm ddmin) by its
-/// complements alone. All are taken away at once, then halves of what is left, quarters, down to single ones, these
-/// again until none goes. Neighbours should belong together. What is not monotone may have smaller sets. Trials: some
-/// 2 log2(count) for one needed thing, at most O(count^2); none is asked twice.
+/// Returns a 1-minimal failing subset of the items 0 to `count` - 1, which fail together, by delta debugging (Zeller
+/// and Hildebrandt, IEEE Trans. Software Eng. 28:183, 2002, algorithm ddmin) with complements only. First removes all,
+/// then halves of the rest, quarters, down to single items, and repeats these until none can be removed. Related items
+/// should be adjacent. If failing is not monotone, smaller sets may exist. About 2 log2(count) trials for one needed
+/// item, at most O(count^2), each once.
 LeastSet least_failing_set(std::size_t count, const FailsWith& fails);
 
-/// Whether the run with this number still fails.
+/// Returns true if the run with this value still fails.
 using FailsAt = std::function<std::optional<bool>(double value)>;
 
 struct LeastNumber {
-  double fails_at;        ///< the nearest to `ideal` that was seen to fail
-  double holds_at;        ///< the nearest to it that was not, `ideal` unless another was tried
+  double fails_at;        ///< closest value to `ideal` that failed
+  double holds_at;        ///< closest value that did not fail; `ideal` if none was tried
   bool complete = false;  ///< the two are within `resolution`
 };
 
-/// Bisects between `failing`, which fails, and `ideal`, which is taken not to: the number nearest to `ideal` that still
-/// fails, within `resolution` (above 0). `whole`: whole numbers are tried alone.
+/// Bisects between `failing`, which fails, and `ideal`, which is assumed not to fail. Finds the failing value closest
+/// to `ideal` within `resolution` (above 0). `whole`: tries integers only.
 LeastNumber least_failing_number(double failing, double ideal, double resolution, bool whole, const FailsAt& fails);
 
 }  // namespace tumble::scenarios

@@ -20,13 +20,13 @@ std::string four_digits(double value) {
   return text.str();
 }
 
-/// A finite number of the metric; none, where there is not.
+/// Returns a finite value of the metric; empty otherwise.
 std::optional<double> finite_value_of(const Outcome& outcome, const std::string& metric) {
   const double value = value_of(outcome.scores, metric);
   return std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
-/// What a reader wants to know of a shrunk draw, in a line.
+/// Describes a shrunk draw in one line.
 std::string doc_of(const Shrunk& shrunk, const std::string& method, const std::string& scenario, std::uint64_t seed) {
   std::string needed;
   std::size_t not_tried = 0;

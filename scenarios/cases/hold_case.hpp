@@ -6,41 +6,40 @@
 
 #include "scenarios/cases/shrink.hpp"
 
-/// Named cases: failing draws that are kept, and what is expected of methods on them.
+/// Named cases: stored failing draws with the expected results of methods.
 namespace tumble::scenarios {
 
-/// The case that a shrunk draw makes: `name` becomes the scenario's. It expects of `method`, a name for find_methods,
-/// that it still fails. `command` made it.
+/// Returns the case of a shrunk draw, with `name` as its scenario name. It expects that `method` (a name for
+/// find_methods) still fails. `command` is the command that created it.
 Scenario named_case_of(const Shrunk& shrunk, const std::string& name, const std::string& method, const Failure& failure,
                        const std::string& version, const std::string& command);
 
-/// What makes a run of the case fail.
+/// Returns the failure criteria of an expectation.
 Failure failure_of(const Expectation& expected);
 
-/// How many times better or worse than accepted the metric of a case that still fails may be: beyond, somebody has to
-/// look at it.
+/// Allowed factor between the metric of a case that still fails and its accepted value.
 inline constexpr double kCaseFactor = 2.0;
 
-/// One expectation of a case against an outcome.
+/// Result of one expectation on an outcome.
 struct CaseResult {
   std::string name, method;
   Expectation expected;
   OutcomeStatus status = OutcomeStatus::ok;
-  std::optional<double> value;  ///< of the expected metric
+  std::optional<double> value;  ///< value of the expected metric
   bool fails = false;
-  bool better = false;  ///< it was to fail and does not, or by less than half: accept it
-  std::string fault;    ///< what is wrong; empty when nothing is
+  bool better = false;  ///< no longer fails, or by less than half; the expectation should be updated
+  std::string fault;    ///< description of the fault; empty if none
 };
 
-/// Held on both sides. A case that is to hold fails the gate when it fails. A case that still fails has to fail as it
-/// did, with the same status, its metric within `kCaseFactor` of the accepted: a cure fails the gate too, so that it is
-/// accepted and held from then on.
+/// Checks an outcome in both directions. A case that should pass must not fail. A failing case must fail with the same
+/// status and its metric within `kCaseFactor` of the accepted value. An improvement thus also fails the gate, so that
+/// it is accepted and then kept.
 CaseResult hold_case(const std::string& name, const Expectation& expected, const Outcome& outcome);
 
-/// The expectation with what the outcome is as the accepted run.
+/// Returns the expectation with this outcome as the accepted result.
 Expectation accepted(const Expectation& expected, const Outcome& outcome);
 
-/// Throws BadInput where a case expects something of a method, a metric or a status that there is not.
+/// Throws BadInput if a case names an unknown method, metric or status.
 void require_known(const Scenario& scenario);
 
 }  // namespace tumble::scenarios

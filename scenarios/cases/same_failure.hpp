@@ -7,18 +7,18 @@
 
 namespace tumble::scenarios {
 
-/// How an outcome failed, so that a simpler draw which fails for another reason is told from it: by its status; else by
-/// the metric that was asked for; else by a verdict (`map_failed`). Unlike Failure, a run without the metric does not
-/// fail by it: a draw in which nothing clips has no error of clipped samples.
+/// How an outcome failed: by status, else by the requested metric, else by a verdict (`map_failed`). Distinguishes
+/// simpler draws that fail for another reason. Unlike with Failure, a run without the metric does not fail by it: a
+/// draw without clipping has no error at clipped samples.
 class SameFailure {
  public:
-  /// Throws BadInput when `outcome` does not fail, or was `killed`.
+  /// Throws BadInput if `outcome` does not fail, or was `killed`.
   SameFailure(const Failure& failure, const Outcome& outcome);
 
   bool holds(const Outcome& outcome) const;
-  /// "diverged", "map_failed", "translation_error_end_m beyond 0.5".
+  /// Returns "diverged", "map_failed", "translation_error_end_m beyond 0.5".
   std::string describe() const;
-  /// The metric that tells it; empty where the status does.
+  /// Returns the metric of the failure; empty if it is the status.
   const std::string& metric() const { return metric_; }
 
  private:

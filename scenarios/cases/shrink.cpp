@@ -25,8 +25,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr double kLengthResolution = 0.05;  // of the length as drawn
-constexpr double kAmountResolution = 0.1;   // of the way from a size as drawn to its ideal
+constexpr double kLengthResolution = 0.05;  // relative to the original duration
+constexpr double kAmountResolution = 0.1;   // relative to the distance between the drawn and the ideal value
 
 std::string text_of(double value) {
   std::ostringstream text;
@@ -34,7 +34,7 @@ std::string text_of(double value) {
   return text.str();
 }
 
-/// A simulated draw, its surface where maps are scored against it, and a method on it.
+/// A simulated draw, its surface for map scores, and a method to run on it.
 class Run {
  public:
   Run(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, Kind kind)
@@ -52,7 +52,7 @@ class Run {
 
 using Indices = std::vector<std::size_t>;
 
-/// The scenario with these complications and no other.
+/// Returns the scenario with only these complications.
 Scenario with_only(const std::vector<Complication>& all, const Indices& kept, Scenario scenario) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (!std::binary_search(kept.begin(), kept.end(), i)) take_away(all[i], scenario);
@@ -60,7 +60,7 @@ Scenario with_only(const std::vector<Complication>& all, const Indices& kept, Sc
   return scenario;
 }
 
-/// What `kept` is without: the one, or how many.
+/// Describes what `kept` lacks: one name, or a count.
 std::string difference(const std::vector<Complication>& all, const Indices& left, const Indices& kept) {
   Indices gone;
   std::set_difference(left.begin(), left.end(), kept.begin(), kept.end(), std::back_inserter(gone));
@@ -97,8 +97,7 @@ class Shrinking {
   }
 
  private:
-  /// Whether a simpler draw fails as the first did; it is the one that is shrunk from here on, then. Nothing when no
-  /// run is left.
+  /// Returns true if a simpler draw fails like the first, and then continues from it. Empty if the budget is used up.
   std::optional<bool> try_out(const Scenario& simpler, const std::string& what, Outcome* told = nullptr) {
     if (shrunk_.runs >= options_.budget) return std::nullopt;
     bool fails = false;
@@ -111,7 +110,7 @@ class Shrinking {
         fails = false;
         outcome.message = one_line("the control method fails too: " + options_.control->info.name);
       }
-    } catch (const std::exception& error) {  // the draw is none: it does not show the failure
+    } catch (const std::exception& error) {  // the draw is invalid and does not show the failure
       outcome.status = OutcomeStatus::rejected;
       outcome.message = one_line(error.what());
     }
@@ -136,11 +135,11 @@ class Shrinking {
       return try_out(shorter, text_of(length_s) + " s");
     };
     const double now_s = shrunk_.scenario.duration_s.numbers.front();
-    // what did not fail before may, now that more is gone: it is asked again from the length that is left
+    // Search again from the current duration, because other complications are removed now.
     return least_failing_number(now_s, 0.0, kLengthResolution * drawn_s, false, fails).complete;
   }
 
-  /// Takes away what goes; what is needed is left in `needed_`.
+  /// Removes complications; the needed ones remain in `needed_`.
   bool simplify() {
     const std::vector<Complication> all = complications(shrunk_.scenario);
     const Scenario whole = shrunk_.scenario;

@@ -8,54 +8,56 @@
 
 #include "scenarios/sweep/triage.hpp"
 
-/// A failing draw made shorter and simpler, so that one sees what it takes to fail.
+/// Makes a failing draw shorter and simpler, to show the cause of the failure.
 namespace tumble::scenarios {
 
-/// One run of the search: a simpler draw, simulated and estimated.
+/// One trial of the search: a simpler draw, simulated and estimated.
 struct ShrinkTrial {
-  int run = 0;        ///< from 1, the draw as it was
+  int run = 0;        ///< from 1, the original draw
   std::string what;   ///< "4.5 s", "without world: rocks", "without 12 of 26"
-  bool kept = false;  ///< it still fails, and is what is shrunk from here on
-  Outcome outcome;    ///< `rejected` where it could not be simulated
+  bool kept = false;  ///< still fails; the search continues from it
+  Outcome outcome;    ///< `rejected` if simulation was impossible
 };
 
 struct ShrinkOptions {
   Failure failure;
-  /// A method of the same kind that must not fail where the one in question does: what even it cannot do is no case.
-  /// Null: none. Where it fails on the draw as it was, it is not asked again.
+  /// A method of the same kind that must not fail where the tested one does, so that impossible draws are excluded.
+  /// Null: none. Not used if it fails on the original draw.
   MethodPointer control;
-  int budget = 60;           ///< runs, at least 1: draws simulated, whatever is run on each
-  double timeout_s = 300.0;  ///< for one run of a method
+  int budget = 60;           ///< number of simulated draws, at least 1
+  double timeout_s = 300.0;  ///< limit of one method run
   std::function<void(const ShrinkTrial&)> on_trial;
 };
 
-/// What became of a thing that the draw could have done without.
+/// Result for one removable item.
 enum class Fate { removed, smaller, needed, not_tried };
 const char* to_string(Fate fate);
 
 struct ShrinkLine {
   std::string what;  ///< "duration_s", or a complication's name
   Fate fate = Fate::not_tried;
-  std::optional<double> from, to;       ///< of a length, a size or a count
-  std::optional<Outcome> without = {};  ///< of a needed one: the run that did not fail for want of it
+  std::optional<double> from, to;       ///< of a length, size or count
+  std::optional<Outcome> without = {};  ///< for a needed item: the run without it, which did not fail
 };
 
 struct Shrunk {
-  Scenario scenario;    ///< every number fixed (fixed_scenario.hpp), of the seed that it was drawn with
+  Scenario scenario;    ///< all numbers fixed (fixed_scenario.hpp), with the original seed
   std::string failure;  ///< how it fails: SameFailure::describe
-  Outcome drawn, left;  ///< of the draw as it was, and of `scenario`
+  Outcome drawn, left;  ///< outcomes of the original draw and of `scenario`
   std::vector<ShrinkLine> lines;
   int runs = 0;
-  bool complete = false;    ///< the budget sufficed: nothing single can be taken away any more
-  bool controlled = false;  ///< the control does not fail on any of the draws that were kept
+  bool complete = false;    ///< the budget was sufficient: no single item can be removed
+  bool controlled = false;  ///< the control method failed on none of the kept draws
 };
 
-/// Shrinks a draw on which `method` fails: a shorter run first, since all others cost less then; then as many
-/// complications (complication.hpp) as go, by delta debugging (delta_debugging.hpp); then sizes and counts of those
-/// that are needed; then the length once more. Each trial is simulated and estimated anew and counts when it fails as
-/// the draw did (same_failure.hpp). Deterministic; what is random beyond the numbers stays what the seed makes it. Not
-/// found: a simpler draw behind one that does not fail. Throws what simulate_draw throws of the draw as it is; BadInput
-/// when it does not fail, or when method or control do not apply.
+/// Shrinks a draw on which `method` fails. First reduces the duration, which makes further trials cheap. Then removes
+/// complications (complication.hpp) by delta debugging (delta_debugging.hpp), reduces sizes and counts of the rest, and
+/// reduces the duration again. Each trial is simulated and estimated, and counts if it fails like the original
+/// (same_failure.hpp). Deterministic; other random effects keep the seed. Simpler draws that can only be reached via a
+/// passing draw are not found.
+///
+/// Throws what simulate_draw throws for the original draw; BadInput if it does not fail, or if method or control do not
+/// apply.
 Shrunk shrink(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, const Method& method,
               const ShrinkOptions& options);
 

@@ -16,7 +16,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// A row with the certificate's own set-up.
+/// A row with the certificate's default setup.
 template <auto kMeasure>
 std::vector<CertificateEntry> as_certified(const CertificateInput& input) {
   return kMeasure(input, {});
@@ -31,7 +31,7 @@ std::vector<CertificateEntry> measure_row(const CertificateRow& row, const Certi
     throw;
   } catch (const sim::InvalidSituation&) {
     throw;
-  } catch (const std::exception& error) {  // a simulation that fails is what a certificate is to find out
+  } catch (const std::exception& error) {  // a failing simulation is a valid result
     reason = error.what();
   }
   return {{row.name, "", row.doc, "1", std::nan(""), 0.0, 0.0, reason}};

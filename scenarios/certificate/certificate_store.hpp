@@ -8,11 +8,11 @@
 
 namespace tumble::scenarios {
 
-/// Certificates kept in a folder, one file per build, data and machine (model of the processor), so that each is
-/// measured once. Trouble with the folder is no error: nothing is kept then.
+/// Caches certificates in a folder, one file per build, data and machine (processor model). File system errors disable
+/// the cache.
 class CertificateStore {
  public:
-  /// An empty path keeps nothing.
+  /// An empty path disables the cache.
   CertificateStore(std::filesystem::path folder, const DataRoot& data);
 
   std::optional<Certificate> find() const;

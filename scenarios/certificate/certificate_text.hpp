@@ -7,11 +7,12 @@
 
 namespace tumble::scenarios {
 
-/// JSON: {"build", "verdict": "pass" | "fail", "entries": [{row, subject, law, unit, value, low, high, verdict,
-/// note}]}; a number that is not finite is null.
+/// Returns JSON: {"build", "verdict": "pass" | "fail", "entries": [{row, subject, law, unit, value, low, high, verdict,
+/// note}]}; non-finite numbers are null.
 std::string to_json(const Certificate& certificate);
 
-/// Back to the bit; null becomes NaN, and verdicts are worked out anew. Throws BadInput; `place` begins the message.
+/// Parses the JSON bit-exactly; null becomes NaN, and verdicts are recomputed. Throws BadInput; messages start with
+/// `place`.
 Certificate certificate_from_json(const std::string& text, const std::string& place);
 
 }  // namespace tumble::scenarios

@@ -21,9 +21,9 @@ Matrix3d matrix(const std::vector<Vector3d>& rows) {
   return out;
 }
 
-/// The sign of the rail that element `j` alone is at during the whole of sample k; 0: none.
+/// Returns the sign of saturation if only element `j` is saturated during the whole of sample k; else 0.
 int side(const SensedTriad& triad, std::size_t k, int j) {
-  constexpr double kMargin = 0.08;  // of the rail: more than the signal moves from sample to sample
+  constexpr double kMargin = 0.08;  // fraction of the limit: larger than the signal's change between samples
   int sign = 0;
   for (std::size_t i = k - 1; i <= k + 1; ++i) {
     const Vector3d sensed = (triad.axes * triad.unclipped[i] + triad.offset) / triad.rail;
@@ -85,7 +85,7 @@ ClippedPlane fit_clipped_plane(const SensedTriad& triad, int j, int& samples) {
   }
   samples = std::min(count[0], count[1]);
   if (samples < kFewestClipped) return {std::nan(""), std::nan(""), std::nan(""), std::nan("")};
-  // a row a sample: the reading along the element's axis from the two beside, the side and 1
+  // one row per sample: the readings of the other two axes, the sign, and 1
   Eigen::MatrixX4d known(clipped.size(), 4);
   Eigen::VectorXd read(clipped.size());
   for (std::size_t i = 0; i < clipped.size(); ++i) {

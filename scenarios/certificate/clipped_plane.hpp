@@ -6,16 +6,17 @@
 
 #include "sim/recording.hpp"
 
-/// The plane that a sensing element at its rail keeps its readings on, fitted and in closed form, for the rows that
-/// hold one to the other. For M and o of sim/imu/elements.hpp and the rail r:
+/// The plane on which a saturated sensing element keeps its readings, fitted and in closed form. M and o are those of
+/// sim/imu/elements.hpp, r is the limit:
 ///   y_j = +-rho + b + sum over k != j of c_k y_k,  c_k = -M_jk / M_jj, rho = r / M_jj, b = -o_j / M_jj
 namespace tumble::scenarios {
 
-/// Turns about x, y and z in turn beyond a gyro's rail [rad/s], and somewhat about the others; pushed along x so hard
-/// that each element of an accelerometer meets its rail [m/s^2] as it comes round.
+/// Returns a motion that saturates every element. It rotates about x, y and z in turn beyond the gyro's limit [rad/s],
+/// with some rotation about the other axes. A push along x saturates each accelerometer element [m/s^2] as it rotates
+/// past.
 sim::Truth beyond_every_rail(double gyro_rail_rad_s, double accel_rail_m_s2);
 
-/// One triad's readings with what its elements were.
+/// Readings of one triad with its sensing elements.
 struct SensedTriad {
   const std::vector<Eigen::Vector3d>&readings, &unclipped;
   Eigen::Matrix3d axes;
@@ -32,8 +33,8 @@ struct ClippedPlane {
 };
 ClippedPlane plane_of(const Eigen::Matrix3d& axes, const Eigen::Vector3d& offset, double rail, int j);
 
-/// Least squares over the samples in whose whole window element j alone was at its rail. `samples` gets their number of
-/// the sign that had fewer: below kFewestClipped there is no plane (NaN).
+/// Fits the plane by least squares to samples in whose whole window only element j was saturated. `samples` receives
+/// their number for the sign that had fewer; below kFewestClipped the plane is NaN.
 inline constexpr int kFewestClipped = 10;
 ClippedPlane fit_clipped_plane(const SensedTriad& triad, int j, int& samples);
 

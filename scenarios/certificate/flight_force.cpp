@@ -15,7 +15,7 @@ std::vector<CertificateEntry> certify_flight_force(const CertificateInput& input
   sim::SensorSpec ideal;
   ideal.name = "imu";
   ideal.kind = "imu";
-  ideal.values.set("output_rate_hz", 1.0 / trial.step_s());  // every step's own window
+  ideal.values.set("output_rate_hz", 1.0 / trial.step_s());  // one window per physics step
   ideal.values = sim::resolve("certificate.imu", ideal.values, sim::imu_parameters());
   Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();
   T_BI.translation().x() = setup.lever_arm_m;

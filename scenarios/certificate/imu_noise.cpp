@@ -16,13 +16,12 @@ namespace {
 
 constexpr double kRate_hz = 100.0;
 
-/// Rates of a device's readings at rest [rad/s] and its specific forces [m/s^2].
+/// Rates [rad/s] and specific forces [m/s^2] of a device at rest.
 struct RestReadings {
   std::vector<Eigen::Vector3d> gyro, accel;
 };
 
-/// The device with its noise and bias alone: filters need a faster rate than this one, and the rest is constant at
-/// rest.
+/// Returns the device with noise and bias only: filters need a higher rate, and other errors are constant at rest.
 sim::SensorSpec resting(const DataSheet& sheet) {
   sim::SensorSpec sensor = imu_of_sheet(sheet);
   for (const char* off :
@@ -62,7 +61,7 @@ std::vector<sim::AllanPoint> curve_of(const std::vector<Eigen::Vector3d>& sample
   return sim::mean_deviation(axes);
 }
 
-/// What the data sheet states of one triad, by the part of it that answers at rest.
+/// Data sheet values of one triad that apply at rest.
 struct Stated {
   double noise;
   sim::Bias::Params bias;
@@ -82,10 +81,10 @@ struct Stated {
   }
 };
 
-/// Measured over stated deviation at an averaging time; the bound is the statistical interval of three axes.
+/// Returns measured over stated deviation at an averaging time; bounded by the statistical interval of three axes.
 CertificateEntry entry(const std::string& row, const std::string& subject, const std::string& law,
                        const sim::AllanPoint& measured, double stated, sim::AllanNoise noise) {
-  constexpr double kSigmas = 4.0;  // of some twenty figures none fails by chance
+  constexpr double kSigmas = 4.0;  // none of about twenty entries fails by chance
   const sim::AllanInterval interval = sim::confidence_interval(measured, noise, kSigmas);
   return {row,
           subject,
@@ -101,7 +100,7 @@ std::vector<CertificateEntry> entries_of(const std::string& subject, const State
                                          const std::vector<sim::AllanPoint>& curve,
                                          const std::vector<sim::AllanPoint>& walk) {
   const sim::AllanPoint& white = sim::nearest_point(curve, 0.1);
-  // the instability is flat up to half of its longest correlation time
+  // the bias instability is flat up to half of its longest correlation time
   const sim::AllanPoint& floor = sim::nearest_point(curve, stated.bias.in_run_s / 10.0);
   std::vector<CertificateEntry> entries = {
       entry("imu_white_noise", subject, "Allan deviation at rest at 0.1 s: ratio to the data sheet", white,

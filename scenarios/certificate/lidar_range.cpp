@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kRoomHalf_m = 6.0;
 
-/// A robot that moves through a bare room with a lidar that makes no error of range.
+/// Returns a robot that moves through a bare room with a lidar without range error.
 sim::Situation moving_lidar(const CertificateInput& input, const std::string& robot, const std::string& device) {
   sim::Situation situation = bare_room(robot);
   situation.duration_s = 2.0;
@@ -35,7 +35,7 @@ sim::Situation moving_lidar(const CertificateInput& input, const std::string& ro
   return situation;
 }
 
-/// Distance of a point from the plane that its surface lies in; negative when the surface is no plane of the room.
+/// Returns the distance of a point from its surface's plane; negative if the surface is not a plane of the room.
 double off_plane_m(const std::string& surface, const Eigen::Vector3d& p_W_m) {
   if (surface == "floor") return std::abs(p_W_m.z());
   if (surface == "wall_front") return std::abs(p_W_m.x() - kRoomHalf_m);
@@ -50,7 +50,7 @@ struct RangeErrors {
   std::int64_t points = 0;
 };
 
-/// What the lidar reports, carried to the world by the true pose at the firing.
+/// Transforms the lidar's points to the world by the true pose at each firing.
 RangeErrors against_planes(const sim::Recording& recording, double added_range_m) {
   const sim::LidarRecord& record = recording.sensors.lidars.at(0);
   const sim::LidarTruth& truth = recording.truth.lidars.at(0);

@@ -10,7 +10,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// A scenario for each type of world: the one that is called like it, or the first.
+/// Returns a scenario for each type of world: the one with the same name, or the first.
 std::map<std::string, std::string> scenario_of_each_world(const DataRoot& data) {
   std::map<std::string, std::string> chosen;
   for (const std::string& name : scenario_names(data)) {
@@ -24,7 +24,7 @@ std::map<std::string, std::string> scenario_of_each_world(const DataRoot& data) 
 }  // namespace
 
 std::vector<CertificateEntry> certify_lidar_rays(const CertificateInput& input, const LidarRaysSetup& setup) {
-  // a ray that grazes an edge may fall on either side of it
+  // a ray that grazes an edge may hit either side
   constexpr double kOtherSurface = 1e-3;
   std::vector<CertificateEntry> entries;
   for (const auto& [world, name] : scenario_of_each_world(input.data)) {

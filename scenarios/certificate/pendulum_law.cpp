@@ -18,16 +18,16 @@ using Eigen::Vector3d;
 
 constexpr double kSegment_m = 0.25, kMass_kg = 0.3;
 
-/// Three equal slim bars in a plane, without friction, in closed form (Lagrange's equations of the multiple pendulum).
-/// Angles are those of the bars against the vertical, about +y.
+/// Three equal slim bars in a plane without friction, in closed form (Lagrange's equations of the multiple pendulum).
+/// Angles are measured from the vertical, about +y.
 class Chain {
  public:
   Chain(double segment_m, double gravity_m_s2) : length_m_(segment_m) {
     for (int i = 0; i < 3; ++i) {
-      const double below = 2.0 - i;  // bars
+      const double below = 2.0 - i;  // number of bars below
       weight_nm_[i] = kMass_kg * gravity_m_s2 * segment_m * (0.5 + below);
       for (int j = 0; j <= i; ++j) {
-        // of the upper bar's end and of the lower bar's middle; of a bar itself: about its end, with what hangs on it
+        // for the upper bar's end and the lower bar's middle; on the diagonal: a bar about its end, with the bars below
         coupling_(i, j) = kMass_kg * segment_m * segment_m * (i == j ? 1.0 / 3.0 + below : 0.5 + below);
         coupling_(j, i) = coupling_(i, j);
       }
@@ -42,7 +42,7 @@ class Chain {
     return out;
   }
 
-  /// Above that of rest.
+  /// Relative to rest.
   double energy_j(const Vector3d& angle, const Vector3d& rate) const {
     return 0.5 * rate.dot(mass(angle) * rate) + weight_nm_.dot((1.0 - angle.array().cos()).matrix());
   }
@@ -55,7 +55,7 @@ class Chain {
     return mass(angle).ldlt().solve(moment);
   }
 
-  /// Specific force at a point of the lowest bar, in world axes.
+  /// Returns the specific force at a point of the lowest bar, in world axes.
   Vector3d specific_force_W(const Vector3d& angle, const Vector3d& rate, const Vector3d& p_B_m,
                             double gravity_m_s2) const {
     const Vector3d alpha = acceleration(angle, rate);
@@ -68,13 +68,13 @@ class Chain {
     return f_W + turned(q_WB * p_B_m, rate[2], alpha[2]);
   }
 
-  /// Angular frequencies of the small oscillations, lowest first, and their shapes in the columns.
+  /// Returns the angular frequencies of small oscillations, lowest first, and their mode shapes in columns.
   Eigen::GeneralizedSelfAdjointEigenSolver<Matrix3d> modes() const {
     return Eigen::GeneralizedSelfAdjointEigenSolver<Matrix3d>(Matrix3d(weight_nm_.asDiagonal()), coupling_);
   }
 
  private:
-  /// Acceleration of an arm's end against its beginning.
+  /// Returns the acceleration of an arm's end relative to its start.
   static Vector3d turned(const Vector3d& arm_W_m, double rate, double acceleration) {
     const Vector3d w(0.0, rate, 0.0);
     return Vector3d(0.0, acceleration, 0.0).cross(arm_W_m) + w.cross(w.cross(arm_W_m));
@@ -85,7 +85,7 @@ class Chain {
   Vector3d weight_nm_;
 };
 
-/// The engine's pendulum without friction.
+/// The simulated pendulum without friction.
 class Pendulum {
  public:
   Pendulum(const CertificateInput& input, sim::Integrator integrator)
@@ -146,7 +146,7 @@ CertificateEntry energy(const CertificateInput& input, const PendulumSetup& setu
           ""};
 }
 
-/// Mean of ten periods of the lowest bar's angle.
+/// Returns the mean of ten periods of the lowest bar's angle.
 double measured_period_s(Pendulum& pendulum, double expected_s) {
   constexpr int kPeriods = 10;
   double before = pendulum.angle()[2], first_s = 0.0;
@@ -177,7 +177,8 @@ CertificateEntry periods(const CertificateInput& input, const PendulumSetup& set
     pendulum.set(kSmall_rad / shape.cwiseAbs().maxCoeff() * shape, Vector3d::Zero());
     worst = larger(worst, std::abs(measured_period_s(pendulum, expected_s) / expected_s - 1.0));
   }
-  // the amplitude's share: of 0.001 rad a simple pendulum has 6e-8, the bent shapes some fifty times that
+  // Includes the effect of the amplitude: at 0.001 rad 6e-8 for a simple pendulum, and about fifty times that for the
+  // higher modes.
   return {"pendulum_period",
           "pendulum",
           "periods of the three small oscillations equal their closed form: largest relative difference",
@@ -193,8 +194,8 @@ struct Joints {
   Vector3d angle, rate;
 };
 
-/// Mean specific force over a step, in the axes half-way between its two attitudes (Simpson's rule; the middle by
-/// Hermite's cubic).
+/// Returns the mean specific force over a step, in axes midway between its two attitudes (Simpson's rule; the middle by
+/// a cubic Hermite polynomial).
 Vector3d mean_force(const Chain& chain, const Joints& before, const Joints& after, double step_s,
                     const Vector3d& lever_m, double gravity_m_s2) {
   const Joints middle{0.5 * (before.angle + after.angle) + 0.125 * step_s * (before.rate - after.rate),
@@ -211,7 +212,7 @@ CertificateEntry force(const CertificateInput& input, const PendulumSetup& setup
   const double gravity_m_s2 = pendulum.trial().gravity_m_s2();
   const Chain chain(kSegment_m, gravity_m_s2);
 
-  // the closed form from the joints; the body's own states give the reading
+  // The closed form uses the joints; the reading uses the body's state.
   pendulum.set(kWildAngle, kWildRate);
   std::vector<Vector3d> expected;
   Joints before{pendulum.angle(), pendulum.rate()};
@@ -241,8 +242,7 @@ CertificateEntry force(const CertificateInput& input, const PendulumSetup& setup
   for (std::size_t k = 0; k < expected.size(); ++k) {
     largest_m_s2 = larger(largest_m_s2, (record.accel_m_s2.at(k) - expected[k]).norm());
   }
-  // measured 1e-6: what changes within milliseconds where the segments whip, Simpson and RK4 follow to some parts in
-  // 1e8
+  // Measured 1e-6. Simpson and RK4 follow fast changes at the segments' turning points to some parts in 1e8.
   return {"pendulum_specific_force",
           "pendulum",
           "an ideal accelerometer on the lowest segment agrees with Lagrange's equations: largest difference",

@@ -1,21 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The planes on which two real gyros keep their readings at the rail (clipped_plane.hpp has the equation), as anchors:
-// a simulated device that is given the sensing elements of such a plane has to show it in its readings, and the spread
-// that devices are drawn with has to reach it.
+// Saturation planes of two real gyros (equation: clipped_plane.hpp) as references. A simulated device with the sensing
+// elements of such a plane must reproduce it in its readings, and the simulated distribution of devices must reach it.
 //
-// Measured on RepoIMU (Szczesna et al., ICCVG 2016) by the same least squares, over readings in the inside of stretches
-// at the rail, repeated readings left out (tests/bench/rail_measures x 7.3, y 7.2 or z 10.29 FILE.csv prints it of
-// Test05 and Test10 trial 1, of Test06, and of the pendulum's Test02a and Test07 trial 3); each interval is what its
-// recordings and their errors span:
-//   wand, x      Test05 trials 1 to 3, Test10 trials 1 to 3: 100 to 1700 readings each, the plane leaves 0.003 to 0.009
-//                rad/s (0.005 to 0.010 before it). The offset moves with the bias from day to day.
-//   wand, y      Test06 trial 1: 39 and 42 readings, leaves 0.004 rad/s (0.014 before). One recording: three standard
-//                errors about it, and the planes that more readings at the ends of stretches give.
-//   pendulum, z  its third segment; Test02a, 02b, 07 trials 1 to 3 and 08. Of Test02a (37 readings) and Test07 trial 3
-//                (10) the plane leaves 0.0003 rad/s (0.07 and 0.09 before it): less than the quantum of 0.0005, which
-//                their offsets of 0.0001 and 0.0003 are given either way. Fits that count the readings which the log
-//                repeats, and windows that were at the rail in a part, leave 0.02 to 0.07 and scatter: slopes of 0.045
-//                to 0.054 and -0.027 to 0.009.
+// Measured on RepoIMU (Szczesna et al., ICCVG 2016) by the same least squares, from readings inside saturated
+// intervals, without repeated readings. Command: tests/bench/rail_measures x 7.3, y 7.2 or z 10.29 FILE.csv, for Test05
+// and Test10 trial 1, Test06, and the pendulum's Test02a and Test07 trial 3. Each interval covers the recordings and
+// their errors. Residuals are in rad/s, in brackets without slopes:
+//   wand, x      Test05 trials 1 to 3, Test10 trials 1 to 3: 100 to 1700 readings each, residual 0.003 to 0.009 (0.005
+//                to 0.010). The offset changes with the bias from day to day.
+//   wand, y      Test06 trial 1: 39 and 42 readings, residual 0.004 (0.014). Only one recording: the interval is three
+//                standard errors, and includes planes from more readings at the ends of the intervals.
+//   pendulum, z  third segment; Test02a, 02b, 07 trials 1 to 3 and 08. Test02a (37 readings) and Test07 trial 3 (10):
+//                residual 0.0003 (0.07 and 0.09), below the quantum of 0.0005. Their offsets are 0.0001 and 0.0003.
+//                Fits with repeated readings and partly saturated windows have residuals of 0.02 to 0.07 and scattered
+//                slopes: 0.045 to 0.054 and -0.027 to 0.009.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -32,7 +30,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// What the recordings of a device span.
+/// Range of the planes over the recordings of a device.
 struct MeasuredRange {
   double low, high;
   double middle() const { return 0.5 * (low + high); }
@@ -42,7 +40,7 @@ struct MeasuredRange {
 struct MeasuredPlane {
   const char* name;
   int element;
-  MeasuredRange first_slope, second_slope;  // against the axes after the element's, cyclically [1]
+  MeasuredRange first_slope, second_slope;  // against the next axes, cyclically [1]
   MeasuredRange distance_rad_s, offset_rad_s;
 };
 
@@ -56,8 +54,8 @@ const char* axis_name(int axis) {
   return kNames[static_cast<std::size_t>(axis % 3)];
 }
 
-/// Elements whose plane is the middle of what was measured; those beside it and its own scale, which no plane tells,
-/// are upright.
+/// Returns elements with the mean of the measured planes. Other elements and the own scale, which a plane does not
+/// determine, are ideal.
 sim::Elements elements_of(const MeasuredPlane& plane, const RealRailsSetup& setup) {
   const int j = plane.element;
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
@@ -101,7 +99,7 @@ void show_plane(const DataSheet& sheet, const MeasuredPlane& plane, const RealRa
       "rad/s", fitted.offset, plane.offset_rad_s);
 }
 
-/// Standard deviations of the planes of elements as a device's sheet has them drawn.
+/// Standard deviations of the planes that follow from a data sheet's distribution of elements.
 struct DrawnPlanes {
   double slope = 0.0, offset_rad_s = 0.0;
 };
@@ -138,7 +136,7 @@ std::vector<CertificateEntry> certify_real_rails(const CertificateInput& input, 
     slope = std::max({slope, plane.first_slope.farthest(), plane.second_slope.farthest()});
     offset_rad_s = std::max(offset_rad_s, plane.offset_rad_s.farthest());
   }
-  constexpr double kCut = 3.0;  // where what is drawn ends (sim::Elements)
+  constexpr double kCut = 3.0;  // truncation of the distribution (sim::Elements)
   for (const std::string& name : device_names(input.data)) {
     const DataSheet sheet = load_data_sheet(input.data, name);
     if (sheet.sensor_kind != "imu") continue;

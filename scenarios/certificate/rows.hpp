@@ -8,11 +8,11 @@
 #include "scenarios/certificate/certificate.hpp"
 #include "sim/trial/trial.hpp"
 
-/// The rows of the certificate, each with the set-up that it is measured on. The defaults are the certificate's; a test
-/// breaks one number and sees the row fail. What a set-up calls `stated` is what the closed form believes.
+/// The certificate's rows with their setups. The defaults are the certificate's; tests modify one number to see the row
+/// fail. `stated` values are those of the closed form.
 namespace tumble::scenarios {
 
-/// The rig thrown high and spun near its unstable axis. Euler's equations keep energy and angular momentum.
+/// The rig thrown high and rotating near its unstable axis. Euler's equations conserve energy and angular momentum.
 struct FreeFlightSetup {
   double duration_s = 5.0;
   double rate_rad_s = 18.0;
@@ -20,7 +20,7 @@ struct FreeFlightSetup {
 };
 std::vector<CertificateEntry> certify_free_flight(const CertificateInput& input, const FreeFlightSetup& setup = {});
 
-/// What an ideal IMU at the centre of mass says in free flight: nothing. `lever_arm_m` is how far off it sits.
+/// An ideal IMU at the centre of mass measures zero force in free flight. `lever_arm_m` is its distance from there.
 struct FlightForceSetup {
   double duration_s = 2.0;
   double rate_rad_s = 18.0;
@@ -28,21 +28,21 @@ struct FlightForceSetup {
 };
 std::vector<CertificateEntry> certify_flight_force(const CertificateInput& input, const FlightForceSetup& setup = {});
 
-/// Time from the release of the sphere to its first contact against sqrt(2 h / g), to one step of the engine.
+/// Time from the sphere's release to its first contact compared with sqrt(2 h / g), within one engine step.
 struct FreeFallSetup {
   double height_m = 1.0;
   double stated_height_m = 1.0;
 };
 std::vector<CertificateEntry> certify_free_fall(const CertificateInput& input, const FreeFallSetup& setup = {});
 
-/// v = r w x n at the sphere's centre while it grips: on the plane, and on the ground of each scenario of the sphere.
+/// v = r w x n at the sphere's centre in rolling contact: on the plane, and on the ground of each sphere scenario.
 struct RollingSetup {
-  double stated_radius_m = 0.0;  ///< 0: the sphere's own
-  bool terrains = true;          ///< the scenarios too
+  double stated_radius_m = 0.0;  ///< 0: the sphere's true radius
+  bool terrains = true;          ///< also tests the scenarios
 };
 std::vector<CertificateEntry> certify_rolling(const CertificateInput& input, const RollingSetup& setup = {});
 
-/// A sphere set sliding at v0 grips after v0 / (mu g (1 + m r^2 / I)).
+/// A sphere that starts to slide at v0 grips after v0 / (mu g (1 + m r^2 / I)).
 struct SlipToGripSetup {
   double speed_m_s = 1.0;
   double friction = 0.1;
@@ -50,32 +50,32 @@ struct SlipToGripSetup {
 };
 std::vector<CertificateEntry> certify_slip_to_grip(const CertificateInput& input, const SlipToGripSetup& setup = {});
 
-/// First peak of specific force of the rig dropped on its corners, mean over 2 ms: how it changes with the engine's
-/// step (against a quarter of it) and with the softness of the contact (exponent; a spring has -1 in its time
+/// First peak of the rig's specific force when dropped on its corners, mean over 2 ms. Measures its change with the
+/// engine's step (compared with a quarter step) and with the contact softness (exponent; a spring has -1 in its time
 /// constant).
 struct ImpactSetup {
   double height_m = 1.0;
-  double step_s = 0.0;                  ///< 0: the simulation's own
-  double soft_s = 0.05, hard_s = 0.03;  ///< time constants of contact: the range that scenarios draw from
+  double step_s = 0.0;                  ///< 0: the simulation's step
+  double soft_s = 0.05, hard_s = 0.03;  ///< contact time constants: the scenarios' range
 };
 std::vector<CertificateEntry> certify_impact(const CertificateInput& input, const ImpactSetup& setup = {});
 
-/// Points of a moving lidar without errors of range, carried to the world by the true pose at each firing, against the
-/// planes of a bare room. `added_range_m` lengthens every range.
+/// Points of a moving lidar without range error, transformed by the true pose at each firing, compared with the planes
+/// of a bare room. `added_range_m` is added to every range.
 struct LidarRangeSetup {
   double added_range_m = 0.0;
 };
 std::vector<CertificateEntry> certify_lidar_range(const CertificateInput& input, const LidarRangeSetup& setup = {});
 
-/// The lidar's mirror of each world against the engine's own rays.
+/// The lidar's copy of each world compared with the engine's own rays.
 struct LidarRaysSetup {
-  int rays = 2000;              ///< a world
-  double mirror_shift_m = 0.0;  ///< lifts the mirror's rays
-  int surface_shift = 0;        ///< makes the mirror name other surfaces
+  int rays = 2000;              ///< per world
+  double mirror_shift_m = 0.0;  ///< shifts the copy's rays upward
+  int surface_shift = 0;        ///< shifts the surface ids in the copy
 };
 std::vector<CertificateEntry> certify_lidar_rays(const CertificateInput& input, const LidarRaysSetup& setup = {});
 
-/// An hour of each IMU at rest against noise and bias of its data sheet. The factors multiply what is simulated.
+/// An hour of each IMU at rest compared with noise and bias of its data sheet. The factors multiply what is simulated.
 struct ImuNoiseSetup {
   double duration_s = 3600.0;
   std::uint64_t seed = 1;
@@ -84,44 +84,44 @@ struct ImuNoiseSetup {
 };
 std::vector<CertificateEntry> certify_imu_noise(const CertificateInput& input, const ImuNoiseSetup& setup = {});
 
-/// Planes fitted to the clipped readings of IMUs with tilted sensing elements, one at a time, against those drawn.
-/// `believed_tilt` is added to one entry of the matrix that the closed form believes.
+/// Planes fitted to the clipped readings of IMUs with tilted sensing elements compared with the drawn ones.
+/// `believed_tilt` is added to one entry of the matrix in the closed form.
 struct TiltedRailSetup {
-  double misalignment = 0.02;  ///< drawn; scales with half of it, offsets of half a per cent of the rail
+  double misalignment = 0.02;  ///< distribution of the elements; scales use half of it, offsets 0.5 % of the limit
   double believed_tilt = 0.0;
   int devices = 5;
 };
 std::vector<CertificateEntry> certify_tilted_rail(const CertificateInput& input, const TiltedRailSetup& setup = {});
 
-/// The planes measured at the rails of real gyros (a wand, a pendulum): of a simulated device that is given the
-/// elements which belong to them, and against the spread that the sheets of IMUs have elements drawn with.
+/// Saturation planes measured on real gyros (a hand-held device, a pendulum). Compared with a simulated device that has
+/// the corresponding elements, and with the distribution of elements in the data sheets.
 struct RealRailsSetup {
-  double tilt_factor = 1.0;         ///< of the slopes that the elements are given; 0: the rail is level
-  double added_tilt = 0.0;          ///< to each of them
-  double rail_factor = 1.0;         ///< of the rail that the device is given
-  double added_offset_rad_s = 0.0;  ///< to the middle between the rails of the two signs
-  double spread_factor = 1.0;       ///< of what the sheets state
-  int devices = 500;                ///< drawn of each sheet
+  double tilt_factor = 1.0;         ///< factor on the elements' slopes; 0: aligned elements
+  double added_tilt = 0.0;          ///< added to each slope
+  double rail_factor = 1.0;         ///< factor on the device's limit
+  double added_offset_rad_s = 0.0;  ///< added to the middle between the limits of both signs
+  double spread_factor = 1.0;       ///< factor on the data sheets' values
+  int devices = 500;                ///< number drawn from each data sheet
 };
 std::vector<CertificateEntry> certify_real_rails(const CertificateInput& input, const RealRailsSetup& setup = {});
 
-/// The pendulum without friction, swung wildly and gently, against Lagrange's equations of three bars.
+/// The pendulum without friction, with large and small swings, compared with Lagrange's equations of three bars.
 struct PendulumSetup {
   double duration_s = 5.0;
   sim::Integrator integrator = sim::Integrator::runge_kutta_4;
-  double stated_segment_m = 0.0;   ///< that the closed forms of energy and periods believe; 0: the pendulum's own
-  double lever_arm_error_m = 0.0;  ///< the IMU sits so much higher than the closed form believes
+  double stated_segment_m = 0.0;   ///< segment length in the closed forms of energy and periods; 0: the pendulum's
+  double lever_arm_error_m = 0.0;  ///< the IMU is this much higher than in the closed form
 };
 std::vector<CertificateEntry> certify_pendulum(const CertificateInput& input, const PendulumSetup& setup = {});
 
-/// The digest of a draw with other numbers of threads, in another order, and from a program started anew.
+/// Digest of a draw with other numbers of threads, in another order, and from a new process.
 struct DigestSetup {
   std::string scenario = "hill";
   std::string other_scenario = "slip";
   std::uint64_t seed = 1;
-  std::uint64_t restart_seed = 1;  ///< what the program started anew simulates
-  double duration_s = 3.5;         ///< of the draws that run in this process alone
-  double disturbance = 0.0;        ///< added to the duration of every second draw: an error
+  std::uint64_t restart_seed = 1;  ///< seed for the new process
+  double duration_s = 3.5;         ///< duration of the draws in this process
+  double disturbance = 0.0;        ///< error: added to the duration of every second draw
 };
 std::vector<CertificateEntry> certify_digests(const CertificateInput& input, const DigestSetup& setup = {});
 

@@ -7,26 +7,26 @@
 #include "sim/recording.hpp"
 #include "sim/trial/trial.hpp"
 
-/// Situations and motions that several rows measure on.
+/// Situations and motions shared by several rows.
 namespace tumble::scenarios {
 
-/// A robot ("rig", "sphere" or "pendulum") in a room with nothing in it but floor and walls; no sensors.
+/// Returns a robot ("rig", "sphere" or "pendulum") in an empty room with floor and walls, without sensors.
 sim::Situation bare_room(const std::string& robot);
 
-/// The situation resolved and built from the input's models: anew at each call.
+/// Resolves the situation and builds it from the input's models.
 sim::BuiltSituation build(const CertificateInput& input, const sim::Situation& situation);
 
-/// Thrown up high above the room, so that it stays in the air for seconds, and spun at `rate_rad_s` near the axis of
-/// the rig's middle moment of inertia.
+/// Returns a state high above the room, for seconds of free flight, rotating at `rate_rad_s` near the axis of the rig's
+/// medium moment of inertia.
 sim::BodyState thrown(double rate_rad_s);
 
-/// The states of a free flight as the truth of a recording (body alone, no contacts).
+/// Simulates a free flight and returns its truth (body only, no contacts).
 sim::Truth fly(sim::Trial& trial, double duration_s);
 
-/// The IMU of a data sheet, as a sensor that is named after it.
+/// Returns the IMU of a data sheet as a sensor with its name.
 sim::SensorSpec imu_of_sheet(const DataSheet& sheet);
 
-/// The larger of two; one that is not a number is the largest, so that it cannot hide.
+/// Returns the larger value; NaN counts as largest, so that it cannot be hidden.
 double larger(double a, double b);
 
 }  // namespace tumble::scenarios

@@ -9,7 +9,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Speed of the sphere's lowest point against the floor, along x.
+/// Returns the speed of the sphere's lowest point relative to the floor, along x.
 double slip_m_s(const sim::BodyState& state, double radius_m) {
   return state.v_WB_m_s.x() - radius_m * (state.q_WB * state.w_WB_B_rad_s).y();
 }
@@ -25,13 +25,13 @@ std::vector<CertificateEntry> certify_slip_to_grip(const CertificateInput& input
   sim::BodyState state;
   state.p_WB_m.z() = radius_m;
   trial.set_state(state);
-  for (int k = 0; k < 1000; ++k) trial.step();  // sinks into its contact
+  for (int k = 0; k < 1000; ++k) trial.step();  // settles into its contact
   state = trial.state();
   state.time_s = 0.0;
   state.v_WB_m_s = {setup.speed_m_s, 0.0, 0.0};
   trial.set_state(state);
 
-  // soft contact lets the last half per cent of slip die out slowly: the law is taken to where that much is left
+  // With soft contact the last 0.5 % of slip decays slowly; the law is applied up to that remainder.
   constexpr double kLeftOver = 0.005;
   const double mass_kg = trial.mass_kg(), inertia_kg_m2 = trial.inertia_B_kg_m2()(1, 1);
   const double expected_s =

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A device whose sensing elements clip along axes of their own keeps its readings on a plane for each element and sign
-// (clipped_plane.hpp). The row draws devices, makes their elements clip one at a time, fits that plane to what they say
-// and holds it to what was drawn. The planes of real devices are in real_rails.cpp.
+// Sensing elements saturate along their own axes, so a saturated element keeps the readings on a plane per element and
+// sign (clipped_plane.hpp). The row draws devices, saturates their elements one at a time, fits this plane to the
+// readings and compares it with the drawn one. Planes of real devices: real_rails.cpp.
 #include <algorithm>
 #include <cmath>
 
@@ -29,10 +29,10 @@ sim::SensorSpec tilted(const DataSheet& sheet, const TiltedRailSetup& setup) {
   return sensor;
 }
 
-/// How far fitted planes are from the drawn ones.
+/// Difference between fitted and drawn planes.
 struct PlaneErrors {
   double slope = 0.0, distance_share = 0.0;
-  int samples = 0;  ///< of the element and sign that had fewest
+  int samples = 0;  ///< for the element and sign with the fewest
 };
 
 void compare_planes(const SensedTriad& triad, int j, double believed_tilt, PlaneErrors& errors) {
@@ -74,7 +74,7 @@ std::vector<CertificateEntry> certify_tilted_rail(const CertificateInput& input,
     const bool enough = errors.samples >= kFewestClipped && errors.samples < kMany;
     const std::string note = enough ? "" : "an element has fewer than 10 fully clipped samples of one sign";
     const double none = std::nan("");
-    // an exact law; measured 1e-15: rounding
+    // exact law; measured 1e-15: rounding
     entries.push_back({"tilted_rail_slope", subject,
                        "clipped readings of drawn devices lie on the planes of their elements: largest slope error",
                        "1", enough ? errors.slope : none, 0.0, 1e-9, note});

@@ -8,8 +8,8 @@
 
 namespace tumble::scenarios {
 
-/// The value of the key `case` and back, without loss. Reading is strict: an unknown key, a method twice, neither
-/// `fails` nor `holds`, a bound without its metric are refused with file and line.
+/// Convert the value of the key `case` from and to YAML, without loss. Reading rejects, with file and line: an unknown
+/// key, a repeated method, a missing `fails` or `holds`, and a bound without its metric.
 NamedCase case_from_yaml(const YamlNode& node);
 std::string to_yaml(const NamedCase& named);
 

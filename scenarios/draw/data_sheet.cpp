@@ -15,7 +15,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// A number that was forgotten would be simulated as its default, whatever the device has.
+/// A missing number would silently be simulated with its default.
 void require_every_number(const DataSheet& sheet, const std::string& file, const Registry& registry) {
   for (const sim::Parameter& parameter : find_type(registry.sensors, sheet.sensor_kind)->parameters) {
     const auto is_it = [&](const DataSheet::Entry& entry) { return entry.name == parameter.name; };

@@ -25,8 +25,8 @@ struct DataSheet {
 };
 
 std::vector<std::string> device_names(const DataRoot& data);
-/// Throws BadInput: unknown device (nearest named), unknown key, a unit that is not the parameter's, a number without
-/// source, a number of its kind of sensor that is missing.
+/// Loads the data sheet of `device`. Throws BadInput: unknown device (suggests the nearest name), unknown key, wrong
+/// unit, number without a source, or missing number.
 DataSheet load_data_sheet(const DataRoot& data, const std::string& device);
 
 }  // namespace tumble::scenarios

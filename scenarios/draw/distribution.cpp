@@ -14,7 +14,7 @@ namespace {
 
 using Shape = Distribution::Shape;
 
-/// Least share of a normal distribution that a truncation may keep.
+/// Smallest fraction of a normal distribution that a truncation may keep.
 constexpr double kLeastKept = 0.01;
 
 double normal_below(double x) {
@@ -63,7 +63,7 @@ std::string normal_problem(const std::vector<double>& numbers) {
 
 double draw_normal(const std::vector<double>& numbers, sim::Stream& stream) {
   if (numbers.size() == 2) return numbers[0] + numbers[1] * stream.normal();
-  // find_problem has made sure that at least 1 % is kept: 10000 misses have a chance of 1e-43
+  // find_problem ensures that at least 1 % is kept: the probability of 10000 rejections is 1e-43.
   for (int attempt = 0; attempt < 10000; ++attempt) {
     const double value = numbers[0] + numbers[1] * stream.normal();
     if (value >= numbers[2] && value <= numbers[3]) return value;
@@ -127,7 +127,7 @@ double draw_number(const Distribution& d, std::uint64_t seed, std::string_view p
       return std::clamp(stream.uniform(d.numbers[0], d.numbers[1]), d.numbers[0], d.numbers[1]);
     case Shape::log_uniform: {
       const double value = std::exp(stream.uniform(std::log(d.numbers[0]), std::log(d.numbers[1])));
-      return std::clamp(value, d.numbers[0], d.numbers[1]);  // exp(log(x)) may round past x
+      return std::clamp(value, d.numbers[0], d.numbers[1]);  // exp(log(x)) may round beyond x
     }
     case Shape::normal:
       return draw_normal(d.numbers, stream);

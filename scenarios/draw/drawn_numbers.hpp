@@ -9,15 +9,15 @@
 
 namespace tumble::scenarios {
 
-/// A number of a scenario that differs from draw to draw.
+/// A number of a scenario that differs between draws.
 struct DrawnNumber {
-  std::string place;  ///< "world.slope_rad", "sensors.imu.mount_error.x_m": the name of its stream
+  std::string place;  ///< stream name: "world.slope_rad", "sensors.imu.mount_error.x_m"
   Distribution distribution;
-  /// As draw `seed` has it, without the draw being resolved or simulated.
+  /// Returns the number for draw `seed` without resolving or simulating that draw.
   double of(std::uint64_t seed) const { return draw_number(distribution, seed, place); }
 };
 
-/// All of them, in the order of the file's parts; what is constant is left out.
+/// Returns all random numbers of the scenario in the file's order; constants are omitted.
 std::vector<DrawnNumber> drawn_numbers(const Scenario& scenario);
 
 }  // namespace tumble::scenarios

@@ -7,12 +7,12 @@
 
 namespace tumble::scenarios {
 
-/// The scenario with every number fixed as `situation`, a draw of it, has it, defaults and data sheets included: with
-/// that draw's seed it is drawn to the same numbers, whatever becomes of catalogue, sheets and defaults.
+/// Returns the scenario with every number set as in `situation`, one of its draws, including defaults and data sheets.
+/// With that draw's seed, the result reproduces the draw even if the catalogue, data sheets or defaults change later.
 Scenario fixed_as(Scenario scenario, const sim::Situation& situation);
 
-/// A scenario without a drawn number as the text of its file: read back it is the same. Throws BadInput where a number
-/// is drawn.
+/// Writes a scenario without random numbers as YAML; parsing the text gives the same scenario. Throws BadInput if a
+/// number is random.
 std::string to_yaml(const Scenario& scenario);
 
 }  // namespace tumble::scenarios

@@ -8,25 +8,25 @@
 
 namespace tumble::scenarios {
 
-/// What one method did on a named case when that was accepted.
+/// Accepted result of one method on a named case.
 struct Expectation {
   std::string method;                ///< "slam/tumble"
-  bool fails = false;                ///< still, or not (any more)
-  std::string metric;                ///< looked at beside status and verdicts; empty: none
-  std::optional<double> worse_than;  ///< a run fails where the metric is worse than this; none: on status and verdicts
-  std::string status;                ///< of the accepted run, as results have it
-  std::optional<double> drawn;       ///< the metric on the draw before it was shrunk
-  std::optional<double> value;       ///< the metric of the accepted run; none where it has none
+  bool fails = false;                ///< whether the method is expected to fail
+  std::string metric;                ///< metric to check in addition to status and verdicts; empty: none
+  std::optional<double> worse_than;  ///< bound of the metric for a failure; none: only status and verdicts count
+  std::string status;                ///< status of the accepted run
+  std::optional<double> drawn;       ///< metric of the draw before shrinking
+  std::optional<double> value;       ///< metric of the accepted run, if it has one
   bool operator==(const Expectation&) const = default;
 };
 
-/// The key `case` of a file in scenarios/regressions: what it says beside the numbers of its one draw. Methods,
-/// metrics and statuses are texts here; whoever holds a run to them (scenarios/cases) asks whether they exist.
+/// The key `case` of a file in scenarios/regressions: metadata next to the numbers of its one draw. Methods, metrics
+/// and statuses are plain texts here; scenarios/cases checks that they exist.
 struct NamedCase {
-  std::string scenario;    ///< that it was drawn from
-  std::uint64_t seed = 0;  ///< what is random beyond the numbers belongs to it
-  std::string version;     ///< of the program that shrank it
-  std::string command;     ///< that did
+  std::string scenario;    ///< scenario from which the case was drawn
+  std::uint64_t seed = 0;  ///< seeds everything random beyond the listed numbers
+  std::string version;     ///< version of the program that shrank the case
+  std::string command;     ///< command that shrank the case
   std::vector<Expectation> expected;
   bool operator==(const NamedCase&) const = default;
 };

@@ -9,7 +9,7 @@
 
 namespace tumble::scenarios {
 
-/// What scenario files and data sheets are checked against: the types that the simulation knows.
+/// Component types that scenario files and data sheets are checked against.
 struct Registry {
   std::span<const sim::ComponentType> worlds;
   std::span<const sim::ComponentType> robots;
@@ -17,13 +17,13 @@ struct Registry {
   std::span<const sim::ComponentType> sensors;
   std::span<const sim::Parameter> mount_error;
 
-  /// The registries of this build.
+  /// Returns the types of this build.
   static Registry of_simulation();
 };
 
-/// Null when no type is called `name`.
+/// Returns the type with this name, or null.
 const sim::ComponentType* find_type(std::span<const sim::ComponentType> types, const std::string& name);
-/// Null when no parameter is called `name`.
+/// Returns the parameter with this name, or null.
 const sim::Parameter* find_parameter(std::span<const sim::Parameter> parameters, const std::string& name);
 std::vector<std::string> names_of(std::span<const sim::ComponentType> types);
 std::vector<std::string> names_of(std::span<const sim::Parameter> parameters);

@@ -17,14 +17,14 @@ std::vector<std::string> scenario_names(const DataRoot& data) {
 }
 
 std::vector<std::string> case_names(const DataRoot& data) {
-  // who has kept none has no folder of them
+  // The folder of named cases is optional.
   return std::filesystem::is_directory(data.regressions()) ? yaml_stems(data.regressions())
                                                            : std::vector<std::string>{};
 }
 
 namespace {
 
-/// Of the catalogue; an unknown name is told from the cases' too.
+/// Finds a scenario of the catalogue. An error message also suggests names of cases.
 std::filesystem::path find_scenario(const DataRoot& data, std::span<const std::string> cases, const std::string& name) {
   std::vector<std::string> known = scenario_names(data);
   if (std::binary_search(known.begin(), known.end(), name)) return data.catalogue() / (name + ".yaml");

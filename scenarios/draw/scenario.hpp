@@ -15,12 +15,12 @@
 
 namespace tumble::scenarios {
 
-/// A scenario file as read: a family of situations.
+/// A parsed scenario file: a family of situations.
 struct Scenario {
   struct Part {
     std::string type;
     std::map<std::string, Distribution> numbers;
-    int line = 0;  ///< of the file, for messages
+    int line = 0;  ///< line in the file, for messages
   };
   struct Sensor {
     std::string name, kind, device, site;
@@ -30,31 +30,31 @@ struct Scenario {
   };
   std::string name;
   std::string doc;
-  std::string file;  ///< where it was read, for messages
+  std::string file;  ///< path of the file, for messages
   Distribution duration_s;
   Part world, robot, motion;
   std::vector<Sensor> sensors;
-  std::optional<NamedCase> named_case;  ///< of a file in scenarios/regressions, none of whose numbers is drawn
+  std::optional<NamedCase> named_case;  ///< set for files in scenarios/regressions, which have no random numbers
 };
 
-/// Names of the scenarios in the catalogue, sorted.
+/// Returns the names of the catalogue's scenarios, sorted.
 std::vector<std::string> scenario_names(const DataRoot& data);
 
-/// Names of the named cases, scenarios/regressions/NAME.yaml, sorted. They stand wherever a scenario's may, and no
-/// scenario is called as one of them.
+/// Returns the names of the named cases (scenarios/regressions/NAME.yaml), sorted. A case name can be used wherever a
+/// scenario name can; the two sets are disjoint.
 std::vector<std::string> case_names(const DataRoot& data);
 
-/// Reads scenarios/catalogue/NAME.yaml, the named case scenarios/regressions/NAME.yaml, or a file when `name` ends in
-/// ".yaml". Throws BadInput with file and line; an unknown name or key names the nearest known one.
+/// Loads scenarios/catalogue/NAME.yaml, the named case scenarios/regressions/NAME.yaml, or a file if `name` ends in
+/// ".yaml". Throws BadInput with file and line; for an unknown name or key, the message suggests the nearest known one.
 Scenario load_scenario(const DataRoot& data, const std::string& name);
 
-/// Fixes every number: data sheet of each device, the scenario's changes, draws from streams named by the number's
-/// place
-/// ("world.slope_rad", "sensors.imu.mount_error.x_m"). Throws BadInput.
+/// Fixes every number: applies the device data sheets, then the scenario's changes, then draws. Each draw uses the
+/// stream named by the number's place ("world.slope_rad", "sensors.imu.mount_error.x_m"). Throws BadInput.
 sim::ResolvedSituation draw(const DataRoot& data, const Scenario& scenario, std::uint64_t seed);
 
-/// The resolved situation as YAML and back, without loss (doubles round-trip). Reading is strict, but does not ask
-/// whether this build knows the types and numbers: sim::resolve does. Both throw BadInput; `place` begins the messages.
+/// Convert a resolved situation to and from YAML without loss (doubles round-trip). Reading rejects unknown keys;
+/// sim::resolve checks whether this build knows the types and numbers. Both throw BadInput; messages start with
+/// `place`.
 std::string to_yaml(const sim::Situation& situation);
 sim::Situation situation_from_yaml(const std::string& text, const std::string& place);
 

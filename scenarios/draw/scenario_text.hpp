@@ -9,18 +9,18 @@
 
 namespace tumble::scenarios {
 
-/// The scenario that `text` holds, checked against `registry`: types, numbers, and the reach of each distribution
-/// against the parameter's bounds. `file` begins the messages. Throws BadInput with file, line and place.
+/// Parses a scenario and checks it against `registry`: types, numbers, and the range of each distribution against the
+/// parameter's bounds. Messages start with `file`. Throws BadInput with file, line and place.
 Scenario parse_scenario(const std::string& text, const std::string& file, const Registry& registry);
 
 /// Bounds of a scenario's duration, which belongs to no component.
 const sim::Parameter& duration_parameter();
 
-/// The data sheet that `text` holds, checked against the parameters of its kind of sensor: names, units, bounds.
+/// Parses a data sheet and checks names, units and bounds against the parameters of its kind of sensor.
 DataSheet parse_data_sheet(const std::string& text, const std::string& file, const Registry& registry);
 
-/// Draws every number that the scenario and the data sheets give; defaults are not filled in. `sheets` runs parallel to
-/// the scenario's sensors.
+/// Draws every number that the scenario and the data sheets state; does not fill in defaults. `sheets` has one entry
+/// per sensor of the scenario.
 sim::Situation draw_given(const Scenario& scenario, std::span<const DataSheet> sheets, std::uint64_t seed);
 
 }  // namespace tumble::scenarios

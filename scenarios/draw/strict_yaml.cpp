@@ -24,11 +24,11 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr std::uintmax_t kLargestFile = 4u << 20;
-/// Identifiers name files, whose name has 255 bytes at most, a seed and an ending included.
+/// Identifiers become file names. A file name has at most 255 bytes, including a seed and an extension.
 constexpr std::size_t kIdentifierMax = 100;
 
-/// Counts what the parser finds. Each thing in a text takes a byte at least, empty ones the sign that stands for them:
-/// a parser that finds many more turns in a circle, which it does on some texts that are no YAML, for ever.
+/// Counts parser events. Each event consumes at least one byte of text, so many more events than bytes mean an endless
+/// loop. The parser enters such loops on some invalid texts.
 class Counter : public YAML::EventHandler {
  public:
   Counter(const std::string& text, const std::string& file) : most_(4 * text.size() + 64), file_(file) {}
@@ -149,7 +149,7 @@ double YamlNode::number_or_infinity() const {
 double YamlNode::parse_number(bool infinity_allowed) const {
   if (!node_.IsScalar()) fail(std::string("must be a number; it is ") + kind_of(node_));
   const std::string& written = node_.Scalar();
-  // "!" is the tag that the parser gives to quoted text
+  // The parser gives the tag "!" to quoted text.
   if (node_.Tag() == "!") fail("must be a number; it is the text \"" + written + "\"");
   if (infinity_allowed && written == ".inf") return std::numeric_limits<double>::infinity();
   if (infinity_allowed && written == "-.inf") return -std::numeric_limits<double>::infinity();
@@ -188,7 +188,7 @@ std::vector<std::pair<std::string, YamlNode>> YamlNode::entries() const {
     const std::string name = key.text();
     if (!seen.insert(name).second) key.fail(fmt::format("key '{}' is given twice", name));
     YamlNode value(entry.second, file_, join(place_, name));
-    // a block, an alias (marked where its anchor is) and an empty value (marked nowhere) are looked for at their key
+    // Blocks, aliases and empty values report no usable line of their own; use the line of their key.
     value.line_ = key.line_;
     out.emplace_back(name, std::move(value));
   }

@@ -13,38 +13,38 @@
 
 namespace tumble::scenarios {
 
-/// Text of a file. Throws BadInput when it cannot be read or is larger than 4 MiB (no file of ours is).
+/// Returns the text of a file. Throws BadInput if it cannot be read or exceeds 4 MiB.
 std::string read_text_file(const std::filesystem::path& path);
 
-/// A node of a YAML text that knows where it stands. All complaints are BadInput, one line: "FILE:LINE: PLACE: what".
-/// Stricter than YAML: a key given twice, a key that is not text, and a second document are refused.
+/// A YAML node that knows its location. All errors are one-line BadInput: "FILE:LINE: PLACE: what". Stricter than YAML:
+/// rejects repeated keys, keys that are not text, and a second document.
 class YamlNode {
  public:
-  /// Root of the one document in `text`; `file` begins the messages.
+  /// Parses a text with one document and returns its root; messages start with `file`.
   static YamlNode parse(const std::string& text, const std::string& file);
 
-  int line() const { return line_; }  ///< from 1
+  int line() const { return line_; }  ///< starts at 1
   const std::string& place() const { return place_; }
   [[noreturn]] void fail(const std::string& what) const;
 
   bool is_scalar() const { return node_.IsScalar(); }
   bool is_map() const { return node_.IsMap(); }
 
-  /// A scalar as text, not empty.
+  /// Returns a non-empty scalar as text.
   std::string text() const;
-  /// A scalar as text, perhaps empty.
+  /// Returns a scalar as text, possibly empty.
   std::string any_text() const;
-  /// A scalar that is a lower-case identifier: a letter, then letters, digits and underscores, 100 at most.
+  /// Returns a lower-case identifier: a letter, then letters, digits and underscores, at most 100 characters.
   std::string identifier() const;
-  /// A finite number, not quoted.
+  /// Returns a finite number; rejects quoted text.
   double number() const;
-  /// A number that may also be `.inf` or `-.inf`.
+  /// Returns a number that may be `.inf` or `-.inf`.
   double number_or_infinity() const;
   std::uint64_t unsigned_integer() const;
   std::vector<YamlNode> items() const;
-  /// Of a map, in the order of the file.
+  /// Returns the entries of a map in the order of the file.
   std::vector<std::pair<std::string, YamlNode>> entries() const;
-  /// Of a map that has every key of `required` and none outside of `required` and `optional`.
+  /// Returns the entries of a map by key. The map must have every key in `required`, and may have those in `optional`.
   std::map<std::string, YamlNode> fields(std::span<const std::string> required,
                                          std::span<const std::string> optional = {}) const;
 
@@ -58,7 +58,7 @@ class YamlNode {
   int line_ = 0;
 };
 
-/// "; did you mean 'slope_rad'?", or the list of known names when none is near.
+/// Returns "; did you mean 'slope_rad'?", or the list of known names if none is similar.
 std::string suggestion(const std::string& name, std::span<const std::string> known);
 
 }  // namespace tumble::scenarios

@@ -6,11 +6,11 @@
 
 namespace tumble::scenarios {
 
-/// Whether a scenario's draws have a lidar.
+/// Returns true if the scenario has a lidar.
 bool has_lidar(const Scenario& scenario);
 
-/// The situation without its lidars, which cost most of a simulation's memory and a good part of its time. Motion and
-/// IMU readings stay the same, bit for bit: each sensor draws from streams of its own.
+/// Returns the situation without its lidars, which use most of the memory and much of the time of a simulation. Motion
+/// and IMU readings are bit-identical, because each sensor has its own random streams.
 sim::ResolvedSituation without_lidars(const sim::ResolvedSituation& situation);
 
 }  // namespace tumble::scenarios

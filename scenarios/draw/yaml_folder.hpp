@@ -7,11 +7,11 @@
 
 namespace tumble::scenarios {
 
-/// Names of the files NAME.yaml in a folder, sorted. Throws BadInput when there is no such folder.
+/// Returns the names of the files NAME.yaml in a folder, sorted. Throws BadInput if the folder does not exist.
 std::vector<std::string> yaml_stems(const std::filesystem::path& folder);
 
-/// Path of NAME.yaml in a folder. Throws BadInput "unknown scenario 'hil'; did you mean 'hill'?"; `what` names the
-/// thing.
+/// Returns the path of NAME.yaml in a folder. Throws BadInput "unknown scenario 'hil'; did you mean 'hill'?"; `what` is
+/// the noun in that message.
 std::filesystem::path find_yaml(const std::filesystem::path& folder, const std::string& what, const std::string& name);
 
 }  // namespace tumble::scenarios

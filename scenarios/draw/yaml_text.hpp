@@ -3,13 +3,14 @@
 
 #include <string>
 
-/// Scalars as they are written into YAML files of ours.
+/// Scalars as written to YAML files.
 namespace tumble::scenarios {
 
-/// Shortest text that reads back as the same double; `.inf` and `-.inf`. Throws BadInput with `place` for NaN.
+/// Returns the shortest text that parses to the same double, also `.inf` and `-.inf`. Throws BadInput with `place` for
+/// NaN.
 std::string yaml_number(double value, const std::string& place);
 
-/// Plain for identifiers, else in double quotes with YAML's escapes.
+/// Returns an identifier unchanged, other text in double quotes with YAML escapes.
 std::string yaml_word(const std::string& text);
 
 }  // namespace tumble::scenarios

@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::int64_t kHole_ns = 200000000;
 
-/// Pose of the estimate's frame in the body.
+/// Returns the mounting of the estimate's frame on the body.
 Eigen::Isometry3d mounting_of(const Estimate& estimate, const sim::Sensors& sensors, const StoredTruth* truth) {
   Eigen::Isometry3d T_BA = Eigen::Isometry3d::Identity();
   switch (estimate.frame) {
@@ -41,13 +41,13 @@ Eigen::Isometry3d mounting_of(const Estimate& estimate, const sim::Sensors& sens
   return T_BA;
 }
 
-/// The move by which the scores lay an estimate onto the truth.
+/// Returns the alignment of an estimate with the truth, as in the scores.
 Alignment alignment_of(const Estimate& estimate, const StoredTruth* truth) {
   if (truth == nullptr) return {};
   for (const PoseState& pose : estimate.poses) {
     const std::size_t before = static_cast<std::size_t>(std::max<std::int64_t>(pose.time_ns, 0) / truth->period_ns);
     if (pose.time_ns < 0 || before >= truth->size()) continue;
-    // the two states around it are enough
+    // the two neighbouring states are sufficient
     const sim::Truth around = truth->states(before, std::min(before + 2, truth->size()));
     const TruthTrack track(around, estimate.frame);
     const std::int64_t after_ns = pose.time_ns % truth->period_ns;
@@ -62,7 +62,7 @@ Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
   return out;
 }
 
-/// By the alignment, its covariance too.
+/// Applies the alignment to pose and covariance.
 PoseState moved_by(const Alignment& alignment, const PoseState& pose) {
   PoseState out = alignment.apply(pose);
   Eigen::Matrix<double, 6, 6> turn = Eigen::Matrix<double, 6, 6>::Zero();
@@ -71,7 +71,7 @@ PoseState moved_by(const Alignment& alignment, const PoseState& pose) {
   return out;
 }
 
-/// The body's pose by that of A; an error phi of the attitude moves the body's position by phi x (lever in W).
+/// Converts a pose of A to the body. An attitude error phi moves the body's position by phi x (lever arm in W).
 BagTrack::Pose body_pose(const PoseState& moved, const Eigen::Isometry3d& T_AB) {
   const Eigen::Quaterniond q_WA = moved.q_WA.normalized();
   BagTrack::Pose out;
@@ -84,11 +84,11 @@ BagTrack::Pose body_pose(const PoseState& moved, const Eigen::Isometry3d& T_AB) 
   return out;
 }
 
-/// Where the body is at an instant between poses.
+/// Interpolates the body's pose.
 class BodyAt {
  public:
   explicit BodyAt(const std::vector<BagTrack::Pose>& poses) : poses_(poses) {}
-  /// False where no two poses stand around it.
+  /// Returns false if poses are missing on one side.
   bool operator()(std::int64_t time_ns, Eigen::Isometry3d& T_WB) const {
     const auto after = std::lower_bound(poses_.begin(), poses_.end(), time_ns,
                                         [](const BagTrack::Pose& pose, std::int64_t t) { return pose.time_ns < t; });
@@ -108,7 +108,7 @@ class BodyAt {
   const std::vector<BagTrack::Pose>& poses_;
 };
 
-/// The returns of one sweep where the track puts them. `hit_W_m`: parallel to them, or empty.
+/// Returns the points of one sweep, placed by the track. `hit_W_m`: parallel to them, or empty.
 BagCloud cloud_of(const BagTrack& track, const sim::LidarRecord& sweep, const std::vector<Eigen::Vector3f>& hit_W_m) {
   const BodyAt body_at(track.poses);
   BagCloud cloud;
@@ -123,7 +123,7 @@ BagCloud cloud_of(const BagTrack& track, const sim::LidarRecord& sweep, const st
   return cloud;
 }
 
-/// The clouds of the first lidar, one per sweep, made from what `sensors`, `points` and `truth` hold by then.
+/// Adds clouds of the first lidar, one per sweep, created on demand from `sensors`, `points` and `truth`.
 void add_clouds(const sim::Sensors& sensors, const std::vector<PointStore>* points, const StoredTruth* truth,
                 BagTrack& track) {
   if (sensors.lidars.empty()) return;
@@ -141,7 +141,7 @@ void add_clouds(const sim::Sensors& sensors, const std::vector<PointStore>* poin
   };
 }
 
-/// An estimate says which sensors it was made from.
+/// Checks that the estimate was computed from these sensors.
 void require_own(const std::filesystem::path& path, const std::string& own) {
   const std::string made_from = estimated_sensors(path);
   if (made_from.empty() || made_from == own) return;
@@ -150,7 +150,7 @@ void require_own(const std::filesystem::path& path, const std::string& own) {
       made_from, own));
 }
 
-/// "slam/tumble" as a topic and a frame.
+/// Converts "slam/tumble" to a topic and frame name.
 std::string plain_name(const std::string& method) {
   std::string stem;
   for (const char c : method) stem += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';

@@ -12,22 +12,23 @@
 
 namespace tumble::scenarios {
 
-/// The poses of an estimate as poses of the body, by the mounting that the estimator was given; velocities are not
-/// written. With a truth, all is moved as the scores move it: to the truth's position and heading at the first pose
-/// that the truth covers (truth_track.hpp). Each return of the first lidar is put where the estimate has the lidar at
-/// that instant (poses interpolated, linearly and by slerp), stamped at the end of its sweep; returns before the first
-/// pose, after the last one or across a hole of more than 0.2 s are left out. `error_m` is the distance from there to
-/// where the ray truly ended; it has the noise of the range in it, and is there only where the truth knows hits. A
-/// cloud is made when the bag comes to it: `sensors`, `points` (of each lidar, where they are set aside; null: in the
-/// records) and `truth` must live until then. Throws BadInput: no pose, none that the truth covers, a frame of a sensor
-/// that the recording does not have.
+/// Converts an estimate to a track of body poses, with the mounting that the estimator used; velocities are not
+/// written. With a truth, the track is aligned as in the scores: to the true position and heading at the first pose
+/// that the truth covers (truth_track.hpp).
+///
+/// The returns of the first lidar become clouds, placed by the interpolated estimated pose of the lidar and stamped at
+/// the sweep's end. Returns outside the poses or in gaps longer than 0.2 s are omitted. `error_m` is the distance to
+/// the ray's true hit, including range noise; it needs true hits. Clouds are created when the bag is written:
+/// `sensors`, `points` (stores per lidar if on disk; null: in the records) and `truth` must live until then.
+///
+/// Throws BadInput: no pose, no pose within the truth, or a frame of a missing sensor.
 BagTrack in_bag(const std::string& name, const Estimate& estimate, const sim::Sensors& sensors,
                 const std::vector<PointStore>* points, const StoredTruth* truth);
 
-/// Reads estimates (folders, or TUM files with poses of the first IMU, of the body where there is none, in the
-/// recording's clock or in that of its source) and puts them into `writing`, whose points and truth they are laid
-/// on, each under its method's name: "slam_tumble", with a number behind it where that is taken. Throws BadInput with
-/// the path: what reading says, an estimate of other sensors, what in_bag says.
+/// Reads estimates and adds them to `writing`, with its points and truth. Each is a folder, or a TUM file with poses of
+/// the first IMU (without IMU: of the body), in the recording's clock or its source's clock. The track is named after
+/// the method, "slam_tumble", with a number if that is taken. Throws BadInput with the path: errors of reading, an
+/// estimate of other sensors, errors of in_bag.
 void add_estimates(std::span<const std::filesystem::path> paths, const sim::Sensors& sensors, BagWriting& writing);
 
 }  // namespace tumble::scenarios

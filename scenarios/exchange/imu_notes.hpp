@@ -7,15 +7,15 @@
 #include "scenarios/recordings/import.hpp"
 #include "sim/recording.hpp"
 
-/// What an imported IMU's readings show against themselves, as the estimators ask it (ImuPlausibility): whoever imports
-/// learns it before an estimate rests on it.
+/// Plausibility notes on imported IMUs, with the estimator's checks (ImuPlausibility), so that users see problems
+/// before estimating.
 namespace tumble::scenarios {
 
-/// A caution on an IMU that repeats one reading, whose axes are named otherwise than gravity turns in them, or whose
-/// force or turning is not gravity's; "" where nothing is to be said. `gravity_m_s2`: the recording's. O(N).
+/// Returns a warning if an IMU repeats one reading, has permuted axes, or if its force or rotation contradicts gravity;
+/// "" otherwise. `gravity_m_s2`: the recording's. O(N).
 std::string imu_note(const sim::ImuRecord& imu, double gravity_m_s2);
 
-/// Of each IMU of a recording, its name before it.
+/// Returns notes on each IMU of a recording, starting with its name.
 std::vector<std::string> imu_notes(const Imported& recording);
 
 }  // namespace tumble::scenarios

@@ -21,15 +21,16 @@ namespace {
 constexpr std::size_t kSpans = 10, kSweepsOfSpan = 12;
 constexpr double kSlowest_rad_s = 0.1, kFastest_rad_s = 2.0;
 constexpr std::size_t kLeastPairs = 12;
-/// Of the median rotation: more, and the two do not see the same thing. A lidar alone is off by a tenth.
+/// Largest error relative to the median rotation; above it, lidar and gyro do not measure the same motion. Lidar alone
+/// has an error of about a tenth.
 constexpr double kAgrees = 0.3;
-/// What explains it must halve the error of what it explains away.
+/// An explanation must reduce the error at least by these factors.
 constexpr double kTells = 0.5, kDelayTells = 0.6;
 constexpr double kDegreesPerRadian = 57.29577951308232;
 constexpr double kDelayMost_s = 0.5, kDelayStep_s = 0.01, kDelaySaid_s = 0.03;
 constexpr std::int64_t kGap_ns = 100'000'000;
 
-/// The sweeps [first, last) as a recording of a lidar alone.
+/// Returns the sweeps [first, last) as a recording with this lidar only.
 sim::Sensors span_alone(const sim::LidarRecord& lidar, const PointStore* aside, std::size_t first, std::size_t last) {
   sim::LidarRecord out = sweep_alone(lidar, aside, first);
   const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
@@ -62,7 +63,7 @@ void add_rotations(const Estimate& estimate, std::vector<SeenRotation>& out) {
   }
 }
 
-/// The gyro's integral, axis by axis: for the few hundredths of a radian between two sweeps that is the rotation.
+/// Integrates the gyro per axis, which is accurate for the few hundredths of a radian between two sweeps.
 class Integral {
  public:
   explicit Integral(const sim::ImuRecord& imu) : imu_(imu) {
@@ -73,7 +74,7 @@ class Integral {
     }
   }
 
-  /// None beyond the readings or across a gap.
+  /// Returns empty outside the readings or across a gap.
   std::optional<Eigen::Vector3d> between(std::int64_t from_ns, std::int64_t to_ns) const {
     const auto first = sample_at(from_ns), last = sample_at(to_ns);
     if (!first || !last) return std::nullopt;
@@ -85,7 +86,7 @@ class Integral {
 
  private:
   std::int64_t start(std::size_t k) const { return k == 0 ? imu_.time_ns[0] - imu_.period_ns : imu_.time_ns[k - 1]; }
-  /// The sample in whose window the instant lies.
+  /// Returns the sample whose window contains the instant.
   std::optional<std::size_t> sample_at(std::int64_t time_ns) const {
     const auto at = std::lower_bound(imu_.time_ns.begin(), imu_.time_ns.end(), time_ns);
     if (at == imu_.time_ns.end() || time_ns < start(0)) return std::nullopt;
@@ -99,12 +100,12 @@ class Integral {
   std::vector<Eigen::Vector3d> sum_;
 };
 
-/// What the lidar saw and what the gyro says of the same instants, both in the axes of the IMU.
+/// Rotations from lidar and gyro over the same intervals, both in IMU axes.
 struct Pairs {
   std::vector<Eigen::Vector3d> seen, said;
   double rotation_rad = 0.0;  // median of `seen`
 
-  /// Median of error(k), as a share of the rotation.
+  /// Returns the median of error(k) relative to the rotation.
   template <class Error>
   double share(Error&& error) const {
     std::vector<double> errors;
@@ -131,8 +132,8 @@ Pairs pairs_at(const Integral& integral, const Eigen::Matrix3d& R_IL, std::span<
   return out;
 }
 
-/// The orthogonal matrix of that determinant, 1 or -1, that takes what is said best to what is seen (Wahba 1965, by
-/// singular values).
+/// Returns the orthogonal matrix of that determinant, 1 or -1, that best maps gyro rotations to lidar rotations (Wahba
+/// 1965, by singular values).
 Eigen::Matrix3d best_orthogonal(const Pairs& pairs, double determinant) {
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for (std::size_t k = 0; k < pairs.seen.size(); ++k) sum += pairs.seen[k] * pairs.said[k].transpose();
@@ -142,7 +143,7 @@ Eigen::Matrix3d best_orthogonal(const Pairs& pairs, double determinant) {
   return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
 }
 
-/// Unit and delay of the pairs, where any mounting and any sense of axes fits them better than what was found before.
+/// Searches for a better unit and delay, independent of mounting and axes.
 void fit_unit(const Pairs& pairs, double delay_s, RotationAgreement& best, double& best_error) {
   RotationAgreement at;
   at.pairs = pairs.seen.size();
@@ -187,7 +188,7 @@ std::string pairs_text(const RotationAgreement& found) {
   return fmt::format(" over {} pairs of sweeps", found.pairs);
 }
 
-/// Throws where the option that reads them otherwise would mend it.
+/// Throws if reading the gyro in another unit would remove the disagreement.
 std::string unit_text(const std::string& where, const RotationAgreement& found, GyroUnit unit) {
   const bool degrees = unit == GyroUnit::deg_s;
   const std::string read = fmt::format(
@@ -272,11 +273,11 @@ std::optional<RotationAgreement> rotation_agreement(const sim::ImuRecord& imu, c
     fit_unit(pairs, delay_s, delayed, delayed_error);
     if (step == 0) fit_unit(pairs, delay_s, at_once, at_once_error);
   }
-  // by chance one of a hundred delays fits a little better
+  // one of a hundred delays fits slightly better by chance
   RotationAgreement out = delayed_error < kDelayTells * at_once_error ? delayed : at_once;
   if (out.unit_error > kAgrees) return std::nullopt;
   fit_axes(pairs_at(integral, R_IL, seen, std::llround(1e9 * out.delay_s)), out);
-  // sizes alone may be alike by chance, where a tumble leaves the lidar astray
+  // When tracking fails in a tumble, rotation angles alone may agree by chance.
   if (std::min({out.error_as_read, out.axes_error, out.turned_error}) > kAgrees) return std::nullopt;
   return out;
 }

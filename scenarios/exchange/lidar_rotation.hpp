@@ -13,23 +13,23 @@
 #include "scenarios/recordings/import.hpp"
 #include "sim/recording.hpp"
 
-/// What a lidar's own rotation, from sweep to sweep, says of a gyro: unit, senses and axes, mounting, clock. Where a
-/// body hardly tilts, carried by hand or driven, gravity shows none of them.
+/// Checks a gyro against the lidar's rotation between sweeps: unit, signs and axes, mounting, clock. Useful for
+/// hand-held or driven bodies with little tilt, where gravity does not show these errors.
 namespace tumble::scenarios {
 
-/// How a lidar turned from one instant to another.
+/// Rotation of a lidar between two instants.
 struct SeenRotation {
   std::int64_t from_ns = 0, to_ns = 0;
   Eigen::Vector3d rotation_L_rad = Eigen::Vector3d::Zero();  ///< rotation vector, lidar axes
 };
 
-/// Rotations between the ends of sweeps that follow each other, by `slam/constant_velocity`, which sees nothing but the
-/// lidar: from ten spans of a dozen sweeps at most, evenly over the recording, each with a map of its own. Kept are
-/// those between registered sweeps at 0.1 to 2 rad/s: slower ones tell noise, and faster ones bend the sweeps. Points
-/// are those of `lidar`, or in `aside` where that is given. Some ten ms a sweep.
+/// Returns rotations between the ends of consecutive sweeps from `slam/constant_velocity`, which only uses the lidar.
+/// Processes at most ten spans of a dozen sweeps, spread over the recording, each with a separate map. Keeps registered
+/// pairs with 0.1 to 2 rad/s: slower ones are noise, faster ones distort the sweeps. Points are in `lidar`, or in
+/// `aside` if not null. About 10 ms per sweep.
 std::vector<SeenRotation> seen_rotations(const sim::LidarRecord& lidar, const PointStore* aside);
 
-/// A signed permutation: axis i of what is meant is `sign[i]` times axis `axis[i]` of what is read.
+/// A signed permutation: true axis i is `sign[i]` times axis `axis[i]` as read.
 struct SignedAxes {
   std::array<int, 3> axis{0, 1, 2};
   std::array<int, 3> sign{1, 1, 1};
@@ -38,31 +38,33 @@ struct SignedAxes {
   std::string text() const;  ///< "(-x, y, z)"
 };
 
-/// A gyro against a lidar. Errors are medians over the pairs, as shares of the median rotation.
+/// Agreement of a gyro with a lidar. Errors are medians over the pairs, relative to the median rotation.
 struct RotationAgreement {
   std::size_t pairs = 0;
-  double unit = 1.0;        ///< of 1, 57.3 and 1/57.3: the factor from the gyro's integral to what the lidar saw
-  double unit_error = 1.0;  ///< of the rotations' sizes, which no mounting changes
-  double delay_s = 0.0;     ///< the lidar sees what the gyro told so much before, within half a second
+  double unit = 1.0;        ///< 1, 57.3 or 1/57.3: factor from the gyro's integral to the lidar's rotation
+  double unit_error = 1.0;  ///< error of the rotation angles, independent of the mounting
+  double delay_s = 0.0;     ///< delay of the lidar relative to the gyro, within half a second
   double error_as_read = 1.0;
-  SignedAxes axes;  ///< those that fit best
+  SignedAxes axes;  ///< best fitting axes
   double axes_error = 1.0;
-  double next_error = 1.0;  ///< of the axes that fit next best: near `axes_error` where the motion does not tell them
-  Eigen::Quaterniond turned = Eigen::Quaterniond::Identity();  ///< the rotation that fits best: what the lidar saw is
-                                                               ///< `turned` times what the gyro says
+  double next_error = 1.0;  ///< error of the second-best axes; near `axes_error` if the motion does not determine the
+                            ///< axes
+  Eigen::Quaterniond turned = Eigen::Quaterniond::Identity();  ///< best rotation: lidar rotation = `turned` times gyro
+                                                               ///< rotation
   double turned_error = 1.0;
 };
 
-/// None where there are fewer than a dozen pairs that the gyro covers, or neither the axes as read nor others nor a
-/// rotation bring the two within 30 %, in any unit. `imu` and `lidar` with their mountings. O(pairs).
+/// Compares gyro and lidar. Returns empty for fewer than a dozen pairs within the gyro's readings. Also returns empty
+/// if no unit, axes or rotation bring the two within 30 %. Uses the mountings of `imu` and `lidar`. O(pairs).
 std::optional<RotationAgreement> rotation_agreement(const sim::ImuRecord& imu, const sim::LidarRecord& lidar,
                                                     std::span<const SeenRotation> seen);
 
-/// That as a remark: what agrees, or a caution that says what fits instead; "" where nothing is told. Throws BadInput
-/// beginning with `where` for rates in the other unit.
+/// Returns a note on the agreement, a warning with a better interpretation, or "" if undetermined. Throws BadInput,
+/// with a message that starts with `where`, if the rates are in the other unit.
 std::string agreement_text(const std::string& where, const RotationAgreement& agreement, GyroUnit unit);
 
-/// Remarks on each IMU of a recording that has a lidar and IMUs; none else. Throws BadInput as above, `where` its path.
+/// Returns notes on each IMU of a recording with lidar and IMUs, else none. Throws BadInput as above; `where` is the
+/// recording's path.
 std::vector<std::string> lidar_rotation_notes(const std::string& where, const Imported& recording, GyroUnit unit);
 
 }  // namespace tumble::scenarios

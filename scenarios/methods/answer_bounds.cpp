@@ -17,29 +17,30 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr std::uintmax_t kBase = 10'000;       // rows or points of an answer to the shortest recording
-constexpr std::uintmax_t kPerReading = 4;      // as many for each that it was given
-constexpr std::uintmax_t kBytesPerRow = 1024;  // a sweep's row of 37 numbers with all their digits
+constexpr std::uintmax_t kBase = 10'000;       // rows or points allowed for any recording
+constexpr std::uintmax_t kPerReading = 4;      // additional rows or points per input reading
+constexpr std::uintmax_t kBytesPerRow = 1024;  // enough for a sweep's row of 37 numbers with full precision
 constexpr std::uintmax_t kBytesPerPoint = 32;  // x y z nx ny nz sigma, and a header
 constexpr std::int64_t kMargin_ns = 10'000'000'000;
 constexpr double kPositionMax_m = 1e7;
 constexpr double kRateMax_rad_s = 1e6;
 constexpr double kAnswerNormTolerance = 1e-2;
-constexpr double kCorrelationTolerance = 1e-3;  // covariances that were written with few digits
+constexpr double kCorrelationTolerance = 1e-3;  // tolerance for covariances written with few digits
 
-constexpr std::size_t kStampsToJudge = 10;  // fewer may lie within a moment of it
-constexpr double kUnitsApart = 100.0;       // what spans a hundredth is in another unit, or no answer
+constexpr std::size_t kStampsToJudge = 10;  // fewer stamps could span a short time by chance
+constexpr double kUnitsApart = 100.0;       // a span of a hundredth indicates another unit or a broken answer
 
-/// ", and looks like UNIT", by how many times too long a span is that should be in `unit`; empty where it is like none.
+/// Returns ", and looks like UNIT" for stamps that should be in `unit` and span `times` the recording; empty if no unit
+/// fits.
 std::string unit_like(std::string_view unit, double times) {
   constexpr std::array<std::pair<const char*, double>, 4> kUnits = {
       {{"nanoseconds", 1e-9}, {"microseconds", 1e-6}, {"milliseconds", 1e-3}, {"seconds", 1.0}}};
   double asked_s = 1.0;
   for (const auto& [name, length_s] : kUnits)
     if (unit == name) asked_s = length_s;
-  constexpr double kFactor = 5.0;  // part of the recording alone may be answered
+  constexpr double kFactor = 5.0;  // an answer may cover only a part of the recording
   for (const auto& [name, length_s] : kUnits) {
-    const double share = times * length_s / asked_s;  // of the recording, were it in these
+    const double share = times * length_s / asked_s;  // fraction of the recording if the stamps had this unit
     if (unit != name && share > 1.0 / kFactor && share < kFactor) return fmt::format("; the values look like {}", name);
   }
   return "";
@@ -62,7 +63,7 @@ void require_attitude(const Eigen::Quaterniond& q, const std::string& where) {
   throw BadInput(fmt::format("{}: quaternion of norm {:g}, must be 1 within {:g}", where, norm, kAnswerNormTolerance));
 }
 
-/// Finite, no variance below 0, and no correlation beyond 1.
+/// Checks that a covariance is finite, with variances of at least 0 and correlations of at most 1.
 template <int N>
 void require_covariance(const Eigen::Matrix<double, N, N>& C, const std::string& where) {
   if (!C.allFinite()) throw BadInput(where + ": the covariance has a value that is not finite");
@@ -108,7 +109,7 @@ std::uintmax_t AnswerBounds::map_bytes() const {
 
 void AnswerBounds::require_size(const std::filesystem::path& file, std::uintmax_t bytes) const {
   const std::string name = file.filename().string();
-  // neither through a link, which leads to what the method did not make
+  // Rejects links, which could lead to files that the method did not write.
   if (!std::filesystem::is_regular_file(std::filesystem::symlink_status(file)))
     throw BadInput(name + ": is not a regular file");
   std::error_code error;
@@ -137,7 +138,7 @@ void AnswerBounds::require_unit(std::span<const double> stamps_s, const char* un
   const bool far = outside != stamps_s.end() && times > kUnitsApart, near = times < 1.0 / kUnitsApart;
   if (!far && !near) return;
   const std::string like = unit_like(unit, times);
-  if (far && like.empty()) return;  // single stamps that are wrong, say
+  if (far && like.empty()) return;  // probably single wrong stamps
   const std::size_t row = far ? static_cast<std::size_t>(outside - stamps_s.begin()) : stamps_s.size() - 1;
   throw BadInput(fmt::format(
       "{}: stamp {:.9g} s: {} stamps span {:.3g} s, but the recording lasts {:.3g} s; stamps must be in {}{}",

@@ -11,35 +11,35 @@
 
 namespace tumble::scenarios {
 
-/// What somebody else's method may answer to one recording. Beyond it an answer is refused, by its size before it is
-/// read: reading is not within the time that the method is given.
+/// Limits on the result of an external method for one recording. The file size is checked before the file is read,
+/// because reading is outside the method's time limit.
 class AnswerBounds {
  public:
-  /// Names row k of what was left, for a message: "poses.tum:3".
+  /// Returns the location of row k for a message: "poses.tum:3".
   using Place = std::function<std::string(std::size_t row)>;
 
   explicit AnswerBounds(const sim::Sensors& sensors);
 
-  /// Of a table, a text or a trajectory: 1 KiB for each of `rows`, which are 10 000 and 4 for each sample of an IMU
-  /// and each sweep of a lidar.
+  /// Size limit of a table, text or trajectory: 1 KiB per row, for 10 000 rows plus 4 per IMU sample and per lidar
+  /// sweep.
   std::uintmax_t table_bytes() const;
-  /// Of a map in float32: 32 bytes for each of 10 000 points and 4 for each point of the lidars.
+  /// Size limit of a float32 map: 32 bytes per point, for 10 000 points plus 4 per lidar point.
   std::uintmax_t map_bytes() const;
 
-  /// Throws BadInput unless `file` is a regular file of at most `bytes`. Nothing is read.
+  /// Throws BadInput unless `file` is a regular file of at most `bytes`. Does not read it.
   void require_size(const std::filesystem::path& file, std::uintmax_t bytes) const;
 
-  /// The three throw BadInput with place, value and bound. Stamps: within 10 s of the recording. Positions [m]: finite,
-  /// within 1e7 m of the origin, which leaves room for coordinates of the Earth. Quaternions: norm 1 within a percent,
-  /// as in TUM files. Rates [rad/s]: finite, within 1e6; their covariances: finite.
+  /// Check an answer's values; throw BadInput with place, value and bound. Stamps: within 10 s of the recording.
+  /// Positions [m]: finite, within 1e7 m of the origin, which allows Earth-centred coordinates. Quaternions: norm 1
+  /// within 1 %, as in TUM files. Rates [rad/s]: finite, below 1e6; their covariances: finite.
   void require_rates(const std::vector<RateState>& rates, const Place& place) const;
   void require_poses(const std::vector<PoseState>& poses, const Place& place) const;
   void require_attitudes(const std::vector<AttitudeState>& attitudes, const Place& place) const;
-  /// Throws BadInput where ten stamps and more have a span that is as much too long as another unit makes it and lie
-  /// outside of the recording, or a hundredth of it and less. `unit`: what they were to be counted in.
+  /// Throws BadInput if ten or more stamps are probably not in `unit`. Their span is then below a hundredth of the
+  /// recording, or above a hundred times the recording while matching another unit.
   void require_unit(std::span<const double> stamps_s, const char* unit, const Place& place) const;
   void require_unit(const Estimate& estimate, const char* unit, const Place& place) const;
-  /// Poses of each sweep and each of its trajectory, and the points of the map, as the poses above.
+  /// Checks the pose and trajectory of each sweep, and the points of the map, with the same bounds.
   void require_slam(const Estimate& estimate) const;
 
  private:
@@ -48,7 +48,7 @@ class AnswerBounds {
 
   std::uintmax_t rows_ = 0, points_ = 0;
   std::int64_t first_ns_ = 0, last_ns_ = 0;
-  double length_s_ = 0.0;  ///< of the readings
+  double length_s_ = 0.0;  ///< length of the readings
 };
 
 }  // namespace tumble::scenarios

@@ -8,10 +8,10 @@
 #include "scenarios/methods/imu_check.hpp"
 #include "scenarios/methods/method.hpp"
 
-/// What the attitude methods have in common: a filter of the estimator fed with the primary IMU, sample by sample.
+/// Shared by the attitude methods: a filter of the estimator library processes the primary IMU sample by sample.
 namespace tumble::scenarios {
 
-/// No covariance: for filters that report none.
+/// For filters that report no covariance.
 struct NoCovariance {
   template <typename State>
   Eigen::Matrix3d operator()(const State&) const {
@@ -19,9 +19,9 @@ struct NoCovariance {
   }
 };
 
-/// One attitude per sample of the primary IMU, in its frame. `Filter` has Params, State with q_WI, and step(sample,
-/// state). `covariance(state)` gives that of AttitudeState. The first trouble ends the run; the attitudes before it
-/// stay.
+/// Runs a filter over the primary IMU and returns one attitude per sample, in the IMU's frame. `Filter` has Params,
+/// State with q_WI, and step(sample, state). `covariance(state)` returns the covariance for AttitudeState. The first
+/// error ends the run; earlier attitudes are kept.
 template <typename Filter, typename CovarianceOf = NoCovariance>
 Estimate run_attitude_filter(const sim::Sensors& sensors, const typename Filter::Params& params,
                              const CovarianceOf& covariance = {}) {
@@ -31,7 +31,7 @@ Estimate run_attitude_filter(const sim::Sensors& sensors, const typename Filter:
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (!estimate.status.ok()) return estimate;
 
-  (void)check_imu(sensors, samples, estimate);  // a warning: a body that is pushed about all the time may look so
+  (void)check_imu(sensors, samples, estimate);  // Only a warning: constant external pushes can cause the same readings.
   typename Filter::State state;
   estimate.attitudes.reserve(samples.size());
   for (const ImuSample& sample : samples) {

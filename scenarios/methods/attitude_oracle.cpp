@@ -16,7 +16,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// The IMUs without the rails of their gyros; that of an accelerometer stays.
+/// Returns the sensors with unclipped gyros; accelerometers stay clipped.
 sim::Sensors unclipped_gyros(const sim::Sensors& sensors, const sim::Truth& truth) {
   if (truth.imus.size() < sensors.imus.size()) throw BadInput("the truth lacks an IMU of the recording");
   sim::Sensors out;
@@ -37,7 +37,7 @@ sim::Sensors unclipped_gyros(const sim::Sensors& sensors, const sim::Truth& trut
 }
 
 Estimate run_attitude_oracle(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput& oracle) {
-  // the readings themselves are checked too: an oracle shall not run where no method could
+  // Check the original readings too: an oracle must fail where every method must fail.
   Estimate estimate;
   std::vector<ImuSample> samples;
   estimate.status = bridge::primary_imu_samples(sensors, samples);

@@ -21,7 +21,7 @@ TumbleAttitude::Params stated(const sim::Sensors& sensors) {
   return params;
 }
 
-/// All IMUs as one, in body axes, and rolling as what the velocity is.
+/// Merges all IMUs in body axes; rolling supplies the velocity.
 Estimate run_sphere(const sim::Sensors& sensors, const sim::Values& parameters) {
   Estimate estimate;
   estimate.frame = Frame::body;
@@ -48,13 +48,13 @@ Estimate run_sphere(const sim::Sensors& sensors, const sim::Values& parameters) 
   return estimate;
 }
 
-/// The primary IMU, in its axes.
+/// Uses the primary IMU in its own axes.
 Estimate run_rig(const sim::Sensors& sensors, const sim::Values& parameters) {
   Estimate estimate;
   std::vector<ImuSample> samples;
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (!estimate.status.ok()) return estimate;
-  (void)check_imu(sensors, samples, estimate);  // a warning: a body that is pushed about all the time may look so
+  (void)check_imu(sensors, samples, estimate);  // Only a warning: constant external pushes can cause the same readings.
   tell_frozen_axes(sensors, samples, estimate);
   const std::vector<ImuSample> read = samples;
   const RecoveredRates recovered = recover_in_time(sensors, samples, estimate.health);

@@ -7,18 +7,18 @@
 #include "sim/recording.hpp"
 #include "tumble/attitude/tumble_attitude.hpp"
 
-/// The method attitude/tumble, for those who feed it with other readings.
+/// The method attitude/tumble, also for callers that supply other readings.
 namespace tumble::scenarios {
 
-/// Parameters of the filter, with the library's own defaults.
+/// Returns the filter's parameters with the library's defaults.
 const Settings<TumbleAttitude::Params>& attitude_tumble_settings();
 
-/// One attitude per sample: of the primary IMU, whose clipped rates are recovered first; of the body on a sphere, all
-/// of its IMUs as one. Trouble: that of the records and of the filter; the attitudes before it stay.
+/// Estimates one attitude per sample. A rig uses the primary IMU, with clipped rates recovered first; a sphere uses all
+/// its IMUs merged. Errors: those of the records and of the filter; earlier attitudes are kept.
 Estimate run_attitude_tumble(const sim::Sensors& sensors, const sim::Values& parameters);
 
-/// Puts into the doubts for how long an estimate's inclination is not known to half a radian (two deviations within a
-/// quarter of a turn): after a gap of the IMU in a tumble, say (`attitude_unknown_s`).
+/// Reports for how long the inclination is unknown to 0.5 rad (2σ within a quarter turn), for example after an IMU gap
+/// in a tumble. Adds a doubt and the health value `attitude_unknown_s`.
 void tell_unknown_attitude(Estimate& estimate);
 
 }  // namespace tumble::scenarios

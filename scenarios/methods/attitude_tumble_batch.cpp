@@ -15,12 +15,12 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Whether a hand held the body wherever its gyro clipped is likelier than not from here on; then its bounds on the
-/// motion tell more than the recovered rates, which know nothing of them.
+/// Above this probability of hand-held motion in clipped segments, the hand-held smoother handles clipping itself. Its
+/// motion bounds then give better results than the recovered rates.
 constexpr double kCarried = 0.5;
 
-/// Of a body that nobody held while its gyro clipped: the rates that flight and contact tell, those of `recovered`,
-/// stand for readings. `rates`: those of the smoother.
+/// Smooths a body that was not hand-held while its gyro clipped: uses the recovered rates as readings. `rates`: output
+/// of the smoother.
 Status run_thrown(const sim::Sensors& sensors, const sim::Values& parameters, const std::vector<ImuSample>& samples,
                   const std::vector<ImuSample>& recovered, const std::vector<Eigen::Matrix3d>& covariances,
                   std::vector<RateState>& rates, Estimate& estimate) {
@@ -37,8 +37,8 @@ Status run_thrown(const sim::Sensors& sensors, const sim::Values& parameters, co
   return status;
 }
 
-/// What the gyro says of the turning between two rests, as the smoother was given it: what that made of it leads
-/// gravity from one to the next by itself, whatever the gyro reads.
+/// Checks the smoother's input rates against gravity at the rests. Its output cannot be checked: the smoother itself
+/// aligns gravity at the rests.
 void check_readings(const sim::Sensors& sensors, const std::vector<ImuSample>& samples,
                     const std::vector<ImuSample>& recovered, const RecoveredRates& told, Estimate& estimate) {
   std::vector<RateState> read(told.sources.size());
@@ -56,7 +56,7 @@ Estimate run_attitude_tumble_batch(const sim::Sensors& sensors, const sim::Value
   std::vector<ImuSample> samples;
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (!estimate.status.ok()) return estimate;
-  (void)check_imu(sensors, samples, estimate);  // a warning, as for the filters
+  (void)check_imu(sensors, samples, estimate);  // Only a warning, as in the filters.
   tell_frozen_axes(sensors, samples, estimate);
   std::vector<ImuSample> recovered = samples;
   RecoveredRates told;

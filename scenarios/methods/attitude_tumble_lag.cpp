@@ -15,8 +15,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// What the rate's errors tell of the attitude's: those of readings are the filter's own noise, white and a bias; those
-/// of recovered rates are as the stream states them.
+/// Returns the rate covariance to add to the attitude covariance. Measured rates add nothing, because the filter models
+/// their white noise and bias; recovered rates add the covariance of the stream.
 Eigen::Matrix3d beyond_noise(const RateState& rate) {
   const bool as_read = rate.clipped_axes == 0 && rate.source == RateSource::measured;
   return as_read ? Eigen::Matrix3d::Zero() : rate.covariance_rad2_s2;

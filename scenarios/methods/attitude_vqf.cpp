@@ -8,7 +8,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-// the library's defaults are the authors'
+// The library's defaults are the authors' settings.
 const Settings<Vqf::Params>& attitude_vqf_settings() {
   static const Settings<Vqf::Params> all{Vqf::Params{}};
   return all;

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/methods/bridge.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -14,7 +16,7 @@ namespace tumble::scenarios::bridge {
 
 namespace {
 
-// sim's bit -> the estimator's flag, written out so that neither side can move alone
+// Maps the bits of sim to the estimator's flags explicitly, so that a change on one side cannot pass unnoticed.
 constexpr std::array<std::pair<int, ClipFlag>, 6> kClipBits = {
     {{0, kClipGyroX}, {1, kClipGyroY}, {2, kClipGyroZ}, {3, kClipAccelX}, {4, kClipAccelY}, {5, kClipAccelZ}}};
 
@@ -26,7 +28,7 @@ std::uint8_t clip_flags(std::uint8_t sim_bits) {
   return flags;
 }
 
-// Stamps of another unit are a thousand times off; a device that is read more seldom than it says is not.
+// Stamps in a wrong unit differ at least 1000-fold; slow reading of a device stays below this factor.
 constexpr double kPeriodsMax = 20.0;
 
 Status check_period(const sim::ImuRecord& record, std::span<const ImuSample> samples) {
@@ -37,7 +39,37 @@ Status check_period(const sim::ImuRecord& record, std::span<const ImuSample> sam
           step_s, step_s < stated_s ? stated_s / kPeriodsMax : stated_s * kPeriodsMax};
 }
 
-// what every method may rely on: finite, of what its device can read, rising at its period, without holes
+std::vector<ImuSample> samples_of(const sim::ImuRecord& record) {
+  std::vector<ImuSample> samples(record.time_ns.size());
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    samples[k].time_ns = record.time_ns[k];
+    samples[k].angular_velocity_rad_s = record.gyro_rad_s[k];
+    samples[k].specific_force_m_s2 = record.accel_m_s2[k];
+    samples[k].device_clip_flags = record.clip_flags.empty() ? std::uint8_t{0} : clip_flags(record.clip_flags[k]);
+  }
+  return samples;
+}
+
+bool in_range(const sim::ImuRecord& record, const ImuSample& sample) {
+  return check_range(record, sample.angular_velocity_rad_s, sample.specific_force_m_s2).ok();
+}
+
+// Removes single readings beyond what the device can measure. Lasting or frequent ones stay, so that the recording is
+// refused.
+void leave_out_wild(const sim::ImuRecord& record, std::vector<ImuSample>& samples) {
+  const auto beyond = [&](const ImuSample& sample) { return !in_range(record, sample); };
+  const auto count = std::count_if(samples.begin(), samples.end(), beyond);
+  if (count == 0 || static_cast<double>(count) > kWildShareMax * static_cast<double>(samples.size())) return;
+  const std::vector<bool> inlier = find_inliers(record);
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    if (inlier[k] || in_range(record, samples[k])) samples[kept++] = samples[k];
+  }
+  samples.resize(kept);
+}
+
+// Checks what every method assumes: finite readings within the device's range, increasing stamps at the stated period,
+// no gaps.
 Status check_stream(const sim::ImuRecord& record, std::span<const ImuSample> samples) {
   if (samples.empty()) return {Trouble::empty, "time_ns", 0.0, 1.0};
   if (const Status status = check_samples(samples, kGapMaxS); !status.ok()) return status;
@@ -63,6 +95,20 @@ Status check_range(const sim::ImuRecord& record, const Eigen::Vector3d& gyro_rad
                 "specific_force_m_s2 (must be within twice the stated range)");
 }
 
+std::vector<bool> find_inliers(const sim::ImuRecord& record) {
+  const std::size_t count = record.time_ns.size();
+  std::vector<bool> all(count, true);
+  const bool whole = record.gyro_rad_s.size() == count && record.accel_m_s2.size() == count &&
+                     (record.clip_flags.empty() || record.clip_flags.size() == count);
+  if (!whole) return all;
+  const std::vector<ImuSample> samples = samples_of(record);
+  if (!check_samples(samples, std::numeric_limits<double>::infinity()).ok()) return all;
+  return tumble::find_inliers(OutlierFilter({.gyro_range_rad_s = record.stated_gyro_range_rad_s,
+                                             .accel_range_m_s2 = record.stated_accel_range_m_s2,
+                                             .period_s = seconds(record.period_ns)}),
+                              samples);
+}
+
 Status imu_samples(const sim::ImuRecord& record, std::vector<ImuSample>& out) {
   out.clear();
   const std::size_t count = record.time_ns.size();
@@ -70,13 +116,8 @@ Status imu_samples(const sim::ImuRecord& record, std::vector<ImuSample>& out) {
   require_length(place, "gyro_rad_s", record.gyro_rad_s.size(), count);
   require_length(place, "accel_m_s2", record.accel_m_s2.size(), count);
   if (!record.clip_flags.empty()) require_length(place, "clip_flags", record.clip_flags.size(), count);
-  std::vector<ImuSample> samples(count);
-  for (std::size_t k = 0; k < count; ++k) {
-    samples[k].time_ns = record.time_ns[k];
-    samples[k].angular_velocity_rad_s = record.gyro_rad_s[k];
-    samples[k].specific_force_m_s2 = record.accel_m_s2[k];
-    samples[k].device_clip_flags = record.clip_flags.empty() ? std::uint8_t{0} : clip_flags(record.clip_flags[k]);
-  }
+  std::vector<ImuSample> samples = samples_of(record);
+  leave_out_wild(record, samples);
   const Status status = check_stream(record, samples);
   if (status.ok()) out = std::move(samples);
   return status;
@@ -96,7 +137,7 @@ Status unclipped_samples(const sim::ImuRecord& record, const sim::ImuTruth& trut
   twin.gyro_rad_s = truth.gyro_unclipped_rad_s;
   twin.accel_m_s2 = truth.accel_unclipped_m_s2;
   twin.clip_flags.clear();
-  twin.stated_gyro_range_rad_s = twin.stated_accel_range_m_s2 = 0.0;  // without a rail there is no range
+  twin.stated_gyro_range_rad_s = twin.stated_accel_range_m_s2 = 0.0;  // unclipped readings have no range
   return imu_samples(twin, out);
 }
 
@@ -118,7 +159,7 @@ std::size_t sweep_count(const sim::LidarRecord& record) {
   const std::size_t sweeps = record.sweep_start_ns.size();
   const std::size_t points = record.position_L_m.size();
   const std::string place = "lidar '" + record.name + "'";
-  // a lidar without sweeps may come without the closing index
+  // A lidar without sweeps may lack the closing index.
   if (sweeps == 0 && record.sweep_first.empty()) return 0;
   require_length(place, "sweep_first", record.sweep_first.size(), sweeps + 1);
   require_length(place, "offset_ns", record.offset_ns.size(), points);

@@ -10,11 +10,12 @@
 #include "sim/recording.hpp"
 #include "tumble/angular_velocity/rate_state.hpp"
 #include "tumble/common/imu.hpp"
+#include "tumble/common/outlier_filter.hpp"
 #include "tumble/common/status.hpp"
 #include "tumble/mapping/lidar.hpp"
 
-/// The one place where the records of `sim` become the messages of the estimator. Both libraries state their
-/// conventions by themselves; here they are compared, field by field:
+/// Converts the records of `sim` to the messages of the estimator. This is the only conversion. Each library states its
+/// conventions separately; this table compares them:
 ///
 /// | quantity       | sim                                        | estimator                                      |
 /// | -------------- | ------------------------------------------ | ---------------------------------------------- |
@@ -26,55 +27,63 @@
 /// | lidar point    | m in L, offset ns after the sweep's start  | the same, one struct per point                 |
 namespace tumble::scenarios::bridge {
 
-/// Longest time between two IMU samples that a recording may have [s].
+/// Longest accepted time between two IMU samples [s].
 inline constexpr double kGapMaxS = 1.0;
 
-/// Readings up to so many stated ranges are taken for measurements: rails lie beyond what a sheet states (of the MTi-30
-/// at 1.4 times), and tilted ones in each axis anew. What reads further was never measured.
-inline constexpr double kStatedRangesMax = 2.0;
+/// Readings up to this multiple of the stated range are accepted as measurements. Real saturation limits exceed the
+/// stated range (MTi-30: 1.4 times), and tilted limits more so. Larger readings cannot be measurements.
+inline constexpr double kStatedRangesMax = OutlierFilter::kRangesMax;
 
-/// `out_of_range` for the first axis of a reading, in its own axes, beyond kStatedRangesMax times the range that the
-/// record states, with value and bound; a stated range of 0 says nothing.
+/// A recording with a larger share of such readings is refused: its unit or its device must be another one.
+inline constexpr double kWildShareMax = 0.01;
+
+/// Returns `out_of_range`, with value and bound, for the first axis whose reading exceeds kStatedRangesMax times the
+/// range in the record. A stated range of 0 disables the check.
 Status check_range(const sim::ImuRecord& record, const Eigen::Vector3d& gyro_rad_s, const Eigen::Vector3d& accel_m_s2);
 
-/// Samples of an IMU, in order. Trouble: `empty`, `non_finite`, `time_order`, `gap` (more than kGapMaxS),
-/// `out_of_range` (check_range; a median step 20 times off the stated period); then `out` is empty. Throws BadInput
-/// when the record's arrays differ in length. O(N).
+/// Judges the samples of an IMU with the library's OutlierFilter. Element k is true if sample k passes. All pass if a
+/// reading is not finite, if a stamp does not rise, or if the record's arrays differ in length. O(N).
+std::vector<bool> find_inliers(const sim::ImuRecord& record);
+
+/// Converts the samples of an IMU, in order, without a few single readings beyond kStatedRangesMax (find_inliers).
+/// Errors: `empty`, `non_finite`, `time_order`, `gap` (more than kGapMaxS), `out_of_range` (check_range, or a median
+/// step that differs 20-fold from the stated period); `out` is then empty. Throws BadInput if the record's arrays
+/// differ in length. O(N).
 Status imu_samples(const sim::ImuRecord& record, std::vector<ImuSample>& out);
 
-/// The primary IMU's samples; `empty` when the recording has no IMU.
+/// Converts the primary IMU's samples; returns `empty` if the recording has no IMU.
 Status primary_imu_samples(const sim::Sensors& sensors, std::vector<ImuSample>& out);
 
-/// The same samples with the rail taken away, from the truth's twin of the record. Throws BadInput when the truth does
+/// Converts the same samples without saturation, from the ground truth of the record. Throws BadInput if the truth does
 /// not belong to the record.
 Status unclipped_samples(const sim::ImuRecord& record, const sim::ImuTruth& truth, std::vector<ImuSample>& out);
 
-/// From the centre of mass to the IMU, in IMU axes [m]: R_BI^T p_BI of the calibration.
+/// Returns the vector from the centre of mass to the IMU, in IMU axes [m]: R_BI^T p_BI of the calibration.
 Eigen::Vector3d lever_arm_I_m(const sim::ImuRecord& record);
 
-/// Lidar coordinates to IMU coordinates, from the two calibrations.
+/// Returns the transform from lidar to IMU coordinates, from the two calibrations.
 Eigen::Isometry3d T_IL(const sim::ImuRecord& imu, const sim::LidarRecord& lidar);
 
-/// Variance of one reading of the gyro per axis, from the data sheet's density and the sample's length [(rad/s)^2].
+/// Returns the variance of one gyro reading per axis [(rad/s)^2], from the data sheet's noise density and the sample
+/// period.
 double gyro_variance_rad2_s2(const sim::ImuRecord& record);
 
-/// One sweep of a lidar as the estimator takes it.
+/// One lidar sweep in the estimator's format.
 struct Sweep {
   std::int64_t start_ns = 0;
   std::int64_t end_ns = 0;
   std::vector<LidarPoint> points;
 };
 
-/// Number of sweeps. Throws BadInput when the record's arrays do not fit together.
+/// Returns the number of sweeps. Throws BadInput if the record's arrays are inconsistent.
 std::size_t sweep_count(const sim::LidarRecord& record);
 
-/// Stamps of seconds in double since 1970 are rounded to a quarter of this [ns].
+/// Tolerance for rounded stamps [ns]. Stamps stored as seconds since 1970 in a double are rounded to a quarter of this.
 inline constexpr std::int64_t kRounding_ns = 1000;
 
-/// Sweep `index` < sweep_count(record): it lasts for the period, or until the next begins where that is sooner, since
-/// sweeps of a real lidar do not follow each other to the nanosecond. Points later than that by more than kRounding_ns
-/// are left out, others belong to the end. Where the points have no times of their own the sweep has no length: all
-/// belong to its start, and there is nothing to deskew. O(points of the sweep).
+/// Converts sweep `index` < sweep_count(record). The sweep lasts one period, or until the next sweep starts if that is
+/// sooner. Points later than the end by more than kRounding_ns are dropped; points within that tolerance are clamped to
+/// the end. Without per-point times the sweep has zero length and is not deskewed. O(points of the sweep).
 Sweep sweep(const sim::LidarRecord& record, std::size_t index);
 
 }  // namespace tumble::scenarios::bridge

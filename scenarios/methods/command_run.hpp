@@ -8,16 +8,16 @@
 #include "scenarios/methods/external_method.hpp"
 #include "scenarios/processes/command.hpp"
 
-/// What runs of somebody else's program share, a command or a function of Python.
+/// Shared by runs of external programs: commands and Python functions.
 namespace tumble::scenarios {
 
 std::string less_folder(std::string text, const std::filesystem::path& folder);
 
-/// `what`, and the end of what the program said.
+/// Appends the end of the program's output to the message `what`.
 std::string with_last_words(const std::string& what, const CommandEnd& end);
 
-/// Calls `work`, of whose messages of BadInput and NoAnswer the scratch folder is taken off, which is another one each
-/// time: files within it go by their own names.
+/// Calls `work` and removes the scratch folder's path from messages of BadInput and NoAnswer. That path differs in each
+/// run; the messages then name files relative to it.
 template <class Work>
 auto without_folder(const std::filesystem::path& scratch, Work&& work) {
   try {
@@ -29,11 +29,11 @@ auto without_folder(const std::filesystem::path& scratch, Work&& work) {
   }
 }
 
-/// Throws NoAnswer unless the program came to its end with status 0.
+/// Throws NoAnswer unless the program exited with status 0.
 void require_done(const CommandEnd& end);
 
-/// First line of what a version command says, and a digest of all of it; the command runs in `folder`, for at most half
-/// a minute. Throws BadInput that begins with `place` when it fails.
+/// Returns the first line of a version command's output, and a digest of the whole output. The command runs in `folder`
+/// for at most 30 s. On failure throws BadInput, with a message that starts with `place`.
 std::string version_said(Command command, const std::string& place);
 
 }  // namespace tumble::scenarios

@@ -12,7 +12,7 @@ static_assert(kAllDoubts.size() == static_cast<std::size_t>(Doubt::About::unit_s
 
 namespace {
 
-/// Of a unit: what its row ends in.
+/// Returns the key, or its suffix for a doubt about a unit.
 const char* row_name(Doubt::About about) {
   switch (about) {
     case Doubt::About::readings:
@@ -49,7 +49,8 @@ const char* row_name(Doubt::About about) {
   return "_silent_since_s";
 }
 
-/// Whether a row says a doubt, by its value: it may say that there is none. Of a unit 0 is a time as well.
+/// Returns true if a row with this value reports a doubt; other values report a passed check. For units, 0 is a valid
+/// start time.
 bool is_said(Doubt::About about, double value) {
   if (row_name(about)[0] == '_') return true;
   return (value == 0.0) == (about == Doubt::About::place);

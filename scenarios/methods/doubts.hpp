@@ -6,33 +6,33 @@
 #include <string>
 #include <vector>
 
-/// What an estimate says against itself, or against what it was made of.
+/// Results of an estimate's health checks: possible faults of the estimate or of its input.
 namespace tumble::scenarios {
 
 struct Estimate;
 
-/// One thing that an estimate doubts, for stages and programs; for people it is a row of the health as well.
+/// A failed health check, for stages and programs. The same is written for people as a row of `health`.
 struct Doubt {
   enum class About {
-    readings,        ///< the IMU's contradict each other or gravity
-    rates,           ///< as a whole (Estimate::doubted_rad2_s2), by `readings`
-    flights,         ///< forces there are not what the turning makes; value: for how long [s]
-    stamps,          ///< rounded more coarsely than the IMU beats; value: to what [s]
-    rate_unit,       ///< perhaps no rad/s
-    force_unit,      ///< perhaps no m/s^2
-    attitude,        ///< its inclination is not known; value: for how long [s]
-    place,           ///< where the run is on its map is not known; value: 0
-    lidar_scale,     ///< ranges of another scale than the motion
-    beyond_range,    ///< readings that the device cannot have measured; value: how many
-    digest,          ///< the recording states none
-    learnt_rig,      ///< what was learnt before is not of this rig; value: how far off [deviations]
-    unit_frozen,     ///< `unit` repeats one reading; value: since when from the start [s], as of the next two
-    unit_disagrees,  ///< `unit` is off from the others
+    readings,        ///< IMU readings contradict each other or gravity
+    rates,           ///< all rates (Estimate::doubted_rad2_s2), because of `readings`
+    flights,         ///< specific forces in flight contradict the angular rates; value: duration [s]
+    stamps,          ///< stamps rounded more coarsely than the IMU period; value: rounding [s]
+    rate_unit,       ///< rates are possibly not in rad/s
+    force_unit,      ///< specific forces are possibly not in m/s^2
+    attitude,        ///< inclination unknown; value: duration [s]
+    place,           ///< pose in the map unknown; value: 0
+    lidar_scale,     ///< lidar ranges have another scale than the motion
+    beyond_range,    ///< readings that exceed what the device can measure; value: their number
+    digest,          ///< the recording has no digest
+    learnt_rig,      ///< the stored calibration belongs to another rig; value: distance in standard deviations
+    unit_frozen,     ///< `unit` repeats one reading; value: start time [s], also for the next two
+    unit_disagrees,  ///< `unit` differs from the other units
     unit_silent,     ///< `unit` has no readings
   };
   About about = About::readings;
   double value = 1.0;
-  std::string unit = {};  ///< "imu_2", or an axis of it, "imu_2_gyro_z"
+  std::string unit = {};  ///< "imu_2", or one of its axes, "imu_2_gyro_z"
 
   bool operator==(const Doubt&) const = default;
 };
@@ -43,20 +43,20 @@ inline constexpr std::array kAllDoubts = {
     Doubt::About::lidar_scale, Doubt::About::beyond_range,   Doubt::About::digest,     Doubt::About::learnt_rig,
     Doubt::About::unit_frozen, Doubt::About::unit_disagrees, Doubt::About::unit_silent};
 
-/// Its row of the health: `imu_implausible`, `imu_2_frozen_since_s`. The only place that knows these names.
+/// Returns the key of a doubt in the health: `imu_implausible`, `imu_2_frozen_since_s`. Only this function knows these
+/// names.
 std::string row_of(const Doubt& doubt);
 
-/// Puts a doubt among those of an estimate, which stay in the order of their rows, and its row into the health. Takes
-/// the place of one with the same row.
+/// Adds a doubt to the estimate, sorted by key, and its row to the health. Replaces a doubt with the same key.
 void add_doubt(const Doubt& doubt, Estimate& estimate);
 
-/// Whether there is one about the same.
+/// Returns true if the estimate has a doubt about the same thing.
 bool has_doubt(const Doubt& doubt, const Estimate& estimate);
 
-/// Says in the health that something was looked at and is not doubted.
+/// Records in the health that a check passed.
 void tell_undoubted(Doubt::About about, Estimate& estimate);
 
-/// The doubts of an estimate of which only the health was kept, as in its file.
+/// Restores the doubts of an estimate from its health, for estimates that were read from a file.
 std::vector<Doubt> doubts_in(const std::map<std::string, double>& health);
 
 }  // namespace tumble::scenarios

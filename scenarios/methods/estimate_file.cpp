@@ -28,7 +28,8 @@ const std::string kRatesHeader = "time_ns,wx_rad_s,wy_rad_s,wz_rad_s,cxx,cxy,cxz
 const std::string kPoseColumns = "px_m,py_m,pz_m,qx,qy,qz,qw,vx_m_s,vy_m_s,vz_m_s";
 const std::string kContactsHeader = "time_ns,label";
 const std::string kFlaggedContactsHeader = kContactsHeader + ",uncertain";
-constexpr std::size_t kCovarianceColumn = 16;  // of a sweep's pose: upper triangle by rows, position before attitude
+constexpr std::size_t kCovarianceColumn = 16;  // first column of a sweep pose's covariance: upper triangle by rows,
+                                               // position before attitude
 const std::string kSweepsHeader =
     "end_ns,verdict,iterations,inlier_share,conditioning,pose_time_ns," + kPoseColumns +
     ",c00,c01,c02,c03,c04,c05,c11,c12,c13,c14,c15,c22,c23,c24,c25,c33,c34,c35,c44,c45,c55";
@@ -46,8 +47,7 @@ Eigen::Vector3d read_vector(const Table& table, const Table::Row& row, std::size
   return {table.number(row, first), table.number(row, first + 1), table.number(row, first + 2)};
 }
 
-// x y z w, as it stands in the file; one of another norm than 1 is refused, since it is no attitude. NaN is what a
-// method of ours leaves that broke down.
+// Reads x y z w. Throws if the norm differs from 1. Accepts NaN, which a diverged method writes.
 Eigen::Quaterniond read_quaternion(const Table& table, const Table::Row& row, std::size_t first, bool normalise) {
   Eigen::Quaterniond q(table.number(row, first + 3), table.number(row, first), table.number(row, first + 1),
                        table.number(row, first + 2));
@@ -231,7 +231,7 @@ void read_sweeps(const std::filesystem::path& folder, Estimate& estimate) {
   }
 }
 
-/// `all_finite`: what is not is refused, as `import` does.
+/// Reads a TUM file. `all_finite` rejects numbers that are not finite, as `import` does.
 void read_tum(const std::filesystem::path& path, std::vector<PoseState>& poses, bool all_finite = false) {
   const Table table = Table::read(path, ' ', "", 8);
   for (const Table::Row& row : table.rows) {
@@ -301,7 +301,7 @@ void read_header(const std::filesystem::path& path, Kind& kind, std::string& met
   estimate.frame = reader.named("frame", Frame::centre);
   const json& status = reader.object("status");
   estimate.status.trouble = JsonMembers(path, status).named("trouble", Trouble::diverged);
-  // a Status holds a static string, so which field it was stays in the file's message
+  // A Status holds a static string, so the actual field is only in the file's message.
   if (!estimate.status.ok()) estimate.status.field = "estimate.json";
   for (const auto& [name, value] : reader.object("health").items())
     estimate.health[name] = value.is_number() ? value.get<double>() : std::nan("");
@@ -320,7 +320,7 @@ void write_estimate(const std::filesystem::path& folder, const std::string& meth
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw BadInput(folder.string() + ": cannot create the folder: " + error.message());
-  // what an earlier estimate left would be read back with this one
+  // Remove files of an earlier estimate; they would be read as part of this one.
   for (const char* name : kEstimateFiles) std::filesystem::remove(folder / name, error);
   if (!estimate.rates.empty()) write_rates(folder / "rates.csv", estimate.rates);
   if (!estimate.attitudes.empty()) write_attitudes(folder, estimate.attitudes);
@@ -350,7 +350,7 @@ void write_estimate(const std::filesystem::path& folder, const std::string& meth
   if (!estimate.map.empty()) write_map(folder / "map.ply", estimate.map);
   if (!estimate.transcript.empty()) replace_file(folder / "transcript.txt", estimate.transcript);
 
-  // last: a folder with this file is complete
+  // Written last: this file marks a complete folder.
   replace_file(folder / "estimate.json", header_of(method, kind, estimate, sensors_digest).dump(2) + '\n');
 }
 

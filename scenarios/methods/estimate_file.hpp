@@ -8,29 +8,34 @@
 
 namespace tumble::scenarios {
 
-/// What the folder of an estimate may hold.
+/// File names that the folder of an estimate may contain.
 inline constexpr const char* kEstimateFiles[] = {"estimate.json",           "rates.csv",     "attitude.tum",
                                                  "trajectory.tum",          "contacts.csv",  "sweeps.csv",
                                                  "sweep_poses.csv",         "map.ply",       "position_covariance.csv",
                                                  "attitude_covariance.csv", "transcript.txt"};
 
-/// Leaves an estimate in a folder: estimate.json (method, kind, frame, status, health, digest of the sensors that it
-/// was made from), rates.csv, attitude.tum, attitude_covariance.csv, trajectory.tum (t x y z qx qy qz qw),
-/// position_covariance.csv, contacts.csv, sweeps.csv, sweep_poses.csv, map.ply, transcript.txt (what somebody else's
-/// program said); only the files that apply, estimate.json last. Everything that is scored comes back the same to the
-/// bit, but for the last bit of a quaternion in a TUM file (it is normalised on reading). Covariances of `poses` but
-/// for the position, and the velocities of `poses` are not written. Throws BadInput when it cannot write,
-/// std::invalid_argument when `contacts` is not as long as `poses`, or `uncertain` neither empty nor as long. Columns:
-/// ESTIMATE.md.
+/// Writes an estimate to a folder. Only files that apply are written, estimate.json last. Columns: ESTIMATE.md.
+///
+/// - estimate.json: method, kind, frame, status, health, digest of the input sensors
+/// - rates.csv, attitude.tum, attitude_covariance.csv
+/// - trajectory.tum (t x y z qx qy qz qw), position_covariance.csv, contacts.csv
+/// - sweeps.csv, sweep_poses.csv, map.ply
+/// - transcript.txt: output of an external program
+///
+/// All scored values are restored bit-exactly. The only exception is the last bit of quaternions in TUM files, which
+/// are normalised on reading. Velocities of `poses`, and covariances of `poses` other than position, are not written.
+///
+/// Throws BadInput if writing fails. Throws std::invalid_argument if `contacts` is not as long as `poses`, or
+/// `uncertain` is neither empty nor as long.
 void write_estimate(const std::filesystem::path& folder, const std::string& method, Kind kind, const Estimate& estimate,
                     const std::string& sensors_digest = "");
 
-/// The digest of the sensors that an estimate in a folder was made from; empty where it does not say.
+/// Returns the digest of the sensors that an estimate was computed from; empty if the folder does not state one.
 std::string estimated_sensors(const std::filesystem::path& path);
 
-/// Reads such a folder back, or a single TUM file of somebody else's (kind position, poses of `tum_frame`, named after
-/// the file; of a file each number must be finite, in a folder NaN is what a method left that broke down). Throws
-/// BadInput with path, line and reason.
+/// Reads such a folder, or a single TUM file of another program. A TUM file has kind position, poses of `tum_frame`,
+/// and the file's name; all its numbers must be finite. A folder may contain NaN, which a diverged method writes.
+/// Throws BadInput with path, line and reason.
 Estimate read_estimate(const std::filesystem::path& path, Kind& kind, std::string& method, Frame tum_frame);
 
 }  // namespace tumble::scenarios

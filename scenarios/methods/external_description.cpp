@@ -22,7 +22,7 @@ namespace {
 
 constexpr double kTimeMax_s = 1e6;
 constexpr double kMemoryMax_mib = 1e7;
-constexpr std::size_t kWordMax = 4096;  // std::regex goes a level deeper for each character
+constexpr std::size_t kWordMax = 4096;  // std::regex recurses once per character
 
 const std::regex& placeholder() {
   static const std::regex pattern(R"(\{([a-z0-9_]+)\})");
@@ -48,7 +48,7 @@ ExternalDescription::Output output_named(const YamlNode& node) {
   node.fail("unknown output '" + name + "'" + suggestion(name, known));
 }
 
-/// A robot that there is: a method of another one would run on nothing, without a word.
+/// Returns the name of a known robot. With an unknown robot, the method would silently never run.
 std::string robot_named(const YamlNode& node) {
   const std::string name = node.identifier();
   std::vector<std::string> known;
@@ -58,7 +58,7 @@ std::string robot_named(const YamlNode& node) {
   return name;
 }
 
-/// The words of a command, their placeholders known.
+/// Returns the words of a command after checking their placeholders.
 std::vector<std::string> words_of(const YamlNode& node) {
   std::vector<std::string> words;
   for (const YamlNode& item : node.items()) {
@@ -85,8 +85,7 @@ std::string digest_of(const std::string& text) {
   return fmt::format("{:016x}", XXH3_64bits(text.data(), text.size()));
 }
 
-/// The files that the words of a command name by {folder}, as "{folder}/mine" or inside of a line for a shell, in the
-/// order of their names.
+/// Returns the sorted files that the words of a command name by {folder}, as "{folder}/mine" or inside a shell line.
 std::set<std::filesystem::path> own_files(const std::vector<std::string>& command,
                                           const std::filesystem::path& folder) {
   static const std::regex pattern(R"(\{folder\}/([^\s{}"';|&<>()]{1,512}))");
@@ -112,7 +111,7 @@ std::uint64_t digest_of_file(const std::filesystem::path& file) {
   return XXH3_64bits_digest(state.get());
 }
 
-/// Of the description and of its command's own files: a program that was compiled anew is another version.
+/// Digests the description and the command's own files, so that a recompiled program counts as another version.
 std::string digest_of_command(const std::string& text, const ExternalDescription& description) {
   std::string all = text;
   for (const std::filesystem::path& file : own_files(description.command, description.file.parent_path()))
@@ -120,7 +119,7 @@ std::string digest_of_command(const std::string& text, const ExternalDescription
   return digest_of(all);
 }
 
-/// What a function of Python cannot have: it gives its answer back and leaves no file.
+/// Keys not allowed for Python functions, which return their answer directly.
 constexpr std::array<const char*, 2> kOfCommands = {"version", "output"};
 constexpr std::array<const char*, 2> kOfPython = {"function", "interpreter"};
 
@@ -154,7 +153,7 @@ void read_python(const std::map<std::string, YamlNode>& fields, ExternalDescript
     for (const YamlNode& item : fields.at("interpreter").items()) out.interpreter.push_back(item.text());
 }
 
-/// The kinds whose names the pattern's second group finds in the text.
+/// Returns the kinds found in the text by the pattern's second group.
 std::vector<Kind> kinds_found(const std::string& text, const std::regex& pattern) {
   std::vector<Kind> found;
   for (std::sregex_iterator it(text.begin(), text.end(), pattern), end; it != end; ++it)
@@ -163,7 +162,7 @@ std::vector<Kind> kinds_found(const std::string& text, const std::regex& pattern
   return found;
 }
 
-/// The one kind after which a function of the text is named, or where there is none what is assigned.
+/// Returns the kind of the text's only method function, or, without a function, of a matching assignment.
 Kind kind_of_function(const std::string& text, const std::string& file) {
   static const std::regex defined(R"((^|\n)def[ \t]{1,8}(rate|attitude|position|slam)[ \t]{0,8}\()");
   static const std::regex assigned(R"((^|\n)(rate|attitude|position|slam)[ \t]{0,8}=(?!=))");
@@ -207,7 +206,7 @@ std::vector<std::string> placeholders_in(const std::string& word) {
     const std::string name = (*it)[1];
     if (std::find(known.begin(), known.end(), name) == known.end())
       throw BadInput("unknown placeholder '{" + name + "}'" +
-                     (sim::nearest_name(name, known).empty() ? suggestion(name, known)  // which lists them
+                     (sim::nearest_name(name, known).empty() ? suggestion(name, known)
                                                              : suggestion(name, known) + " (known placeholders: " +
                                                                    fmt::format("{}", fmt::join(known, " ")) + ")"));
     out.push_back(name);

@@ -26,10 +26,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Sensor data in one format, written only when the command names it.
+/// Sensor data in one format; written only if the command names it.
 struct Provision {
   const char* placeholder;
-  const char* name;  ///< of the file or folder in the scratch folder
+  const char* name;  ///< file or folder in the scratch folder
   std::function<void(const sim::Sensors&, const fs::path&)> write;
 };
 
@@ -65,7 +65,7 @@ std::set<std::string> named_in(const std::vector<std::string>& words) {
   return out;
 }
 
-/// Where each placeholder points to in a scratch folder.
+/// Returns the path in the scratch folder for each placeholder.
 std::map<std::string, std::string> places(const ExternalDescription& description, const fs::path& scratch) {
   const bool folder = description.output == ExternalDescription::Output::estimate;
   const bool rates = description.output == ExternalDescription::Output::rates;
@@ -90,7 +90,7 @@ Command command_of(const ExternalDescription& description, const std::vector<std
   return command;
 }
 
-/// What the command's words name, written; then the command, to its end.
+/// Writes the data that the command names, then runs the command to its end.
 CommandEnd provide_and_run(const ExternalDescription& description, const sim::Sensors& sensors,
                            const std::map<std::string, std::string>& values, const fs::path& scratch) {
   const std::set<std::string> wanted = named_in(description.command);
@@ -128,8 +128,7 @@ Estimate run(const ExternalDescription& description, const sim::Sensors& sensors
   }
 }
 
-/// What tells this method from another of its name: what its version command prints, the file of its function, and the
-/// description's digest.
+/// Returns the version: output of the version command, the function's file, and the description's digest.
 std::string version_of(const ExternalDescription& description) {
   const std::string own = "description " + description.digest;
   if (!description.python.empty()) return python_version(description) + "; " + own;
@@ -156,7 +155,7 @@ Method external_method(const std::filesystem::path& file, double time_limit_s) {
             sim::resolve("method " + description.name, given, {});
             try {
               return run(description, sensors);
-            } catch (const std::system_error& error) {  // no folder, no process
+            } catch (const std::system_error& error) {  // the folder or process could not be created
               throw NoAnswer(NoAnswer::Why::machine, error.what());
             }
           }};

@@ -14,8 +14,8 @@
 
 namespace tumble::scenarios {
 
-/// A method's program that gave no answer: it crashed or could not be started, ran out of time, or the machine had no
-/// room for its run. With what it said until then.
+/// An external program gave no answer: it crashed, could not be started, timed out, or the machine lacked memory or
+/// disk space. Contains the program's output so far.
 class NoAnswer : public std::runtime_error {
  public:
   enum class Why { crashed, out_of_time, machine };
@@ -29,7 +29,7 @@ class NoAnswer : public std::runtime_error {
   std::string transcript_;
 };
 
-/// An answer that is not what it should be, with what its program said.
+/// The answer of an external program is invalid. Contains the program's output.
 class RefusedAnswer : public BadInput {
  public:
   RefusedAnswer(const std::string& what, std::string transcript) : BadInput(what), transcript_(std::move(transcript)) {}
@@ -39,18 +39,19 @@ class RefusedAnswer : public BadInput {
   std::string transcript_;
 };
 
-/// The method that a file NAME.yaml or NAME.py describes (EXTERNAL.md). Of a command: sensors are written into a folder
-/// of their own in the formats that it names, it runs with its limits in a process of its own, and what it leaves is
-/// read back. Of a function of Python: the same through memory. It never sees the truth. Its limit of time is the
-/// description's, at most `time_limit_s`. Throws BadInput when the description is wrong or its version command fails.
-/// Running it throws NoAnswer, and RefusedAnswer when what it left is not what it should be.
+/// Returns the method described by NAME.yaml or NAME.py (EXTERNAL.md). For a command: writes the sensors to a separate
+/// folder in the requested formats, runs the command in its own process with its limits, and reads the result. For a
+/// Python function: exchanges the same data through shared memory. The program never receives the truth.
+///
+/// The time limit is that of the description, at most `time_limit_s`. Throws BadInput if the description is invalid or
+/// its version command fails. Running the method throws NoAnswer, or RefusedAnswer if the result is invalid.
 Method external_method(const std::filesystem::path& file,
                        double time_limit_s = std::numeric_limits<double>::infinity());
 
-/// Whether `name` is that of a file which describes a method: NAME.yaml, NAME.py.
+/// Returns true if `name` is a file that describes a method: NAME.yaml, NAME.py.
 bool is_method_file(const std::string& name);
 
-/// find_methods (method.hpp) for a list, commands of somebody else's given at most `time_limit_s`.
+/// Calls find_methods (method.hpp) for a list; external methods get at most `time_limit_s`.
 std::vector<MethodPointer> find_methods_within(std::span<const std::string> names, double time_limit_s);
 
 }  // namespace tumble::scenarios

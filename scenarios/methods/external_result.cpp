@@ -23,7 +23,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr std::int64_t kStampTolerance_ns = 1000;  // stamps that went through seconds in double
+constexpr std::int64_t kStampTolerance_ns = 1000;  // tolerance for stamps stored as seconds in a double
 constexpr const char* kRateColumns = "time_ns,wx_rad_s,wy_rad_s,wz_rad_s";
 constexpr const char* kWithCovariance = "time_ns,wx_rad_s,wy_rad_s,wz_rad_s,cxx,cxy,cxz,cyy,cyz,czz";
 
@@ -44,7 +44,7 @@ Eigen::Matrix3d covariance(const Table& table, const Table::Row& row) {
   return out;
 }
 
-/// One row per sample of the first IMU, in their order.
+/// Reads one row per sample of the first IMU, in order.
 std::vector<RateState> read_rates(const std::filesystem::path& file, const sim::Sensors& sensors) {
   if (sensors.imus.empty()) throw BadInput("the recording has no IMU; a rate method needs the samples of an IMU");
   const std::vector<std::int64_t>& stamps = sensors.imus.front().time_ns;
@@ -71,7 +71,7 @@ std::vector<RateState> read_rates(const std::filesystem::path& file, const sim::
   return rates;
 }
 
-/// First numbers of the lines of a TUM file, as they stand; those that are none, which its reader complains of, end it.
+/// Returns the first numbers of a TUM file's lines; stops at the first invalid line, which the TUM reader reports.
 std::vector<double> stamps_of(const std::filesystem::path& file) {
   std::vector<double> stamps_s;
   std::ifstream stream(file);
@@ -83,13 +83,13 @@ std::vector<double> stamps_of(const std::filesystem::path& file) {
     stamps_s.push_back(stamp_s);
   }
   constexpr double kOrigin_s = 1e-9 * static_cast<double>(kExternalBagOrigin_ns);
-  // in its own unit the first stamp of a bag may be any; as seconds it is this
+  // The stamps are those of the bag, in seconds.
   if (!stamps_s.empty() && stamps_s.front() > kOrigin_s / 2 && stamps_s.back() < kOrigin_s * 2)
     for (double& stamp_s : stamps_s) stamp_s -= kOrigin_s;
   return stamps_s;
 }
 
-/// A TUM file of poses in the frame stated.
+/// Reads poses of the stated frame from a TUM file.
 Estimate read_poses(const ExternalDescription& description, const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file))
     throw BadInput(file.filename().string() + ": the command did not write this file");
@@ -125,7 +125,7 @@ void require_sizes(const AnswerBounds& bounds, ExternalDescription::Output outpu
   }
 }
 
-/// Row k of a table by its line: that is looked for in the file only when something has to be said about it.
+/// Returns a function that locates row k in the file; the file is only scanned when a message needs the line.
 AnswerBounds::Place rows_of(const std::filesystem::path& file, bool headed) {
   return [file, headed](std::size_t row) {
     std::ifstream stream(file);
@@ -150,7 +150,7 @@ void require_sense(const AnswerBounds& bounds, const Estimate& estimate, Externa
   bounds.require_slam(estimate);
 }
 
-/// Any PLY with x, y and z; normals and deviations where it has them.
+/// Reads any PLY file with x, y and z; normals and standard deviations are optional.
 std::vector<MapPoint> read_points(const std::filesystem::path& file) {
   const Cloud cloud = read_cloud(file);
   const auto column = [&](const char* name) { return cloud.find(name); };
@@ -184,7 +184,7 @@ Estimate read_external_result(const ExternalDescription& description, const std:
       estimate.rates = read_rates(output, sensors);
       break;
     case ExternalDescription::Output::tum:
-      // before it is read: as seconds such stamps soon are beyond what a time can be, and that is no help
+      // Checked before parsing: stamps in a wrong unit may overflow the time type and give an unhelpful message.
       bounds.require_unit(stamps_of(output), "seconds", rows_of(output, false));
       estimate = read_poses(description, output);
       break;

@@ -9,13 +9,13 @@
 
 namespace tumble::scenarios {
 
-/// Stamp of a recording's start in the bags that a command is given; its poses may bear those stamps or the
-/// recording's.
+/// Stamp of a recording's start in bags for external commands. Their poses may use these stamps or those of the
+/// recording.
 inline constexpr std::int64_t kExternalBagOrigin_ns = 1'000'000'000'000'000'000;
 
-/// What a command left at `output` as an estimate of the description's kind, and the map where there is one at `map`.
-/// Throws BadInput with place and reason: absent, beyond AnswerBounds in size or in what it says, empty, a cell that is
-/// no number, time that goes back, rates that do not answer each sample of the first IMU.
+/// Reads the result of a command at `output` as an estimate of the description's kind, and the map at `map` if it
+/// exists. Throws BadInput with place and reason: a missing or empty file, AnswerBounds exceeded, a cell that is not a
+/// number, or decreasing time. Also throws if rates do not match the samples of the first IMU.
 Estimate read_external_result(const ExternalDescription& description, const std::filesystem::path& output,
                               const std::filesystem::path& map, const sim::Sensors& sensors);
 

@@ -9,21 +9,21 @@
 #include "tumble/angular_velocity/detail/triad.hpp"
 #include "tumble/common/imu.hpp"
 
-/// Single axes of an IMU that have stopped reading.
+/// Detects single axes of an IMU that repeat one reading.
 namespace tumble::scenarios {
 
-/// One axis of a triad that repeats one reading to the last bit while the others of the triad move.
+/// An axis whose reading is bit-identical over an interval while the other axes of its triad change.
 struct FrozenAxis {
   Triad triad = Triad::gyro;
   int axis = 0;
-  TimeNs from_ns = 0, to_ns = 0;  ///< first and last sample with that reading
+  TimeNs from_ns = 0, to_ns = 0;  ///< first and last sample with this reading
 };
 
-/// "gyro_z", as a part of a row of an estimate's health.
+/// Returns "gyro_z", a part of a health key.
 std::string to_string(const FrozenAxis& frozen);
 
-/// The axes of a unit that froze, and when, in order of axis and time (FrozenAxes). `samples` are those of `record`.
-/// O(N).
+/// Returns the frozen axes of a unit with their intervals, sorted by axis and time (FrozenAxes). `samples` are those of
+/// `record`. O(N).
 std::vector<FrozenAxis> find_frozen_axes(const sim::ImuRecord& record, std::span<const ImuSample> samples);
 
 }  // namespace tumble::scenarios

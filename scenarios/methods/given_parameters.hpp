@@ -9,9 +9,9 @@
 
 namespace tumble::scenarios {
 
-/// The methods with parameters that somebody gives, each as "rate/tumble_lag.lag_s=0.5" (the kind may be left out).
-/// Throws BadInput for a text that is none, one that concerns none of the methods, an unknown parameter (the nearest
-/// named), one given twice, and a value that is refused.
+/// Returns the methods with parameters set by the user, each as "rate/tumble_lag.lag_s=0.5" (the kind is optional).
+/// Throws BadInput for a malformed text, a text that matches no method, an unknown parameter (suggests the nearest), a
+/// repeated parameter, and an invalid value.
 std::vector<Method> with_parameters(std::span<const MethodPointer> methods, std::span<const std::string> texts);
 
 }  // namespace tumble::scenarios

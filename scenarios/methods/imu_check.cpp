@@ -19,14 +19,14 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr double kArmShareMin = 0.5;  // 1: as the places say; 0: no relation; -1: the sign is flipped
-// Further from 1, gyros or accelerometers have another scale than they say, which all units share: forces go with the
-// square of the rate, so that it is 3 % of a gyro's, three times a sheet's. Good runs of `slip`: 0.999 and 1.002.
+constexpr double kArmShareMin = 0.5;  // 1: matches the mountings; 0: no relation; -1: flipped sign
+// A larger deviation from 1 indicates a scale error common to all units. Forces grow with the squared rate, so this is
+// 3 % of gyro scale, three times the data sheet's. Good runs of `slip` give 0.999 to 1.002.
 constexpr double kArmShareOff = 0.06;
-// unless gravity's turning says of the gyros that they are right: then places are off, or an accelerometer
+// The gyro scale is confirmed by the rotation of gravity; then the mountings or an accelerometer are wrong.
 constexpr double kSlopeRight = 0.02, kSlopeAgreed = 0.99;
-// Of a recording, by the regimes of its rates: held bodies 0.91 and more, thrown ones 0.25 and less, and mostly below
-// 0.6 where a sensor has axes of another sense (hill, throw, twirl, swing 99101, 99102).
+// Share of hand-held samples above which a recording counts as hand-held. Measured: hand-held at least 0.91, thrown at
+// most 0.25, mostly below 0.6 with wrong axes (hill, throw, twirl, swing, seeds 99101 and 99102).
 constexpr double kHeldShare = 0.8;
 
 Status told(Status status, Estimate& estimate) {
@@ -34,7 +34,7 @@ Status told(Status status, Estimate& estimate) {
   return status;
 }
 
-/// Degrees per second, perhaps: as RateReport::rate_unit_suspect.
+/// Returns true if rates may be in degrees per second, as RateReport::rate_unit_suspect.
 bool unit_suspect(std::span<const ImuSample> samples) {
   return std::any_of(samples.begin(), samples.end(), [](const ImuSample& sample) {
     return sample.angular_velocity_rad_s.cwiseAbs().maxCoeff() > RateModelParams{}.rate_max_rad_s;
@@ -47,22 +47,22 @@ double fastest_rad_s(std::span<const ImuSample> samples) {
   return fastest;
 }
 
-/// Adds to the covariance of the `k`-th rate.
+/// Adds to the covariance of rate `k`.
 void doubt_rate(std::size_t k, const Eigen::Matrix3d& by_rad2_s2, Estimate& estimate) {
   estimate.doubted_rad2_s2.resize(estimate.rates.size(), Eigen::Matrix3d::Zero());
   estimate.doubted_rad2_s2[k] += by_rad2_s2;
   estimate.rates[k].covariance_rad2_s2 += by_rad2_s2;
 }
 
-/// Of rates that are doubted as a whole the size alone is known: one of the other sense is off by twice itself, one of
-/// half the scale by half.
+/// Increases the covariance of all rates by the squared rate. A flipped sign gives an error of twice the rate, half the
+/// scale an error of half the rate.
 void doubt_rates(Estimate& estimate) {
   for (std::size_t k = 0; k < estimate.rates.size(); ++k)
     doubt_rate(k, estimate.rates[k].w_WI_I_rad_s.squaredNorm() * Eigen::Matrix3d::Identity(), estimate);
   add_doubt({Doubt::About::rates}, estimate);
 }
 
-/// Of a gyro's axis that froze.
+/// Increases the covariance of rates whose gyro axis is frozen.
 void doubt_frozen_rates(const FrozenAxis& frozen, double sigma_rad_s, Estimate& estimate) {
   if (frozen.triad != Triad::gyro) return;
   Eigen::Matrix3d by_rad2_s2 = Eigen::Matrix3d::Zero();
@@ -88,7 +88,7 @@ Status check_rest_force(const sim::Sensors& sensors, std::span<const ImuSample> 
   return told(gravity.size_verdict(state), estimate);
 }
 
-/// check_imu(), and whether gravity's turning says of the gyro that its scale is right.
+/// Runs check_imu(); also returns whether the rotation of gravity confirms the gyro scale.
 Status check_turning(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate,
                      bool& gyro_right) {
   const Status of_rest = check_rest_force(sensors, samples, estimate);
@@ -96,7 +96,7 @@ Status check_turning(const sim::Sensors& sensors, std::span<const ImuSample> sam
   if (are_rounded(sensors.imus.front().time_ns)) add_doubt({Doubt::About::stamps, 1e-3}, estimate);
   ImuPlausibility::Params params;
   params.gravity_m_s2 = sensors.gravity_m_s2;
-  // a sphere's units are merged, with rates beyond any range told
+  // The merged units of a sphere report rates beyond the range.
   const double range_rad_s = sensors.imus.front().stated_gyro_range_rad_s;
   if (sensors.sphere_radius_m <= 0.0 && range_rad_s > 0.0) params.gyro_range_rad_s = sure_range(range_rad_s);
   const ImuPlausibility plausibility(params);
@@ -201,7 +201,7 @@ void tell_frozen_axes(const sim::Sensors& sensors, std::span<const ImuSample> sa
   for (const FrozenAxis& frozen : find_frozen_axes(sensors.imus.front(), samples)) {
     const Doubt doubt{Doubt::About::unit_frozen, seconds(frozen.from_ns - samples.front().time_ns),
                       sensors.imus.front().name + "_" + to_string(frozen)};
-    if (!has_doubt(doubt, estimate)) add_doubt(doubt, estimate);  // since it first did
+    if (!has_doubt(doubt, estimate)) add_doubt(doubt, estimate);  // keep the earliest time
     add_doubt({Doubt::About::readings}, estimate);
     doubt_frozen_rates(frozen, fastest_rad_s(samples), estimate);
   }

@@ -8,49 +8,48 @@
 #include "scenarios/methods/sphere_imus.hpp"
 #include "tumble/common/imu.hpp"
 
-/// Whether readings can be what they claim to be: units, axes, signs, alive, by physics alone.
+/// Physical plausibility checks of IMU readings: units, axes, signs, frozen sensors.
 namespace tumble::scenarios {
 
-/// Puts what was found into the estimate's health and doubts (`imu_force_share`, `imu_rest_force_share`,
-/// `imu_rotation_unexplained`, `imu_rotation_slope`, `imu_rotation_agreement`, `imu_frozen_s`, `imu_stamps_rounded_s`,
-/// `imu_implausible`, `rate_unit_suspect`) and returns the verdict: `out_of_range` with what was seen, where the
+/// Checks the readings and adds the results to the estimate's health and doubts (`imu_force_share`,
+/// `imu_rest_force_share`, `imu_rotation_unexplained`, `imu_rotation_slope`, `imu_rotation_agreement`, `imu_frozen_s`,
+/// `imu_stamps_rounded_s`, `imu_implausible`, `rate_unit_suspect`). Returns `out_of_range`, with the reason, if
 /// readings contradict each other or gravity. O(N).
 Status check_imu(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate);
 
-/// The same of several IMUs as one, whose differences tell a flipped sign besides (`imu_arm_share`), and other axes
+/// Checks several merged IMUs. Their differences also reveal a flipped sign (`imu_arm_share`) and permuted axes
 /// (`imu_other_axes_share`).
 Status check_imus(const sim::Sensors& sensors, const MergedImus& imus, Estimate& estimate);
 
-/// The same of a rig's primary IMU whose rates the estimate holds, one for each sample, with what gravity at its rests
-/// says of them (check_rotation_between_rests) and what its turning about a point does (check_rotation_about_pivots).
-/// Where one of them speaks against the readings, the covariance of every rate grows by the square of the rate
-/// (`imu_rates_doubted`). O(N).
+/// Checks the primary IMU of a rig whose rates are in the estimate, one per sample. Adds the checks against gravity
+/// between rests (check_rotation_between_rests) and about pivots (check_rotation_about_pivots). If one check fails, the
+/// covariance of every rate grows by the square of the rate (`imu_rates_doubted`). O(N).
 void check_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, std::optional<double> carried_share,
                  Estimate& estimate);
 
-/// Whether `rates`, one for each sample, those of an estimate of rates or what an attitude was turned by, lead gravity
-/// from one rest to the next (RestGravity): `rest_gravity_missed_rad` with its deviation, `rest_velocity_share` with
-/// its bound, and `imu_implausible`. O(N).
+/// Checks that `rates` rotate gravity correctly from one rest to the next (RestGravity). `rates` has one entry per
+/// sample. Reports `rest_gravity_missed_rad` with its deviation, `rest_velocity_share` with its bound, and
+/// `imu_implausible`. O(N).
 Status check_rotation_between_rests(const sim::Sensors& sensors, std::span<const ImuSample> samples,
                                     std::span<const RateState> rates, Estimate& estimate);
 
-/// Whether a body that is held turns as `rates` say, one for each sample, those of an estimate of rates or what an
-/// attitude was turned by (PivotCheck): `pivot_evidence` for another reading of the gyro and from how many segments,
-/// `pivot_scale` by which the rates explain most, with its deviation, and `imu_implausible`. Rates that are not
-/// `measured` do not count. O(N), a millisecond for a second at 100 Hz.
+/// Checks that a body rotating about a pivot turns as `rates` state (PivotCheck). `rates` has one entry per sample;
+/// only `measured` rates count. Reports `pivot_evidence` for another interpretation of the gyro with its number of
+/// segments, `pivot_scale` (best-fitting scale) with its deviation, and `imu_implausible`. O(N), about 1 ms per second
+/// of data at 100 Hz.
 Status check_rotation_about_pivots(const sim::Sensors& sensors, std::span<const ImuSample> samples,
                                    std::span<const RateState> rates, Estimate& estimate);
 
-/// Whether flights of a rig show forces of another sensor than this at its lever arm (FlightSense): `imu_implausible`
-/// and the seconds of it, as `imu_flight_against_s`. Where `carried_share`, of the samples by the regimes of
-/// their rates, says that nobody held the body, flipped and swapped axes of both sensors are told, and flights in which
-/// an axis clips count. O(N).
+/// Checks whether forces in a rig's flights contradict the lever arm, axes or signs of the sensor (FlightSense).
+/// Reports `imu_implausible` and the affected duration `imu_flight_against_s`. `carried_share` is the share of
+/// hand-held samples. If it shows that the body was never hand-held, flipped and swapped axes of both sensors are
+/// reported. Flights with a clipped axis then count too. O(N).
 Status check_flights(const sim::Sensors& sensors, std::span<const ImuSample> samples,
                      std::optional<double> carried_share, Estimate& estimate);
 
-/// Single axes of the primary IMU that froze, whose samples these are: `imu_implausible`, and since when, as
-/// `imu_gyro_z_frozen_since_s`. Of a gyro's axis nothing is known meanwhile but that it turns no faster than any
-/// reading of the run: so much is added to the variance of the rates that the estimate holds. O(N).
+/// Reports frozen axes of the primary IMU: `imu_implausible`, and the start as `imu_gyro_z_frozen_since_s`. While a
+/// gyro axis is frozen, its rate is only bounded by the largest reading of the run; the covariance of the estimate's
+/// rates grows accordingly. O(N).
 void tell_frozen_axes(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate);
 
 }  // namespace tumble::scenarios

@@ -10,8 +10,8 @@
 
 namespace tumble::scenarios {
 
-/// An object in a file of JSON that is asked for its members: BadInput names file, member and what stands there. Refers
-/// to both.
+/// Reads members of a JSON object. Errors are BadInput with file, member and the value found. Keeps references to both
+/// arguments.
 class JsonMembers {
  public:
   JsonMembers(const std::filesystem::path& path, const nlohmann::json& object) : path_(path), object_(object) {}

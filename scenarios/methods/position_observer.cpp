@@ -9,7 +9,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-// thresholds of the library, whose own defaults they are
 const Settings<baselines::SlipObserver::Params>& position_observer_settings() {
   static const Settings<baselines::SlipObserver::Params> all(
       baselines::SlipObserver::Params{},
@@ -21,7 +20,7 @@ baselines::SlipObserver::Params observer_params(const sim::Sensors& sensors, con
   baselines::SlipObserver::Params params;
   params.radius_m = sensors.sphere_radius_m;
   params.gravity_m_s2 = sensors.gravity_m_s2;
-  // from the centre of mass, which the calibration refers to; the geometric centre is some mm away
+  // The calibration refers to the centre of mass, a few millimetres from the geometric centre.
   params.lever_arm_m = bridge::lever_arm_I_m(sensors.imus.front());
   position_observer_settings().apply(parameters, params);
   return params;

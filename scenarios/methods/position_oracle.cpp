@@ -13,7 +13,7 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr std::int64_t kEdgeNs = 400'000'000;
-constexpr double kLevelTiltRad = 0.005;  // a floor tilted by less is level
+constexpr double kLevelTiltRad = 0.005;  // smaller tilts of the floor count as level
 
 bool prepare(const char* method, const sim::Sensors& sensors, MergedImus& imus, Estimate& estimate) {
   estimate.frame = Frame::centre;
@@ -27,7 +27,7 @@ std::size_t physics_index(const sim::Truth& truth, std::int64_t time_ns, std::si
   return std::min(static_cast<std::size_t>(std::max<std::int64_t>(time_ns, 0) / truth.period_ns), count - 1);
 }
 
-/// Without what the exact attitude leaves no doubt of.
+/// Omits parameters that the exact attitude makes unnecessary.
 const Settings<RollingSmoother::Params>& settings_with_attitude() {
   static const Settings<RollingSmoother::Params> all =
       oracle_settings({"gyro_range_rad_s", "tilt_sigma_rad", "gyro_bias_sigma_rad_s", "gyro_scale_sigma",
@@ -51,7 +51,7 @@ Estimate run_exact_attitude(const sim::Sensors& sensors, const sim::Values& para
   }
   const Eigen::Matrix3d R_BI = truth.imus.front().T_BI.linear();
   std::size_t next = 0;
-  for (ImuSample& sample : imus.samples) {  // a mean over readings of the primary IMU
+  for (ImuSample& sample : imus.samples) {  // average over readings of the primary IMU
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     const std::size_t first = next;
     while (next < times_ns.size() && times_ns[next] <= sample.time_ns) sum += truth.imus.front().rate_rad_s[next++];
@@ -71,7 +71,7 @@ Estimate run_exact_attitude(const sim::Sensors& sensors, const sim::Values& para
   return estimate;
 }
 
-/// An edge tilts the normal for a moment, a slope for longer: short spells of `incline` are bumps.
+/// An edge tilts the contact normal only briefly: short intervals of `incline` become bumps.
 void edges_are_bumps(std::int64_t period_ns, std::vector<RollingMode>& modes) {
   for (std::size_t begin = 0; begin < modes.size();) {
     std::size_t end = begin;
@@ -84,7 +84,7 @@ void edges_are_bumps(std::int64_t period_ns, std::vector<RollingMode>& modes) {
   }
 }
 
-/// Modes at the samples, by the labels and normals of the truth.
+/// Returns the mode of each sample from the labels and normals of the truth.
 std::vector<RollingMode> true_modes(const sim::Truth& truth, const std::vector<ImuSample>& samples) {
   std::vector<RollingMode> at_step(truth.label.size(), RollingMode::grip);
   for (const sim::ContactTruth& contact : truth.contacts) {

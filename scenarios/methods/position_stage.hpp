@@ -6,14 +6,14 @@
 #include "scenarios/methods/method.hpp"
 #include "scenarios/methods/settings.hpp"
 
-/// A position method as the first stage of a map of the sphere: each of its numbers is the map's method's too, by the
-/// same name.
+/// Uses a position method as first stage of a sphere's slam method, which exposes all its parameters under the same
+/// names.
 namespace tumble::scenarios {
 
-/// The stages of the map's method: its own, then those of `position`. Their names differ.
+/// Returns the settings of the slam method: its own, then those of `position`. Their names differ.
 std::vector<const SettingsTable*> stages_after(std::vector<const SettingsTable*> own, const Method& position);
 
-/// The numbers among `parameters` that are the position method's.
+/// Returns the values in `parameters` that belong to the position method.
 sim::Values values_of(const Method& position, const sim::Values& parameters);
 
 }  // namespace tumble::scenarios

@@ -15,17 +15,17 @@ namespace {
 
 constexpr double kCentreSigmaM = 6e-3;
 constexpr double kLagS = 1.0;
-constexpr double kSpinsM_s = 0.2, kSpinsShare = 0.3;  // by which a hop that turns too fast differs from one that grips
-constexpr int kRecoveringUnits = 3;                   // so many IMUs tell a rate beyond the range
+constexpr double kSpinsM_s = 0.2, kSpinsShare = 0.3;  // excess speed at which a hop counts as slip
+constexpr int kRecoveringUnits = 3;                   // number of IMUs that can recover a rate beyond the range
 constexpr double kRecoveredSigmaRadS = 1.0;
-constexpr double kUnknownRadiusShare = 0.05;  // prior of a radius that a known distance is to tell
-// priors of a device that no data sheet is named for, put anywhere in the sphere
+constexpr double kUnknownRadiusShare = 0.05;  // prior of a radius that a known distance calibrates
+// priors of a device without a data sheet, mounted anywhere in the sphere
 constexpr double kUnknownGyroBiasRadS = 5e-3, kUnknownAccelBiasMS2 = 0.4, kUnknownScale = 0.01, kUnknownDelayS = 5e-3,
                  kUnknownLeverArmM = 0.05;
-constexpr double kUnknownInclinePerS = 1e-9;  // its bias passes for a slope: the floor is taken for level
+constexpr double kUnknownInclinePerS = 1e-9;  // its accelerometer bias resembles a slope, so the floor is assumed level
 
-/// The library's defaults, for the sphere of the models, but for the prior of the lever arm: the centre of mass, which
-/// it is given from, is not the sphere's centre.
+/// The library's defaults for the sphere of the models. The lever-arm prior is wider, because the lever arm is stated
+/// from the centre of mass instead of the sphere's centre.
 RollingSmoother::Params defaults(double lag_s = RollingSmoother::kWholeRun) {
   RollingSmoother::Params params;
   params.filter.radius_m = presets::kSphereRadius_m;
@@ -34,16 +34,16 @@ RollingSmoother::Params defaults(double lag_s = RollingSmoother::kWholeRun) {
   return params;
 }
 
-/// What the sensors state, and what follows from how many they are.
+/// Parameters stated by the sensors, or that depend on their number.
 std::vector<std::string> stated() {
   return {"radius_m", "gravity_m_s2", "lever_arm_x_m", "lever_arm_y_m", "lever_arm_z_m", "gyro_range_rad_s",
           "accel_range_m_s2", "recovered_rate_sigma_rad_s",
-          // by whether the device is known
+          // these depend on whether the device is known
           "gyro_bias_sigma_rad_s", "accel_bias_sigma_m_s2", "tilt_sigma_rad", "accel_scale_sigma", "gyro_scale_sigma",
           "accel_delay_sigma_s", "lever_arm_sigma_m", "incline_begins_per_s"};
 }
 
-/// Those of the live filter, and from when on it claims a slip.
+/// Parameters of the live filter, and its threshold for reporting a slip.
 struct LiveParams {
   RollingParams filter;
   double slip_claimed_from = 0.5;
@@ -72,7 +72,7 @@ const Settings<RollingSmoother::Params>& lag_settings() {
   return all;
 }
 
-/// What a device may have that nobody has described.
+/// Widens the priors of a device without a data sheet.
 void widen_unknown(const sim::Sensors& sensors, RollingParams& params) {
   if (!sensors.imus.front().device.empty()) return;
   params.expert.prior.gyro_bias_sigma_rad_s = std::max(params.expert.prior.gyro_bias_sigma_rad_s, kUnknownGyroBiasRadS);
@@ -86,8 +86,8 @@ void widen_unknown(const sim::Sensors& sensors, RollingParams& params) {
   params.expert.modes.incline_begins_per_s = std::min(params.expert.modes.incline_begins_per_s, kUnknownInclinePerS);
 }
 
-/// What the sensors are like. The lever arm is from the centre of mass, which the calibration refers to; what lies
-/// between it and the centre is estimated.
+/// Sets the sensors' values. The lever arm is stated from the centre of mass; its offset to the sphere's centre is
+/// estimated.
 void set_stated(const sim::Sensors& sensors, const MergedImus& imus, RollingParams& params) {
   params.radius_m = sensors.sphere_radius_m;
   params.gravity_m_s2 = sensors.gravity_m_s2;
@@ -108,7 +108,7 @@ PoseState body_pose(TimeNs time_ns, const Eigen::Quaterniond& q_WB, const Eigen:
   return pose;
 }
 
-/// What grips goes as fast as it turns, whatever it rolls over: a hop in which it does not is part of a slip.
+/// Returns true if the sphere rotates faster than it travels. A hop in which this happens belongs to a slip.
 bool spins(double radius_m, const PoseState& pose, const ImuSample& sample) {
   const double rolling_m_s = radius_m * (pose.q_WA * sample.angular_velocity_rad_s).head<2>().norm();
   const double speed_m_s = pose.v_WA_m_s.norm();
@@ -121,7 +121,7 @@ sim::ContactLabel contact_label(RollingMode mode, double radius_m, const PoseSta
   return slip_or_slide(radius_m, pose.q_WA, sample.angular_velocity_rad_s, pose.v_WA_m_s);
 }
 
-/// Says what the contact does at the newest pose.
+/// Appends the contact mode of the newest pose.
 void add_contact(RollingMode mode, bool at_rest, bool uncertain, double radius_m, const ImuSample& sample,
                  Estimate& estimate) {
   estimate.contacts.push_back(contact_label(mode, radius_m, estimate.poses.back(), sample));
@@ -134,7 +134,7 @@ void add_contact(RollingMode mode, bool at_rest, bool uncertain, double radius_m
   if (at_rest) estimate.health["samples_rest"] += 1.0;
 }
 
-/// Merges the IMUs; false when `estimate.status` tells why not.
+/// Merges the IMUs. Returns false if that fails; `estimate.status` states why.
 bool merged(const char* method, const sim::Sensors& sensors, MergedImus& imus, Estimate& estimate) {
   estimate.frame = Frame::centre;
   estimate.status = merge_imus(sensors, imus);
@@ -156,7 +156,7 @@ bool merged(const char* method, const sim::Sensors& sensors, MergedImus& imus, E
   return true;
 }
 
-/// What the live filter says of the contact, all its hypotheses heard.
+/// Returns the contact mode of the live filter over all hypotheses.
 RollingMode claimed_mode(const RollingFilter::State& state, double claimed_from) {
   const bool claimed = state.slip_probability >= claimed_from;
   if (claimed == slips(state.mode)) return state.mode;
@@ -164,7 +164,7 @@ RollingMode claimed_mode(const RollingFilter::State& state, double claimed_from)
   return 2.0 * state.bump_probability > state.slip_probability ? RollingMode::bump : RollingMode::slip;
 }
 
-/// What was odd about the samples' times and their beginning.
+/// Reports problems with the sample times and the start.
 void tell_of_samples(const RollingFilter::State& state, Estimate& estimate) {
   if (state.gaps > 0) {
     estimate.health["gaps_bridged"] = static_cast<double>(state.gaps);
@@ -181,7 +181,7 @@ Estimate run_live(const sim::Sensors& sensors, const sim::Values& parameters, co
   set_stated(sensors, imus, params.filter);
   live_settings().apply(parameters, params);
   const RollingFilter filter(params.filter);
-  // 430 KiB: not for the stack of a worker
+  // 430 KiB: too large for a worker's stack
   const auto state = std::make_unique<RollingFilter::State>();
   estimate.poses.reserve(imus.samples.size());
   for (const ImuSample& sample : imus.samples) {
@@ -248,7 +248,7 @@ void smooth(const RollingSmoother::Params& params, const MergedImus& imus, std::
   const RollingSmoother smoother(params);
   const auto state = std::make_unique<RollingSmoother::State>();
   estimate.poses.reserve(imus.samples.size());
-  const auto take = [&](const RollingEstimate& e) {  // one for each sample
+  const auto take = [&](const RollingEstimate& e) {  // called once per sample
     const ImuSample& sample = imus.samples[estimate.poses.size()];
     PoseState pose = body_pose(e.time_ns, e.q_WI, e.p_WG_m, e.v_WG_m_s);
     pose.covariance = e.covariance;
@@ -268,7 +268,7 @@ void smooth(const RollingSmoother::Params& params, const MergedImus& imus, std::
     smoother.finish(known, *state, take);
   }
   tell_of_samples(state->live, estimate);
-  // the lever arm was given from the centre of mass: what it was off by says where that is
+  // The lever arm was stated from the centre of mass, so its error gives the position of the sphere's centre.
   estimate.centre_B_m = -state->learnt.lever_arm_error_m;
   estimate.health["centre_x_m"] = estimate.centre_B_m.x();
   estimate.health["centre_y_m"] = estimate.centre_B_m.y();

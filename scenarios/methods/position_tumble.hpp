@@ -8,21 +8,23 @@
 #include "scenarios/methods/sphere_imus.hpp"
 #include "tumble/rolling/rolling_smoother.hpp"
 
-/// What our position methods and their oracles share.
+/// Shared by our position methods and their oracles.
 namespace tumble::scenarios {
 
-/// Parameters of the smoother over a whole run, with the library's defaults but for the prior of the lever arm.
+/// Returns the parameters of the full-recording smoother: the library's defaults except for the lever-arm prior.
 const Settings<RollingSmoother::Params>& position_settings();
 
-/// The same without `fixed` ones, which an oracle knows, and without a known distance.
+/// Returns the same parameters without `fixed` ones, which an oracle takes from the truth, and without a known
+/// distance.
 Settings<RollingSmoother::Params> oracle_settings(std::vector<std::string> fixed);
 
-/// What the sensors state, then what `parameters` say, and wider priors for a device that no data sheet is named for.
+/// Returns the smoother's parameters: the sensors' values, then `parameters`. Devices without a data sheet get wider
+/// priors.
 RollingSmoother::Params rolling_smoother_params(const sim::Sensors& sensors, const MergedImus& imus,
                                                 const Settings<RollingSmoother::Params>& settings,
                                                 const sim::Values& parameters);
 
-/// Runs the smoother over all samples, with modes known from elsewhere when given, into `estimate`.
+/// Runs the smoother over all samples into `estimate`, with `known` contact modes if given.
 void smooth(const RollingSmoother::Params& params, const MergedImus& imus, std::span<const RollingMode> known,
             Estimate& estimate);
 

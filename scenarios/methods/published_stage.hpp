@@ -11,10 +11,10 @@
 
 namespace tumble::scenarios {
 
-/// The published chain (PublishedChain), on the rig.
+/// Returns the settings of the published chain (PublishedChain) on the rig.
 const Settings<baselines::PublishedChain::Params>& published_settings();
 
-/// Runs it over a recording behind a rate method, whose `estimate.rates` are given, one for each of `samples`.
+/// Runs the published chain after a rate method; `estimate.rates` has one entry per sample.
 void run_published_chain(const sim::Sensors& sensors, std::span<const ImuSample> samples, const sim::Values& parameters,
                          Estimate& estimate);
 

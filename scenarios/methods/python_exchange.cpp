@@ -31,7 +31,7 @@ std::size_t aligned(std::size_t size) {
   return (size + kAlignment - 1) / kAlignment * kAlignment;
 }
 
-/// Arrays that stand somewhere, to be written one after the other; what is added must outlive it.
+/// Collects arrays to be written consecutively. Added arrays must outlive this object.
 class Arrays {
  public:
   template <typename Value>
@@ -40,7 +40,7 @@ class Arrays {
     if (columns > 0) shape.push_back(columns);
     return place(dtype, shape, std::as_bytes(std::span(rows)));
   }
-  /// A matrix, row by row.
+  /// Adds a matrix, row by row.
   json add(const Eigen::Isometry3d& T) {
     const Eigen::Matrix<double, 4, 4, Eigen::RowMajor> rows = T.matrix();
     matrices_.emplace_back(rows.data(), rows.data() + rows.size());
@@ -70,7 +70,7 @@ class Arrays {
   }
 
   std::vector<std::span<const std::byte>> bytes_;
-  std::deque<std::vector<double>> matrices_;  // their addresses stay
+  std::deque<std::vector<double>> matrices_;  // deque: addresses stay valid
   std::size_t offset_ = 0;
 };
 
@@ -142,11 +142,11 @@ json of_series(const sim::SeriesRecord& series, Arrays& arrays) {
           {"constants", std::move(constants)}};
 }
 
-/// The memory of an answer: its text, and arrays that are where the text says.
+/// Reads an answer in memory: its text, and the arrays that the text describes.
 class Answer {
  public:
   Answer(const SharedMemory& memory, const AnswerBounds& bounds) {
-    // a function can make the memory larger than what it was asked for
+    // The function can make the memory larger than the size that it was given.
     const std::uintmax_t most = bounds.table_bytes() + bounds.map_bytes();
     if (memory.size() > most)
       throw BadInput(
@@ -167,7 +167,7 @@ class Answer {
   }
   bool has(const char* name) const { return text_.contains("arrays") && text_["arrays"].contains(name); }
 
-  /// Rows of `columns` each; `rows` is how many there must be, or any number.
+  /// Returns rows of `columns` values; `rows` is the required number, or any.
   template <typename Value>
   std::vector<Value> array(const char* name, const char* dtype, std::size_t columns,
                            std::optional<std::size_t> rows) const {
@@ -221,7 +221,7 @@ void read_rates(const Answer& answer, const sim::Sensors& sensors, Estimate& est
   }
 }
 
-/// Of a position, a map and an attitude; the last has no positions.
+/// Reads the poses of kinds position, slam and attitude; attitude has no positions.
 std::vector<PoseState> read_poses(const Answer& answer) {
   const auto times_ns = answer.array<std::int64_t>("time_ns", "<i8", 1, {});
   const auto quaternions = answer.array<double>("quaternion", "<f8", 4, times_ns.size());

@@ -4,19 +4,17 @@
 #include "scenarios/methods/method.hpp"
 #include "scenarios/processes/shared_memory.hpp"
 
-/// Sensors to a function of Python and its answer back, through memory and not through files. Both ways: the length of
-/// a JSON text (uint64, little end first), the text, arrays from the next multiple of 64 bytes on; in the text each
-/// array stands as {"dtype": "<f8", "shape": [N, 3], "offset": from the first array on}. The other side:
-/// python_runner.py.
+/// Exchanges sensors and results with a Python function through shared memory. Layout in both directions: length of a
+/// JSON text (uint64, little endian), the text, then arrays from the next multiple of 64 bytes. The text describes each
+/// array as {"dtype": "<f8", "shape": [N, 3], "offset": from the first array on}. Counterpart: python_runner.py.
 namespace tumble::scenarios {
 
-/// All that an estimator may see, under the names that the package for Python has for it
-/// (python/src/tumble/recordings.py).
+/// Writes all sensor data with the names of the Python package (python/src/tumble/recordings.py).
 void write_sensors(const sim::Sensors& sensors, SharedMemory& memory);
 
-/// What the function returned as an estimate of that kind; rates by the samples of the first IMU. Throws NoAnswer with
-/// the traceback when it raised, and BadInput with the reason when its answer is none: another shape, a number that is
-/// not finite, times that do not rise, memory that holds something else, what AnswerBounds refuses.
+/// Reads the function's result as an estimate of `kind`; rates belong to the samples of the first IMU. Throws NoAnswer
+/// with the traceback if the function raised. Throws BadInput with the reason for an invalid result: wrong shape,
+/// non-finite number, times that do not increase, corrupted memory, or AnswerBounds exceeded.
 Estimate read_answer(const SharedMemory& memory, Kind kind, Frame frame, const sim::Sensors& sensors);
 
 }  // namespace tumble::scenarios

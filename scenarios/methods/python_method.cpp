@@ -28,7 +28,7 @@ except ImportError:
 print("Python", sys.version.split()[0] + ", numpy", numpy.__version__)
 )";
 
-/// The interpreter's words, of the description or the user's own, and `words` behind them.
+/// Returns the command: the description's interpreter or the user's, followed by `words`.
 Command interpreter(const ExternalDescription& description, const ScratchFolder& scratch,
                     const std::vector<std::string>& words) {
   Command command{.words = description.interpreter,
@@ -39,7 +39,7 @@ Command interpreter(const ExternalDescription& description, const ScratchFolder&
                   .memory_limit_mib = description.memory_limit_mib};
   const char* own = std::getenv("TUMBLE_PYTHON");
   if (command.words.empty()) command.words = {own != nullptr && *own != '\0' ? own : "python3"};
-  command.environment.emplace("PYTHONDONTWRITEBYTECODE", "1");  // nothing is left beside the file
+  command.environment.emplace("PYTHONDONTWRITEBYTECODE", "1");  // Avoids a __pycache__ folder next to the user's file.
   command.words.insert(command.words.end(), words.begin(), words.end());
   return command;
 }

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Calls one function of a file with the sensors of a recording: runner FILE FUNCTION KIND SENSORS ANSWER.
 
-The program runs it for a method that is a function of Python (EXTERNAL.md, python_exchange.hpp). SENSORS and ANSWER are descriptors of
-shared memory: the length of a JSON text (8 bytes, little end first), the text, arrays from the next multiple of 64 on. It needs
-numpy alone.
+The program starts this script for a method that is a Python function (EXTERNAL.md, python_exchange.hpp). SENSORS and ANSWER are descriptors
+of shared memory: the length of a JSON text (8 bytes, little endian), the text, then arrays from the next multiple of 64 bytes. It only
+needs numpy.
 """
 import importlib.util
 import json
@@ -18,18 +18,18 @@ import types
 import numpy as np
 
 ALIGNMENT = 64
-TOLD_MAX = 1500  # characters of a traceback, the last ones
-UNIT_TOLERANCE = 1e-2  # as of a TUM file
-ROUNDING_NS = 1000  # a point so much after its sweep's end belongs to the end
-SYMMETRY_TOLERANCE = 1e-3  # of a covariance, in correlations: one of single precision
+TOLD_MAX = 1500  # reported characters at the end of a traceback
+UNIT_TOLERANCE = 1e-2  # as for a TUM file
+ROUNDING_NS = 1000  # points at most this much after their sweep's end are moved to the end
+SYMMETRY_TOLERANCE = 1e-3  # of a covariance, relative to the diagonal; accepts single precision
 
 
 class Refused(Exception):
-    """What the function returned is not what it should be."""
+    """The function returned an invalid result."""
 
 
 class Lidar(types.SimpleNamespace):
-    """Returns sweep after sweep. Its sweeps: len(lidar), lidar[k], `for sweep in lidar`."""
+    """A lidar as a sequence of sweeps: len(lidar), lidar[k], `for sweep in lidar`."""
 
     def __len__(self):
         return len(self.sweep_start_ns)
@@ -50,8 +50,8 @@ class Lidar(types.SimpleNamespace):
 
 
 def read_sensors(descriptor):
-    """The recording: imus, lidars, series, robot, sphere_radius_m, gravity_m_s2. Arrays are views of the memory, not to be written."""
-    memory = mmap.mmap(descriptor, 0, flags=mmap.MAP_PRIVATE, prot=mmap.PROT_READ)  # shared, a sealed one is refused by some kernels
+    """Returns the recording: imus, lidars, series, robot, sphere_radius_m, gravity_m_s2. Arrays are read-only views of the memory."""
+    memory = mmap.mmap(descriptor, 0, flags=mmap.MAP_PRIVATE, prot=mmap.PROT_READ)  # some kernels refuse MAP_SHARED for sealed memory
     (length,) = struct.unpack_from("<Q", memory)
     data = -(-(8 + length) // ALIGNMENT) * ALIGNMENT
 
@@ -76,14 +76,14 @@ def read_sensors(descriptor):
 
 
 def unmasked(name, given):
-    """As an array; what lies below a mask is nobody's answer."""
+    """Converts to an array; rejects masked values."""
     if any(np.ma.is_masked(each) for each in (given, *(given if isinstance(given, (list, tuple)) else ()))):
         raise Refused(f"{name} is masked in places, must be numbers everywhere")
     return np.asarray(given)
 
 
 def numbers(name, given, *shape):
-    """As float64 of that shape, all finite. A size of None may be any. Refuses what float64 would lose a part of, as a complex number's."""
+    """Converts to finite float64 of that shape; a size of None may be any. Rejects types that lose information, such as complex numbers."""
     try:
         found = unmasked(name, given)
         real = found.dtype.kind in "iuf" or (
@@ -126,7 +126,7 @@ def covariances(given, count):
 
 
 def parts(returned, names):
-    """What was returned, by name: attributes of those names, or a tuple in their order, whose last may be absent or None."""
+    """Returns the result's parts by name: from attributes, or from a tuple in this order, whose last entry may be missing or None."""
     if returned is None:
         raise Refused(f"nothing was returned, must be {', '.join(names)}")
     if hasattr(returned, names[0]):
@@ -174,7 +174,7 @@ def arrays_of(kind, returned, recording):
 
 
 def told(error):
-    """The traceback without the lines of this file."""
+    """Returns the traceback without the lines of this file."""
     whole = traceback.TracebackException.from_exception(error)
     for each in (whole, whole.__cause__, whole.__context__):
         if each is not None:
@@ -184,7 +184,7 @@ def told(error):
 
 
 def called(file, function, recording):
-    """What the function of the file returns. Its folder is the first of sys.path, as that of a script is."""
+    """Calls the function of the file. The file's folder comes first in sys.path, as for a script."""
     sys.path[0] = os.path.dirname(file)
     spec = importlib.util.spec_from_file_location(os.path.splitext(os.path.basename(file))[0], file)
     module = importlib.util.module_from_spec(spec)
@@ -216,7 +216,7 @@ def main(file, function, kind, source, sink):
         answer(int(sink), {}, arrays)
     except Refused as error:
         answer(int(sink), {"refused": f"{function}: {error}"}, {})
-    except BaseException as error:  # sys.exit() of the function too
+    except BaseException as error:  # also sys.exit() in the function
         print(told(error), file=sys.stderr)
         answer(int(sink), {"raised": told(error)}, {})
 

@@ -9,12 +9,12 @@
 
 namespace tumble::scenarios {
 
-/// What a method knows of the rails of the primary IMU's gyro, as numbers of `health` (ESTIMATE.md, "Rails"): of each
-/// axis whose rail the readings have shown, its level, and of one that is a plane all that tells it. Nothing of levels
-/// that are taken from another axis or from a sheet.
+/// Reports the known saturation limits of the primary gyro in `health` (ESTIMATE.md, "Rails"): the level of each axis
+/// whose limit was observed, and the plane parameters of a tilted limit. Omits levels taken from another axis or a data
+/// sheet.
 void tell_rails(const KnownRails& rails, std::map<std::string, double>& health);
 
-/// The same of a run of the smoother.
+/// Reports the saturation limits found by a run of the smoother.
 void tell_rails(const RateReport& report, std::map<std::string, double>& health);
 
 }  // namespace tumble::scenarios

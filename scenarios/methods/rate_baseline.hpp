@@ -7,13 +7,13 @@
 
 namespace tumble::scenarios {
 
-/// The rails of a record as its data sheet states them; a range of 0 says nothing.
+/// Returns the saturation limits stated in the record; a range of 0 means unknown.
 RailDetector::Params stated_rails(const sim::ImuRecord& record);
 
-/// The gyro as it is, with the axes named that are at their rail. One RateState per sample.
+/// Returns the unmodified gyro readings with their clipped axes flagged, one RateState per sample.
 Status railed_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, std::vector<RateState>& out);
 
-/// Runs one of the library's baselines on the primary IMU, with its data sheet's noise and ranges.
+/// Runs one of the library's baselines on the primary IMU, with the noise and ranges of its data sheet.
 Estimate run_clipped_baseline(const Settings<baselines::ClippedBaseline::Params>& settings, const sim::Sensors& sensors,
                               const sim::Values& parameters);
 

@@ -19,7 +19,7 @@ Estimate run_rate_oracle(const sim::Sensors& sensors, const sim::Values&, const 
 
 Status unclipped_rates(const sim::Sensors& sensors, const sim::Truth& truth, std::vector<RateState>& out) {
   out.clear();
-  // the readings themselves are checked too: an oracle shall not run where no method could
+  // Check the original readings too: an oracle must fail where every method must fail.
   std::vector<ImuSample> samples;
   Status status = bridge::primary_imu_samples(sensors, samples);
   if (!status.ok()) return status;

@@ -13,16 +13,16 @@
 
 namespace tumble::scenarios {
 
-/// Whether a hand held the body, as the regimes of a recording have it.
+/// Probability that the body was hand-held, from the motion regimes of a recording.
 struct CarriedBody {
-  double clipped_max = 0.0;     ///< largest probability that it did throughout a segment of clipped samples
-  std::optional<double> share;  ///< of the samples, by probability; none: nothing was judged
+  double clipped_max = 0.0;     ///< largest probability over segments of clipped samples
+  std::optional<double> share;  ///< share of the samples, weighted by probability; empty if not estimated
 };
 
-/// Where the readings say that the body was carried (RegimeEvidence), the smoother of carried bodies has the word:
-/// `rates`, those of a smoother that believes in flight and contact, with what it tells of its run, are joined with
-/// those of the other. It is asked only where it may matter: where a clipped sample is not clearly in flight or
-/// contact. Adds the shares of the regimes to `health`, `regime_carried_asked` with them.
+/// Merges hand-held rates into `rates`, which come from a smoother that assumes flight and contact. Where the readings
+/// indicate hand-held motion (RegimeEvidence), the result of the hand-held smoother is used. That smoother only runs if
+/// a clipped sample is not clearly in flight or contact. Adds the shares of the regimes and `regime_carried_asked` to
+/// `health`.
 CarriedBody join_regimes(const sim::Sensors& sensors, std::span<const ImuSample> samples, const RateReport& report,
                          std::vector<RateState>& rates, std::map<std::string, double>& health);
 

@@ -11,14 +11,14 @@
 #include "tumble/common/imu.hpp"
 #include "tumble/common/status.hpp"
 
-/// The published rate stage, shared by its method and the slam chains after it.
+/// Rates by the published method of Saave, shared by its rate method and the slam chains that use it.
 namespace tumble::scenarios {
 
 const Settings<Saave::Params>& saave_settings();
-/// The same beside the parameters of another stage: those that are called alike begin with `rate_`.
+/// Returns the same settings for use next to another stage: parameters with equal names get the prefix `rate_`.
 Settings<Saave::Params> saave_settings_beside(std::span<const sim::Parameter> others);
 
-/// One RateState per sample; `out` is empty on trouble.
+/// Computes one RateState per sample; `out` is empty on error.
 Status saave_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples,
                    const Settings<Saave::Params>& settings, const sim::Values& parameters, std::vector<RateState>& out);
 

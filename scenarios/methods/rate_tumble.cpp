@@ -20,7 +20,7 @@
 
 namespace tumble::scenarios {
 
-// a range or density of 0 means that the data sheet says nothing: no stated range, the library's density
+// A range or density of 0 means that the data sheet states none: use no range, and the library's density.
 RateSmoother::Params stated_params(const sim::ImuRecord& record, RateSmoother::Params params) {
   RateModelParams& model = params.model;
   model.nominal.lever_arm_m = bridge::lever_arm_I_m(record);
@@ -43,7 +43,7 @@ Status auxiliary_readings(const sim::Sensors& sensors, std::span<const ImuSample
   const sim::ImuRecord& primary = sensors.imus.front();
   for (std::size_t i = 1; i < sensors.imus.size() && out.size() < kAuxiliaryImusMax; ++i) {
     const sim::ImuRecord& record = sensors.imus[i];
-    if (record.name == "imu_reference") continue;  // for comparison only
+    if (record.name == "imu_reference") continue;  // reference for comparisons only
     std::vector<ImuSample> readings;
     if (Status status = bridge::imu_samples(record, readings); !status.ok()) return status;
     AuxiliaryImu auxiliary_imu;
@@ -66,7 +66,7 @@ Status auxiliary_readings(const sim::Sensors& sensors, std::span<const ImuSample
 
 namespace {
 
-/// What the smoother says of a unit of its readings, either way.
+/// Reports the smoother's check of a unit, failed or passed.
 void report_unit(Doubt::About unit, bool suspect, Estimate& told) {
   suspect ? add_doubt({unit}, told) : tell_undoubted(unit, told);
 }
@@ -103,7 +103,7 @@ void report_health(const RateReport& report, Estimate& told) {
 }
 
 constexpr double kTrust = 4.0;
-// What the slopes of a gyro's elements change from run to run: a wand's rail was seen at 0.017 to 0.021 in six of them.
+// Change of the gyro elements' slopes between runs. In six runs of a hand-held device the slope was 0.017 to 0.021.
 constexpr double kElementDrift = 2e-3;
 
 }  // namespace
@@ -121,7 +121,7 @@ const Settings<RateSmoother::Params>& rate_tumble_settings() {
 void start_from_learnt(const LearntRig& rig, RateSmoother::Params& params) {
   const RigConstants::Matrix prior = RateModel(params.model, 0.01).prior_covariance();
   start_from(rig, kTrust, params);
-  // biases are of one switch-on: the next run begins with what is assumed without any other
+  // Biases change at every switch-on: use the default prior.
   constexpr int kBias = 3, kBiases = 6;
   RigConstants& constants = params.model.calibration->constants;
   constants.gyro_bias_rad_s = params.model.nominal.gyro_bias_rad_s;
@@ -130,7 +130,7 @@ void start_from_learnt(const LearntRig& rig, RateSmoother::Params& params) {
   covariance.diagonal().tail<RigConstants::kSize - RigConstants::kElements>().array() += kElementDrift * kElementDrift;
   covariance.middleRows<kBiases>(kBias).setZero();
   covariance.middleCols<kBiases>(kBias).setZero();
-  // never wider than before anything was learnt
+  // Limit the covariance to the default prior.
   const RigConstants::Matrix floor = (1.0 - 1.0 / kTrust) * prior.inverse();
   RigConstants::Matrix filled = covariance;
   filled.block<kBiases, kBiases>(kBias, kBias).setIdentity();
@@ -165,9 +165,10 @@ double distance_of_rigs(const RigCalibration& before, const RigCalibration& now,
 
 namespace {
 
-/// Of a rig that a run starts from, by what another one tells that does not; whether it may be this one's.
+/// Compares a stored calibration with one from a run that did not use it. Returns false and adds a doubt if they belong
+/// to different rigs.
 bool may_be_of_this_rig(const LearntRig& given, const std::optional<LearntRig>& fresh, Estimate& told) {
-  constexpr double kDistanceMax = 2.0;  // distance_of_rigs says what was seen
+  constexpr double kDistanceMax = 2.0;  // see distance_of_rigs
   tell_undoubted(Doubt::About::learnt_rig, told);
   if (!fresh || fresh->rails_alone) return true;
   const double distance = distance_of_rigs(given.calibration, fresh->calibration, kTrust);
@@ -219,7 +220,7 @@ Status tumble_rates(const sim::Sensors& sensors, std::span<const ImuSample> samp
   if (status.ok()) status = RateSmoother(params).estimate(samples, auxiliary_imus, out.rates, out.report);
   if (status.ok()) {
     report_health(out.report, told);
-    // further IMUs tell the rate whoever holds the body; the other smoother does not know them
+    // Further IMUs determine the rate even if the body is hand-held; the hand-held smoother does not use them.
     if (auxiliary_imus.empty()) out.carried = join_regimes(sensors, samples, out.report, out.rates, told.health);
   }
   return status;
@@ -227,7 +228,7 @@ Status tumble_rates(const sim::Sensors& sensors, std::span<const ImuSample> samp
 
 namespace {
 
-/// Leaves in `found` what there is to be learnt of a run.
+/// Writes the calibration of a run to `found`.
 void learn(const RateReport& report, const LearntRig* given, const RateModelParams& model,
            std::optional<LearntRig>& found) {
   if (!report.calibration_at_prior) {
@@ -267,8 +268,10 @@ Estimate rates_of_batch(const sim::Sensors& sensors, const sim::Values& paramete
 
 Estimate run_rate_tumble(const sim::Sensors& sensors, const sim::Values& parameters, const LearntRig* given,
                          std::optional<LearntRig>* found) {
-  return with_sample_times(sensors,
-                           [&](const sim::Sensors& timed) { return rates_of_batch(timed, parameters, given, found); });
+  return without_outliers(sensors, [&](const sim::Sensors& kept) {
+    return with_sample_times(
+        kept, [&](const sim::Sensors& timed) { return rates_of_batch(timed, parameters, given, found); });
+  });
 }
 
 Method rate_tumble() {

@@ -23,7 +23,7 @@ const Settings<RegimeStream::Params>& rate_tumble_lag_settings() {
   static const Settings<RegimeStream::Params> all = [] {
     std::vector<std::string> stated = stated_densities();
     stated.insert(stated.end(), {"period_s", "evidence_gravity_m_s2", "carried_gravity_m_s2", "carried_min"});
-    // RegimeStream takes these from its RateStream, and the stream of the carried body iterates as it goes
+    // RegimeStream takes these from its RateStream; the hand-held stream iterates continuously.
     const std::vector<std::string> fixed = {"carried_period_s", "carried_lag_s", "carried_gap_max_s",
                                             "carried_iterations_max"};
     return Settings<RegimeStream::Params>(RegimeStream::Params{}, {.stated = stated, .fixed = fixed});
@@ -75,7 +75,8 @@ LearntRig rig_of(const RateStream& stream, const RateStream::Params& params, con
   return rig;
 }
 
-/// `at_prior`: nothing of the rig's constants. Of the device's errors the stream finds a delay alone.
+/// Returns the calibration of a stream. `at_prior`: the rig's constants were not estimated. The only device error that
+/// the stream estimates is a delay.
 std::optional<LearntRig> learnt_by(const RateStream& stream, const RateStream::Params& params, const LearntRig* given,
                                    bool at_prior, const RateStream::State& state) {
   const bool late = state.device.front().delay.found;
@@ -109,7 +110,7 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
   std::vector<std::vector<AuxiliaryReading>> auxiliary_imus;
   estimate.status = auxiliary_readings(sensors, samples, params.rate.model, auxiliary_imus);
   if (!estimate.status.ok()) return estimate;
-  // further IMUs tell the rate whoever holds the body; the other smoother does not know them
+  // Further IMUs determine the rate even if the body is hand-held; the hand-held smoother does not use them.
   if (!auxiliary_imus.empty() && !parameters.has("carried_min")) params.carried_min = 1.0;
   const RegimeStream joined(params);
   const RateStream& stream = joined.rate();
@@ -125,7 +126,7 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
   }
   joined.flush(all, estimate.rates);
   const RateStream::State& state = all.rate;
-  // one whose constants were dropped may not have learnt anything since
+  // If the constants were reset, nothing may have been estimated since.
   const RigConstants::Matrix before = stream.start().rig_covariance;
   const bool at_prior = !(state.rig_covariance.topLeftCorner<3, 3>().trace() < before.topLeftCorner<3, 3>().trace());
   estimate.health["calibration_at_prior"] = at_prior ? 1.0 : 0.0;
@@ -164,8 +165,10 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
 
 Estimate run_rate_tumble_lag(const sim::Sensors& sensors, const sim::Values& parameters, const LearntRig* given,
                              std::optional<LearntRig>* found) {
-  return with_sample_times(sensors,
-                           [&](const sim::Sensors& timed) { return rates_of_stream(timed, parameters, given, found); });
+  return without_outliers(sensors, [&](const sim::Sensors& kept) {
+    return with_sample_times(
+        kept, [&](const sim::Sensors& timed) { return rates_of_stream(timed, parameters, given, found); });
+  });
 }
 
 Method rate_tumble_lag() {

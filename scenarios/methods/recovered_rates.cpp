@@ -16,19 +16,20 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Whether a reading of the gyro stands beside what rate/tumble says of it.
+/// Returns true if a gyro reading can be compared with the rate of rate/tumble.
 using Stands = bool (*)(const RateState&);
 
 bool does_not_clip(const RateState& rate) {
   return rate.clipped_axes == 0;
 }
 
-/// And nothing makes it doubtful either, as the plateaus of a motion do that are no clear rail.
+/// Also requires that the reading is not suspect. Plateaus without a clear saturation limit are suspect.
 bool is_read(const RateState& rate) {
   return does_not_clip(rate) && rate.source == RateSource::measured;
 }
 
-/// The smoother's rates are without the gyro's bias: the mean difference of the samples that are read.
+/// Returns the gyro bias: the mean difference between readings and the smoother's bias-free rates, over comparable
+/// samples.
 Eigen::Vector3d bias_rad_s(const std::vector<ImuSample>& samples, const std::vector<RateState>& rates, Stands stands) {
   double free = 0.0;
   Eigen::Vector3d bias = Eigen::Vector3d::Zero();
@@ -40,7 +41,7 @@ Eigen::Vector3d bias_rad_s(const std::vector<ImuSample>& samples, const std::vec
   return bias;
 }
 
-/// What rate/tumble says of samples that are not as read; nothing where no reading clips, or it has no answer.
+/// Rates of rate/tumble to replace readings; empty if nothing clips or the smoother failed.
 struct Recovery {
   std::vector<RateState> rates;
   Eigen::Vector3d bias_rad_s = Eigen::Vector3d::Zero();

@@ -42,7 +42,7 @@ std::vector<Method> all_methods() {
       attitude_tumble_lag(),
       attitude_tumble_batch(),
       attitude_oracle(),
-      position_rolling(),  // the first of a kind is what the others are held against, where no raw one is
+      position_rolling(),  // Without a baseline, the first method of a kind is the reference.
       position_double_integration(),
       position_observer(),
       position_autogain_fusion(),
@@ -74,7 +74,7 @@ std::vector<Method> all_methods() {
   return all;
 }
 
-/// The name of one of ours would stand for two things in the results.
+/// A name of a built-in method would be ambiguous in the results.
 MethodPointer method_of_file(const std::string& file, double time_limit_s) {
   auto method = std::make_shared<const Method>(external_method(file, time_limit_s));
   for (const Method& own : methods()) {
@@ -123,7 +123,7 @@ Method make_method(MethodInfo info, RunCore run) {
       std::make_shared<const std::vector<sim::Parameter>>(joined_rows(settings, info.parameters_first));
   info.parameters = *parameters;
   const bool needs_truth = info.needs_truth;
-  // keeps `parameters`, which the info refers to
+  // The capture owns `parameters`, which the info refers to.
   RunMethod wrapped = [name, settings, parameters, needs_truth, run](
                           const sim::Sensors& sensors, const sim::Values& given, const OracleInput& oracle) {
     if (needs_truth && oracle.truth == nullptr) {
@@ -164,7 +164,7 @@ std::vector<MethodPointer> find_methods(std::span<const std::string> names) {
 
 std::vector<MethodPointer> find_methods_within(std::span<const std::string> names, double time_limit_s) {
   std::vector<MethodPointer> found;
-  std::map<std::string, std::string> asked;  // what brought each method
+  std::map<std::string, std::string> asked;  // argument that selected each method
   for (const std::string& name : names) {
     for (MethodPointer& method : find_within(name, time_limit_s)) {
       const auto [before, is_new] = asked.emplace(full_name(method->info), name);

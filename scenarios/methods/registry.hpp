@@ -10,16 +10,15 @@
 #include "scenarios/methods/method.hpp"
 #include "tumble/common/imu.hpp"
 
-/// How a method enters the registry. Add one: write KIND_NAME.cpp that defines `Method KIND_NAME()`, declare it here,
-/// name it once in registry.cpp, and the file in CMakeLists.txt.
+/// Registers the methods. To add one: write KIND_NAME.cpp that defines `Method KIND_NAME()`, declare it here, list it
+/// once in registry.cpp, and add the file to CMakeLists.txt.
 namespace tumble::scenarios {
 
-/// What a method computes; `parameters` is complete and within bounds, `oracle.truth` is set when the method needs it.
+/// Computes an estimate. `parameters` is complete and within bounds; `oracle.truth` is set if the method needs it.
 using RunCore = Estimate (*)(const sim::Sensors&, const sim::Values& parameters, const OracleInput& oracle);
 
-/// Wraps `run` with what all methods have in common: `info.parameters` are those of its settings, they are resolved,
-/// truth is demanded from callers of an oracle and withheld from everybody else. The result throws BadInput on an
-/// unknown or out-of-bound parameter and on missing truth.
+/// Creates a method from `run`. Collects `info.parameters` from its settings, resolves them, and passes the truth only
+/// to oracles. The result throws BadInput for an unknown or out-of-bound parameter and for missing truth.
 Method make_method(MethodInfo info, RunCore run);
 
 Method rate_raw();
@@ -63,37 +62,38 @@ Method slam_poses_autogain_fusion();
 Method slam_poses_tumble();
 Method slam_rolling_prior();
 
-/// Rate stages, shared by the rate methods and the slam chains. One RateState per sample; `out` is empty on trouble.
+/// Rate stages, shared by the rate methods and the slam chains. Each returns one RateState per sample; `out` is empty
+/// on error.
 Status raw_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, std::vector<RateState>& out);
 Status unclipped_rates(const sim::Sensors& sensors, const sim::Truth& truth, std::vector<RateState>& out);
 
-/// Counters of a rate estimate: samples by source.
+/// Counts the rates by source in `health`.
 void count_sources(std::span<const RateState> rates, std::map<std::string, double>& health);
 
-/// A motion known from elsewhere, one velocity per sample of the IMU along it.
+/// Known motion as input: one velocity per IMU sample.
 struct KnownMotion {
   struct Velocity {
     Eigen::Vector3d v_WI_I_m_s = Eigen::Vector3d::Zero();
     double sigma_m_s = 0.0;
   };
   std::vector<Velocity> velocities;
-  double gravity_m_s2 = 0.0;      ///< what of gravity is in the samples, which were made along the motion
-  double correction_max_m = 1.0;  ///< a registration that asks for more is a wrong one
+  double gravity_m_s2 = 0.0;      ///< gravity contained in the samples, which were generated from the motion
+  double correction_max_m = 1.0;  ///< registrations with a larger correction are rejected
   double correction_max_rad = 1.0;
 };
 
-/// What the lidar-inertial chain estimates beside the motion.
+/// Options of the lidar-inertial chain.
 struct SlamChain {
-  /// Mounting and clock of the lidar, and gravity. The recording is run through twice: what the first run learns of the
-  /// calibration is the start of the second.
+  /// Estimates lidar mounting, lidar clock and gravity. Processes the recording twice: the second pass starts from the
+  /// calibration of the first.
   bool calibration = false;
-  const KnownMotion* along = nullptr;  ///< the samples were made along it
+  const KnownMotion* along = nullptr;  ///< motion that generated the samples
 };
 
 struct SlamStage;
 
-/// The lidar-inertial chain behind every registration method: given rates, deskew, register, map. Of its parameters:
-/// slam_settings.hpp. Returns whether the run knows where on its map it is.
+/// Runs the lidar-inertial chain of all registration methods: deskewing with the given rates, registration, mapping.
+/// Parameters: slam_settings.hpp. Returns true if the run ends localised on its map.
 bool run_slam_chain(const sim::Sensors& sensors, std::span<const ImuSample> samples, const SlamStage& stage,
                     const SlamChain& chain, Estimate& estimate);
 

@@ -24,20 +24,20 @@ using nlohmann::json;
 constexpr double kMost = 1e6;
 constexpr const char* kKeys[] = {"lever_arm_m", "gyro_bias_rad_s", "accel_bias_m_s2", "inertia",
                                  "covariance",  "gyro_rail_rad_s", "accel_rail_m_s2"};
-// Of files since the gyro's elements are learnt; the covariance of those before has that many rows.
+// Missing in early files, whose covariance has fewer rows.
 constexpr const char* kElementsKey = "gyro_elements";
-// Of files since rails are known as planes.
+// Missing in early files.
 constexpr const char* kPlanesKey = "gyro_planes_rad_s";
-// Of files since those of the accelerometer are too.
+// Missing in early files.
 constexpr const char* kAccelPlanesKey = "accelerometer_planes_m_s2";
 constexpr const char* kAccelElementsKey = "accelerometer_elements";
-// Of files since the device's errors are learnt.
+// Missing in early files.
 constexpr const char *kErrorsKey = "device_errors", *kErrorsCovarianceKey = "device_errors_covariance";
-// What the slopes of an accelerometer's element change from run to run, as those of a gyro's.
+// Change of the accelerometer elements' slopes between runs, as for the gyro.
 constexpr double kSlopeDrift = 2e-3;
-// A tumble holds a top that looks like a rail now and then: planes less sure than this are not handed on.
+// Planes with lower log-odds are not saved: motion peaks can resemble a saturation plane.
 constexpr double kSureLogOdds = 10.0;
-// A rail tells the slopes of its element no better than this: rails.md (R59).
+// Lower bound of the slope's standard deviation: rails.md (R59).
 constexpr double kSlopeSigmaMin = 3e-4;
 constexpr int kWithoutElements = RigConstants::kElements;
 
@@ -60,7 +60,7 @@ json rails(const LearntRig& rig, std::size_t first) {
   return out;
 }
 
-// Reads arrays and says what is wrong where.
+// Reads arrays; errors state the fault and its location.
 class CalibrationReader {
  public:
   CalibrationReader(const std::filesystem::path& path, const json& object) : path_(path), object_(object) {}
@@ -81,7 +81,7 @@ class CalibrationReader {
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (!values[i].is_number() || !std::isfinite(values[i].get<double>()))
         complain(key, "holds an element that is not a number");
-      // no constant of a rig comes near: it would drown everything else
+      // Far beyond any rig constant; it would dominate all other numbers.
       if (std::abs(values[i].get<double>()) > kMost) {
         complain(key, fmt::format("is {}; its magnitude must be at most 1e6", values[i].dump()));
       }
@@ -128,11 +128,12 @@ std::optional<double> lowest(const LearntRig& rig, std::size_t first) {
   return out;
 }
 
-// A device keeps its rails to 0.05 %, their offset drifts with the bias; a reading within this share is at the rail.
+// Saturation levels are stable to 0.05 %, and their offset drifts with the bias. Readings within this fraction of the
+// level count as saturated.
 constexpr double kToleranceShare = 2e-3;
 
-// Whether it is known where a plane cuts its row, two deviations being within the tolerance of the next run. Two
-// elements that only clip together leave a slope untold, and with it the level away from where they did.
+// Returns true if the intercept of a plane is known: two standard deviations are within the tolerance of the next run.
+// If two elements only clip together, the slope between them is unknown, and so is the level elsewhere.
 bool level_told(const RailPlane& plane, int sign) {
   const Eigen::Vector4d cut(0.0, 0.0, sign, 1.0);
   const double variance = cut.dot(plane.covariance * cut), most = 0.5 * kToleranceShare * plane.distance_rad_s;
@@ -154,7 +155,7 @@ void LearntRig::keep(const RailPlanes& planes, Triad triad) {
   for (std::size_t j = 0; j < 3; ++j) {
     const std::optional<RailPlane>& plane = planes.element[j];
     if (plane && plane->log_odds < kSureLogOdds) {
-      // nor are the slopes that it told the smoother
+      // Also widen the covariance of the plane's slopes.
       const double sigma = RateModelParams{}.element_sigma;
       const Eigen::Index at = RigConstants::kElements + 2 * static_cast<Eigen::Index>(j);
       if (triad == Triad::gyro) calibration.covariance.diagonal().segment<2>(at).array() += sigma * sigma;
@@ -175,7 +176,7 @@ void LearntRig::keep(const RailPlanes& planes, Triad triad) {
 
 namespace {
 
-// Slopes and distance of an element whose plane is sure.
+// Stores slopes and intercept of an element with a certain plane.
 void take_element(const RailPlane& plane, Triad triad, std::size_t j, LearntRig& rig) {
   const auto first = static_cast<Eigen::Index>(2 * j), at = RigConstants::kElements + first;
   const Eigen::Vector2d slopes(plane.row[static_cast<Eigen::Index>((j + 1) % 3)],
@@ -299,7 +300,7 @@ void read_device_errors(const CalibrationReader& reader, const json& object, Lea
   reader.read(kErrorsCovarianceKey, known.covariance);
   known.errors = SensorErrors::from(errors);
   const SensorErrors::Vector deviation = known.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
-  // entries of very different sizes: compared in units of their deviations
+  // The entries differ by orders of magnitude: normalise by their standard deviations.
   const SensorErrors::Vector over = deviation.cwiseMax(1e-300).cwiseInverse();
   const SensorErrors::Matrix scaled = over.asDiagonal() * known.covariance * over.asDiagonal();
   if (!scaled.allFinite() || (scaled - scaled.transpose()).cwiseAbs().maxCoeff() > 1e-9 ||

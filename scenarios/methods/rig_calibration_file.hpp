@@ -9,53 +9,54 @@
 
 namespace tumble::scenarios {
 
-/// What one run of the smoother learns and the next may start from.
+/// Calibration that a run of the smoother estimates and a later run may start from.
 struct LearntRig {
   RigCalibration calibration;
-  std::array<std::optional<double>, 6> rail;  ///< gyro x y z [rad/s], accelerometer x y z [m/s^2]; none: not seen
-  /// Of the gyro's elements whose rail was seen as a plane, where it cuts the element's row: negative and positive
-  /// sign. Its slopes are RigConstants::elements. None: not seen, or upright.
+  std::array<std::optional<double>, 6> rail;  ///< saturation limits of gyro x y z [rad/s], accelerometer x y z [m/s^2];
+                                              ///< empty: not observed
+  /// Intercepts of the gyro elements' saturation planes on the element's axis: negative and positive sign. The slopes
+  /// are in RigConstants::elements. Empty: not observed, or perpendicular to the axis.
   using Planes = std::array<std::array<std::optional<double>, 2>, 3>;
   Planes gyro_planes_rad_s = {};
-  /// Likewise of the accelerometer's elements, whose slopes are no constants of the rig: in their order there.
+  /// Same for the accelerometer's elements. Their slopes are not rig constants and are stored here in the same order.
   Planes accelerometer_planes_m_s2 = {};
   Eigen::Matrix<double, 6, 1> accelerometer_elements = Eigen::Matrix<double, 6, 1>::Zero();
-  /// What the device makes of the motion: delay, g-sensitivity, scale; none: nothing was learnt of it.
+  /// Errors of the device: delay, g-sensitivity, scale; empty: not estimated.
   std::optional<KnownSensorErrors> device_errors = std::nullopt;
-  /// The run learnt of rails alone (with_rails), or of a late accelerometer: all else is what was known before it. Not
-  /// in the file.
+  /// The run only estimated saturation limits (with_rails) or an accelerometer delay; everything else is the prior. Not
+  /// stored in the file.
   bool rails_alone = false;
 
-  /// The rails of a triad's elements, for the search of the next run.
+  /// Returns the saturation planes of a triad, for the detection in the next run.
   RailPlanes planes(Triad triad = Triad::gyro) const;
-  /// Keeps where planes cut their rows, of those that are sure. The slopes that an unsure one has told are doubted: a
-  /// few readings, one of which met the rail in a part of its window, make a plane that is not there.
+  /// Stores the intercepts of the certain planes. The slopes of uncertain planes are discarded, because a few partly
+  /// clipped readings can suggest a wrong plane.
   void keep(const RailPlanes& planes, Triad triad = Triad::gyro);
 };
 
-/// What a run has learnt. When the run left its constants at their prior (RateReport::calibration_at_prior) that is
-/// what it was given.
+/// Returns the calibration from a run's report. If the run kept the constants at their prior
+/// (RateReport::calibration_at_prior), this is the prior.
 LearntRig learnt(const RateReport& report);
 
-/// What was known before a run that had to hold the constants to that, with the rails that it found: levels and slopes
-/// of elements whose plane is sure. Levels stay where nothing surer was found, and go where readings contradict them.
-/// None: no plane of this run is sure.
+/// Returns the calibration `before` with the certain saturation limits of a run that could not estimate the constants.
+/// Keeps old levels unless better ones were found; removes levels that readings contradict. Empty if no plane is
+/// certain.
 std::optional<LearntRig> with_rails(const LearntRig& before, const KnownRails& rails);
 
-/// Gives it to the next run: constants with their covariance times `trust` (>= 1: rigs are taken apart and put together
-/// again), the planes of the gyro's rails, the device's errors likewise, and the lowest rail of a sensor as its stated
-/// range. Throws std::invalid_argument on `trust` below 1.
+/// Applies a calibration to the next run: constants, the gyro's saturation planes, and the device's errors. The lowest
+/// saturation limit of a sensor becomes its range. The covariance of the constants is multiplied by `trust` (>= 1),
+/// because rigs are reassembled. Throws std::invalid_argument if `trust` is below 1.
 void start_from(const LearntRig& rig, double trust, RateSmoother::Params& params);
 
-/// JSON, a few lines: lever arm, biases, inertia, the gyro's elements, covariance row by row, rails; planes of the
-/// rails of gyro and accelerometer; the device's errors in the order of SensorErrors and their covariance. Numbers come
-/// back to the bit. Throws BadInput when it cannot write; nothing is left half written.
+/// Writes a short JSON file. It contains lever arm, biases, inertia and gyro elements with their covariance (by rows),
+/// and saturation limits and planes of both triads. It also contains the device's errors in the order of SensorErrors,
+/// with covariance. Numbers round-trip bit-exactly. Throws BadInput if writing fails, and then leaves no partial file.
 void write_learnt_rig(const std::filesystem::path& path, const LearntRig& rig);
 
-/// A file from before the elements were learnt lacks them and their six rows: they are what is assumed without any; one
-/// from before the accelerometer's planes or the device's errors were lacks those.
-/// Throws BadInput with path and key on a missing, misspelt or extra key, on a number that is none or of the wrong
-/// count, and on a covariance that is not symmetric and positive definite.
+/// Reads a calibration file. Files of earlier versions may lack the gyro elements and their six covariance rows,
+/// accelerometer planes or device errors; defaults replace them.
+/// Throws BadInput with path and key for a missing, misspelt or extra key, an invalid number, or a wrong count. Also
+/// throws if a covariance is not symmetric positive definite.
 LearntRig read_learnt_rig(const std::filesystem::path& path);
 
 }  // namespace tumble::scenarios

@@ -10,52 +10,52 @@
 #include "sim/parameters.hpp"
 #include "tumble/common/imu.hpp"
 
-/// The seams of the rigid registration methods: a rate method gives Estimate::rates, a trajectory model the motion
-/// inside of a sweep, RigidOdometry the registration. Each method file puts its own together.
+/// Building blocks of the rigid registration methods. A rate method supplies Estimate::rates, a trajectory model the
+/// motion within a sweep, RigidOdometry the registration. Each method's file combines its own choice.
 namespace tumble::scenarios {
 
-/// What a method expects the motion to be, sweep after sweep, and learns from what the registration made of it.
+/// Predicts the motion of each sweep and updates itself with the registration result.
 class TrajectoryModel {
  public:
   virtual ~TrajectoryModel() = default;
-  /// From the end of the last sweep (at first: the start of this one) to `to_ns`.
+  /// Predicts from the end of the last sweep (at first: the start of this sweep) to `to_ns`.
   virtual baselines::RigidOdometry::Motion expect(TimeNs from_ns, TimeNs to_ns) = 0;
-  /// After each sweep; `report.verdict` tells whether the state is more than the expectation.
+  /// Updates the model after each sweep; `report.verdict` states whether the registration succeeded.
   virtual void learn(const baselines::RigidOdometry& odometry, const LidarInertialOdometry::SweepReport& report) = 0;
 };
 
-/// What the rest at the start tells: the attitude from the specific force, yaw 0, and the gyro's bias.
+/// Initial values from the rest at the start: attitude from the specific force with yaw 0, and the gyro bias.
 struct StartAtRest {
   Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
   Eigen::Vector3d gyro_bias_rad_s = Eigen::Vector3d::Zero();
 };
-/// From the first second at most, as long as the gyro stays below 0.05 rad/s; one sample at least. `too_few` or
-/// `degenerate` where that is no attitude.
+/// Averages at most the first second, as long as the gyro stays below 0.05 rad/s, and at least one sample. Returns
+/// `too_few` or `degenerate` if no attitude results.
 Status start_at_rest(std::span<const ImuSample> samples, StartAtRest& out);
 
-/// What the methods with the gyro as it says begin with: samples of the first IMU, its rates with the axes named that
-/// are at their rail, and the start.
+/// Prepares the methods that use the raw gyro: samples of the first IMU, rates with flagged clipped axes, and the
+/// initial values.
 Status raw_start(const sim::Sensors& sensors, std::vector<ImuSample>& samples, std::vector<RateState>& rates,
                  StartAtRest& start);
 
-/// Windows of the IMU that touch (from_ns, to_ns], rates and forces as given, less the bias; each split in `parts`,
-/// between whose means rate and force run linearly. The first window reaches back to from_ns at least.
+/// Returns the IMU windows that overlap (from_ns, to_ns], with bias-corrected rates and forces. Each window is split
+/// into `parts`; rate and force are linear between the windows' means. The first window starts at or before from_ns.
 std::vector<MotionSample> imu_motion(std::span<const ImuSample> samples, std::span<const RateState> rates,
                                      const Eigen::Vector3d& bias_rad_s, TimeNs from_ns, TimeNs to_ns, int parts = 1);
 
-/// The same windows with one body rate and one acceleration (body axes; no gravity) throughout.
+/// Returns the same windows with constant body rate and acceleration (body axes, without gravity).
 std::vector<MotionSample> steady_motion(std::span<const ImuSample> samples, const Eigen::Vector3d& rate_I_rad_s,
                                         const Eigen::Vector3d& force_I_m_s2, TimeNs from_ns, TimeNs to_ns);
 
-/// Prior of a registration that trusts its motion model no more than this.
+/// Returns a prior covariance for registration with a weak motion model.
 Eigen::Matrix<double, 9, 9> loose_covariance(double sigma_m, double sigma_rad);
 
-/// The chain with a rigid registration. Sweeps that the IMU does not cover are counted, not registered; a covered lidar
-/// is a fact of life.
+/// Runs the chain with rigid registration. Sweeps that the IMU does not cover are counted, not registered. A covered
+/// lidar is not an error.
 void run_rigid_chain(const sim::Sensors& sensors, std::span<const ImuSample> samples,
                      const baselines::RigidOdometry::Params& params, TrajectoryModel& model, Estimate& estimate);
 
-/// Parameters of the rigid methods and what they mean to the library; T_IL is the calibration's.
+/// Returns the parameters of the rigid methods and their mapping to the library; T_IL comes from the calibration.
 const Settings<baselines::RigidOdometry::Params>& rigid_settings();
 baselines::RigidOdometry::Params rigid_params(const sim::Sensors& sensors, const sim::Values& parameters);
 

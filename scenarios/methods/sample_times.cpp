@@ -7,14 +7,15 @@
 #include <utility>
 #include <vector>
 
+#include "scenarios/methods/bridge.hpp"
 #include "tumble/common/sample_clock.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
 
-/// Times of a record's samples, and the jitter that was mended [s]. Stamps that are no times (they go back) stay: the
-/// bridge refuses them.
+/// Sample times of a record, and the jitter removed from the stamps [s]. Decreasing stamps are left for the bridge to
+/// reject.
 struct SampleTimes {
   std::vector<std::int64_t> times_ns;
   double mended_s = 0.0;
@@ -24,6 +25,19 @@ SampleTimes sample_times(const sim::ImuRecord& record) {
   SampleTimes out{.times_ns = record.time_ns};
   (void)to_sample_times(SampleClock({}), out.times_ns, out.mended_s);
   return out;
+}
+
+void keep_rows(const std::vector<bool>& kept, sim::ImuRecord& record) {
+  const auto keep = [&](auto& rows) {
+    if (rows.size() != kept.size()) return;  // the device has none
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      if (kept[k]) rows[count++] = rows[k];
+    }
+    rows.resize(count);
+  };
+  keep(record.time_ns), keep(record.gyro_rad_s), keep(record.accel_m_s2), keep(record.clip_flags);
+  keep(record.magnetic_field_t);
 }
 
 void restore_stamps(const sim::ImuRecord& timed, const sim::ImuRecord& stamped, std::vector<RateState>& rates) {
@@ -36,6 +50,21 @@ void restore_stamps(const sim::ImuRecord& timed, const sim::ImuRecord& stamped, 
 }
 
 }  // namespace
+
+Estimate without_outliers(const sim::Sensors& sensors, const std::function<Estimate(const sim::Sensors&)>& run) {
+  std::vector<std::vector<bool>> inliers;
+  std::ptrdiff_t rejected = 0;
+  for (const sim::ImuRecord& record : sensors.imus) {
+    const std::vector<bool>& inlier = inliers.emplace_back(bridge::find_inliers(record));
+    rejected += std::count(inlier.begin(), inlier.end(), false);
+  }
+  if (rejected == 0) return run(sensors);
+  sim::Sensors kept = sensors;
+  for (std::size_t i = 0; i < inliers.size(); ++i) keep_rows(inliers[i], kept.imus[i]);
+  Estimate estimate = run(kept);
+  estimate.health["rejected_readings"] = static_cast<double>(rejected);
+  return estimate;
+}
 
 Estimate with_sample_times(const sim::Sensors& sensors, const std::function<Estimate(const sim::Sensors&)>& run) {
   std::vector<SampleTimes> times;

@@ -8,17 +8,24 @@
 
 namespace tumble::scenarios {
 
-/// What `run` makes of sensors whose IMU samples bear the times at which they were taken (SampleClock) in the place of
-/// stamps that a host put on them. Rates come out with the stamps of their samples again, poses and attitudes at those
-/// times; `stamps_mended_s` of the health is the largest jitter [s]. Where no stamp is mended `run` is given `sensors`
-/// themselves, else a copy, points included.
+/// Runs `run` with corrected IMU sample times (SampleClock) instead of the host's stamps. Rates are returned with the
+/// original stamps, poses and attitudes with the corrected times. The health reports the largest jitter as
+/// `stamps_mended_s` [s]. If no stamp needs correction, `run` receives `sensors` unchanged, else a full copy.
 Estimate with_sample_times(const sim::Sensors& sensors, const std::function<Estimate(const sim::Sensors&)>& run);
 
-/// A RunCore that does so, for the methods of ours that are not the door's, which has a clock itself, and for oracles.
-/// Published methods take stamps for times, as published.
+/// Runs `run` on the sensors without the samples that OutlierFilter rejects. The health counts them in
+/// `rejected_readings` if there are any. Without outliers `run` gets `sensors` themselves, else a copy.
+Estimate without_outliers(const sim::Sensors& sensors, const std::function<Estimate(const sim::Sensors&)>& run);
+
+/// Wraps a RunCore with both corrections, for our methods other than the public API classes (which correct stamps
+/// themselves) and for oracles. Published methods use the stamps unchanged. An oracle keeps each sample, because the
+/// truth has one value per sample.
 template <RunCore run>
 Estimate at_sample_times(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput& oracle) {
-  return with_sample_times(sensors, [&](const sim::Sensors& timed) { return run(timed, parameters, oracle); });
+  const auto timed = [&](const sim::Sensors& kept) {
+    return with_sample_times(kept, [&](const sim::Sensors& given) { return run(given, parameters, oracle); });
+  };
+  return oracle.truth == nullptr ? without_outliers(sensors, timed) : timed(sensors);
 }
 
 }  // namespace tumble::scenarios

@@ -7,9 +7,9 @@
 
 namespace tumble::scenarios {
 
-/// What an estimator must know of the sensors beside their readings, as JSON: of each IMU rate, stated ranges, noise
-/// densities and mounting T_BI, of each lidar period and mounting T_BL, gravity, the sphere's radius. Mountings are
-/// "translation_m" [x, y, z] and "quaternion_xyzw"; the calibration that estimators are given, its errors included.
+/// Writes the sensors' metadata as JSON. For each IMU: rate, stated ranges, noise densities and mounting T_BI. For each
+/// lidar: period and mounting T_BL. Also gravity and the sphere's radius. Mountings have "translation_m" [x, y, z] and
+/// "quaternion_xyzw", and include calibration errors.
 std::string sensors_text(const sim::Sensors& sensors);
 
 }  // namespace tumble::scenarios

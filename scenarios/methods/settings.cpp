@@ -11,7 +11,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// "m/s^2" as names end in it: "_m_s2".
+/// Returns the suffix of names for a unit: "_m_s2" for "m/s^2".
 std::string suffix_of(std::string_view unit) {
   std::string out = "_";
   for (const char c : unit) {

@@ -17,16 +17,16 @@
 #include "tumble/common/fields_by_name.hpp"
 #include "tumble/common/parameters.hpp"
 
-/// The numbers of a library's `Params` as parameters of a method: what its fields say of them (common/parameters.hpp)
-/// is all that the method's table, its reading and its tests know.
+/// Converts a library's `Params` to a method's parameters. Tables, parsing and tests use only the descriptions of its
+/// fields (common/parameters.hpp).
 namespace tumble::scenarios {
 
 namespace detail {
 
-/// Names of a vector's coordinates: the axis stands before the unit, "lever_arm_x_m".
+/// Returns the names of a vector's coordinates, with the axis in front of the unit: "lever_arm_x_m".
 std::array<std::string, 3> coordinate_names(const std::string& name, const Field& field);
 
-/// Calls `each(name, value, field, whole)` for each number of a `Params`, a vector being three of them.
+/// Calls `each(name, value, field, whole)` for each number in a `Params`; a vector has three.
 template <class Params, class Each>
 void visit_numbers(Params& params, Each each) {
   visit_by_name(params, [&each](const std::string& name, auto& value, const Field& field) {
@@ -42,42 +42,41 @@ void visit_numbers(Params& params, Each each) {
 
 }  // namespace detail
 
-/// Which fields of a `Params` a method treats apart.
+/// Fields of a `Params` that a method treats specially.
 struct SettingsOptions {
-  /// What the recording states: a value takes precedence over it only when somebody chose it. A name may end in `*`.
+  /// Fields stated by the recording; a user's value takes precedence. A name may end in `*`.
   std::vector<std::string> stated = {};
-  /// What follows from other parameters and cannot be set. A name may end in `*`.
+  /// Fields that follow from other parameters and cannot be set. A name may end in `*`.
   std::vector<std::string> fixed = {};
-  /// What this method's user sets before others although it stands further down elsewhere.
+  /// Fields to list first for this method's users.
   std::vector<std::string> first = {};
-  /// Another stage's parameters: a field that is called as one of them bears `prefix`.
+  /// Parameters of another stage; a field with an equal name gets `prefix`.
   std::span<const sim::Parameter> beside = {};
   std::string prefix = {};
 };
 
-/// Names, rows and values without their type: what all Settings share.
+/// Names, table rows and values; the type-independent base of all Settings.
 class SettingsTable {
  public:
   virtual ~SettingsTable() = default;
   SettingsTable(const SettingsTable&) = delete;
   SettingsTable& operator=(const SettingsTable&) = delete;
 
-  /// Those that a user sets before others stand first.
+  /// Frequently used parameters come first.
   std::span<const sim::Parameter> rows() const { return rows_; }
   std::size_t first_rows() const { return first_rows_; }
-  /// Whether there are no halves of a parameter: a number of things, a switch, a choice.
+  /// Returns true for integer parameters: counts, switches, choices.
   bool is_whole(std::string_view name) const { return whole_.contains(name); }
-  /// Whether a recording states it, so that only a value that somebody gave counts.
+  /// Returns true if the recording states the value, so that only a user's value overrides it.
   bool is_stated(std::string_view name) const { return stated_.contains(name); }
-  /// Every number of the `Params`, by the library's names, as read from `values`.
+  /// Returns every number of the `Params` by the library's names, taken from `values`.
   virtual std::map<std::string, double> numbers(const sim::Values& values) const = 0;
 
  protected:
   explicit SettingsTable(SettingsOptions options);
   void add(const std::string& field_name, double value, const Field& field, bool whole);
-  /// Those that a user sets first stand first.
   void sort_rows();
-  /// Whether the value of a field is to be taken from `values`, and its name there.
+  /// Returns true if `values` sets the field, and its parameter name in `name`.
   bool applies(const std::string& field_name, const sim::Values& values, std::string& name) const;
 
  private:
@@ -87,22 +86,22 @@ class SettingsTable {
   std::vector<sim::Parameter> rows_;
   std::size_t first_rows_ = 0;
   std::set<std::string_view> first_, whole_, stated_;
-  std::deque<std::string> texts_;  ///< what all of these refer to
+  std::deque<std::string> texts_;  ///< owns the texts that the other members refer to
 };
 
-/// Values for all `rows` of the stages, as sim::resolve gives them; without those that a recording states and nobody
-/// gave. Throws InvalidSituation as it does, and for halves of what is whole.
+/// Resolves values for all `rows` of the stages, like sim::resolve; omits those that the recording states and the user
+/// did not set. Throws InvalidSituation like sim::resolve, and for a fraction where an integer is required.
 sim::Values resolve_settings(const std::string& place, const sim::Values& given,
                              std::span<const SettingsTable* const> stages);
 
-/// The rows of several stages, whose names differ: first those that a user sets before others, so many in `first`.
+/// Returns the rows of several stages with distinct names, frequently used ones first; `first` is the number of these.
 std::vector<sim::Parameter> joined_rows(std::span<const SettingsTable* const> stages, std::size_t& first);
 
-/// The parameters of one stage of a method. Static, as its rows are referred to.
+/// Parameters of one stage of a method. Must be static, because its rows are referenced.
 template <class Params>
 class Settings : public SettingsTable {
  public:
-  /// `defaults` are the library's but for what the method states otherwise.
+  /// `defaults` are the library's, except where the method states others.
   explicit Settings(const Params& defaults, SettingsOptions options = {})
       : SettingsTable(std::move(options)), defaults_(defaults) {
     detail::visit_numbers(defaults_, [this](const std::string& name, const auto& value, const Field& field,
@@ -111,7 +110,7 @@ class Settings : public SettingsTable {
   }
   const Params& defaults() const { return defaults_; }
 
-  /// Puts the values into `params`; what the recording states and nobody chose stays as it is.
+  /// Copies the values to `params`; values that the recording states and the user did not set are unchanged.
   void apply(const sim::Values& values, Params& params) const {
     detail::visit_numbers(params, [&](const std::string& field_name, auto& value, const Field&, bool) {
       using Value = std::remove_cvref_t<decltype(value)>;
@@ -125,7 +124,7 @@ class Settings : public SettingsTable {
     });
   }
 
-  /// The values alone, in place of the defaults.
+  /// Returns the defaults, overridden by `values`.
   Params read(const sim::Values& values) const {
     Params params = defaults_;
     apply(values, params);

@@ -23,7 +23,7 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr double kBelieved = GivenCalibration::kBelieved;
-constexpr int kSearches = 3;  // runs more for one that moves further
+constexpr int kSearches = 3;  // additional runs for a calibration that moves further
 
 LidarInertialOdometry::Params odometry_params(const sim::Sensors& sensors, const SlamStage& stage,
                                               const SlamChain& chain) {
@@ -43,19 +43,19 @@ LidarInertialOdometry::Params odometry_params(const sim::Sensors& sensors, const
   return odometry;
 }
 
-/// Cuts a sweep where the IMU ends, if that leaves most of it: clocks that disagree must not cost the last sweep.
+/// Cuts a sweep at the end of the IMU data if most of it remains. Otherwise a clock offset would drop the last sweep.
 bool shorten(std::int64_t end_ns, bridge::Sweep& sweep) {
   if (end_ns >= sweep.end_ns) return true;
   const std::int64_t left_ns = end_ns - sweep.start_ns;
   if (2 * left_ns < sweep.end_ns - sweep.start_ns) return false;
-  // those beyond the sweep itself stay: they are a fault of the recording and shall be told
+  // Keep points beyond the sweep's end: they are a fault of the recording, and the mapper reports them.
   const std::int64_t length_ns = sweep.end_ns - sweep.start_ns;
   std::erase_if(sweep.points, [&](const LidarPoint& p) { return p.offset_ns > left_ns && p.offset_ns <= length_ns; });
   sweep.end_ns = end_ns;
   return true;
 }
 
-/// Velocity at `time_ns`, between the samples about it; `next` is the first sample after it or a little more.
+/// Interpolates the velocity at `time_ns`; `next` is the index of the first sample after it, or slightly more.
 KnownMotion::Velocity velocity_at(std::int64_t time_ns, std::span<const ImuSample> samples, const KnownMotion& motion,
                                   std::size_t next) {
   while (next > 0 && samples[next - 1].time_ns >= time_ns) --next;
@@ -66,14 +66,14 @@ KnownMotion::Velocity velocity_at(std::int64_t time_ns, std::span<const ImuSampl
   return {a.v_WI_I_m_s + share * (b.v_WI_I_m_s - a.v_WI_I_m_s), std::max(a.sigma_m_s, b.sigma_m_s)};
 }
 
-/// The mapper on its way over a recording; `estimate` gets its sweeps.
+/// Feeds a recording to the mapper and collects the sweeps in `estimate`.
 class SweepFeed {
  public:
   SweepFeed(std::span<const ImuSample> samples, TimeNs offset_ns, const KnownMotion* along,
             LidarInertialOdometry& odometry, Estimate& estimate)
       : samples_(samples), offset_ns_(offset_ns), along_(along), odometry_(odometry), estimate_(estimate) {}
 
-  /// Feeds the next sweep, and what the IMU read by then; false when the estimate's status tells why not.
+  /// Adds the IMU samples up to the sweep, then the sweep. Returns false on error; the estimate's status states why.
   bool add(bridge::Sweep sweep) {
     if (!add_samples(sweep.end_ns + offset_ns_)) return false;
     if (!shorten(samples_.back().time_ns - offset_ns_, sweep)) {
@@ -83,13 +83,13 @@ class SweepFeed {
     return add_velocity() && add_points(sweep);
   }
 
-  /// The recording has ended.
+  /// Finishes the recording.
   void finish() {
     for (std::vector<PoseState>& open : odometry_.open_trajectories()) apply_next(std::move(open));
   }
 
  private:
-  /// The IMU up to the first sample at or after `to_ns`.
+  /// Adds IMU samples up to the first at or after `to_ns`.
   bool add_samples(TimeNs to_ns) {
     while (next_ < samples_.size() && (next_ == 0 || samples_[next_ - 1].time_ns < to_ns)) {
       estimate_.status = odometry_.add_imu(samples_[next_], estimate_.rates[next_]);
@@ -99,7 +99,7 @@ class SweepFeed {
     return true;
   }
 
-  /// The known one where the last sweep ended, if there is one.
+  /// Adds the known velocity at the end of the last sweep, if available.
   bool add_velocity() {
     if (!along_ || estimate_.sweeps.empty()) return true;
     const KnownMotion::Velocity velocity = velocity_at(estimate_.sweeps.back().pose.time_ns, samples_, *along_, next_);
@@ -110,11 +110,12 @@ class SweepFeed {
   bool add_points(const bridge::Sweep& sweep) {
     SweepReport report;
     const Status status = odometry_.add_sweep(sweep.start_ns, sweep.end_ns, sweep.points, report);
-    // the IMU begins after the sweep: nothing to place it by
+    // The IMU starts after the sweep, which therefore has no pose.
     if (status.trouble == Trouble::too_few && report.trajectory.empty()) {
       leave_out_unfinished(estimate_);
       return true;
     }
+    if (leave_out_before_map(status, report, estimate_)) return true;
     const bool left_the_window = !report.smoothed.empty();
     std::vector<PoseState> smoothed = std::move(report.smoothed);
     const TimeNs end_ns = report.pose.time_ns;
@@ -132,11 +133,11 @@ class SweepFeed {
   const KnownMotion* along_;
   LidarInertialOdometry& odometry_;
   Estimate& estimate_;
-  std::size_t next_ = 0;      ///< sample
-  std::size_t smoothed_ = 0;  ///< sweeps
+  std::size_t next_ = 0;      ///< next sample
+  std::size_t smoothed_ = 0;  ///< number of smoothed sweeps
 };
 
-/// Feeds the whole recording; `estimate` gets its sweeps.
+/// Feeds the whole recording; `estimate` receives its sweeps.
 void run_sweeps(const sim::LidarRecord& lidar, std::span<const ImuSample> samples, LidarInertialOdometry& odometry,
                 double time_offset_s, const KnownMotion* along, Estimate& estimate) {
   const auto offset_ns = static_cast<TimeNs>(std::llround(time_offset_s * 1e9));
@@ -148,7 +149,7 @@ void run_sweeps(const sim::LidarRecord& lidar, std::span<const ImuSample> sample
   feed.finish();
 }
 
-/// How far the calibration moved from what was given.
+/// Reports how far the calibration moved from its initial value.
 void report_calibration(const LidarInertialOdometry& odometry, const sim::Sensors& sensors,
                         std::map<std::string, double>& health) {
   SweepCalibration given;
@@ -159,7 +160,7 @@ void report_calibration(const LidarInertialOdometry& odometry, const sim::Sensor
   health["calibration_time_offset_s"] = moved[6];
 }
 
-/// The calibration that a run starts from, as sure as it was given.
+/// Returns the initial calibration of a run with its stated uncertainty.
 GivenCalibration given_calibration(const LidarInertialOdometry::Params& started,
                                    const LidarInertialOdometry::Params& given) {
   GivenCalibration out;
@@ -171,16 +172,16 @@ GivenCalibration given_calibration(const LidarInertialOdometry::Params& started,
   return out;
 }
 
-/// Whether so few sweeps were rejected that what the run says of the calibration can be used.
+/// Returns true if few enough sweeps were rejected to use the run's calibration.
 bool tells_calibration(const Estimate& run) {
   const auto rejected = std::count_if(run.sweeps.begin(), run.sweeps.end(),
                                       [](const auto& sweep) { return sweep.verdict == SweepVerdict::rejected; });
   return 5 * static_cast<std::size_t>(rejected) <= run.sweeps.size();
 }
 
-/// The first run learns the calibration, the last one starts from it and draws a map of one piece. A calibration that
-/// moves further than was thought possible was given wrong: then it is learnt again from where it got to, and as surely
-/// as before, until it stays.
+/// The first pass estimates the calibration; the last pass starts from it and builds a consistent map. If the
+/// calibration moves further than its stated uncertainty allows, another pass starts from the new value with the
+/// initial uncertainty, until it converges.
 Estimate run_passes(const sim::LidarRecord& lidar, std::span<const ImuSample> samples,
                     const LidarInertialOdometry::Params& given, const SlamChain& chain, const Estimate& before,
                     LidarInertialOdometry& odometry, CalibrationVerdict& verdict) {
@@ -222,7 +223,7 @@ Estimate run_passes(const sim::LidarRecord& lidar, std::span<const ImuSample> sa
   return run;
 }
 
-/// What a rail of the accelerometer hides is no reading: flags as the device should have set them.
+/// Flags saturated accelerometer readings, as the device should have done.
 void flag_railed_forces(const sim::ImuRecord& record, std::vector<ImuSample>& samples) {
   ClippingFinder::Params params;
   params.upright_rails = stated_rails(record);
@@ -272,7 +273,7 @@ SlamParams with_few_matches(SlamParams params) {
   return params;
 }
 
-// what calibrations of a rig that was put together by hand may be off by
+// Adds calibration uncertainties of a hand-assembled rig.
 SlamParams with_calibration(SlamParams params) {
   const TumblingOdometry::Params door;
   params.odometry.mount_sigma_rad = door.mount_sigma_rad;

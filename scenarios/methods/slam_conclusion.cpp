@@ -11,9 +11,9 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr double kRests_m = 0.01, kRests_rad = 0.01;  // from one end of a sweep to the other
+constexpr double kRests_m = 0.01, kRests_rad = 0.01;  // motion over one sweep
 
-/// How far sweeps moved from where the IMU put them, in standard deviations: its median and what a tenth exceeds.
+/// Reports the Mahalanobis distance between predicted and registered poses: median and 90th percentile.
 void report_innovations(Estimate& estimate) {
   std::vector<double> all;
   for (const auto& sweep : estimate.sweeps) {
@@ -25,14 +25,14 @@ void report_innovations(Estimate& estimate) {
   estimate.health["innovation_90"] = all[all.size() * 9 / 10];
 }
 
-/// A sweep in which the rig stands: a lidar draws rings then, that hold it no worse for being degenerate.
+/// Returns true if the rig is stationary during the sweep. A lidar then sees only rings; their degeneracy does no harm.
 bool rests(const SweepReport& sweep) {
   if (sweep.trajectory.size() < 2) return false;
   const PoseState &first = sweep.trajectory.front(), &last = sweep.trajectory.back();
   return (last.p_WA_m - first.p_WA_m).norm() < kRests_m && first.q_WA.angularDistance(last.q_WA) < kRests_rad;
 }
 
-/// Share of the sweeps in which the rig moves whose surfaces tell its motion in all directions.
+/// Returns the share of sweeps in motion whose surfaces constrain all directions.
 double well_constrained_share(std::span<const SweepReport> sweeps) {
   std::size_t constrained = 0, moving = 0;
   for (const SweepReport& sweep : sweeps) {
@@ -43,7 +43,7 @@ double well_constrained_share(std::span<const SweepReport> sweeps) {
   return moving > 0 ? static_cast<double>(constrained) / static_cast<double>(moving) : 1.0;
 }
 
-/// How sure the chain is of where it ended; a world that does not hold it shows here.
+/// Reports the confidence of the final pose, which reveals poorly constraining surroundings.
 void report_end(const Localisation& localisation, Estimate& estimate) {
   const Eigen::Matrix<double, 6, 6>& P = estimate.sweeps.back().pose.covariance;
   estimate.health["end_sigma_m"] = std::sqrt(P.topLeftCorner<3, 3>().trace());
@@ -61,8 +61,9 @@ void report_scale(const SweepScale& scale, Estimate& estimate) {
   if (scale.is_off()) add_doubt({Doubt::About::lidar_scale}, estimate);
 }
 
-/// Whether a run knows where on its map it is: it was never lost, its calibration stayed where it was believed to be,
-/// and its ranges are those of the motion; others make a map of another size, however well its sweeps agree.
+/// Returns true if the run is localised on its map: tracking never failed, the calibration stayed within its
+/// uncertainty, and lidar ranges and motion have the same scale. A wrong scale gives a map of the wrong size even if
+/// all sweeps agree.
 bool is_localised(const CalibrationVerdict& calibration, const Localisation& localisation, const SweepScale* scale) {
   if (!calibration.converged && calibration.moved > GivenCalibration::kBelieved) return false;
   return localisation.verdict().ok() && !(scale && scale->is_off());

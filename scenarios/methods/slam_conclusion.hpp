@@ -8,26 +8,26 @@
 #include "tumble/mapping/detail/sweep_scale.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 
-/// What a run over sweeps ends with.
+/// Final steps of a run over sweeps.
 namespace tumble::scenarios {
 
-/// A sweep's smoothed trajectory, if there is one, takes the place of its first.
+/// Replaces the trajectory of a sweep by its smoothed trajectory, if not empty.
 void apply_smoothed(std::vector<PoseState> smoothed, LidarInertialOdometry::SweepReport& sweep);
 
-/// What the passes over a recording found of the calibration.
+/// Calibration check over all passes of a recording.
 struct CalibrationVerdict {
-  double moved = 0.0;  ///< from what was given, in its standard deviations
+  double moved = 0.0;  ///< distance from the initial calibration in its standard deviations
   bool converged = true;
 };
 
-/// Poses, map and verdict of a run whose sweeps and their ends the estimate holds: the one place that says whether it
-/// is localised; `too_few` when no sweep was registered. `localisation`: of the sweeps as the mapper first told of
-/// them. `scale`: null where it was not asked for. Returns whether the run is localised and went through.
+/// Writes the final poses, map and status of a run; the estimate already holds the sweeps. Only this function decides
+/// whether the run is localised. Returns `too_few` status if no sweep was registered. `localisation`: from the mapper's
+/// first report of each sweep. `scale`: null if not checked. Returns true if the run is localised and completed.
 bool conclude(const LidarInertialOdometry& odometry, const CalibrationVerdict& calibration,
               const Localisation& localisation, const SweepScale* scale, Estimate& estimate);
 
-/// The same of one pass. A calibration that has moved by more than five of the deviations with which it was given was
-/// given wrong (health `lidar_calibration_mahalanobis`).
+/// The same for one pass. A calibration that moved by more than five of its stated standard deviations was wrong
+/// (health `lidar_calibration_mahalanobis`).
 void conclude_sweeps(const LidarInertialOdometry& odometry, const GivenCalibration& given, const SweepScale& scale,
                      const Localisation& localisation, Estimate& estimate);
 

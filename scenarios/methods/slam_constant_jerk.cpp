@@ -10,21 +10,20 @@ namespace tumble::scenarios {
 
 namespace {
 
-// gains of the observer, from the authors' settings (Chen et al., sec. IV-D), per second
+// Observer gains per second, from the authors' settings (Chen et al., sec. IV-D).
 constexpr double kGainPosition = 4.5;
 constexpr double kGainVelocity = 11.25;
 constexpr double kGainAttitude = 4.0;
 constexpr double kGainGyroBias = 1.0;
 constexpr double kGainAccelBias = 2.25;
-constexpr double kBiasMax = 0.5;   // both biases are bounded, as in the authors' code
-constexpr double kSpanMaxS = 0.2;  // of a correction: the gains are for sweeps, not for gaps
-constexpr int kPartsOfSample = 4;  // of a sample, between which rate and force run linearly
+constexpr double kBiasMax = 0.5;   // bound of both biases, as in the authors' code
+constexpr double kSpanMaxS = 0.2;  // longest correction step: the gains are made for sweeps, not gaps
+constexpr int kPartsOfSample = 4;  // subdivisions of a sample; rate and force are linear between them
 constexpr double kJerkPriorM = 0.5;
 constexpr double kJerkPriorRad = 0.2;
 
-/// Strapdown with rate and specific force linear in time (constant jerk and angular acceleration) from the last
-/// registered pose, with velocity and biases of a geometric observer: what the registration finds feeds back into the
-/// observer's own position, attitude, velocity and biases.
+/// Integrates rate and specific force, linear in time (constant jerk and angular acceleration), from the last
+/// registered pose. A geometric observer corrects position, attitude, velocity and biases with the registration result.
 class ConstantJerk : public TrajectoryModel {
  public:
   ConstantJerk(std::span<const ImuSample> samples, std::span<const RateState> rates, const StartAtRest& start,

@@ -9,15 +9,14 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr int kPosesPerSweep = 10;  // told where no IMU says when
+constexpr int kPosesPerSweep = 10;  // poses per sweep for recordings without IMU
 
-// No prior worth the name: the registration alone decides, as in the family.
+// A very weak prior: as in the published methods of this family, the registration alone decides.
 constexpr double kVelocityPriorM = 1.0;
 constexpr double kVelocityPriorRad = 0.5;
 
-/// The last change of pose goes on, in translation and in rotation. Nothing of the IMU is used but the times of its
-/// samples, at which poses are told, and the vertical at the start, which the scores need and a lidar does not know.
-/// Without IMU the body stands upright at the start.
+/// Repeats the last change of pose, in translation and rotation. The IMU only supplies sample times for the poses, and
+/// the initial vertical, which the scores need. Without IMU the body is assumed upright at the start.
 class ConstantVelocity : public TrajectoryModel {
  public:
   ConstantVelocity(std::span<const ImuSample> samples, const Eigen::Quaterniond& q_WL) : samples_(samples) {
@@ -50,8 +49,7 @@ class ConstantVelocity : public TrajectoryModel {
   TimeNs from_ns_ = 0;
 };
 
-/// Instants at which poses are told of a recording without IMU: those between the sweeps' starts and their ends,
-/// evenly.
+/// Returns evenly spaced pose times within the sweeps of a recording without IMU.
 std::vector<ImuSample> instants(const sim::LidarRecord& lidar) {
   std::vector<ImuSample> out;
   const std::size_t sweeps = bridge::sweep_count(lidar);

@@ -10,13 +10,13 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr TimeNs kSilentNs = 50'000'000;  // a sensor that says nothing for so long is sick
+constexpr TimeNs kSilentNs = 50'000'000;  // a longer silence counts as a sensor fault
 constexpr double kSwitchPriorM = 0.5;
 constexpr double kSwitchPriorRad = 0.3;
-constexpr double kHealthyRad = 0.05;  // what rotation by a healthy gyro may be off by
+constexpr double kHealthyRad = 0.05;  // rotation error with a healthy gyro
 
-/// Rotation from the gyro while it is healthy, else the last rotation goes on; translation at constant velocity. The
-/// gyro is sick over a sweep in which an axis is at its rail, where that is found to be, or in which it is silent.
+/// Uses the gyro's rotation while it is healthy, else repeats the last rotation; translation has constant velocity. The
+/// gyro is unhealthy in sweeps with a saturated axis or a silence.
 class HealthSwitch : public TrajectoryModel {
  public:
   HealthSwitch(std::span<const ImuSample> samples, std::span<const RateState> rates, const StartAtRest& start)

@@ -5,12 +5,12 @@
 #include "scenarios/methods/sweep_log.hpp"
 #include "tumble/mapping/voxel_map.hpp"
 
-/// Maps of the rolling sphere from the poses of a position method, as published: nothing is registered.
+/// Builds maps of the rolling sphere from the poses of a position method, as published, without registration.
 namespace tumble::scenarios {
 
 namespace {
 
-/// The map's numbers as those of a registration are called.
+/// Parameters of the map, named as those of the registration methods.
 struct MapParams {
   VoxelMap::Params map;
   double nearest_m = 0.3;
@@ -41,7 +41,7 @@ const Method& tumble() {
   return method;
 }
 
-/// Poses of the body in time order, asked for in time order too.
+/// Interpolates poses of the body; query times must increase.
 class Track {
  public:
   Track(const std::vector<PoseState>& poses, const Eigen::Vector3d& centre_B_m)
@@ -49,7 +49,7 @@ class Track {
   bool covers(std::int64_t time_ns) const {
     return !poses_.empty() && time_ns >= poses_.front().time_ns && time_ns <= poses_.back().time_ns;
   }
-  /// Interpolated; O(1) for times near the last one asked for.
+  /// O(1) for times close to the previous query.
   Eigen::Isometry3d at(std::int64_t time_ns) {
     while (next_ > 1 && poses_[next_ - 1].time_ns > time_ns) --next_;
     while (next_ + 1 < poses_.size() && poses_[next_].time_ns < time_ns) ++next_;
@@ -65,8 +65,8 @@ class Track {
   std::size_t next_ = 1;
 };
 
-// the lidar's place is known from the centre of mass, some mm from the centre; methods that do not say where take them
-// for one
+// The lidar is calibrated from the centre of mass, a few millimetres from the sphere's centre. Methods that do not
+// estimate this offset assume zero.
 Estimate map_from_poses(const Method& position, const sim::Sensors& sensors, const sim::Values& parameters) {
   Estimate estimate = position.run(sensors, values_of(position, parameters), {});
   estimate.contacts.clear();
@@ -121,7 +121,7 @@ Estimate run_poses_tumble(const sim::Sensors& sensors, const sim::Values& parame
   return map_from_poses(tumble(), sensors, parameters);
 }
 
-/// A map from the poses of `position`.
+/// Returns a slam method that maps from the poses of `position`.
 Method posed(MethodInfo info, const Method& position, RunCore run) {
   info.kind = Kind::slam;
   info.settings = stages_after({&map_settings()}, position);

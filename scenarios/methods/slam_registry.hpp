@@ -10,7 +10,7 @@
 #include "scenarios/methods/registry.hpp"
 #include "tumble/common/imu.hpp"
 
-/// Slam methods beside those of registry.hpp, and what several of them share.
+/// Slam methods in addition to registry.hpp, and their shared parts.
 namespace tumble::scenarios {
 
 Method slam_published();
@@ -23,18 +23,18 @@ Method slam_floor();
 Method slam_tumble_lag();
 Method slam_tumble_live();
 
-/// What tells one slam method of the rig from another.
+/// Distinguishes the slam methods of the rig.
 struct RigSlam {
   std::string name, doc;
   bool ours = false;
-  std::string source = {};  ///< unless ours
+  std::string source = {};  ///< empty for our methods
   std::vector<const SettingsTable*> settings;
   bool needs_truth = false;
   bool baseline = false;
 };
 Method rig_slam(RigSlam what, RunCore run);
 
-/// An estimate that holds what `rates` made of the primary IMU's `samples`, or the trouble on the way.
+/// Starts an estimate with the rates that `rates` computes from the primary IMU's `samples`, or with the error.
 Estimate begin_with_rates(const sim::Sensors& sensors, std::vector<ImuSample>& samples,
                           const std::function<Status(Estimate&)>& rates);
 

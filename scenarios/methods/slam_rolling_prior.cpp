@@ -12,15 +12,15 @@
 #include "scenarios/methods/sphere_attitude.hpp"
 #include "tumble/common/so3.hpp"
 
-/// A map of the rolling sphere by the registration of the rig, with rolling odometry as its prior.
+/// Maps from a rolling sphere with the rig's registration, with rolling odometry as its prior.
 namespace tumble::scenarios {
 
 namespace {
 
-// Of the sweep's start by the last one's end, over 0.1 s, beside what the velocity is off by.
+// Uncertainty of a sweep's start relative to the last sweep's end, over 0.1 s, in addition to the velocity's.
 constexpr double kPriorSigmaM = 1e-4, kPriorSigmaRad = 2e-5, kPriorSigmaMS = 1e-4, kForceSigmaShare = 2e-3;
 
-/// Those of the chain, with a prior as tight as rolling makes it: sweep after sweep looks where no map is yet.
+/// The chain's parameters with a tight prior from rolling, because consecutive sweeps see new, unmapped areas.
 const Settings<SlamParams>& prior_settings() {
   static const Settings<SlamParams> all = [] {
     SlamParams params;
@@ -28,13 +28,13 @@ const Settings<SlamParams>& prior_settings() {
     params.odometry.expert.prior.sigma_rad = kPriorSigmaRad;
     params.odometry.expert.prior.sigma_m_s = kPriorSigmaMS;
     params.odometry.expert.prior.force_share = kForceSigmaShare;
-    // of the samples that were made along the poses
+    // these belong to the generated samples
     return slam_settings(params, {"gravity_m_s2", "correction_max_m", "correction_max_rad"});
   }();
   return all;
 }
 
-/// What rolling is to the registration: a velocity that is nearly known, and with it poses.
+/// Parameters of the velocity prior from rolling.
 struct AlongParams {
   double gravity_m_s2 = 1.2;
   double grip_sigma_share = 4e-3, still_sigma_m_s = 3e-4, loose_sigma_share = 0.1, loose_sigma_m_s = 0.03;
@@ -84,14 +84,14 @@ const Settings<AlongParams>& along_settings() {
   return all;
 }
 
-/// Whose poses the registration follows.
+/// Position method whose poses the registration follows.
 const Method& followed() {
   static const Method method = position_tumble();
   return method;
 }
 
-/// Readings that an IMU would have had along the poses of the position method, in a world of little gravity: the
-/// mapper, which integrates them within a sweep, then follows the rolling odometry.
+/// Generates IMU readings along the poses of the position method, with little gravity. The mapper integrates them
+/// within a sweep and thus follows the rolling odometry.
 std::vector<ImuSample> samples_along(const Estimate& poses, const sim::Sensors& sensors, std::span<const ImuSample> raw,
                                      double gravity_m_s2) {
   const Eigen::Isometry3d& T_BI = sensors.imus.front().T_BI;
@@ -124,22 +124,24 @@ struct Radius {
   double m = 0.0, sigma_m = 0.0;
 };
 
-/// The radius by which rolling of `radius_m` goes as far as the registered sweeps do, over segments on which the
-/// contact held. None when there are too few.
+/// Estimates the radius at which the rolled distance equals that of the registered sweeps, over segments with
+/// continuous contact. Empty if there are too few segments.
 std::optional<Radius> radius_by_lidar(const Estimate& rolled, const Estimate& registered, const sim::Sensors& sensors,
                                       double radius_m, const AlongParams& params) {
   const Eigen::Isometry3d T_IG =
       sensors.imus.front().T_BI.inverse(Eigen::Isometry) * Eigen::Translation3d(rolled.centre_B_m);
   double squares = 0.0, products = 0.0;
-  std::vector<Eigen::Vector2d> segments;  // rolled, registered
-  bool open = false;                      // a segment has begun there:
+  std::vector<Eigen::Vector2d> segments;  // rolled and registered distance
+  bool open = false;                      // a segment has started
   Eigen::Vector3d from_rolled = Eigen::Vector3d::Zero(), from_registered = Eigen::Vector3d::Zero();
   std::size_t k = 0;
   for (const LidarInertialOdometry::SweepReport& sweep : registered.sweeps) {
     for (; k + 1 < rolled.poses.size() && rolled.poses[k].time_ns < sweep.pose.time_ns; ++k) {
       if (rolled.contacts[k] != sim::ContactLabel::grip) open = false;
     }
-    if (sweep.verdict != SweepVerdict::registered) continue;  // placed by inertia, which is the rolling itself
+    if (sweep.verdict != SweepVerdict::registered)
+      continue;  // a predicted pose is rolling itself, hence no
+                 // independent measurement
     const Eigen::Vector3d p_rolled = rolled.poses[k].p_WA_m;
     const Eigen::Vector3d p_registered =
         (Eigen::Translation3d(sweep.pose.p_WA_m) * sweep.pose.q_WA * T_IG).translation();
@@ -166,7 +168,7 @@ std::optional<Radius> radius_by_lidar(const Estimate& rolled, const Estimate& re
 
 constexpr const char* kRadius = "radius_m";
 
-/// Poses by the rolling of a sphere of `radius_m`, without the lidar.
+/// Estimates poses of a rolling sphere of `radius_m` without the lidar.
 Estimate roll(const sim::Sensors& sensors, const sim::Values& parameters, double radius_m) {
   sim::Sensors own;
   own.robot = sensors.robot;
@@ -178,7 +180,7 @@ Estimate roll(const sim::Sensors& sensors, const sim::Values& parameters, double
   return followed().run(own, values, {});
 }
 
-/// What the poses say of the velocity of the primary IMU. `loosely`: of a radius that may be another.
+/// Returns the velocity of the primary IMU along the poses. `loosely` allows for an uncertain radius.
 KnownMotion motion_of(const Estimate& rolled, std::span<const ImuSample> samples, const sim::Sensors& sensors,
                       const AlongParams& params, bool loosely) {
   const Eigen::Isometry3d& T_BI = sensors.imus.front().T_BI;
@@ -216,7 +218,7 @@ Estimate register_along(const Estimate& rolled, const sim::Sensors& sensors, std
   const AlongParams params = along_settings().read(parameters);
   const std::vector<ImuSample> samples = samples_along(rolled, sensors, raw, params.gravity_m_s2);
   estimate.status = raw_rates(sensors, samples, estimate.rates);
-  // what the gyro's noise did to the poses is in the prior
+  // the prior already contains the gyro noise
   for (RateState& rate : estimate.rates) rate.covariance_rad2_s2.setZero();
   const KnownMotion motion = motion_of(rolled, samples, sensors, params, loosely);
   SlamChain chain;
@@ -225,7 +227,7 @@ Estimate register_along(const Estimate& rolled, const sim::Sensors& sensors, std
   return estimate;
 }
 
-/// Twice: loosely, which tells the radius, and then as tightly as rolling of that radius is sure.
+/// Runs twice: loosely to estimate the radius, then tightly with rolling of that radius.
 Estimate run_rolling_prior(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   Estimate estimate;
   estimate.frame = Frame::imu;

@@ -10,10 +10,10 @@
 /// Parameters of the lidar-inertial chain (run_slam_chain).
 namespace tumble::scenarios {
 
-/// Those of the library, on the rig, and what the chain makes of the calibration.
+/// Parameters of the library for the rig, and the chain's use of the calibration.
 struct SlamParams {
   LidarInertialOdometry::Params odometry = on_the_rig();
-  bool flight_arc = false;  ///< odometry.body is the robot's, from the calibration
+  bool flight_arc = false;  ///< odometry.body is taken from the robot's calibration
 
   static LidarInertialOdometry::Params on_the_rig();
 
@@ -27,18 +27,18 @@ struct SlamParams {
   }
 };
 
-/// With what calibrations of a rig that was put together by hand may be off by.
+/// Adds calibration uncertainties of a hand-assembled rig.
 SlamParams with_calibration(SlamParams params);
-/// Few matches are believed where they agree with the prior: baselines do not, and stay what they were. Read as it
-/// stands a clipped gyro is led astray by them (`hill` 8, 272 m off).
+/// Accepts registrations with few matches if they agree with the prior. Baselines do not use this: a clipped gyro makes
+/// the prior wrong (`hill` seed 8: 272 m of error).
 SlamParams with_few_matches(SlamParams params);
-/// With the saturation deficit of clipped axes estimated in the registration.
+/// Estimates the saturation deficit of clipped axes in the registration.
 SlamParams with_saturation_deficit(SlamParams params);
 
-/// The parameters of a method on the chain; what the recording states, and of `fixed` nothing.
+/// Returns the parameters of a method on the chain. The recording's values and `fixed` are not settable.
 Settings<SlamParams> slam_settings(const SlamParams& defaults, std::vector<std::string> fixed = {});
 
-/// The chain's part of a method's parameters. Both outlive the run.
+/// The chain's part of a method's parameters. Both must outlive the run.
 struct SlamStage {
   const Settings<SlamParams>& settings;
   const sim::Values& parameters;

@@ -18,13 +18,12 @@ const Settings<SlamParams>& slam_tumble_gyro_only_settings() {
   return all;
 }
 
-/// What a clipped reading may hide, from which the registration starts: so many times the reading, and that share of
-/// what a cubic over the gap lies beyond it.
+/// Initial value for a clipped rate: `readings` times the reading, plus a share of the excess of a cubic over the gap.
 struct Guess {
   double readings, share_of_cubic;
 };
-/// In the order in which they hold most maps (docs/figures.md): a registration finds a rate that its start is within
-/// some 3 rad/s of, and the gaps of one tumble are long and short.
+/// Sorted by how many maps succeed (docs/figures.md). Registration converges from within about 3 rad/s of the true
+/// rate, so gaps of different lengths need different values.
 constexpr std::array<Guess, 10> kGuesses = {{{1.0, 0.7},
                                              {1.2, 0.0},
                                              {1.0, 1.0},
@@ -36,7 +35,7 @@ constexpr std::array<Guess, 10> kGuesses = {{{1.0, 0.7},
                                              {1.0, 0.3},
                                              {1.0, 1.5}}};
 
-/// A cubic over each gap of each axis; rails are looked for as tilted planes.
+/// Interpolates each gap of each axis by a cubic; saturation limits may be tilted planes.
 Status cubic_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, std::vector<RateState>& out) {
   baselines::ClippedBaseline::Params params;
   params.tilted_rails = true;

@@ -21,8 +21,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-// The lever arm has no default: it is stated by the recording, and a zero stands for it until then.
-TumblingOdometry::Params defaults() {
+// The recording states the lever arm; zero is a placeholder until then.
+TumblingOdometry::Params lag_defaults() {
   TumblingOdometry::Params out;
   out.lever_arm_I_m.setZero();
   return out;
@@ -30,10 +30,10 @@ TumblingOdometry::Params defaults() {
 
 const Settings<TumblingOdometry::Params>& slam_tumble_lag_settings() {
   static const Settings<TumblingOdometry::Params> all(
-      defaults(),
+      lag_defaults(),
       {.stated = {"imu_*", "lever_arm_x_m", "lever_arm_y_m", "lever_arm_z_m", "gravity_m_s2",
                   "mapping_accel_rail_m_s2"},
-       // the door's own numbers take the place of these
+       // replaced by parameters of TumblingOdometry
        .fixed = {"rate_lever_arm_sigma_m", "rate_gyro_noise_density", "rate_accel_noise_density", "rate_rails_stated_*",
                  "rate_period_s", "rate_lag_s", "rate_evidence_gravity_m_s2", "rate_carried_gravity_m_s2",
                  "rate_carried_gap_max_s", "rate_carried_period_s", "rate_carried_lag_s", "rate_carried_iterations_max",
@@ -59,13 +59,13 @@ TumblingOdometry::Params stated_params(const sim::Sensors& sensors, const sim::V
   return params;
 }
 
-/// Of which words of the door an estimate is made.
+/// Which output of TumblingOdometry makes the estimate.
 enum class Word {
-  live,  ///< the pose at each sample of the IMU when it has just come
-  last,  ///< each sweep's trajectory when nothing refines it any more
+  live,  ///< pose at each IMU sample, as soon as the sample is processed
+  last,  ///< final trajectory of each sweep
 };
 
-/// Collects what the door says into an estimate.
+/// Collects the output of TumblingOdometry in an estimate.
 class Listener {
  public:
   Listener(Word word, const TumblingOdometry::Params& params, Estimate& estimate)
@@ -74,14 +74,16 @@ class Listener {
         localisation_(params.expert.mapping.expert.matching.distance_m),
         estimate_(estimate) {}
 
-  /// A sample has just been taken in.
+  /// Called after each processed sample.
   void heard(const TumblingOdometry& odometry) {
     PoseState pose;
-    if (word_ == Word::live && odometry.newest(pose).ok()) live_.push_back(pose);
+    if (word_ != Word::live || !odometry.newest(pose).ok()) return;
+    // while a sample is held the newest pose stays that of the sample before
+    if (live_.empty() || pose.time_ns > live_.back().time_ns) live_.push_back(pose);
   }
   void take(TumblingOdometry& odometry) {
     while (std::optional<TumblingOdometry::Sweep> sweep = odometry.take()) {
-      if (sweep->report.trajectory.empty()) {  // the IMU begins after it
+      if (sweep->report.trajectory.empty()) {  // the IMU starts after the sweep
         count_trouble(sweep->status, estimate_);
         continue;
       }
@@ -92,7 +94,7 @@ class Listener {
       apply_next(std::move(smoothed));
     }
   }
-  /// The run has ended.
+  /// Called at the end of the run.
   void conclude(const TumblingOdometry& odometry) {
     for (std::vector<PoseState>& open : odometry.mapper().open_trajectories()) apply_next(std::move(open));
     if (word_ == Word::live) speak_live();
@@ -105,8 +107,8 @@ class Listener {
     apply_smoothed(std::move(smoothed), estimate_.sweeps[smoothed_++]);
   }
 
-  /// Of each sweep what was said while it lasted takes the place of what is known of it since. One that had ended
-  /// before the first live pose, at rest some 0.3 s after the start, stays as it is.
+  /// Replaces the trajectory of each sweep by its live poses. Sweeps before the first live pose, at rest about 0.3 s
+  /// after the start, are unchanged.
   void speak_live() {
     auto next = live_.begin();
     for (SweepReport& sweep : estimate_.sweeps) {
@@ -127,7 +129,7 @@ class Listener {
   std::vector<PoseState> live_;
 };
 
-/// The recording as a robot lives it: each sample when its window ends, each sweep when its last point was fired.
+/// Feeds the recording in real-time order: each sample at the end of its window, each sweep after its last point.
 Status live_through(const sim::Sensors& sensors, std::span<const ImuSample> samples, TumblingOdometry& odometry,
                     Listener& listener) {
   const sim::LidarRecord& lidar = sensors.lidars.front();
@@ -161,7 +163,7 @@ Estimate run_slam_tumble_lag(const sim::Sensors& sensors, const sim::Values& par
     estimate.status = {Trouble::empty, "lidars", 0.0, 1.0};
     return estimate;
   }
-  (void)check_imu(sensors, samples, estimate);  // a warning, as for attitudes
+  (void)check_imu(sensors, samples, estimate);  // Only a warning, as for attitudes.
   (void)check_flights(sensors, samples, std::nullopt, estimate);
   tell_frozen_axes(sensors, samples, estimate);
   const TumblingOdometry::Params params = stated_params(sensors, parameters);
@@ -170,6 +172,9 @@ Estimate run_slam_tumble_lag(const sim::Sensors& sensors, const sim::Values& par
   estimate.status = live_through(sensors, samples, odometry, listener);
   if (!estimate.status.ok()) return estimate;
   tell_rails(odometry.rails(), estimate.health);
+  const std::size_t left_out = sensors.imus.front().time_ns.size() - samples.size();
+  estimate.health["rejected_readings"] = static_cast<double>(left_out + odometry.rejected_readings());
+  if (odometry.early_sweeps() > 0) estimate.health["sweeps_before_imu"] = static_cast<double>(odometry.early_sweeps());
   estimate.health["gaps"] = static_cast<double>(odometry.gaps());
   estimate.health["passed_again"] = odometry.passed_again() ? 1.0 : 0.0;
   listener.conclude(odometry);

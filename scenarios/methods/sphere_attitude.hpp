@@ -10,16 +10,16 @@
 #include "sim/recording.hpp"
 #include "tumble/common/imu.hpp"
 
-/// The attitude that position methods of the sphere stand on when they bring none of their own.
+/// Attitude input for position methods of the sphere that do not estimate attitude.
 namespace tumble::scenarios {
 
-/// Samples of the primary IMU without the gyro's bias at rest, and the attitude at the end of each sample's window.
+/// Samples of the primary IMU without the gyro bias at rest, and the attitude at the end of each sample's window.
 struct SphereAttitude {
   std::vector<ImuSample> samples;
-  std::vector<Eigen::Quaterniond> q_WI;  ///< parallel to `samples`, yaw 0 at the first
+  std::vector<Eigen::Quaterniond> q_WI;  ///< parallel to `samples`; yaw starts at 0
 };
 
-/// How long the rest at the start is.
+/// Duration of the rest at the start.
 struct RestParams {
   double rest_s = 1.0;
 
@@ -31,20 +31,20 @@ struct RestParams {
 };
 const Settings<RestParams>& rest_settings();
 
-/// Bias and tilt are means over the first `rest_s`, then the gyro is integrated. Trouble: that of the samples and of
-/// the levelling. Throws BadInput, naming `method`, when the recording is not one of a sphere. O(N).
+/// Averages bias and tilt over the first `rest_s`, then integrates the gyro. Errors: those of the samples and of the
+/// levelling. Throws BadInput, naming `method`, if the recording is not from a sphere. O(N).
 Status sphere_attitude(const char* method, const sim::Sensors& sensors, double rest_s, SphereAttitude& out);
 
-/// The pose of the sphere's centre in body axes, from that of the IMU's axes.
+/// Returns the pose of the sphere's centre in body axes, from the attitude of the IMU.
 PoseState centre_pose(const sim::Sensors& sensors, TimeNs time_ns, const Eigen::Quaterniond& q_WI,
                       const Eigen::Vector3d& p_WG_m, const Eigen::Vector3d& v_WG_m_s);
 
-/// `slide` when the centre travels faster than the sphere turns, `slip` when it turns faster: the label of a contact
-/// point that is known to move along the floor.
+/// Labels a contact point that moves along the floor: `slide` if the centre travels faster than the sphere rotates,
+/// `slip` if the sphere rotates faster.
 sim::ContactLabel slip_or_slide(double radius_m, const Eigen::Quaterniond& q_WI, const Eigen::Vector3d& w_WI_I_rad_s,
                                 const Eigen::Vector3d& v_WG_m_s);
 
-/// Throws BadInput, naming `method`, unless the sensors are those of a sphere.
+/// Throws BadInput, naming `method`, unless the sensors belong to a sphere.
 void require_sphere(const char* method, const sim::Sensors& sensors);
 
 }  // namespace tumble::scenarios

@@ -21,11 +21,11 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr double kSilentMaxS = 0.05;  // without readings for longer, a unit is absent
-constexpr double kEdgeShare = 0.9;    // of a sample, by which the readings at either end are carried on
-constexpr double kSilentToldS = 0.5;  // and for so long, told
-// Of an element whose rail was not seen the row is taken to be upright, without doubt: doubted by 0.03 as noise of each
-// reading, three units tell too little of the rate while they clip (slip_long, draws 4, 30 and 42).
+constexpr double kSilentMaxS = 0.05;  // a unit without readings for longer is absent
+constexpr double kEdgeShare = 0.9;    // fraction of a sample period over which end readings are extrapolated
+constexpr double kSilentToldS = 0.5;  // a longer silence is reported
+// Elements without an observed saturation plane are assumed aligned and exact. With a slope uncertainty of 0.03, three
+// clipped units would no longer determine the rate (slip_long, seeds 4, 30 and 42).
 constexpr double kUnknownSlope = 0.0;
 
 ImuSample absent(TimeNs time_ns) {
@@ -35,12 +35,15 @@ ImuSample absent(TimeNs time_ns) {
   return sample;
 }
 
-/// What there is of a unit: readings that are finite, in order and within its device's range. Throws BadInput when its
+/// Returns a unit's usable readings: finite, in order and within the device's range. Throws BadInput if the record's
 /// arrays differ in length.
 std::vector<ImuSample> readings_of(const sim::ImuRecord& record, Status& status, int& beyond_range) {
   std::vector<ImuSample> samples;
   status = bridge::imu_samples(record, samples);
-  if (status.ok()) return samples;
+  if (status.ok()) {
+    beyond_range += static_cast<int>(record.time_ns.size() - samples.size());
+    return samples;
+  }
   for (std::size_t k = 0; k < record.time_ns.size(); ++k) {
     const TimeNs time_ns = record.time_ns[k];
     if (!record.gyro_rad_s[k].allFinite() || !record.accel_m_s2[k].allFinite()) continue;
@@ -54,8 +57,8 @@ std::vector<ImuSample> readings_of(const sim::ImuRecord& record, Status& status,
   return samples;
 }
 
-/// Sets the flags of what a unit's readings are judged to be, and tells along what its elements sense. The unit may
-/// have frozen.
+/// Sets the clip flags of a unit's readings and estimates the directions of its elements. The unit may have frozen
+/// axes.
 void judge(const sim::ImuRecord& record, std::vector<ImuSample>& samples, ElementRows& gyro, ElementRows& accel) {
   ClippingFinder::Params params;
   params.upright_rails = stated_rails(record);
@@ -70,8 +73,8 @@ void judge(const sim::ImuRecord& record, std::vector<ImuSample>& samples, Elemen
   accel = found.rails.rows(Triad::accelerometer, kUnknownSlope);
 }
 
-/// Readings of a unit at the times of another. Absent where the nearest reading is further off than kSilentMaxS, and a
-/// sample's length before the first and after the last.
+/// Resamples a unit's readings to the times of another. Absent where the nearest reading is further away than
+/// kSilentMaxS, and beyond a sample period outside the readings.
 std::vector<ImuSample> at_times_of(const std::vector<ImuSample>& primary, const std::vector<ImuSample>& own) {
   std::vector<ImuSample> out;
   out.reserve(primary.size());
@@ -94,7 +97,7 @@ std::vector<ImuSample> at_times_of(const std::vector<ImuSample>& primary, const 
   return out;
 }
 
-/// All units at the same times.
+/// All units resampled to the same times.
 struct Units {
   std::vector<std::string> names;
   std::vector<Eigen::Isometry3d> T_BI;
@@ -104,7 +107,7 @@ struct Units {
   int resampled = 0, beyond_range = 0;
 };
 
-/// The longest time within `first_ns` to `last_ns` for which a unit reads nothing.
+/// Returns the longest time without a reading of the unit within `first_ns` to `last_ns`.
 TimeNs longest_silence(const std::vector<ImuSample>& unit, TimeNs first_ns, TimeNs last_ns) {
   TimeNs longest_ns = std::max(unit.front().time_ns - first_ns, last_ns - unit.back().time_ns);
   for (std::size_t k = 1; k < unit.size(); ++k) {
@@ -113,8 +116,7 @@ TimeNs longest_silence(const std::vector<ImuSample>& unit, TimeNs first_ns, Time
   return longest_ns;
 }
 
-/// Whose times are taken, of those without trouble: the first one's, but of a later one that reads on where it is
-/// silent.
+/// Chooses the valid unit that supplies the times: the first one, or a later one without silences.
 std::optional<std::size_t> choose_base(const std::vector<std::vector<ImuSample>>& readings,
                                        const std::vector<Status>& statuses) {
   TimeNs first_ns = std::numeric_limits<TimeNs>::max(), last_ns = std::numeric_limits<TimeNs>::min();
@@ -190,14 +192,14 @@ Status run(const ImuMerge& merge, const Units& units, ImuMerge::State& state, st
   return {};
 }
 
-/// Takes the readings of `unit` away from `from_ns` on.
+/// Marks the readings of `unit` from `from_ns` on as absent.
 void silence(std::vector<ImuSample>& unit, TimeNs from_ns, TimeNs to_ns = std::numeric_limits<TimeNs>::max()) {
   for (ImuSample& sample : unit) {
     if (sample.time_ns >= from_ns && sample.time_ns <= to_ns) sample = absent(sample.time_ns);
   }
 }
 
-/// Since when a unit has been silent up to the end, or where it was for long.
+/// Returns the start of a silence that lasts to the end or is long.
 std::optional<TimeNs> silent_since(const std::vector<ImuSample>& unit) {
   std::size_t from = unit.size();
   for (std::size_t k = 0; k <= unit.size(); ++k) {
@@ -221,7 +223,8 @@ Status frozen_in_all(const FrozenAxis& axis) {
   return {Trouble::out_of_range, field, seconds(axis.to_ns - axis.from_ns), FrozenAxes::Params{}.frozen_s};
 }
 
-/// Takes away what units read while one of their axes was frozen, and tells of it; trouble where that leaves nothing.
+/// Marks readings as absent while an axis of their unit is frozen, and reports this. Returns an error if no unit
+/// remains.
 Status leave_out_frozen(Units& units, std::vector<Doubt>& out) {
   const TimeNs start_ns = units.samples[0].front().time_ns;
   std::optional<FrozenAxis> any;
@@ -242,7 +245,7 @@ Status leave_out_frozen(Units& units, std::vector<Doubt>& out) {
   return {};
 }
 
-/// The ranges that the first unit's device states.
+/// Sets the ranges stated for the first unit's device.
 void give_ranges(const sim::ImuRecord& primary, MergedImus& out, ImuMerge::Params& params) {
   if (primary.stated_gyro_range_rad_s > 0.0) out.gyro_range_rad_s = sure_range(primary.stated_gyro_range_rad_s);
   if (primary.stated_accel_range_m_s2 > 0.0) out.accel_range_m_s2 = sure_range(primary.stated_accel_range_m_s2);
@@ -268,7 +271,7 @@ void erase_unit(Units& units, std::size_t unit) {
   units.accel_elements.erase(units.accel_elements.begin() + at);
 }
 
-/// Takes away what the merge has found out, from the beginning of it: whether there was anything.
+/// Marks the readings of faulty units as absent from the start of the fault. Returns true if there were any.
 bool leave_out_found(const ImuMerge::State& state, Units& units, std::vector<Doubt>& out) {
   const TimeNs start_ns = units.samples[0].front().time_ns;
   bool any = false;
@@ -287,7 +290,7 @@ bool leave_out_found(const ImuMerge::State& state, Units& units, std::vector<Dou
   return any;
 }
 
-/// What the merge has learnt of the units, and of where it stands between them.
+/// Reports the estimated calibration of the units, and of the merged unit's position between them.
 void tell_units(const ImuMerge& merge, const ImuMerge::State& state, const Units& units, MergedImus& out) {
   out.units = static_cast<int>(units.names.size());
   out.lever_arm_m = merge.p_C_m();

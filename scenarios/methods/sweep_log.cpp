@@ -33,6 +33,14 @@ void leave_out_unfinished(Estimate& estimate) {
   estimate.health["sweeps_unfinished"] += 1.0;
 }
 
+bool leave_out_before_map(const Status& status, const SweepReport& report, Estimate& estimate) {
+  const bool of_the_sweep = status.trouble == Trouble::too_few || status.trouble == Trouble::empty ||
+                            status.trouble == Trouble::non_finite || status.trouble == Trouble::degenerate;
+  if (!of_the_sweep || !report.trajectory.empty() || !estimate.sweeps.empty()) return false;
+  count_trouble(status, estimate);
+  return true;
+}
+
 bool run_over_sweeps(const sim::LidarRecord& lidar, const SweepMapper& mapper, Estimate& estimate) {
   const std::size_t sweeps = bridge::sweep_count(lidar);
   for (std::size_t k = 0; k < sweeps; ++k) {
@@ -45,6 +53,7 @@ bool run_over_sweeps(const sim::LidarRecord& lidar, const SweepMapper& mapper, E
     }
     SweepReport report;
     const Status status = mapper.add(sweep, report);
+    if (leave_out_before_map(status, report, estimate)) continue;
     if (!append_sweep(status, sweep.end_ns, std::move(report), estimate)) return false;
     append_poses(estimate.sweeps.back().trajectory, estimate);
   }

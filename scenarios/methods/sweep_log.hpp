@@ -7,33 +7,38 @@
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/method.hpp"
 
-/// What every chain over sweeps does with each of them: counted, told and put into the estimate.
+/// Per-sweep bookkeeping shared by all slam chains: counts, reports and results.
 namespace tumble::scenarios {
 
 using SweepReport = LidarInertialOdometry::SweepReport;
 
-/// Counts the trouble of a sweep, if any, as `sweeps_NAME` in the estimate's health.
+/// Counts the error of a sweep, if any, as `sweeps_NAME` in the estimate's health.
 void count_trouble(const Status& status, Estimate& estimate);
 
-/// Counts the trouble and the verdict of a sweep that ends at `end_ns` and appends it. A covered lidar is a fact of
-/// life: false, and the trouble is the estimate's, only where the sweep was not placed at all.
+/// Counts the error and verdict of the sweep that ends at `end_ns`, and appends the sweep. Returns false, with the
+/// error as the estimate's status, only if the sweep has no pose. A covered lidar is not an error.
 bool append_sweep(const Status& status, TimeNs end_ns, SweepReport report, Estimate& estimate);
 
-/// Those that are later than the last: sweeps share the IMU's time at their border, and the earlier one has it.
+/// Appends the poses later than the last one. Consecutive sweeps share the IMU sample at their boundary; the earlier
+/// sweep keeps it.
 void append_poses(std::span<const PoseState> trajectory, Estimate& estimate);
 
-/// One that the IMU does not cover is counted, and left out.
+/// Counts and drops a sweep that the IMU does not cover.
 void leave_out_unfinished(Estimate& estimate);
 
-/// A mapper as the loop over sweeps knows it.
+/// Counts the error of a sweep that has no pose because it came before the IMU or had too few points to start the map.
+/// Returns false for any other sweep.
+bool leave_out_before_map(const Status& status, const SweepReport& report, Estimate& estimate);
+
+/// Interface of a mapper for the loop over sweeps.
 struct SweepMapper {
-  /// Whether the IMU covers the sweep. Trouble on the way is the estimate's, and ends the run.
+  /// Returns true if the IMU covers the sweep. An error is set as the estimate's status and ends the run.
   std::function<bool(const bridge::Sweep&)> covers;
   std::function<Status(const bridge::Sweep&, SweepReport&)> add;
 };
 
-/// Gives each sweep to the mapper, in order, and gathers their poses; `too_few` where none was registered. False where
-/// trouble ended the run before the last.
+/// Processes all sweeps in order and collects their poses; status `too_few` if none was registered. Returns false if an
+/// error ended the run early.
 bool run_over_sweeps(const sim::LidarRecord& lidar, const SweepMapper& mapper, Estimate& estimate);
 
 }  // namespace tumble::scenarios

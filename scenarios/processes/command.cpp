@@ -26,7 +26,7 @@ void limit(int resource, double value) {
   setrlimit(static_cast<__rlimit_resource>(resource), &both);
 }
 
-/// In the child. Returns only when the program cannot be started; `problem` then says why.
+/// Runs in the child. Returns only if the program cannot be started, with the reason in `problem`.
 void become(const Command& command, std::string& problem) {
   signal(SIGINT, SIG_DFL);
   signal(SIGHUP, SIG_DFL);
@@ -41,18 +41,18 @@ void become(const Command& command, std::string& problem) {
     problem = command.transcript.string() + ": " + strerror(errno);
     return;
   }
-  for (const int descriptor : command.descriptors) fcntl(descriptor, F_SETFD, 0);  // open beyond exec
+  for (const int descriptor : command.descriptors) fcntl(descriptor, F_SETFD, 0);  // keep open across exec
   for (const auto& [name, value] : command.environment) setenv(name.c_str(), value.c_str(), 1);
   std::vector<char*> words;
   for (const std::string& word : command.words) words.push_back(const_cast<char*>(word.c_str()));
   words.push_back(nullptr);
-  // last, since this copy of the program may be larger than what the command may have: nothing is allocated below it
+  // Set last: this copy of the program may exceed the limit, and allocations would then fail.
   limit(RLIMIT_DATA, command.memory_limit_mib * kMib);
   execvp(words.front(), words.data());
   problem = command.words.front() + ": " + strerror(errno);
 }
 
-/// The first and the last `most` bytes of a file, all of one that has no more.
+/// Returns the first and last `most` bytes of a file, or all of a shorter one.
 std::string ends_of(const std::filesystem::path& path, std::size_t most) {
   std::ifstream file(path, std::ios::binary | std::ios::ate);
   if (!file) return {};
@@ -68,7 +68,7 @@ std::string ends_of(const std::filesystem::path& path, std::size_t most) {
   return text;
 }
 
-/// Of a long one its beginning, where the cause stands, and its end, whatever was traced between them.
+/// Returns the start of a long transcript, which usually has the cause, and its end.
 std::string words_of(const std::string& transcript) {
   std::string text = transcript;
   if (text.size() > 2 * kWords) text = text.substr(0, kWords) + " ... " + text.substr(text.size() - kWords);

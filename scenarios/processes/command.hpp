@@ -8,29 +8,29 @@
 
 namespace tumble::scenarios {
 
-/// A program of somebody else's with its words, and what it may use.
+/// An external program with its arguments and limits.
 struct Command {
-  std::vector<std::string> words;                  ///< the program, looked for in PATH, and its arguments; no shell
-  std::filesystem::path folder;                    ///< it starts in
-  std::map<std::string, std::string> environment;  ///< added to ours
-  std::filesystem::path transcript;                ///< file for what it prints and complains, replaced
-  std::vector<int> descriptors = {};               ///< of ours that it is given, by their numbers
-  double time_limit_s = 600.0;                     ///< of wall time
-  double memory_limit_mib = 8192.0;                ///< of data of each of its processes (RLIMIT_DATA)
+  std::vector<std::string> words;                  ///< the program, searched in PATH, and its arguments; no shell
+  std::filesystem::path folder;                    ///< working folder
+  std::map<std::string, std::string> environment;  ///< added to our environment
+  std::filesystem::path transcript;                ///< file for its standard output and error; replaced
+  std::vector<int> descriptors = {};               ///< our file descriptors that it inherits
+  double time_limit_s = 600.0;                     ///< wall time
+  double memory_limit_mib = 8192.0;                ///< data of each of its processes (RLIMIT_DATA)
 };
 
-/// How a command came to its end.
+/// How a command ended.
 struct CommandEnd {
   enum class How { done, failed, out_of_time, not_started };
   How how = How::done;
-  std::string reason;      ///< one line; empty when done
-  std::string last_words;  ///< the transcript on one line: its first and last 300 characters
-  std::string transcript;  ///< of a long one the first and the last half MiB
-  double cpu_s = 0.0;      ///< of the command, its own children not counted
+  std::string reason;      ///< one line; empty on success
+  std::string last_words;  ///< transcript on one line: first and last 300 characters
+  std::string transcript;  ///< first and last half MiB of a long transcript
+  double cpu_s = 0.0;      ///< of the command without its children
 };
 
-/// Runs the command to its end, in a process group of its own that dies with it; at the limit of time the whole group
-/// is killed. It dies with this process. Throws std::system_error when no process can be made.
+/// Runs the command in a separate process group. At the time limit the whole group is killed; the group also dies with
+/// this process. Throws std::system_error if no process can be started.
 CommandEnd run_command(const Command& command);
 
 }  // namespace tumble::scenarios

@@ -8,37 +8,37 @@
 
 namespace tumble::scenarios {
 
-/// A child process that writes to a pipe. The child dies with its parent, leaves no core file, and never returns into
-/// the caller's code. Linux only.
+/// A child process that writes to a pipe. It dies with its parent, leaves no core file, and never returns to the
+/// caller's code. Linux only.
 class Process {
  public:
   struct End {
     bool normal = false;  ///< exit status 0
-    int signal = 0;       ///< that ended it, 0 when none did
+    int signal = 0;       ///< signal that ended it, or 0
     int exit_code = 0;
-    double cpu_s = 0;              ///< used by the child, its own children not counted
+    double cpu_s = 0;              ///< used by the child without its children
     double peak_mib = 0;           ///< largest resident size
     std::string describe() const;  ///< "ended by signal 11 (Segmentation fault)"
-    /// Ended by something outside: SIGKILL (the system short of memory, an operator), SIGTERM, a quota of time.
+    /// Returns true if ended from outside: SIGKILL (out of memory, an operator), SIGTERM, or a time quota.
     bool killed() const;
   };
 
-  /// Forks and runs `work(write_end)` in the child, in a process group of its own when `own_group`. What `work` throws
-  /// ends the child with exit status 1. Throws std::system_error when no process can be made.
+  /// Forks and runs `work(write_end)` in the child, in a separate process group if `own_group`. An exception in `work`
+  /// ends the child with exit status 1. Throws std::system_error if no process can be started.
   explicit Process(const std::function<void(int)>& work, bool own_group);
-  /// The same for a child that is told something: `work(read_end, write_end)` reads what `tell` writes.
+  /// The same with input: `work(read_end, write_end)` reads what `tell` writes.
   explicit Process(const std::function<void(int, int)>& work, bool own_group);
-  /// Kills (the whole group) and collects what still runs.
+  /// Kills the process (or its group) and waits for it.
   ~Process();
   Process(Process&& other) noexcept;
   Process& operator=(Process&&) = delete;
 
   int read_end() const { return fd_; }
-  /// Writes all of `text` to a child that is told something; false when it reads no more.
+  /// Writes all of `text` to the child's input; false if it no longer reads.
   bool tell(const std::string& text);
-  /// Appends what the pipe holds. False at its end.
+  /// Appends the pipe's content; false at its end.
   bool read_available(std::string& buffer);
-  /// Waits until it has ended, which wait() then tells; false at the deadline (of now_s()).
+  /// Waits until the child has ended; false at the deadline (of now_s()). Collect the result with wait().
   bool ends_before(double deadline_s);
   void kill();
   End wait();
@@ -48,20 +48,20 @@ class Process {
 
   pid_t pid_ = -1;
   int fd_ = -1;
-  int told_fd_ = -1;  ///< our end of the socket that it reads
+  int told_fd_ = -1;  ///< our end of the child's input socket
   bool own_group_ = false;
 };
 
 inline constexpr double kMib = 1024.0 * 1024.0;  ///< bytes
 
-/// Of this process and of those that it makes: at most so much data (RLIMIT_DATA) each, and never more than whoever
-/// started it allows. What needs more is refused: std::bad_alloc, or no process.
+/// Limits the data (RLIMIT_DATA) of this process and each future child, within the inherited limit. Larger allocations
+/// fail with std::bad_alloc, or no process can be started.
 void limit_memory(double mib);
 
-/// Writes all of `text`; false when the reader is gone.
+/// Writes all of `text`; false if the reader is closed.
 bool write_all(int fd, const std::string& text);
 
-/// Monotonic time [s].
+/// Returns monotonic time [s].
 double now_s();
 
 }  // namespace tumble::scenarios

@@ -7,11 +7,11 @@
 
 namespace tumble::scenarios {
 
-/// Memory that a program is given by its descriptor (Command::descriptors): no file of any folder, gone with its last
-/// user. Linux only. Throws std::system_error when there is no room.
+/// Anonymous shared memory that a program inherits as a descriptor (Command::descriptors); freed by its last user.
+/// Linux only. Throws std::system_error if there is no memory.
 class SharedMemory {
  public:
-  /// Empty. `name` is for those who look into /proc.
+  /// Creates empty memory. `name` is visible in /proc.
   explicit SharedMemory(const char* name);
   ~SharedMemory();
   SharedMemory(const SharedMemory&) = delete;
@@ -19,10 +19,10 @@ class SharedMemory {
 
   int descriptor() const { return descriptor_; }
   void append(std::span<const std::byte> bytes);
-  /// From now on nobody, a child neither, can change it.
+  /// Makes the memory immutable for all processes.
   void seal();
   std::size_t size() const;
-  /// All that is in it, read through its start.
+  /// Returns the whole content.
   std::string contents() const;
 
  private:

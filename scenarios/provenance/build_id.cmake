@@ -1,4 +1,4 @@
-# Run at build time: writes OUTPUT from INPUT with the identity of the sources under ROOT. Touches nothing when unchanged.
+# Runs at build time: writes OUTPUT from INPUT with the identity of the sources under ROOT, only if it changed.
 file(GLOB_RECURSE sources LIST_DIRECTORIES false RELATIVE ${ROOT}
   ${ROOT}/estimator/*.hpp ${ROOT}/estimator/*.cpp ${ROOT}/sim/*.hpp ${ROOT}/sim/*.cpp
   ${ROOT}/scenarios/*.hpp ${ROOT}/scenarios/*.cpp ${ROOT}/scenarios/*.py ${ROOT}/tools/cmake/*.cmake

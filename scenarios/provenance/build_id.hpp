@@ -5,8 +5,8 @@
 
 namespace tumble::scenarios {
 
-/// Identity of the code that made an outcome: version, compiler, build type and the digest of the sources of estimator,
-/// sim and scenarios, taken at build time. Equal sources built alike have equal identities, whatever the machine.
+/// Returns the identity of the code: version, compiler, build type and digest of the sources of estimator, sim and
+/// scenarios at build time. Equal sources built alike have equal identities on any machine.
 const std::string& build_id();
 
 }  // namespace tumble::scenarios

@@ -7,8 +7,8 @@
 
 namespace tumble::scenarios {
 
-/// Digest of every file that a draw is made of, models, catalogue and named cases: outcomes of two catalogues do not
-/// mix in one database.
+/// Returns a digest of all files that determine draws: models, catalogue and named cases. Outcomes with different
+/// digests are not mixed in one database.
 std::string data_digest(const DataRoot& data);
 
 }  // namespace tumble::scenarios

@@ -12,10 +12,10 @@
 
 namespace tumble::scenarios {
 
-// numbers are hashed as they lie in memory
+// numbers are hashed in memory order
 static_assert(std::endian::native == std::endian::little);
 
-/// XXH3 of 128 bit over what it is fed with, in that order.
+/// Streaming XXH3 hash (128 bit).
 class Hasher {
  public:
   Hasher() : state_(XXH3_createState(), &XXH3_freeState) {
@@ -26,13 +26,13 @@ class Hasher {
     if (size > 0) XXH3_128bits_update(state_.get(), data, size);
   }
   void count(std::uint64_t number) { bytes(&number, sizeof(number)); }
-  /// Its length, then its bytes.
+  /// Hashes the length, then the bytes.
   void text(const std::string& text) {
     count(text.size());
     bytes(text.data(), text.size());
   }
 
-  /// 32 hexadecimal digits.
+  /// Returns 32 hexadecimal digits.
   std::string hex() const {
     const XXH128_hash_t hash = XXH3_128bits_digest(state_.get());
     char text[33];

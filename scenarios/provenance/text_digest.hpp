@@ -6,7 +6,7 @@
 
 namespace tumble::scenarios {
 
-/// Digest of a list of texts: the same texts in the same order, the same digest.
+/// Returns a digest of a list of texts in order.
 std::string digest_of_texts(std::span<const std::string> texts);
 
 }  // namespace tumble::scenarios

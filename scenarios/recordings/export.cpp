@@ -75,7 +75,7 @@ Notes write_sweeps(const path& recording, const path& out, const ExportChoices&)
   return export_names(sensors).lidars.notes;
 }
 
-/// Sorted by name.
+/// sorted by name
 const std::array<Format, 9> kFormats = {{
     {"csv", write_csv},
     {"kitti", write_kitti},

@@ -12,60 +12,61 @@
 
 namespace tumble::scenarios {
 
-/// Names that export_recording takes: csv kitti mcap pcd ply rosbag1 rosbag2 rosbag2_mcap tum.
+/// Returns the format names of export_recording: csv kitti mcap pcd ply rosbag1 rosbag2 rosbag2_mcap tum.
 std::vector<std::string> export_formats();
 
-/// Those of them that are bags: mcap rosbag1 rosbag2 rosbag2_mcap.
+/// Returns true for bag formats: mcap rosbag1 rosbag2 rosbag2_mcap.
 bool is_bag_format(const std::string& format);
 
-/// The format that the ending of a file tells (.mcap, .bag, .tum); empty for others.
+/// Returns the format for a file extension (.mcap, .bag, .tum); empty for others.
 std::string format_of_ending(const std::filesystem::path& out);
 
-/// What is chosen of a format: of a bag what it holds besides the sensors and how its sweeps are written, of a
-/// trajectory whose it is.
+/// Options of a format: for bags the extra content and the layout of sweeps, for trajectories the frame.
 struct ExportChoices {
   bool truth = false;
   SweepLayout sweeps = own_sweep_layout();
-  /// Called with sensors read, points and truth set aside, to add estimates (scenarios/exchange); may be empty.
+  /// Called with the sensors (points and truth on disk) to add estimates (scenarios/exchange); may be empty.
   std::function<void(const sim::Sensors&, BagWriting&)> more = {};
-  std::string frame = "body";  ///< `tum`, `kitti`: true_mounting's name of the frame whose true poses are written
+  std::string frame = "body";  ///< for `tum` and `kitti`: frame of the written true poses, as in true_mounting
 };
 
-/// Writes a recording file in somebody else's format. `tum` and `kitti` write one file, the true poses of a frame;
-/// `mcap` and `rosbag1` write one file, the sensors; `csv`, `pcd`, `ply`, `rosbag2` and `rosbag2_mcap` write into a
-/// folder, which is made when absent. Of bags (bag.hpp has their topics) `choices` says what else is in them. Files are
-/// replaced whole. Throws BadInput: unknown format (nearest named), a recording without what the format needs, a place
-/// that cannot be written. A bag is written sweep by sweep, its points and its truth set aside beside it; in memory are
-/// the samples of the IMUs, 32 bytes a message, and the poses that `choices` adds. Returns which sensors are written
-/// under another name than theirs (export_names.hpp), and which a bag has no message for.
+/// Writes a recording file in another format. `tum` and `kitti` write one file with the true poses of a frame. `mcap`
+/// and `rosbag1` write one file with the sensors. `csv`, `pcd`, `ply`, `rosbag2` and `rosbag2_mcap` write to a folder,
+/// which is created if missing. `choices` lists further content of bags (topics: bag.hpp). Existing files are replaced
+/// atomically.
+///
+/// Returns notes: which sensors were renamed (export_names.hpp), and which have no message type in a bag. Throws
+/// BadInput: unknown format (suggests the nearest), missing data for the format, or an output path that cannot be
+/// written. Bags are written sweep by sweep; memory holds the IMU samples, 32 bytes per message, and the poses from
+/// `choices`.
 std::vector<std::string> export_recording(const std::filesystem::path& recording, const std::string& format,
                                           const std::filesystem::path& out, const ExportChoices& choices = {});
 
-/// T_BA of a frame A as it truly is, calibration errors included: `body`, `centre` (of the sphere's shell), or a sensor
-/// by its name of export_names, else its own. Throws BadInput for another name, with those that there are.
+/// Returns T_BA of a frame A without calibration errors: `body`, `centre` (of the sphere's shell), or a sensor by its
+/// exported or original name. Throws BadInput for another name and lists the known ones.
 Eigen::Isometry3d true_mounting(const sim::Truth& truth, const std::string& frame);
 
-/// "t x y z qx qy qz qw" per physics sample: T_WA of the frame, seconds from the start with nine decimals, numbers that
-/// read back exactly; `origin_ns` is added to the times. Without the instants that a reference does not know.
+/// Writes "t x y z qx qy qz qw" per physics sample: T_WA of the frame, seconds from the start with nine decimals.
+/// Numbers round-trip exactly; `origin_ns` is added to the times. Omits times without a known pose.
 void export_tum(const sim::Truth& truth, const std::filesystem::path& file, std::int64_t origin_ns = 0,
                 const std::string& frame = "body");
-/// The same a segment at a time.
+/// The same, segment by segment.
 void export_tum(const StoredTruth& truth, const std::filesystem::path& file, std::int64_t origin_ns = 0,
                 const std::string& frame = "body");
 
-/// Upper three rows of T_WA, row by row, per physics sample; KITTI's format has no time: throws BadInput for a
-/// reference with gaps.
+/// Writes the upper three rows of T_WA, row by row, per physics sample. KITTI's format has no time, so references with
+/// gaps throw BadInput.
 void export_kitti(const sim::Truth& truth, const std::filesystem::path& file, const std::string& frame = "body");
 
-/// NAME.csv per IMU in the columns of a sensor_msgs/Imu (stamp s, stamp ns, frame, attitude x y z w, its covariance,
-/// rate, its covariance, specific force, its covariance; covariances in brackets, space separated; rad/s, m/s^2;
-/// attitude is unknown: covariance -1 first, as ROS has it), and per series: stamp s, stamp ns, frame, and a column for
-/// each quantity. With a truth also truth.csv: time, T_WB, v_WB_W, w_WB_B,
-/// f_B, label. NAME is the sensor's by export_names, here and below.
+/// Writes NAME.csv per IMU with the columns of a sensor_msgs/Imu: stamp s, stamp ns, frame, attitude x y z w, rate,
+/// specific force, each with its covariance (in brackets, space separated; rad/s, m/s^2). The attitude is unknown: its
+/// covariance starts with -1, as in ROS.
+/// Per series: stamp s, stamp ns, frame, and one column per quantity. With a truth also truth.csv: time, T_WB, v_WB_W,
+/// w_WB_B, f_B, label. NAME is the exported name of the sensor (export_names), also below.
 void export_csv(const sim::Sensors& sensors, const sim::Truth* truth, const std::filesystem::path& folder);
 
-/// NAME_000000.ply (or .pcd) per sweep, binary, not deskewed, in L: x y z intensity ring, and offset_ns where points
-/// have times of their own; the sweeps' starts in NAME_times.txt, seconds. import_sweeps takes them back to the bit.
+/// Writes NAME_000000.ply (or .pcd) per sweep, binary, not deskewed, in L: x y z intensity ring, and offset_ns if
+/// points have times. Sweep starts are in NAME_times.txt, in seconds. import_sweeps restores them bit-exactly.
 void export_ply(const sim::Sensors& sensors, const std::filesystem::path& folder);
 void export_pcd(const sim::Sensors& sensors, const std::filesystem::path& folder);
 

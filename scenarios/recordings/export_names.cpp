@@ -10,22 +10,22 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Of the bags (bag.hpp), and of a CSV's truth.
+/// Names used by bags (bag.hpp) and by a CSV's truth.
 const std::set<std::string>& own_names() {
   static const std::set<std::string> names = {"body", "clock", "tf", "tf_static", "truth", "world"};
   return names;
 }
 
-/// Frames in which readers, ours among them, look for no sensor.
+/// Frames that readers, including ours, do not treat as sensors.
 const std::set<std::string>& frames_of_no_sensor() {
   static const std::set<std::string> names = {"base_link", "map", "odom"};
   return names;
 }
 
-/// What a sensor would be called if it were alone.
+/// Preferred name of a sensor.
 struct Claim {
   std::string sensor, name;
-  bool own;  ///< the name that the recording has, else a number in the place of one that cannot be written
+  bool own;  ///< the recording's own name, not a number that replaces an invalid name
   std::string given = {};
 };
 
@@ -47,7 +47,7 @@ std::string why_another(const Claim& claim) {
                      claim.sensor, claim.given);
 }
 
-/// Of sensors or of their truth.
+/// For sensors or their truth.
 template <class Recorded>
 ExportNames names_of(const Recorded& recorded) {
   std::vector<Claim> claims;

@@ -9,26 +9,25 @@
 
 namespace tumble::scenarios {
 
-/// Of sensors of one kind, in their order.
+/// Names of the sensors of one kind, in order.
 struct GivenNames {
   std::vector<std::string> names;
-  std::vector<std::string> notes;  ///< which sensor has another name than its own, since that was taken
+  std::vector<std::string> notes;  ///< which sensors were renamed because of a conflict
 };
 
-/// The names under which a recording's sensors are written, whatever the format: topics, frames, stems of files.
+/// Names of a recording's sensors in all export formats: topics, frames, file stems.
 struct ExportNames {
   GivenNames imus, lidars, series;
-  std::set<std::string> taken;  ///< these, and the exports' own topics and frames
+  std::set<std::string> taken;  ///< these names, and the export's own topics and frames
 };
 
-/// Letters, digits, - and _, so that none leads out of a folder; all different, and none of them a topic or a frame
-/// that an export has of its own (truth, body, world, tf ...) or that readers take for no sensor's (map, odom,
-/// base_link). A sensor keeps its name where nobody before it has that; else, and after all that keep theirs, a number
-/// is put behind it. Of a truth the names of the sensors that it is of.
+/// Returns unique names of letters, digits, - and _, safe as file names. They differ from the export's own topics and
+/// frames (truth, body, world, tf …) and from frames that readers reserve (map, odom, base_link). A sensor keeps its
+/// name if no earlier sensor has it; else a number is appended. For a truth: the names of its sensors.
 ExportNames export_names(const sim::Sensors& sensors);
 ExportNames export_names(const sim::Truth& truth);
 
-/// `name`, or `name`_2, _3 ...: the first that is not taken, which then is.
+/// Returns the first free name of `name`, `name`_2, _3 … and marks it as taken.
 std::string free_name(const std::string& name, std::set<std::string>& taken);
 
 }  // namespace tumble::scenarios

@@ -10,8 +10,8 @@ namespace tumble::scenarios::hdf5 {
 
 namespace {
 
-/// Deflate cannot do better than 1032 to 1. A dataset that claims more than that was never written: the library would
-/// hand out zeros for it.
+/// Deflate reaches at most 1032 to 1. A dataset that claims more is not completely written; the library would return
+/// zeros.
 constexpr std::uint64_t kBestDeflation = 1100;
 
 const char* name_of(Scalar scalar) {
@@ -24,7 +24,7 @@ std::size_t size_of(Scalar scalar) {
   return H5Tget_size(memory_type(scalar));
 }
 
-/// Same kind, width and sign; the order of bytes may differ, the library converts it.
+/// Compares kind, width and sign; the library converts byte order.
 bool matches(hid_t type, Scalar scalar) {
   const hid_t wanted = memory_type(scalar);
   const H5T_class_t kind = H5Tget_class(wanted);
@@ -48,7 +48,7 @@ Handle space_of(std::size_t rows, std::size_t columns) {
   return Handle(H5Screate_simple(columns == 1 ? 1 : 2, extent.data(), nullptr), H5Sclose);
 }
 
-/// Rows from `first` on of what the dataset has in the file.
+/// Selects rows from `first` on in the file.
 Handle segment_of(const Handle& dataset, std::size_t first, std::size_t rows, std::size_t columns) {
   Handle space(H5Dget_space(dataset.get()), H5Sclose);
   const std::array<hsize_t, 2> start = {first, 0}, count = {rows, columns};
@@ -93,7 +93,7 @@ Handle Group::create_rows(const std::string& name, std::size_t rows, std::size_t
 
 void Group::describe_rows(Handle dataset, const std::string& name, const std::string& unit,
                           const std::string& column_names) const {
-  // attributes of a dataset are written as those of a group: both are objects of the file
+  // A dataset's attributes are written like a group's.
   const Group object(std::move(dataset), file_, place_ + "/" + name);
   object.write_attribute("unit", unit);
   if (!column_names.empty()) object.write_attribute("columns", column_names);

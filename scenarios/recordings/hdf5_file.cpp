@@ -22,7 +22,7 @@ namespace {
 constexpr std::size_t kSuperblockBytes = 48;
 
 Handle open_file(const std::filesystem::path& path) {
-  open_regular_file(path);  // HDF5 would call damaged what may not be read
+  open_regular_file(path);  // Reports missing permission; HDF5 would call such a file damaged.
   require_survivable(path);
   Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (file.valid()) return file;
@@ -31,8 +31,8 @@ Handle open_file(const std::filesystem::path& path) {
   throw BadInput(path.string() + ": truncated, damaged or not an HDF5 file" + reason);
 }
 
-/// The driver's memory, which it hands to `*user` when the file closes instead of freeing it: at that point, and not
-/// before, the superblock is complete (H5Fget_file_image of 1.10 leaves it with a stale checksum).
+/// Takes over the driver's memory at close instead of freeing it. Only then is the superblock complete
+/// (H5Fget_file_image of 1.10 leaves a stale checksum).
 H5FD_file_image_callbacks_t keep_image_in(void** user) {
   H5FD_file_image_callbacks_t calls{};
   calls.image_malloc = [](std::size_t size, H5FD_file_image_op_t, void*) { return std::malloc(size); };
@@ -56,17 +56,17 @@ H5FD_file_image_callbacks_t keep_image_in(void** user) {
   return calls;
 }
 
-/// Length that the superblock states (format specification, superblock version 3: byte 28); the driver's memory is
-/// longer.
+/// Returns the length stated in the superblock (format specification, superblock version 3: byte 28); the driver's
+/// memory is longer.
 std::uint64_t stated_length(const void* image) {
   std::uint64_t length = 0;
   std::memcpy(&length, static_cast<const char*>(image) + 28, sizeof(length));
   return length;
 }
 
-/// A new file under `label`, by the driver that `access` names.
+/// Creates a file under `label` with the driver in `access`.
 Handle create_file(const std::string& name, const std::string& label, const Handle& access) {
-  // from 1.10 on every piece of metadata carries a checksum, so that flipped bytes are found by the library itself
+  // Format 1.10 has a checksum on all metadata, so that the library detects flipped bytes.
   if (H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG) < 0 ||
       H5Pset_libver_bounds(access.get(), H5F_LIBVER_V110, H5F_LIBVER_V110) < 0) {
     throw BadInput(name + ": cannot be prepared for writing" + last_error());
@@ -85,7 +85,7 @@ Handle create_in_memory(const std::string& name, void** image) {
   if (H5Pset_fapl_core(access.get(), kGrowth, false) < 0 || H5Pset_file_image_callbacks(access.get(), &calls) < 0) {
     throw BadInput(name + ": cannot be prepared for writing" + last_error());
   }
-  // a name that is no file's: the library would read that file into memory first
+  // Not an existing file's name: the library would read that file into memory first.
   return create_file(name, name + " in memory", access);
 }
 
@@ -93,7 +93,7 @@ Handle create_on_disk(const std::string& name, const std::filesystem::path& path
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   if (H5Pset_fapl_sec2(access.get()) < 0) throw BadInput(name + ": cannot be prepared for writing" + last_error());
   Handle file = create_file(name, path.string(), access);
-  // only now: creating cuts the file to nothing
+  // Reserve space after creation, which truncates the file.
   void* descriptor = nullptr;
   if (H5Fget_vfd_handle(file.get(), H5P_DEFAULT, &descriptor) < 0)
     throw BadInput(name + ": cannot be prepared for writing" + last_error());
@@ -135,8 +135,8 @@ Handle::~Handle() {
 }
 
 Silence::Silence() {
-  // after some damaged files the library cannot put its lists in order at exit and prints so; files here are closed by
-  // their handles, so nothing is lost without that
+  // After some damaged files the library's exit cleanup fails and prints messages. Handles close all files here, so the
+  // cleanup is not needed.
   static const herr_t once = H5dont_atexit();
   (void)once;
   H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
@@ -216,7 +216,7 @@ void DiskFile::close() {
     throw BadInput(name_ + ": cannot be assembled in memory");
   std::filesystem::resize_file(path_, stated_length(head.data()), error);
   if (error) throw BadInput(name_ + ": cannot be written: " + error.message());
-  // a close that failed half-way says nothing: superblock and length agree only of a whole file
+  // A close that failed midway reports nothing; superblock and length agree only in a complete file.
   if (!Handle(H5Fopen(path_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose).valid())
     throw BadInput(name_ + ": cannot be assembled in memory" + last_error());
 }

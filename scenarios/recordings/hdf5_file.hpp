@@ -10,13 +10,13 @@
 #include "scenarios/recordings/hdf5_group.hpp"
 #include "scenarios/recordings/hdf5_layout.hpp"
 
-/// Files of HDF5. Every failure is BadInput "FILE: PLACE: what". Private to scenarios/recordings.
+/// HDF5 files. Every error is BadInput "FILE: PLACE: what". Private to scenarios/recordings.
 namespace tumble::scenarios::hdf5 {
 
 /// A file opened for reading.
 class InputFile {
  public:
-  /// Throws BadInput: absent, not HDF5, truncated.
+  /// Throws BadInput: missing, not HDF5, truncated.
   explicit InputFile(const std::filesystem::path& path);
   const Group& root() const { return root_; }
 
@@ -26,17 +26,17 @@ class InputFile {
   Group root_;
 };
 
-/// A file composed in memory, so that the library never meets a full disk (it does not recover from a failed close).
+/// A file composed in memory. The library cannot recover from a failed close, so it must never meet a full disk.
 class MemoryFile {
  public:
-  /// `name` begins the messages.
+  /// Messages start with `name`.
   explicit MemoryFile(const std::string& name);
   ~MemoryFile();
   MemoryFile(const MemoryFile&) = delete;
   MemoryFile& operator=(const MemoryFile&) = delete;
 
   const Group& root() const { return root_; }
-  /// Closes the file with all that is open in it; its bytes, valid while this lives. Nothing may be written afterwards.
+  /// Closes the file with all its objects and returns its bytes, valid during the lifetime of this object.
   std::span<const std::byte> close();
 
  private:
@@ -47,18 +47,18 @@ class MemoryFile {
   Group root_;
 };
 
-/// A file composed on the disk, in the place of an empty one. The room that it will need at most is taken first, so
-/// that the library does not meet a full disk here either.
+/// A file written to disk, replacing an empty one. Reserves the maximum space first, so that the library never meets a
+/// full disk.
 class DiskFile {
  public:
-  /// `name` begins the messages. Throws BadInput: no room.
+  /// Messages start with `name`. Throws BadInput if there is not enough space.
   DiskFile(const std::string& name, const std::filesystem::path& path, std::uint64_t most_bytes);
   ~DiskFile();
   DiskFile(const DiskFile&) = delete;
   DiskFile& operator=(const DiskFile&) = delete;
 
   const Group& root() const { return root_; }
-  /// Closes the file with all that is open in it and gives back the room that it did not need.
+  /// Closes the file with all its objects and releases unused space.
   void close();
 
  private:

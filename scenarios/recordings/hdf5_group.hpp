@@ -12,7 +12,7 @@
 #include "scenarios/recordings/hdf5_layout.hpp"
 #include "scenarios/recordings/scratch_file.hpp"
 
-/// What is in a file of HDF5. Every failure is BadInput "FILE: PLACE: what"; the library's own error stack is never
+/// Content of an HDF5 file. Every error is BadInput "FILE: PLACE: what"; the library's own error stack is never
 /// printed. Private to scenarios/recordings.
 namespace tumble::scenarios::hdf5 {
 
@@ -26,7 +26,7 @@ class Group {
   Group open(const std::string& name) const;
   Group create(const std::string& name) const;
   bool has(const std::string& name) const;
-  std::size_t count() const;  ///< of groups and datasets in this group
+  std::size_t count() const;  ///< number of groups and datasets in this group
   bool has_attribute(const std::string& name) const;
   [[noreturn]] void fail(const std::string& name, const std::string& what) const;
 
@@ -39,14 +39,15 @@ class Group {
   std::int64_t int_attribute(const std::string& name) const;
   std::uint64_t uint_attribute(const std::string& name) const;
 
-  /// A dataset of `rows.size()` rows; one dimension when a row has one column. `compressed` shuffles and deflates.
+  /// Writes a dataset of `rows.size()` rows, one-dimensional if a row has one column. `compressed` applies shuffle and
+  /// deflate.
   template <class Row>
   void write(const std::string& name, const std::vector<Row>& rows, const std::string& unit, const std::string& columns,
              bool compressed) const {
     write_rows(name, rows.data(), rows.size(), RowLayout<Row>::columns, RowLayout<Row>::scalar, unit, columns,
                compressed);
   }
-  /// The same of rows on the disk, chunk after chunk.
+  /// Writes rows from disk, chunk by chunk.
   template <class Row>
   void write(const std::string& name, const ColumnFile<Row>& rows, const std::string& unit, const std::string& columns,
              bool compressed) const {
@@ -57,14 +58,14 @@ class Group {
     });
     describe_rows(std::move(dataset), name, unit, columns);
   }
-  /// The rows of a dataset of exactly this type of number and these columns.
+  /// Reads a dataset with exactly this scalar type and number of columns.
   template <class Row>
   void read(const std::string& name, std::vector<Row>& rows) const {
     const Handle dataset = open_dataset(name);
     rows.resize(count_rows(dataset, name, RowLayout<Row>::columns, RowLayout<Row>::scalar));
     read_rows(dataset, name, rows.data(), rows.size(), RowLayout<Row>::scalar);
   }
-  /// The same onto the disk, chunk after chunk: `rows` is empty and has a folder.
+  /// Reads to disk, chunk by chunk; `rows` is empty and has a folder.
   template <class Row>
   void read(const std::string& name, ColumnFile<Row>& rows) const {
     const Handle dataset = open_dataset(name);

@@ -11,10 +11,10 @@
 #include <string>
 #include <utility>
 
-/// Handles of the HDF5 C library that close themselves, and how rows lie in memory. Private to scenarios/recordings.
+/// RAII handles of the HDF5 C library, and the memory layout of rows. Private to scenarios/recordings.
 namespace tumble::scenarios::hdf5 {
 
-/// An identifier of the library and the function that gives it back.
+/// An identifier of the library with its close function.
 class Handle {
  public:
   using Close = herr_t (*)(hid_t);
@@ -31,7 +31,7 @@ class Handle {
   Close close_ = nullptr;
 };
 
-/// While one lives, the library prints nothing in this thread.
+/// Suppresses the library's messages in this thread during its lifetime.
 class Silence {
  public:
   Silence();
@@ -46,7 +46,7 @@ class Silence {
 
 enum class Scalar : std::uint8_t { float64, float32, int64, int32, uint64, uint32, uint16, uint8 };
 
-/// How a row of a std::vector lies in memory: `columns` scalars without padding.
+/// Memory layout of a row of a std::vector: `columns` scalars without padding.
 template <class Row>
 struct RowLayout;
 template <Scalar kScalarOfRow, std::size_t kColumns>
@@ -80,16 +80,16 @@ template <>
 struct RowLayout<Eigen::Quaterniond> : Layout<Scalar::float64, 4> {};
 static_assert(sizeof(Eigen::Vector3d) == 24 && sizeof(Eigen::Vector3f) == 12 && sizeof(Eigen::Quaterniond) == 32);
 
-/// Of a deflated dataset.
+/// Chunk size of a deflated dataset.
 inline constexpr std::size_t kChunkBytes = std::size_t{1} << 20;
 constexpr std::size_t rows_in_chunk(std::size_t row_bytes) {
   return std::max<std::size_t>(kChunkBytes / row_bytes, 1);
 }
 
-/// The library's type for a scalar in memory.
+/// Returns the library's type of a scalar in memory.
 hid_t memory_type(Scalar scalar);
 
-/// " (reason)": what the library says of its last failure; empty when it says nothing.
+/// Returns " (reason)" for the library's last error; empty if unknown.
 std::string last_error();
 
 }  // namespace tumble::scenarios::hdf5

@@ -9,7 +9,7 @@
 
 namespace tumble::scenarios {
 
-/// Appends the shortest text that reads back as the same number.
+/// Appends the shortest text that parses to the same number.
 template <class Number>
 void append_number(std::string& text, Number value) {
   std::array<char, 32> digits;
@@ -17,14 +17,14 @@ void append_number(std::string& text, Number value) {
   text.append(digits.data(), end);
 }
 
-/// Three digits, for messages.
+/// Returns three significant digits, for messages.
 inline std::string rounded(double value) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.3g", value);
   return text.data();
 }
 
-/// Appends seconds with nine decimals, from whole nanoseconds: exact.
+/// Appends seconds with nine decimals, exactly, from whole nanoseconds.
 inline void append_seconds(std::string& text, std::int64_t time_ns) {
   const std::uint64_t size =
       time_ns < 0 ? 0 - static_cast<std::uint64_t>(time_ns) : static_cast<std::uint64_t>(time_ns);

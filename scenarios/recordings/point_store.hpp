@@ -10,15 +10,15 @@
 
 namespace tumble::scenarios {
 
-/// The points of one lidar on the disk: the columns of a sim::LidarRecord, a file each. The record itself, which has
-/// everything else, is then without points.
+/// The points of one lidar on disk: the columns of a sim::LidarRecord, one file each. The record itself then has no
+/// points.
 struct PointStore {
   PointStore() = default;
   explicit PointStore(const std::filesystem::path& folder)
       : position_L_m(folder), range_m(folder), intensity(folder), offset_ns(folder), ring(folder) {}
 
   std::size_t size() const { return position_L_m.size(); }
-  /// Appends the points of `record`, which holds none afterwards. Throws BadInput as ScratchFile does.
+  /// Moves the points of `record` to the end of the files. Throws BadInput as ScratchFile does.
   void take(sim::LidarRecord& record);
 
   ColumnFile<Eigen::Vector3f> position_L_m;
@@ -27,7 +27,7 @@ struct PointStore {
   ColumnFile<std::uint16_t> ring;
 };
 
-/// One sweep as a record of that sweep alone: its points are those of `lidar`, or in `aside` where that is given.
+/// Returns a record with one sweep only, with its points from `lidar`, or from `aside` if not null.
 sim::LidarRecord sweep_alone(const sim::LidarRecord& lidar, const PointStore* aside, std::size_t sweep);
 
 }  // namespace tumble::scenarios

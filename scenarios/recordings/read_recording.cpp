@@ -13,10 +13,10 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Archive that reads every field out of a group.
+/// Archive that reads every field from a group.
 class RecordingReader {
  public:
-  /// `scratch`: where columns are set aside that are not kept in memory.
+  /// `scratch`: folder for columns that are not kept in memory.
   explicit RecordingReader(hdf5::Group group, std::filesystem::path scratch = {})
       : group_(std::move(group)), scratch_(std::move(scratch)) {}
 
@@ -85,7 +85,7 @@ class RecordingReader {
     if (group_.has(name)) list(name, records, fields);
   }
 
-  /// Absent in files that others wrote.
+  /// missing in files of other programs
   std::string digest_or_empty() const { return group_.has_attribute("digest") ? group_.text_attribute("digest") : ""; }
 
  private:

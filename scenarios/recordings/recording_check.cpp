@@ -17,7 +17,7 @@ namespace {
 
 using Lengths = std::initializer_list<std::pair<const char*, std::size_t>>;
 
-/// Rotations and quaternions that have been written with few digits pass, a wrong order of components does not.
+/// Accepts rotations and quaternions written with few digits, but not a wrong component order.
 constexpr double kUnitTolerance = 1e-6;
 constexpr std::int64_t kTimeMax_ns = 100'000'000'000'000'000;
 
@@ -25,7 +25,7 @@ std::string in(const std::string& place, const std::string& problem) {
   return problem.empty() ? "" : place + ": " + problem;
 }
 
-/// All lengths must be the first one's.
+/// Requires that all lengths equal the first.
 std::string length_problem(const Lengths& lengths) {
   const auto& [first_name, first] = *lengths.begin();
   for (const auto& [name, length] : lengths) {
@@ -58,13 +58,13 @@ std::string first_of(std::initializer_list<std::string> problems) {
   return found == problems.end() ? "" : *found;
 }
 
-/// Of rows that a sensor may do without.
+/// For rows that a sensor may lack.
 std::string optional_length_problem(const char* name, std::size_t length, std::size_t needed) {
   if (length == 0 || length == needed) return "";
   return fmt::format("{} has {} rows, must have {} or none", name, length, needed);
 }
 
-/// A name as it may stand in a table: UTF-8 without control characters.
+/// Names must be UTF-8 without control characters, for tables.
 std::string text_problem(const char* name, const std::string& text) {
   std::size_t following = 0;
   for (const unsigned char c : text) {
@@ -77,8 +77,8 @@ std::string text_problem(const char* name, const std::string& text) {
   return following == 0 ? "" : std::string(name) + " is not plain text in UTF-8";
 }
 
-/// Times count from the start of the recording: beyond three years they are another clock's, and their differences may
-/// not fit.
+/// Times count from the start of the recording. Beyond three years they belong to another clock, and differences may
+/// overflow.
 std::string times_problem(const char* name, const std::vector<std::int64_t>& times_ns) {
   const auto far = [](std::int64_t t) { return t > kTimeMax_ns || t < -kTimeMax_ns; };
   const auto found = std::find_if(times_ns.begin(), times_ns.end(), far);
@@ -120,7 +120,7 @@ std::string sweep_problem(const sim::LidarRecord& lidar, std::size_t points) {
   return "";
 }
 
-/// What `judge(row, index)` says of the first row that it finds wrong.
+/// Returns the first problem that `judge(row, index)` reports.
 template <class Row, class Judge>
 std::string first_wrong(std::span<const Row> rows, const Judge& judge, std::size_t first = 0) {
   std::string problem;
@@ -155,7 +155,7 @@ std::string point_times_problem(const sim::LidarRecord& lidar, const Offsets& of
   return lidar.point_times == sim::PointTimes::measured ? "" : offset_problem(offsets);
 }
 
-/// `points`: the record itself, or where its points are set aside.
+/// `points`: the record itself, or its points on disk.
 template <class Points>
 std::string lidar_problem(const sim::LidarRecord& lidar, const Points& points) {
   return first_of({text_problem("name", lidar.name), text_problem("device", lidar.device),
@@ -169,14 +169,14 @@ std::string lidar_problem(const sim::LidarRecord& lidar, const Points& points) {
                    sweep_problem(lidar, points.position_L_m.size()), point_times_problem(lidar, points.offset_ns)});
 }
 
-/// A name as it may stand in the head of a column: letters, digits and _.
+/// Names of columns consist of letters, digits and _.
 std::string column_problem(const std::string& name) {
   const auto plain = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
   if (!name.empty() && std::all_of(name.begin(), name.end(), plain)) return "";
   return "the name must consist of letters, digits and _, at least one";
 }
 
-/// Of quantities or constants of a sensor, whose names are told apart.
+/// Checks the unique names of a sensor's quantities or constants.
 template <class Record>
 std::string names_problem(const std::string& list, const std::vector<Record>& records) {
   std::set<std::string> names;
@@ -189,7 +189,7 @@ std::string names_problem(const std::string& list, const std::vector<Record>& re
   return problem;
 }
 
-/// Of readings or of their truth.
+/// For readings or their truth.
 template <class Quantity>
 std::string quantities_problem(const std::vector<Quantity>& quantities) {
   std::string problem = names_problem("quantities", quantities);
@@ -221,9 +221,9 @@ std::string series_truth_problem(const sim::SeriesTruth& series) {
       {text_problem("name", series.name), pose_problem("T_BX", series.T_BX), quantities_problem(series.quantities)});
 }
 
-/// What a sensor's readings and their truth do not have in common.
+/// Returns how a sensor's readings and their truth differ in structure.
 std::string series_mismatch(const sim::SeriesRecord& series, const sim::SeriesTruth& truth) {
-  if (truth.quantities.empty()) return "";  // a reference knows none
+  if (truth.quantities.empty()) return "";  // a reference has none
   if (truth.quantities.size() != series.quantities.size()) return "truth and sensor differ in the number of quantities";
   std::string problem;
   for (std::size_t i = 0; i < truth.quantities.size() && problem.empty(); ++i) {
@@ -233,12 +233,12 @@ std::string series_mismatch(const sim::SeriesRecord& series, const sim::SeriesTr
   return problem;
 }
 
-/// `imu`: a sim::ImuTruth, or one whose rows are set aside; so with the other truths.
+/// `imu`: a sim::ImuTruth, or one on disk; the other truths likewise.
 template <class Imu>
 std::string imu_truth_problem(const Imu& imu) {
   return first_of(
       {pose_problem("T_BI", imu.T_BI),
-       // a reference knows poses alone, or rates beside them
+       // a reference may have poses only, or also rates
        optional_length_problem("specific_force_I_m_s2", imu.specific_force_m_s2.size(), imu.rate_rad_s.size()),
        length_problem({{"specific_force_I_m_s2", imu.specific_force_m_s2.size()},
                        {"gyro_unclipped_I_rad_s", imu.gyro_unclipped_rad_s.size()},
@@ -266,7 +266,7 @@ std::string lidar_truth_problem(const Lidar& lidar, std::size_t surfaces) {
        first_wrong(lidar.surface_id, [&](std::int32_t id, std::size_t) { return surface_problem(id, surfaces); })});
 }
 
-/// Of times that must not fall.
+/// Checks that times do not decrease.
 class RisingTimes {
  public:
   std::string operator()(std::int64_t time_ns, std::size_t) {
@@ -300,7 +300,7 @@ std::string contacts_problem(const StoredContacts& contacts, std::size_t surface
 }
 
 std::string attitude_problem(const Eigen::Quaterniond& q_WB, std::size_t) {
-  const bool unknown = q_WB.coeffs().array().isNaN().all();  // of a reference, where it saw nothing
+  const bool unknown = q_WB.coeffs().array().isNaN().all();  // a reference without a measurement
   if (unknown || std::abs(q_WB.squaredNorm() - 1.0) <= kUnitTolerance) return "";
   return "q_WB is not of unit length";
 }
@@ -378,7 +378,7 @@ std::string find_mismatch(const sim::Sensors& sensors, const sim::Truth& truth) 
                                              imu.magnetic_field_t.size())}));
   }
   for (std::size_t i = 0; i < truth.lidars.size() && problem.empty(); ++i) {
-    // as find_problem holds it, the number of points, wherever they are
+    // find_problem ensured that it ends in the number of points
     const std::vector<std::uint64_t>& first = sensors.lidars[i].sweep_first;
     problem = in("lidars/" + std::to_string(i),
                  optional_length_problem("truth hit_W_m", truth.lidars[i].hit_W_m.size(),

@@ -12,7 +12,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// A clock that began so shortly before the first stamp is the recording's own.
+/// A clock that starts less than this before the first stamp belongs to the recording.
 constexpr std::int64_t kOwnZero_ns = 1000000000;
 
 void shift(sim::Sensors& sensors, std::int64_t by_ns) {

@@ -9,21 +9,22 @@
 #include "scenarios/recordings/point_store.hpp"
 #include "sim/recording.hpp"
 
-/// The one list of what a recording holds, its truth apart (truth_fields.hpp): names, units and columns of FORMAT.md.
-/// The writer, the reader and the digest are archives that visit it, so none of them can forget a field. Private to
+/// The single list of a recording's fields except truth (truth_fields.hpp): names, units and columns of FORMAT.md.
+/// Writer, reader and digest are archives that visit this list, so none can omit a field. Private to
 /// scenarios/recordings.
 ///
-/// An archive has: value(name, text | double | int64), pose(name, isometry), point(name, vector, unit),
-/// rows(name, vector, unit, columns, storage), texts(name, strings), list(name, records, fields), group(name, record,
-/// fields). optional_rows, optional_point, optional_list and point_times are for what came after the first files:
-/// absent when empty, zero or measured, and then not hashed either, so that older files keep their digests. rows are a
-/// std::vector, or a ColumnFile of the same rows where points are set aside on the disk.
+/// An archive has: value(name, text | double | int64), pose(name, isometry), point(name, vector, unit), rows(name,
+/// vector, unit, columns, storage), texts(name, strings), list(name, records, fields), group(name, record, fields).
+/// optional_rows, optional_point, optional_list and point_times are for later additions to the format. They are absent,
+/// and not hashed, if empty, zero or measured, so that older files keep their digests.
+/// rows are a std::vector, or a ColumnFile of the same rows if points are on disk.
 namespace tumble::scenarios {
 
-/// How rows are stored: deflated where measured to pay, plain for the noise-like floats of a lidar (FORMAT.md).
+/// How rows are stored: deflated where this was measured to help, plain for the noise-like floats of a lidar
+/// (FORMAT.md).
 enum class Storage { plain, deflated };
 
-/// A lidar and its points that are set aside, as the lists below take them. Views have references to const.
+/// A lidar with its points on disk, for the lists below. Views have references to const.
 struct StoredLidar {
   sim::LidarRecord sweeps;
   PointStore points;
@@ -32,12 +33,12 @@ struct StoredLidarView {
   const sim::LidarRecord& sweeps;
   const PointStore& points;
 };
-/// Of the lidars of `sensors` and what is set aside of them, in the same order.
+/// Pairs the lidars of `sensors` with their points on disk, in order.
 std::vector<StoredLidarView> views_of(const sim::Sensors& sensors, const std::vector<PointStore>& points);
 
 inline constexpr const char* kXyz = "x y z";
 
-/// Words of the attribute `point_times`, in the order of the enumeration.
+/// Values of the attribute `point_times`, in the order of the enumeration.
 inline constexpr std::array<const char*, 3> kPointTimes = {"measured", "not_skewed", "unknown"};
 
 template <class Archive, class Imu>
@@ -78,7 +79,7 @@ void point_fields(Archive& archive, Points& points) {
   archive.rows("ring", points.ring, "1", "", Storage::deflated);
 }
 
-/// Of a record with its points, or of one whose points are set aside: `lidar.sweeps` and `lidar.points`.
+/// For a record with its points, or with points on disk: `lidar.sweeps` and `lidar.points`.
 template <class Archive, class Lidar>
 void lidar_fields(Archive& archive, Lidar& lidar) {
   if constexpr (requires { lidar.sweeps; }) {
@@ -110,7 +111,7 @@ void series_fields(Archive& archive, Series& series) {
   });
 }
 
-/// `lidars`: sensors.lidars, or what stands for them.
+/// `lidars`: sensors.lidars or their views.
 template <class Archive, class Sensors, class Lidars>
 void sensors_fields(Archive& archive, Sensors& sensors, Lidars& lidars) {
   archive.value("robot", sensors.robot);

@@ -8,10 +8,10 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Of an object of the file or an attribute, its text apart; and of the file itself.
+/// Overhead of an object or attribute without its text, and of the file.
 constexpr std::uint64_t kHead_bytes = 4096, kFile_bytes = std::uint64_t{1} << 20;
 
-/// Archive that adds up what each field takes at most.
+/// Archive that sums the maximum size of each field.
 class SizeBound {
  public:
   std::uint64_t bytes = kFile_bytes;
@@ -23,7 +23,8 @@ class SizeBound {
   void point(const char*, const Eigen::Vector3d&, const char*) { bytes += kHead_bytes; }
   template <template <class...> class Rows, class Row, class... More>
   void rows(const char*, const Rows<Row, More...>& rows, const char*, const char*, Storage) {
-    // a chunk that deflation does not shrink stays plain, and the last one is padded; their index: 1 in 1000 is ample
+    // Chunks that deflate does not shrink are stored plain, and the last is padded. The index needs less than 1 in
+    // 1000.
     const std::uint64_t plain = std::uint64_t{rows.size()} * sizeof(Row);
     bytes += plain + plain / 1000 + hdf5::kChunkBytes + kHead_bytes;
   }

@@ -9,7 +9,7 @@
 /// Private to scenarios/recordings.
 namespace tumble::scenarios {
 
-/// What the file of a recording takes at most, bytes: every number plain, chunks full, and generous heads.
+/// Returns an upper bound of a recording's file size [bytes]: uncompressed numbers, full chunks, generous headers.
 std::uint64_t size_bound(const RecordingInfo& info, const sim::Sensors& sensors, const std::vector<PointStore>& points,
                          const sim::Truth* truth);
 

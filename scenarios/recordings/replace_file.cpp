@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kLinksMax = 40;  // as the system follows
+constexpr int kLinksMax = 40;  // the system's limit
 
 [[noreturn]] void fail(const fs::path& path, const std::string& reason) {
   throw BadInput(path.string() + ": cannot be written: " + reason);
@@ -32,7 +32,7 @@ constexpr int kLinksMax = 40;  // as the system follows
   fail(path, std::generic_category().message(error));
 }
 
-/// Closes itself.
+/// RAII file descriptor.
 class Descriptor {
  public:
   explicit Descriptor(int number) : number_(number) {}
@@ -54,7 +54,7 @@ std::optional<struct stat> status_of(const fs::path& path) {
   return found;
 }
 
-/// Where a file of this name is: behind its symbolic links, also when there is nothing at their end.
+/// Resolves symbolic links, even dangling ones.
 fs::path behind_links(const fs::path& path) {
   fs::path place = path;
   std::error_code error;
@@ -75,11 +75,11 @@ void require_replaceable(const fs::path& given, const fs::path& place) {
   if (access(place.c_str(), W_OK) != 0) fail(given, errno);
 }
 
-/// A folder that is read keeps what it holds: none of its files is written over, at any depth.
+/// Input folders must not be modified, at any depth.
 void require_outside(const fs::path& output, std::span<const fs::path> inputs) {
   std::error_code error;
   const fs::path place = fs::canonical(output, error);
-  if (error) return;  // nothing stands there
+  if (error) return;  // does not exist
   for (const fs::path& input : inputs) {
     if (!fs::is_directory(input, error)) continue;
     const fs::path folder = fs::canonical(input, error);
@@ -130,7 +130,7 @@ void OutputFile::move_into_place() {
   Descriptor file(open(unfinished_.c_str(), O_RDONLY | O_CLOEXEC));
   if (file.get() < 0) fail(given_, errno);
   if (const std::optional<struct stat> old = status_of(place_)) {
-    // what became of the place in the meantime counts too
+    // the path may have changed in the meantime
     require_replaceable(given_, place_);
     const std::optional<struct stat> own = status_of(unfinished_);
     const bool same_owner = own && own->st_uid == old->st_uid && own->st_gid == old->st_gid;
@@ -139,7 +139,7 @@ void OutputFile::move_into_place() {
     }
     if (fchmod(file.get(), old->st_mode & 07777) != 0) fail(given_, errno);
   }
-  // a full disk may show only here, when the system has promised more than it has
+  // a full disk may be reported only here
   if (fsync(file.get()) != 0 || !file.close()) fail(given_, errno);
   if (rename(unfinished_.c_str(), place_.c_str()) != 0) fail(given_, errno);
   moved_ = true;

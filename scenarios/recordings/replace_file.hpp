@@ -9,13 +9,13 @@
 
 #include "scenarios/recordings/unfinished.hpp"
 
-/// Everything that is written goes through here: beside its place and then renamed, only over regular files.
+/// Atomic output: writes next to the final path, then renames; only replaces regular files.
 namespace tumble::scenarios {
 
-/// A file in the making: a new one beside its place, removed again unless it was moved there, also when a signal ends
-/// the program (unfinished.hpp). A symbolic link is
-/// followed. What stands there already must be a regular file that may be written; its mode and owner are kept. Throws
-/// BadInput with the path and the system's reason (no such folder, no permission, disk full, a device, a pipe).
+/// A file under construction next to its final path. Removed unless moved there, also when a signal ends the program
+/// (unfinished.hpp). Follows symbolic links. An existing target must be a writable regular file; its mode and owner are
+/// kept. Throws BadInput with the path and the system's reason (no such folder, no permission, disk full, a device, a
+/// pipe).
 class OutputFile {
  public:
   explicit OutputFile(const std::filesystem::path& path);
@@ -23,10 +23,10 @@ class OutputFile {
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
-  /// Where it is in the making, for libraries that write by name.
+  /// Returns the temporary path, for libraries that write by name.
   const std::filesystem::path& unfinished() const { return unfinished_; }
   void write(std::span<const std::byte> bytes);
-  /// Flushes it to the disk and renames it, so that the path holds the old file or the whole new one.
+  /// Flushes the file to disk and renames it, so that the path always has the complete old or new file.
   void move_into_place();
 
  private:
@@ -35,9 +35,9 @@ class OutputFile {
   bool moved_ = false;
 };
 
-/// A folder of outputs: absent, or empty. Throws BadInput when it holds anything: what an earlier run left would be
-/// taken for this one's. Unless it is kept, what came into it is removed again, and the folder itself where it was made
-/// here; so also when a signal ends the program.
+/// An output folder, which must be missing or empty, so that old files are not mistaken for new ones. Throws BadInput
+/// otherwise. Unless kept, its content is removed, and the folder too if it was created here, also when a signal ends
+/// the program.
 class OutputFolder {
  public:
   explicit OutputFolder(const std::filesystem::path& folder);
@@ -56,12 +56,11 @@ class OutputFolder {
   bool made_ = false, kept_ = false;
 };
 
-/// Puts `bytes` into an OutputFile.
+/// Writes `bytes` by an OutputFile.
 void replace_file(const std::filesystem::path& path, std::span<const std::byte> bytes);
 void replace_file(const std::filesystem::path& path, std::string_view text);
 
-/// Refuses an output that is one of the inputs, by whatever name (the same device and inode), or that stands already in
-/// a folder that is one. Throws BadInput.
+/// Throws BadInput if the output is one of the inputs (same device and inode), or exists within an input folder.
 void require_not_an_input(const std::filesystem::path& output, std::span<const std::filesystem::path> inputs);
 
 }  // namespace tumble::scenarios

@@ -12,11 +12,11 @@ namespace {
 
 constexpr std::int64_t kRaster_ns = 1'000'000, kLongestStep_ns = 4 * kRaster_ns;
 constexpr double kLeastShare = 0.02;
-constexpr std::size_t kLeast = 100;  // stamps
+constexpr std::size_t kLeast = 100;  // minimum number of stamps
 constexpr double kReach_s = 0.5;
-constexpr std::int64_t kStampGap_ns = kLongestStep_ns + 2 * kRaster_ns;  // longer than any step that counts
+constexpr std::int64_t kStampGap_ns = kLongestStep_ns + 2 * kRaster_ns;  // longer than any regular step
 
-/// Sums of a piece up to each of its stamps: n, i, v, i i, i v, v being what a steady beat leaves of them.
+/// Prefix sums of a segment: n, i, v, i i, i v, where v is the deviation from a constant period.
 class StampLine {
  public:
   explicit StampLine(std::span<const std::int64_t> piece) : piece_(piece) {
@@ -31,7 +31,7 @@ class StampLine {
     }
   }
 
-  /// Of the line through the stamps from `first` to before `end`, at k, from the first stamp of the piece.
+  /// Evaluates the line through the stamps [first, end) at k, relative to the segment's first stamp.
   double at_ns(std::size_t first, std::size_t end, std::size_t k) const {
     std::array<double, 4> sum{};
     for (std::size_t s = 0; s < sum.size(); ++s) sum[s] = sums_[end][s] - sums_[first][s];
@@ -80,7 +80,7 @@ bool are_rounded(std::span<const std::int64_t> stamps_ns) {
   const auto least = static_cast<std::size_t>(kLeastShare * static_cast<double>(all)) + 1;
   for (std::size_t n = 1; n + 1 < counts.size(); ++n) {
     if (counts[n] < least || counts[n + 1] < least) continue;
-    // what is longer is a gap; a clock that jitters by more has other steps too
+    // Longer steps are gaps; a clock with more jitter has other steps too.
     return static_cast<double>(counts[n] + counts[n + 1]) >= (1.0 - kLeastShare) * static_cast<double>(all);
   }
   return false;

@@ -10,14 +10,14 @@
 #include <utility>
 #include <vector>
 
-/// What does not fit into memory, set aside on the disk while a recording is made or read.
+/// Temporary storage on disk for data that exceed the memory.
 namespace tumble::scenarios {
 
-/// The nearest folder of an output that is there already: what is set aside for it lies on the same disk.
+/// Returns the nearest existing folder of an output path, so that temporary data are on the same disk.
 std::filesystem::path scratch_folder_of(const std::filesystem::path& output);
 
-/// A file without a name: gone with the object, however the process ends. It grows at its end. Throws BadInput with the
-/// folder and the system's reason (no such folder, no permission, disk full).
+/// An unnamed file that disappears with the object or the process. Grows at its end. Throws BadInput with the folder
+/// and the system's reason (no such folder, no permission, disk full).
 class ScratchFile {
  public:
   explicit ScratchFile(std::filesystem::path folder);
@@ -33,7 +33,7 @@ class ScratchFile {
 
   std::uint64_t bytes() const { return bytes_; }
   void append(std::span<const std::byte> bytes) { write(bytes_, bytes); }
-  /// At a place within what is there, or at its end.
+  /// Writes at an offset within the file or at its end.
   void write(std::uint64_t at, std::span<const std::byte> bytes);
   void read(std::uint64_t at, std::span<std::byte> bytes) const;
 
@@ -43,8 +43,8 @@ class ScratchFile {
   std::uint64_t bytes_ = 0;
 };
 
-/// A column of a recording in a ScratchFile: as a std::vector<Row>, by segments. Without a folder it is empty and
-/// stays so.
+/// A column of a recording in a ScratchFile, read and written by segments like a std::vector<Row>. Without a folder it
+/// stays empty.
 template <class Row>
 class ColumnFile {
  public:
@@ -56,13 +56,13 @@ class ColumnFile {
   void read(std::size_t first, std::span<Row> rows) const {
     if (!rows.empty()) file_->read(first * sizeof(Row), std::as_writable_bytes(rows));
   }
-  /// Rows [first, last).
+  /// Returns rows [first, last).
   std::vector<Row> rows(std::size_t first, std::size_t last) const {
     std::vector<Row> out(last - first);
     read(first, out);
     return out;
   }
-  /// Calls `take(first, rows)` for segments of `length` rows, the last of which may be shorter.
+  /// Calls `take(first, rows)` for segments of `length` rows; the last may be shorter.
   template <class Take>
   void for_segments(std::size_t length, Take&& take) const {
     std::vector<Row> rows;
@@ -72,7 +72,7 @@ class ColumnFile {
       take(first, std::span<const Row>(rows));
     }
   }
-  /// Calls `change(row)` for each row, which stays so.
+  /// Calls `change(row)` for each row and stores the result.
   template <class Change>
   void change(Change&& change) {
     constexpr std::size_t kLength = (std::size_t{1} << 20) / sizeof(Row);

@@ -9,10 +9,10 @@
 
 namespace tumble::scenarios {
 
-/// A folder among the temporary ones, gone with it, also when a signal ends the program.
+/// A temporary folder, removed with the object, also when a signal ends the program.
 class ScratchFolder {
  public:
-  /// `use` stands in its name. Throws std::filesystem::filesystem_error when it cannot be made.
+  /// `use` becomes part of its name. Throws std::filesystem::filesystem_error on failure.
   explicit ScratchFolder(const std::string& use);
   ~ScratchFolder();
   ScratchFolder(const ScratchFolder&) = delete;

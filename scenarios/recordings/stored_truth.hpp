@@ -21,7 +21,7 @@ struct StoredContacts {
   ColumnFile<std::int32_t> surface_id;
 };
 
-/// A sim::ImuTruth.
+/// A sim::ImuTruth on disk.
 struct StoredImuTruth {
   std::string name;
   Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();
@@ -34,7 +34,7 @@ struct StoredImuTruth {
   ColumnFile<Eigen::Vector3d> magnetic_field_t;
 };
 
-/// A sim::LidarTruth.
+/// A sim::LidarTruth on disk.
 struct StoredLidarTruth {
   std::string name;
   Eigen::Isometry3d T_BL = Eigen::Isometry3d::Identity();
@@ -42,9 +42,9 @@ struct StoredLidarTruth {
   ColumnFile<std::int32_t> surface_id;
 };
 
-/// A sim::Truth on the disk: its rows are columns of scratch files, the rest is as there.
+/// A sim::Truth on disk: its rows are columns of scratch files, other members are unchanged.
 struct StoredTruth {
-  /// The body's state alone, rows [first, last), with the mountings and `p_BG_m`: of sensors and contacts no rows.
+  /// Returns the body states of rows [first, last), with the mountings and `p_BG_m`, without sensors and contacts.
   sim::Truth states(std::size_t first, std::size_t last) const;
   std::size_t size() const { return p_WB_m.size(); }
 
@@ -58,7 +58,7 @@ struct StoredTruth {
   std::vector<std::string> surfaces;
   std::vector<StoredImuTruth> imus;
   std::vector<StoredLidarTruth> lidars;
-  std::vector<sim::SeriesTruth> series;  ///< in memory: few numbers a second
+  std::vector<sim::SeriesTruth> series;  ///< in memory: only few numbers per second
 };
 
 }  // namespace tumble::scenarios

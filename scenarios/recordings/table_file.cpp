@@ -22,7 +22,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Bytes of a table that are written at a time.
+/// Write block size [bytes].
 constexpr std::size_t kBlock = 1 << 16;
 
 std::vector<std::string> split(const std::string& line, char separator) {
@@ -31,18 +31,18 @@ std::vector<std::string> split(const std::string& line, char separator) {
   while (begin <= line.size()) {
     std::size_t end = line.find(separator, begin);
     if (end == std::string::npos) end = line.size();
-    // runs of blanks separate once
+    // consecutive blanks separate once
     if (separator != ' ' || end > begin) cells.push_back(line.substr(begin, end - begin));
     begin = end + 1;
   }
   return cells;
 }
 
-/// The longest line of a table: a pose's covariance takes less than a thousand bytes. A file without line ends, or a
-/// device that gives zeros for ever, would be read into memory else.
+/// Longest line; a pose with covariance has less than a thousand bytes. Protects the memory from files without line
+/// ends and endless devices.
 constexpr std::size_t kLineMax = 1 << 20;
 
-/// As std::getline. Throws BadInput for a line beyond kLineMax.
+/// Like std::getline. Throws BadInput for a line longer than kLineMax.
 bool read_line(std::istream& file, const std::filesystem::path& path, int number, std::string& line) {
   line.clear();
   auto& bytes = *file.rdbuf();
@@ -121,7 +121,7 @@ Table Table::read(const std::filesystem::path& path, char separator, const std::
   bool header_due = !header.empty();
   while (read_line(file, path, number + 1, line)) {
     ++number;
-    if (number == 1 && line.starts_with("\xef\xbb\xbf")) line.erase(0, 3);  // as editors on Windows begin a file
+    if (number == 1 && line.starts_with("\xef\xbb\xbf")) line.erase(0, 3);  // byte order mark of editors on Windows
     if (!line.empty() && line.back() == '\r') line.pop_back();
     if (separator == ' ') std::replace(line.begin(), line.end(), '\t', ' ');
     if (header_due) {
@@ -166,7 +166,7 @@ std::int64_t Table::time_ns(const Row& row, std::size_t column) const {
   const bool plain = text.find_first_not_of("-0123456789.") == std::string::npos;
   std::int64_t whole = 0;
   std::int64_t fraction = 0;
-  // epoch seconds with nine decimals do not fit a double: whole and fraction apart
+  // Epoch seconds with nine decimals exceed a double: parse whole and fraction separately.
   if (plain && point != std::string::npos && point > 0 && parse(text.substr(0, point), whole)) {
     std::string digits = text.substr(point + 1, 9);
     digits.append(9 - digits.size(), '0');

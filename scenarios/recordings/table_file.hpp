@@ -11,19 +11,18 @@
 
 namespace tumble::scenarios {
 
-/// A text file of numbers, one row a line: TUM (blanks, no header) or CSV (commas, one header line). Numbers are
-/// written with as many digits as a double needs to come back the same; time stamps as seconds with nine decimals or as
-/// integers.
+/// Writes a text file of numbers, one row per line: TUM (blanks, no header) or CSV (commas, one header line). Doubles
+/// round-trip exactly; stamps are seconds with nine decimals or integers.
 class TableWriter {
  public:
-  /// `header` empty: none is written. Throws BadInput when the file cannot be opened. What stands there stays until
-  /// `close`; a table that is not closed leaves nothing.
+  /// An empty `header` is not written. Throws BadInput if the file cannot be opened. An existing file is replaced only
+  /// by `close`; a table that is not closed is discarded.
   TableWriter(const std::filesystem::path& path, char separator, const std::string& header);
   void integer(std::int64_t value);
   void number(double value);
   void time_s(std::int64_t time_ns);  ///< exact: "12.000000345"
   void end_row();
-  /// Moves the whole table into its place; throws BadInput when anything could not be written.
+  /// Completes the file; throws BadInput if any write failed.
   void close();
 
  private:
@@ -35,8 +34,8 @@ class TableWriter {
   bool row_empty_ = true;
 };
 
-/// Rows of text cells, checked for their number. Lines that are empty or begin with '#' are skipped.
-/// Throws BadInput with path and line number.
+/// Rows of text cells with a checked count. Skips empty lines and lines that start with '#'. Throws BadInput with path
+/// and line number.
 struct Table {
   struct Row {
     int line;
@@ -47,10 +46,10 @@ struct Table {
 
   static Table read(const std::filesystem::path& path, char separator, const std::string& header, std::size_t columns);
 
-  double number(const Row& row, std::size_t column) const;  ///< any double, "nan" too
+  double number(const Row& row, std::size_t column) const;  ///< any double, also "nan"
   std::int64_t integer(const Row& row, std::size_t column) const;
   std::int64_t time_ns(const Row& row,
-                       std::size_t column) const;  ///< decimal seconds, rounded to nanoseconds without a detour
+                       std::size_t column) const;  ///< decimal seconds, converted to nanoseconds without a double
 };
 
 }  // namespace tumble::scenarios

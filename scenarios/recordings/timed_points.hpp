@@ -5,7 +5,7 @@
 
 namespace tumble::scenarios {
 
-/// Whether each point has a time of its own, and not one that follows from its sweep.
+/// Returns true if each point has its own time, instead of one derived from its sweep.
 inline bool has_timed_points(const sim::LidarRecord& lidar) {
   return lidar.point_times == sim::PointTimes::measured;
 }

@@ -8,7 +8,7 @@
 #include "scenarios/recordings/recording_fields.hpp"
 #include "sim/recording.hpp"
 
-/// The one list of what the truth of a recording holds, for the archives of recording_fields.hpp. Private to
+/// The single list of a recording's truth fields, for the archives of recording_fields.hpp. Private to
 /// scenarios/recordings.
 namespace tumble::scenarios {
 

@@ -3,28 +3,28 @@
 
 #include <filesystem>
 
-/// What a process has in the making beside its place, and what a signal that ends the process does with it.
+/// Removes incomplete outputs when a signal ends the process.
 namespace tumble::scenarios {
 
-/// A file or a folder in the making. While one lives it is removed, a folder with all that came into it, when a signal
-/// of `remove_unfinished_on_signals` ends this process; the process that made it alone removes it, no child of its.
+/// An incomplete file or folder. During its lifetime, a signal of `remove_unfinished_on_signals` removes it, with all
+/// content of a folder. Only the process that created it removes it, not its children.
 class Unfinished {
  public:
-  enum class Kind { file, folder, contents };  ///< contents: of a folder that was there before, and stays
+  enum class Kind { file, folder, contents };  ///< contents: an existing folder that itself remains
   Unfinished() = default;
-  /// A path of more than 4095 bytes, or one beyond the 64 that are kept at a time, is not removed on signals.
+  /// Paths longer than 4095 bytes, and more than 64 at a time, are not removed on signals.
   Unfinished(const std::filesystem::path& path, Kind kind);
   ~Unfinished();
   Unfinished(const Unfinished&) = delete;
   Unfinished& operator=(const Unfinished&) = delete;
-  /// From now on it stays.
+  /// Keeps the path from now on.
   void keep();
 
  private:
   int place_ = -1;
 };
 
-/// While one lives, those signals wait: what is made, and not yet an Unfinished, would be left.
+/// Blocks these signals during its lifetime, while a path exists that is not yet an Unfinished.
 class SignalsWait {
  public:
   SignalsWait();
@@ -33,8 +33,8 @@ class SignalsWait {
   SignalsWait& operator=(const SignalsWait&) = delete;
 };
 
-/// From now on SIGINT, SIGTERM and SIGHUP, where they are not ignored, remove what is unfinished and then have their
-/// usual effect. What a handler does here is safe in one: system calls on what stands in static storage.
+/// Installs handlers: SIGINT, SIGTERM and SIGHUP, unless ignored, remove incomplete outputs and then have their usual
+/// effect. The handlers are async-signal-safe: only system calls on static storage.
 void remove_unfinished_on_signals();
 
 }  // namespace tumble::scenarios

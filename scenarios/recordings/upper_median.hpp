@@ -7,9 +7,9 @@
 
 namespace tumble::scenarios {
 
-/// What stands in the middle of the values once they are in order, of an even number the upper one of the two: a value
-/// that was there, as steps of clocks have to be. Scores and tables take the mean of the two instead (statistics.hpp).
-/// All are finite; zero when there is none. O(n).
+/// Returns the upper median: for an even number of values the larger of the two middle ones, hence always one of the
+/// values. Scores and tables use the mean of the two instead (statistics.hpp). Values must be finite; returns zero for
+/// none. O(n).
 template <class Value>
 Value upper_median(std::vector<Value> values) {
   if (values.empty()) return Value{};

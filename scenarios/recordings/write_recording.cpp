@@ -12,7 +12,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Archive that writes every field into a group.
+/// Archive that writes every field to a group.
 class Writer {
  public:
   explicit Writer(hdf5::Group group) : group_(std::move(group)) {}

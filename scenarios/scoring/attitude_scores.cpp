@@ -29,7 +29,7 @@ std::vector<AttitudeError> attitude_errors(const ScoredEstimate& scored) {
       q_align = Eigen::AngleAxisd(heading, Eigen::Vector3d::UnitZ());
     }
     const Eigen::Quaterniond e = q_align * attitude.q_WA * q_true.conjugate();
-    // equal to 2 acos(sqrt(w^2 + z^2)) and 2 atan|z / w| without the loss of digits
+    // Equal to 2 acos(sqrt(w^2 + z^2)) and 2 atan|z / w|, but without cancellation.
     errors.push_back({2.0 * std::atan2(std::hypot(e.x(), e.y()), std::hypot(e.w(), e.z())),
                       2.0 * std::atan2(std::abs(e.z()), std::abs(e.w())), rotation_angle_rad(e),
                       truth.at_rest(attitude.time_ns)});
@@ -48,7 +48,7 @@ bool rmse(const ScoredEstimate& scored, double& value) {
   return true;
 }
 
-/// Squared errors of the tilt over their stated variances, in motion.
+/// Returns squared tilt errors divided by their estimated variances, while in motion.
 std::vector<double> normalised_tilt_errors(const ScoredEstimate& scored) {
   const TruthTrack& truth = truth_track(scored);
   std::vector<double> normalised;

@@ -12,7 +12,7 @@
 #include "scenarios/scoring/families.hpp"
 #include "scenarios/statistics/statistics.hpp"
 
-/// Errors of the rate over clipped samples that are alike: as deep, as long or with as many axes clipped.
+/// Rate errors over clipped samples of similar clipping depth, clipping duration or number of clipped axes.
 namespace tumble::scenarios {
 
 namespace {
@@ -31,7 +31,7 @@ constexpr const auto& edges() {
   if constexpr (kAxis == BinAxis::count) return kCountEdges;
 }
 
-/// Of each sample: how long the segment of clipped samples is that it belongs to; 0 where it is not clipped.
+/// Returns for each sample the duration of its segment of clipped samples; 0 if not clipped.
 std::vector<double> segment_lengths_s(const ScoredEstimate& scored) {
   const ClippingTruth& truth = clipping_truth(scored);
   const double period_s = 1e-9 * static_cast<double>(scored.sensors().imus.front().period_ns);
@@ -47,7 +47,7 @@ std::vector<double> segment_lengths_s(const ScoredEstimate& scored) {
   return lengths;
 }
 
-/// The measure by which a rate at a clipped sample is sorted.
+/// Returns the measure by which a clipped sample is binned.
 template <BinAxis kAxis>
 double measure(const ScoredEstimate& scored, const PairedRate& pair) {
   if constexpr (kAxis == BinAxis::depth) return clipping_truth(scored).depth_rad_s(pair.sample);

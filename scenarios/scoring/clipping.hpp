@@ -10,19 +10,19 @@
 
 namespace tumble::scenarios {
 
-/// Of a device's clip flags those of its gyro's axes.
+/// Bits of the gyro axes in a device's clip flags.
 inline constexpr std::uint8_t kGyroClipFlags = 0b000111;
 
-/// What the primary gyro should have read, and where its rail took something away.
+/// Determines the true rates of the primary gyro, and which of its samples are clipped.
 ///
-/// Definition, used by every score: axis j of a sample is clipped when the reading differs from its unclipped twin (the
-/// same errors, no rail) by more than one standard deviation of the gyro's white noise per sample, sqrt(density^2 /
-/// period), or 1e-6 rad/s if that is larger. What the rail takes away below the noise is nobody's loss. Behind tilted
-/// sensing elements (sim/imu/elements.hpp) this holds of the axes beside a clipped element too, which lose entries of
-/// the inverse of the elements' matrix times its deficit: they count as clipped where that shows above the noise.
+/// All scores use this definition: axis j of a sample is clipped if the reading differs from its unclipped twin by more
+/// than a tolerance. The twin has the same errors but no saturation. The tolerance is one standard deviation of the
+/// gyro's white noise per sample, sqrt(density^2 / period), but at least 1e-6 rad/s; smaller losses do not matter.
+/// With tilted sensing elements (sim/imu/elements.hpp), one clipped element also changes the other axes, by entries of
+/// the inverse element matrix times its deficit. These axes count as clipped where the change exceeds the tolerance.
 ///
-/// Where the truth is another instrument's (rates without unclipped twins: FORMAT.md, "References"), clipped are the
-/// axes at a rail that the reference confirms (reference_clipping.hpp), and samples that it does not know are not
+/// If the truth comes from a reference instrument (rates without unclipped twins: FORMAT.md, "References"), an axis is
+/// clipped where the reference confirms saturation (reference_clipping.hpp). Samples without a reference rate are not
 /// scored.
 class ClippingTruth {
  public:
@@ -31,27 +31,26 @@ class ClippingTruth {
     std::uint8_t clipped_axes;   ///< bit j: axis j is clipped
   };
 
-  /// Throws BadInput when sensors and truth do not belong together.
+  /// Throws BadInput if sensors and truth do not belong together.
   ClippingTruth(const sim::Sensors& sensors, const sim::Truth& truth);
 
-  /// The truth at an instant: exactly at a sample's stamp its own; between two stamps the rate is interpolated and the
-  /// axes are those of the sample whose window holds the instant. Nothing outside of the recording, nor where it is not
-  /// known. O(log N).
+  /// Returns the truth at an instant. Between two samples the rate is interpolated, and the clipped axes are those of
+  /// the sample whose window contains the instant. Empty outside the recording and where unknown. O(log N).
   std::optional<Sample> at(std::int64_t time_ns) const;
 
-  /// The sample whose window holds the instant. Nothing outside of the recording. O(log N).
+  /// Returns the sample whose window contains the instant; empty outside the recording. O(log N).
   std::optional<std::size_t> index_at(std::int64_t time_ns) const;
 
   std::size_t size() const { return record_->time_ns.size(); }
-  /// Whether the truth is a reference's.
+  /// Returns true if the truth comes from a reference instrument.
   bool is_reference() const { return !reference_axes_.empty(); }
-  /// Whether the rate of a sample is known: always but for a reference.
+  /// Returns true if the rate of a sample is known; only references have unknown rates.
   bool known(std::size_t index) const { return !is_reference() || truth_->rate_rad_s[index].allFinite(); }
-  /// Samples whose rate is known.
+  /// Returns the number of samples with known rate.
   std::size_t known_samples() const;
-  /// None where the rate is not known.
+  /// Returns 0 where the rate is unknown.
   std::uint8_t clipped_axes(std::size_t index) const;
-  /// What the rail took from the axis that lost most, against the unclipped twin (or the reference).
+  /// Returns the largest difference of an axis to its unclipped twin, or to the reference.
   double depth_rad_s(std::size_t index) const;
 
  private:

@@ -3,18 +3,18 @@
 
 #include <vector>
 
-/// Whether an error is as large as the method said: squared errors over stated variances, one per degree of freedom.
+/// Consistency of errors with reported covariances: squared errors divided by variances, one per degree of freedom.
 namespace tumble::scenarios {
 
-/// An error squared over the variance that was stated of it. Where no variance was stated, no error is within it but
-/// one that is none: infinite. NaN of an error that is NaN.
+/// Returns the squared error divided by its reported variance. With variance 0: infinite, unless the error is 0. NaN
+/// for a NaN error.
 double squared_over(double error, double variance);
 
-/// Share of these within three standard deviations, NaN outside of them; false without any.
+/// Returns the share of squares within three standard deviations; NaN counts as outside. False if there are none.
 bool share_within_3sigma(const std::vector<double>& squares, double& value);
 
-/// Their median as a multiple of a normal variable's. The middle, since the mean is that of the one axis whose variance
-/// is smallest. False without any.
+/// Returns the median of the squares relative to that of a normal variable. The mean would be dominated by the axis
+/// with the smallest variance. False if there are none.
 bool normalised_median(const std::vector<double>& squares, double& value);
 
 }  // namespace tumble::scenarios

@@ -7,10 +7,10 @@
 
 namespace tumble::scenarios {
 
-/// What an estimate costs: its CPU time, as sweeps store it.
+/// Returns the CPU time metric of an estimate, as sweeps store it.
 const MetricInfo& estimate_cost();
 
-/// Whether a score is what a run cost the machine, which no two runs have alike, and says nothing of the answer.
+/// Returns true if a score is a computing cost, which varies between identical runs.
 bool is_cost(std::string_view name);
 
 }  // namespace tumble::scenarios

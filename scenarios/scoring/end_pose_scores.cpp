@@ -12,7 +12,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-// the last sweep that the truth reaches: clocks that are late stamp the end of a recording beyond it
+// Returns the last sweep within the truth. A delayed clock can stamp the end of a recording beyond it.
 const LidarInertialOdometry::SweepReport* last_covered(const ScoredEstimate& scored) {
   const Estimate& estimate = scored.estimate();
   const TruthTrack& truth = truth_track(scored);
@@ -21,10 +21,10 @@ const LidarInertialOdometry::SweepReport* last_covered(const ScoredEstimate& sco
   return last == estimate.sweeps.rend() ? nullptr : &*last;
 }
 
-// from where to where an end error is measured; false when there is no such motion
+// Returns the start and end pose of the end error; false if there is no such motion.
 bool ends_of(const ScoredEstimate& scored, PoseState& first, PoseState& last) {
   const Estimate& estimate = scored.estimate();
-  if (estimate.sweeps.empty()) {  // a trajectory of somebody else
+  if (estimate.sweeps.empty()) {  // external trajectory
     const PairedTrack& track = paired_track(scored);
     if (track.poses.size() < 2) return false;
     const auto pose_at = [&](std::int64_t time_ns) {
@@ -49,7 +49,7 @@ struct EndError {
   Eigen::Quaterniond rotation;
 };
 
-// estimated motion from the sixth registered sweep to the last sweep, seen from the true one
+// Compares the estimated with the true motion from the sixth registered sweep to the last sweep.
 std::optional<EndError> end_pose_error(const ScoredEstimate& scored) {
   const TruthTrack& truth = truth_track(scored);
   PoseState first, last;
@@ -77,19 +77,20 @@ bool rotation_error_end(const ScoredEstimate& scored, double& value) {
   return true;
 }
 
-// of the last sweep's pose, aligned at the first pose, against its own reported covariance: mean 1 when that holds
+// Computes the normalised squared error of the last sweep's pose, aligned at the first pose. Its mean is 1 for a
+// consistent covariance.
 bool pose_nees(const ScoredEstimate& scored, double& value) {
   if (scored.estimate().sweeps.empty() || scored.estimate().poses.empty()) return false;
   const auto* last_sweep = last_covered(scored);
   if (last_sweep == nullptr) return false;
   const PoseState& last = last_sweep->pose;
-  if (last.covariance.diagonal().minCoeff() <= 0.0) return false;  // none reported
+  if (last.covariance.diagonal().minCoeff() <= 0.0) return false;  // no covariance reported
   const Alignment& alignment = paired_track(scored).alignment;
   const PoseState aligned = alignment.apply(last);
   const PoseState true_pose = truth_track(scored).pose(last.time_ns);
   Eigen::Matrix<double, 6, 1> error;
   error << true_pose.p_WA_m - aligned.p_WA_m, so3::log((true_pose.q_WA * aligned.q_WA.conjugate()).normalized());
-  // the covariance is in the estimator's world: its error is turned there
+  // The covariance refers to the estimator's world: rotate the error there.
   const Eigen::Matrix3d back = alignment.transform().linear().transpose();
   error << Eigen::Vector3d(back * error.head<3>()), Eigen::Vector3d(back * error.tail<3>());
   const Eigen::LLT<Eigen::Matrix<double, 6, 6>> factor(last.covariance);

@@ -9,18 +9,18 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr float kToleranceM = 0.25f;     // Deschenes et al.: a map point farther from the surface is an outlier
-constexpr float kFineToleranceM = 0.1f;  // of a map that is sharp, not only whole
-constexpr double kOutliersMax = 0.15;    // the same: a larger share of them is a failed map
-constexpr float kSurfaceCellM = 0.1f;    // the seen surface counts once per cell, however often it was hit
-constexpr float kErrorLimitM = 0.5f;     // an outlier counts as this far, however far it is
-constexpr float kSamePointM = 1e-3f;     // points of one such cell were drawn twice
-constexpr double kSeenRangeM = 100.0;    // of the frame's start; farther hits nobody maps
+constexpr float kToleranceM = 0.25f;     // Deschenes et al.: map points farther from the surface are outliers
+constexpr float kFineToleranceM = 0.1f;  // stricter tolerance for a sharp map
+constexpr double kOutliersMax = 0.15;    // Deschenes et al.: a larger share of outliers is a failed map
+constexpr float kSurfaceCellM = 0.1f;    // each cell of the seen surface counts once, however often it was hit
+constexpr float kErrorLimitM = 0.5f;     // the distance of outliers is limited to this
+constexpr float kSamePointM = 1e-3f;     // points in one cell of this size are duplicates
+constexpr double kSeenRangeM = 100.0;    // farther hits from the start are not expected in maps
 
 static_assert(kErrorLimitM > kToleranceM && kErrorLimitM > kFineToleranceM,
               "an error at the limit must be outside both tolerances");
 
-// map points in W, by the alignment of position and yaw at the start
+// Returns the map points in W, aligned by position and yaw at the start.
 std::vector<Eigen::Vector3f> map_in_world(const ScoredEstimate& scored) {
   const Estimate& estimate = scored.estimate();
   const Eigen::Isometry3d to_world = paired_track(scored).alignment.transform();
@@ -32,7 +32,7 @@ std::vector<Eigen::Vector3f> map_in_world(const ScoredEstimate& scored) {
   return points;
 }
 
-// every sweep's true hits of the static world; the robot's own cage has no surface id
+// Returns the true hits of all sweeps on the static world; the robot's own cage has no surface id.
 std::vector<Eigen::Vector3f> seen_surface(const sim::Truth& truth) {
   std::vector<Eigen::Vector3f> hits;
   const sim::LidarTruth& lidar = truth.lidars.front();
@@ -43,7 +43,7 @@ std::vector<Eigen::Vector3f> seen_surface(const sim::Truth& truth) {
   return one_per_cell(hits, kSurfaceCellM);
 }
 
-// of the finite map points to the true surface, each at most kErrorLimitM; the scored estimate has a surface
+// Returns the distances of the finite map points to the true surface, at most kErrorLimitM each. Requires a surface.
 std::vector<float> map_distances_m(const ScoredEstimate& scored) {
   std::vector<Eigen::Vector3f> finite;
   for (const Eigen::Vector3f& point : scored.once(map_in_world)) {
@@ -98,8 +98,7 @@ bool map_coverage(const ScoredEstimate& scored, double& value) {
   return true;
 }
 
-// a method that leaves no map has failed to map
-// a trajectory alone, without sweeps, comes of a program that draws no map
+// A method without a map has failed. A trajectory without sweeps comes from an external program that does not map.
 bool failed(const ScoredEstimate& scored, double& value) {
   const Estimate& estimate = scored.estimate();
   if (scored.surface() == nullptr || (estimate.sweeps.empty() && estimate.map.empty())) return false;

@@ -31,7 +31,7 @@ std::vector<std::string> metrics_from(Kind kind, Place least) {
   return names;
 }
 
-/// How far a value lies from a target, the same for half of it and for twice it.
+/// Returns the distance from a target; equal for half and twice the target.
 double distance(double value, double target) {
   return value > 0.0 && target > 0.0 ? std::abs(std::log(value / target)) : std::abs(value - target);
 }

@@ -11,8 +11,8 @@
 
 namespace tumble::scenarios {
 
-/// Answers whether any point of a set lies within a fixed distance: a hash of cells as wide as the distance, so that 27
-/// cells are looked at. Exact. Points that are not finite are left out.
+/// Tests whether any point of a set is within a fixed distance. Exact; uses a hash of cells as wide as the distance and
+/// checks 27 cells. Ignores points that are not finite.
 class Nearness {
  public:
   Nearness(std::span<const Eigen::Vector3f> points_m, float distance_m);
@@ -21,11 +21,11 @@ class Nearness {
  private:
   float distance_m_;
   std::vector<Eigen::Vector3f> points_m_;                        ///< sorted by cell
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> ranges_;  ///< of points_m_, a cell each
-  SpatialHash cells_;                                            ///< key -> place in ranges_
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> ranges_;  ///< ranges of points_m_, one per cell
+  SpatialHash cells_;                                            ///< key -> index in ranges_
 };
 
-/// One point of each occupied cell of `cell_m`, the first given; order kept. Points that are not finite are left out.
+/// Returns the first point in each cell of size `cell_m`, in the original order. Drops points that are not finite.
 std::vector<Eigen::Vector3f> one_per_cell(std::span<const Eigen::Vector3f> points_m, float cell_m);
 
 }  // namespace tumble::scenarios

@@ -7,14 +7,13 @@
 
 namespace tumble::scenarios {
 
-/// How a method's run on a draw ended. `ok`, `diverged` (the estimate left the truth: score.hpp, `verdict`), `failed`
-/// (it said so), `crashed` (it ended its process) and `timeout` are the method's; `killed` is the machine's (a signal
-/// from outside, no memory, no process) and says nothing of the method; `rejected` is the draw's: it cannot be
-/// simulated.
+/// How a method's run on a draw ended. The method is responsible for `ok`, `diverged` (score.hpp, `verdict`), `failed`
+/// (reported by itself), `crashed` and `timeout`. `killed` is a fault of the machine (signal from outside, no memory,
+/// no process). `rejected` means that the draw cannot be simulated.
 enum class OutcomeStatus { ok, diverged, failed, crashed, timeout, killed, rejected };
 
 std::span<const OutcomeStatus> outcome_statuses();
-/// As the results database has it.
+/// Returns the name used in the results database.
 const char* to_string(OutcomeStatus status);
 std::optional<OutcomeStatus> outcome_status_named(std::string_view name);
 

@@ -10,9 +10,9 @@ namespace tumble::scenarios {
 
 namespace {
 
-// a share of less than this path says nothing
+// minimum path for relative errors
 constexpr double kPathMinM = 0.05;
-constexpr double kUnmovedM = 0.02;  // before, nothing can be wrong
+constexpr double kUnmovedM = 0.02;  // errors before this motion are not scored
 
 bool end_error(const ScoredEstimate& scored, double& value) {
   const std::vector<PairedPose>& poses = paired_track(scored).poses;
@@ -36,7 +36,7 @@ bool height_error_max(const ScoredEstimate& scored, double& value) {
   value = 0.0;
   for (const PairedPose& pose : poses) {
     const double error = std::abs(pose.estimate.p_WA_m.z() - pose.truth.p_WA_m.z());
-    // not std::max: a NaN has to come through
+    // unlike std::max, this propagates NaN
     if (!(error <= value)) value = error;
     if (std::isnan(value)) break;
   }
@@ -63,8 +63,8 @@ bool rest_drift(const ScoredEstimate& scored, double& value) {
   return any;
 }
 
-/// Squared errors over their stated variances, once it moves. In the axes that the covariance is stated in: those of
-/// the estimate's own world.
+/// Returns squared errors divided by their reported variances, once the body moves. Errors are in the axes of the
+/// covariance: those of the estimate's world.
 std::vector<double> normalised_position_errors(const ScoredEstimate& scored) {
   const Estimate& estimate = scored.estimate();
   const PairedTrack& track = paired_track(scored);

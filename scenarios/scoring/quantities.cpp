@@ -4,7 +4,7 @@
 #include "scenarios/scoring/cost.hpp"
 #include "scenarios/scoring/families.hpp"
 
-/// What is stored beside the metrics and shown as they are.
+/// Quantities stored in addition to the metrics and shown in the same way.
 namespace tumble::scenarios {
 
 std::vector<MetricInfo> cost_quantities() {

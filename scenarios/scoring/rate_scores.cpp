@@ -13,7 +13,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-// errors of the estimate at samples with and without a clipped axis
+// Errors of the estimate at samples with and without a clipped axis.
 struct ErrorNorms {
   std::vector<double> clipped_rad_s, free_rad_s;
 };
@@ -43,7 +43,8 @@ bool clipped_max(const ScoredEstimate& scored, double& value) {
   return quantile_of(scored.once(error_norms).clipped_rad_s, 1.0, value);
 }
 
-// A segment: samples in a row with a clipped axis. Its error is the norm of the mean of its error vectors, an offset.
+// A segment consists of consecutive samples with a clipped axis. Its error is the norm of its mean error vector, thus
+// an offset.
 bool segment_max(const ScoredEstimate& scored, double& value) {
   std::vector<double> offsets;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -65,7 +66,7 @@ bool segment_max(const ScoredEstimate& scored, double& value) {
   return quantile_of(offsets, 1.0, value);
 }
 
-// whether the robot touched anything while the sample that ends at time_ns was taken
+// Returns true if the robot touched anything during the sample that ends at time_ns.
 bool in_contact(const ScoredEstimate& scored, std::int64_t time_ns) {
   const sim::Truth& truth = scored.truth();
   if (truth.period_ns <= 0 || truth.label.empty()) return false;
@@ -79,7 +80,7 @@ bool in_contact(const ScoredEstimate& scored, std::int64_t time_ns) {
   return false;
 }
 
-// squared errors of clipped axes over their reported variances: of all samples, of those in flight, of those in contact
+// Squared errors of clipped axes divided by their reported variances: all samples, in flight, in contact.
 struct NormalisedErrors {
   std::vector<double> all, flight, impact;
 };

@@ -31,7 +31,7 @@ double plane_at(const ReferenceRail& rail, const Side& side, const Eigen::Vector
   return rail.rail_rad_s + rail.slopes[0] * y[side.first] + rail.slopes[1] * y[side.second];
 }
 
-/// s y_j = r + c . y, slopes held to zero by their prior.
+/// Fits s y_j = r + c . y, with slopes regularised to zero.
 ReferenceRail fit(const Side& side, std::span<const Eigen::Vector3d> readings) {
   Eigen::Matrix3d N = Eigen::Matrix3d::Zero();
   Eigen::Vector3d b = Eigen::Vector3d::Zero();

@@ -7,29 +7,34 @@
 #include <span>
 #include <vector>
 
-/// Which readings of a real gyro are clipped, told by the readings and by a reference of the rate. Independent of any
-/// estimator's own detection.
+/// Detects clipped readings of a real gyro with a reference of the rate. Independent of the estimator's detection.
 namespace tumble::scenarios {
 
-/// A rail of one axis j and sign s, a tilted plane in the readings: s y_j = rail + slopes . (the other two axes, in
-/// order). Elements clip along axes of their own, not quite orthogonal, before a device's calibration: hence the tilt.
+/// Saturation limit of axis j with sign s, a tilted plane in the readings: s y_j = rail + slopes . (the other two axes,
+/// in order). The plane is tilted because sensing elements saturate along their own, slightly non-orthogonal axes
+/// before the device's calibration.
 struct ReferenceRail {
   bool found = false;
   double rail_rad_s = 0.0;
   Eigen::Vector2d slopes = Eigen::Vector2d::Zero();
 };
 
-/// Definition. Of the samples whose reading lies within 5 % of the axis' extreme of that sign and whose reference is
-/// known, those count for a rail whose reference lies beyond the reading by more than 2 % of it and more than four
-/// times the median size of reading minus reference on that axis; there is a rail where these are five at least and
-/// half of all. Its plane is fitted to them by least squares, slopes with a prior of 0 +- 0.03 against a spread of 0.02
-/// rad/s, twice, the second time to those within 2 % of the first plane. Axis j of a sample is clipped where reading
-/// and reference both lie at or beyond 0.98 of the plane. A reference that is NaN makes a sample unknown: no axis.
-/// `reading` and `reference` are parallel, in the IMU's axes [rad/s]. O(N).
+/// Returns the saturation planes, defined as follows.
+///
+/// Candidates are samples within 5 % of the axis' extreme of that sign, with a known reference. A candidate counts if
+/// the reference exceeds the reading by more than 2 %. The excess must also exceed four times the median difference
+/// between reading and reference on that axis. A limit exists if at least five candidates, and at least half of them,
+/// count.
+///
+/// Its plane is the least-squares fit to these samples, with a slope prior of 0 +- 0.03 and a residual deviation of
+/// 0.02 rad/s. A second fit uses only samples within 2 % of the first plane. Axis j of a sample is clipped if reading
+/// and reference both reach 0.98 of the plane. A NaN reference makes a sample unknown: no axis is flagged.
+///
+/// `reading` and `reference` are parallel, in IMU axes [rad/s]. O(N).
 std::array<ReferenceRail, 6> reference_rails(std::span<const Eigen::Vector3d> reading,
                                              std::span<const Eigen::Vector3d> reference);
 
-/// Bit j: axis j is clipped, of each sample.
+/// Returns the clipped axes of each sample; bit j: axis j.
 std::vector<std::uint8_t> clipped_by_reference(std::span<const Eigen::Vector3d> reading,
                                                std::span<const Eigen::Vector3d> reference);
 

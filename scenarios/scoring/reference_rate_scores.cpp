@@ -12,15 +12,15 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// A sample is far from the rail when every axis reads less than this share of its extreme; it turns when it reads more
-/// than so much.
+/// A sample is unclipped for certain if every axis is below this share of its extreme. It rotates if its rate exceeds
+/// this value.
 constexpr double kFarShare = 0.9, kRotating_rad_s = 0.5;
 
 double error_norm(const Eigen::Vector3d& estimate, const Eigen::Vector3d& reference) {
   return (estimate - reference).norm();
 }
 
-/// Of the speed alone: what a frame that is turned leaves as it is.
+/// Returns the error of the norm, which does not depend on a frame rotation.
 double error_speed(const Eigen::Vector3d& estimate, const Eigen::Vector3d& reference) {
   return std::abs(estimate.norm() - reference.norm());
 }
@@ -32,7 +32,7 @@ double error_axis(const Eigen::Vector3d& estimate, const Eigen::Vector3d& refere
 
 using ErrorOf = double (*)(const Eigen::Vector3d&, const Eigen::Vector3d&);
 
-/// Of the estimate at clipped samples; of one axis, at the samples at which that axis clips.
+/// Returns a percentile of the estimate's error at clipped samples; for one axis, at the samples where that axis clips.
 template <ErrorOf kError, int kPercent, unsigned kAxes>
 bool clipped_error(const ScoredEstimate& scored, double& value) {
   if (!clipping_truth(scored).is_reference()) return false;
@@ -44,7 +44,7 @@ bool clipped_error(const ScoredEstimate& scored, double& value) {
   return quantile_of(errors, 0.01 * kPercent, value);
 }
 
-/// Of the reference against the gyro itself, where nothing clips and the body turns.
+/// Returns a percentile of the difference between reference and gyro where nothing clips and the body rotates.
 template <ErrorOf kError, int kPercent>
 bool reference_error(const ScoredEstimate& scored, double& value) {
   const ClippingTruth& truth = clipping_truth(scored);
@@ -61,7 +61,8 @@ bool reference_error(const ScoredEstimate& scored, double& value) {
   return quantile_of(errors, 0.01 * kPercent, value);
 }
 
-/// Variances of the reference's axes, from the middle half of its differences to the free gyro (normal).
+/// Returns the variances of the reference's axes, from the interquartile range of its difference to the unclipped gyro
+/// (assumed normal).
 Eigen::Vector3d reference_variance(const ScoredEstimate& scored, const ClippingTruth& truth) {
   const auto& reading = scored.sensors().imus.front().gyro_rad_s;
   Eigen::Vector3d variance = Eigen::Vector3d::Zero();
@@ -77,7 +78,7 @@ Eigen::Vector3d reference_variance(const ScoredEstimate& scored, const ClippingT
   return variance;
 }
 
-/// With the reference's own error counted, unlike rate_coverage_3sigma.
+/// Unlike rate_coverage_3sigma, includes the reference's own error.
 bool reference_coverage(const ScoredEstimate& scored, double& value) {
   const ClippingTruth& truth = clipping_truth(scored);
   if (!truth.is_reference()) return false;
@@ -103,7 +104,7 @@ bool called_measured(const ScoredEstimate& scored, double& value) {
     for (unsigned j = 0; j < 3; ++j) {
       if ((pair.clipped_axes() & (1u << j)) == 0) continue;
       axes += 1.0;
-      // a sample that no axis of which was found at its rail may yet be doubted as a whole
+      // a method may mark a whole sample as suspect without a detected clipped axis
       const bool doubted = rate.clipped_axes == 0 && rate.source != RateSource::measured;
       missed += (rate.clipped_axes & (1u << j)) == 0 && !doubted ? 1.0 : 0.0;
     }
@@ -137,7 +138,7 @@ void add_pair(const std::string& name, const std::string& doc, std::vector<Metri
                  clipped_error<kError, 90, kAxes>});
 }
 
-/// Of the reference, not of a method: no contest.
+/// Properties of the reference, not of a method: not ranked.
 template <ErrorOf kError>
 void add_reference(const std::string& name, const std::string& doc, std::vector<Metric>& all) {
   all.push_back({{"rate_" + name + "_median_rad_s", Unit::rad_s, "median " + doc, Sense::none},

@@ -8,11 +8,11 @@
 
 namespace tumble::scenarios {
 
-/// The end error starts here: the sixth sweep that was registered (Deschenes et al.), counted from 1. The first is the
-/// map's.
+/// The end error starts at the sixth registered sweep (Deschenes et al.), counted from 1. The first sweep starts the
+/// map.
 inline constexpr std::size_t kStartSweep = 6;
 
-/// Indices of the sweeps that were not rejected.
+/// Returns the indices of the sweeps that were not rejected.
 std::vector<std::size_t> registered_sweeps(const Estimate& estimate);
 
 }  // namespace tumble::scenarios

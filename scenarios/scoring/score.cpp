@@ -26,11 +26,11 @@ double value_of(std::span<const Score> scores, const std::string& metric) {
 
 namespace {
 
-// longest time of the recording that an estimate may leave unanswered, as a share of it
+// longest gap of an estimate as a fraction of the recording
 constexpr double kHoleMaxShare = 0.2;
-// share of the gyro's samples that a rate method must answer
+// minimum share of gyro samples with an estimated rate
 constexpr double kAnsweredMin = 0.9;
-// an end error below this is never a divergence, however short the path
+// end errors below this are never a divergence, however short the path
 constexpr double kEndErrorFloorM = 1.0;
 
 std::vector<Metric> all_metrics() {
@@ -44,7 +44,7 @@ std::vector<Metric> all_metrics() {
   return all;
 }
 
-// whether the states reach over the recording without a long hole
+// Returns true if the states cover the recording without a long gap.
 template <typename State>
 bool reaches(const std::vector<State>& states, std::int64_t end_ns) {
   const double hole_max = kHoleMaxShare * static_cast<double>(end_ns);
@@ -74,7 +74,7 @@ bool attitudes_hold(const ScoredEstimate& scored) {
   return reaches(scored.estimate().attitudes, truth.last_ns());
 }
 
-/// No robot that rolls or tumbles comes so far from where it began: an estimate with one such pose is wrong.
+/// No rolling or tumbling robot travels this far: an estimate with such a pose is wrong.
 constexpr double kFarthest_m = 1e7;
 
 bool poses_hold(const ScoredEstimate& scored) {
@@ -93,8 +93,8 @@ bool poses_reach_and_hold(const ScoredEstimate& scored) {
   return reaches(scored.estimate().poses, truth_track(scored).last_ns()) && poses_hold(scored);
 }
 
-// a run long enough for the end error must have sweeps enough for it; a trajectory without any (somebody else's) is
-// judged by its poses alone
+// A run that is long enough for the end error must have enough sweeps for it. An external trajectory without sweeps is
+// judged by its poses.
 bool sweeps_hold(const ScoredEstimate& scored) {
   const Estimate& estimate = scored.estimate();
   for (const auto& sweep : estimate.sweeps) {

@@ -12,40 +12,40 @@
 
 namespace tumble::scenarios {
 
-/// One number of an outcome; the metric's name ends in its unit (docs/design.md, "Scores").
+/// One score of an outcome; the metric's name ends in its unit (docs/design.md, "Scores").
 struct Score {
   std::string metric;
   double value;
 };
 
-/// That of a metric; null where there is none.
+/// Returns the score of a metric, or null.
 const Score* find_score(std::span<const Score> scores, const std::string& metric);
-/// Its value; NaN where there is none.
+/// Returns the value of a metric, or NaN.
 double value_of(std::span<const Score> scores, const std::string& metric);
 
-/// A metric, self-describing; one line of registration each, in its family's file.
+/// A metric with its description; registered in one line in its family's file.
 struct Metric {
   MetricInfo info;
   Kind kind;
-  /// False when the estimate or recording has nothing to score (no clipped sample, no map).
+  /// Returns false if there is nothing to score (no clipped sample, no map).
   bool (*compute)(const ScoredEstimate& scored, double& value);
 };
 
 std::span<const Metric> metrics();
 
-/// All metrics of a kind that apply, in order of registration. Who asks for the verdict too makes one ScoredEstimate
-/// for both.
+/// Returns all metrics of a kind that apply, in order of registration. Callers that also need the verdict should share
+/// one ScoredEstimate.
 std::vector<Score> score(Kind kind, const ScoredEstimate& scored);
 std::vector<Score> score(Kind kind, const Estimate& estimate, const ScoringInput& input);
 
-/// `ok`, or `diverged`: an estimate that is not finite, that leaves more than a fifth of the recording in one piece
-/// (rates: more than a tenth of the samples) unanswered, that ends farther from the truth than the path is long (1 m at
-/// least), or that reports sweeps and registers fewer than six.
+/// Returns `ok` or `diverged`. An estimate diverged if one of these holds: it is not finite; it has a gap longer than a
+/// fifth of the recording (rates: more than a tenth of the samples missing); its end error exceeds the path length (at
+/// least 1 m); it reports sweeps but registered fewer than six.
 OutcomeStatus verdict(Kind kind, const ScoredEstimate& scored);
 OutcomeStatus verdict(Kind kind, const Estimate& estimate, const ScoringInput& input);
 
-/// Whether a trajectory is finite and ends nearer to the truth than the path is long, over the segment that it answers,
-/// however short that is: what `verdict` asks of poses but for the holes.
+/// Returns true if a trajectory is finite and its end error is below the path length of the segment that it covers.
+/// This is `verdict` for poses without the test for gaps.
 bool trajectory_holds(const ScoredEstimate& scored);
 
 }  // namespace tumble::scenarios

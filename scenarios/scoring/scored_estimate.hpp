@@ -10,16 +10,15 @@
 
 namespace tumble::scenarios {
 
-/// What scoring needs of a recording. `surface` may be null: map scores are left out then.
+/// The parts of a recording that scoring needs. `surface` may be null; map scores are then omitted.
 struct ScoringInput {
   const sim::Sensors* sensors = nullptr;
   const sim::Truth* truth = nullptr;
   const sim::Surface* surface = nullptr;
 };
 
-/// An estimate beside the recording that it is held to, and what several metrics make of the two, each of it once: the
-/// poses beside the truth, a map's distances to the surface. It is made for one estimate and lives as long as that is
-/// scored; it refers to what it is made from. Of one thread.
+/// An estimate paired with its recording, with a cache of results that several metrics share, such as paired poses and
+/// map distances. Keeps references to its inputs. Not thread-safe.
 class ScoredEstimate {
  public:
   /// Throws BadInput without sensors or truth.
@@ -30,11 +29,11 @@ class ScoredEstimate {
   const sim::Truth& truth() const { return *input_.truth; }
   const sim::Surface* surface() const { return input_.surface; }
 
-  /// What `make` makes of it, a function of it alone: called by the first who asks, the same object for all others.
-  /// `make` may ask for what others make. When it throws, nothing is kept.
+  /// Returns `make(*this)`, computed at the first call and cached. `make` must depend on this object only and may call
+  /// once() itself. If it throws, nothing is cached.
   template <typename Made>
   const Made& once(Made (*make)(const ScoredEstimate&)) const {
-    const auto key = reinterpret_cast<void (*)()>(make);  // a key alone: never called
+    const auto key = reinterpret_cast<void (*)()>(make);  // used as a key, never called
     auto found = made_.find(key);
     if (found == made_.end()) found = made_.emplace(key, std::make_shared<const Made>(make(*this))).first;
     return *static_cast<const Made*>(found->second.get());
@@ -43,7 +42,7 @@ class ScoredEstimate {
  private:
   const Estimate* estimate_;
   ScoringInput input_;
-  mutable std::map<void (*)(), std::shared_ptr<const void>> made_;  ///< by the function that made it
+  mutable std::map<void (*)(), std::shared_ptr<const void>> made_;  ///< keyed by the function that computes the value
 };
 
 }  // namespace tumble::scenarios

@@ -10,16 +10,18 @@
 #include "scenarios/scoring/beside_truth.hpp"
 #include "scenarios/scoring/families.hpp"
 
-/// Events of slip and slide: what a position method claims against the contact labels of the truth.
+/// Slip and slide events: compares a position method's contact modes with the truth's contact labels.
 ///
-/// An event is a spell of the labels slip and slide; gaps with up to kBridge_ns of grip in them belong to it (and with
-/// air up to kHop_ns in all: what spins out of balance hops). A true event counts when it lasts kShortest_ns and its
-/// contact speed reaches kLeastSpeed_m_s somewhere (below, nobody can tell it from grip and no way is lost). A claimed
-/// event is right when at least half of its time lies within true events, weak and short ones too, each widened by
-/// kMargin_ns. A true event is found when right claims cover at least half of its time. Whether a claim says slip or
-/// slide is not asked. The way of a true event is lost when the horizontal error grows by more than kLost_m from its
-/// begin to its end, it is flagged when the stated horizontal sigma does by more than kFlagged_m; both with kMargin_ns
-/// on either side.
+/// An event is an interval of the labels slip and slide. It includes gaps of up to kBridge_ns of grip, and up to
+/// kHop_ns of air in total, because an unbalanced spinning sphere hops.
+/// A true event counts if it lasts kShortest_ns and its contact speed reaches kLeastSpeed_m_s. Weaker events cannot be
+/// distinguished from grip and cause no position error.
+/// An estimated event is correct if at least half of it overlaps true events, including weak and short ones, each
+/// widened by kMargin_ns. A true event is detected if correct events cover at least half of it. Slip and slide are not
+/// distinguished.
+/// The position is lost in a true event if the horizontal error grows by more than kLost_m from its start to its end.
+/// The event is flagged if the reported horizontal sigma grows by more than kFlagged_m. Both use kMargin_ns on either
+/// side.
 namespace tumble::scenarios {
 
 namespace {
@@ -40,7 +42,7 @@ bool moves(sim::ContactLabel label) {
   return label == sim::ContactLabel::slip || label == sim::ContactLabel::slide;
 }
 
-/// Joins the spells of slip and slide to events while it goes through the labels in time order.
+/// Joins intervals of slip and slide to events, from labels in time order.
 class Events {
  public:
   void add(sim::ContactLabel label, std::int64_t begin_ns, std::int64_t end_ns) {
@@ -55,7 +57,7 @@ class Events {
 
  private:
   std::vector<SlipSpan> spans_;
-  std::int64_t gripped_ns_ = 0;  ///< since the last spell
+  std::int64_t gripped_ns_ = 0;  ///< grip since the last interval
 };
 
 std::vector<SlipSpan> true_spans(const sim::Truth& truth) {
@@ -94,7 +96,7 @@ std::vector<SlipSpan> claimed_spans(const Estimate& estimate) {
 }
 
 std::int64_t covered_ns(const SlipSpan& span, const std::vector<SlipSpan>& by, std::int64_t margin_ns) {
-  std::int64_t sum_ns = 0, done_ns = span.begin_ns;  // widened spans may overlap
+  std::int64_t sum_ns = 0, done_ns = span.begin_ns;  // widened intervals may overlap
   for (const SlipSpan& one : by) {
     const std::int64_t begin_ns = std::max(done_ns, one.begin_ns - margin_ns);
     const std::int64_t end_ns = std::min(span.end_ns, one.end_ns + margin_ns);
@@ -111,14 +113,14 @@ bool half_covered(const SlipSpan& span, const std::vector<SlipSpan>& by, std::in
 }
 
 struct MatchedEvents {
-  std::vector<SlipSpan> events;  ///< true ones that count
+  std::vector<SlipSpan> events;  ///< true events that count
   std::vector<SlipSpan> claimed;
-  std::vector<SlipSpan> right;  ///< claimed ones that are right
+  std::vector<SlipSpan> right;  ///< correct estimated events
 };
 
 std::optional<MatchedEvents> match_events(const ScoredEstimate& scored) {
   const sim::Truth& truth = scored.truth();
-  // a reference knows poses alone
+  // a reference has poses only
   if (scored.estimate().contacts.empty() || truth.label.empty()) return std::nullopt;
   const std::vector<SlipSpan> all = true_spans(truth);
   MatchedEvents out;
@@ -165,16 +167,16 @@ bool delay(const ScoredEstimate& scored, double& value) {
   return true;
 }
 
-/// A true event with what became of the position in it.
+/// A true event with the position error in it.
 struct Passed {
   bool lost = false, flagged = false;
 };
 
-/// The true events that count and that the estimate covers; none when it states no covariance.
+/// Returns the true events that count and that the estimate covers; none without a covariance.
 std::vector<Passed> passed_events(const ScoredEstimate& scored) {
   const sim::Truth& truth = scored.truth();
   std::vector<Passed> out;
-  if (truth.label.empty()) return out;  // a reference knows poses alone
+  if (truth.label.empty()) return out;  // a reference has poses only
   const std::vector<PairedPose>& poses = paired_track(scored).poses;
   const auto pose_at = [&](std::int64_t time_ns) {
     return std::lower_bound(poses.begin(), poses.end(), time_ns,
@@ -191,7 +193,7 @@ std::vector<Passed> passed_events(const ScoredEstimate& scored) {
     const auto before = pose_at(span.begin_ns - kMargin_ns), after = pose_at(span.end_ns + kMargin_ns);
     if (after == poses.end() || !(variance_m2(*after) > 0.0)) continue;
     Passed passed;
-    passed.lost = !((error_m(*after) - error_m(*before)).norm() <= kLost_m);  // what is not finite is lost
+    passed.lost = !((error_m(*after) - error_m(*before)).norm() <= kLost_m);  // NaN counts as lost
     passed.flagged = variance_m2(*after) - variance_m2(*before) > kFlagged_m * kFlagged_m;
     out.push_back(passed);
   }

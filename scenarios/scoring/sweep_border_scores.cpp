@@ -16,8 +16,8 @@ struct Jumps {
   std::vector<double> rate_rad_s;
 };
 
-// at each border: how much more the estimate's velocity changes than the true one, from the last pose inside one sweep
-// to the first pose inside the next; rates are those of the first and last step inside the sweeps
+// Compares velocity jumps at sweep boundaries: estimated minus true change, from the last pose in one sweep to the
+// first in the next. Rates come from the first and last step inside the sweeps.
 Jumps border_jumps(const ScoredEstimate& scored) {
   const Estimate& estimate = scored.estimate();
   Jumps jumps;
@@ -26,7 +26,7 @@ Jumps border_jumps(const ScoredEstimate& scored) {
   for (std::size_t k = 1; k < estimate.sweeps.size(); ++k) {
     const auto& before = estimate.sweeps[k - 1].trajectory;
     const auto& after = estimate.sweeps[k].trajectory;
-    // a sweep between them may be missing: then this is no border
+    // A sweep may be missing between them; then this is no boundary.
     if (before.size() < 2 || after.size() < 2) continue;
     if (after.front().time_ns - before.back().time_ns > after[1].time_ns - after[0].time_ns) continue;
     const PoseState poses[4] = {before[before.size() - 2], before.back(), after[0], after[1]};
@@ -35,7 +35,7 @@ Jumps border_jumps(const ScoredEstimate& scored) {
     for (int j = 0; j < 4; ++j) {
       covered = covered && truth.covers(poses[j].time_ns);
       if (covered) truths[j] = truth.pose(poses[j].time_ns);
-      covered = covered && truths[j].v_WA_m_s.allFinite();  // a reference does not know it beside its gaps
+      covered = covered && truths[j].v_WA_m_s.allFinite();  // a reference has no velocity next to its gaps
     }
     if (!covered) continue;
     const Eigen::Isometry3d to_world = alignment.transform();

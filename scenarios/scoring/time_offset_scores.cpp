@@ -9,18 +9,17 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Least squares of `behind = offset * change`: what an estimate lacks of the truth beside what the truth changes by in
-/// a second.
+/// Least-squares fit of `behind = offset * change`, from errors of the estimate and rates of change of the truth.
 class OffsetFit {
  public:
-  /// What is not known counts for nothing.
+  /// Ignores unknown values.
   void add(const Eigen::Vector3d& behind, const Eigen::Vector3d& change_per_s) {
     if (!change_per_s.allFinite()) return;
     product_ += change_per_s.dot(behind);
     square_ += change_per_s.squaredNorm();
   }
 
-  /// False where nothing has changed.
+  /// Returns false if nothing changed.
   bool offset_s(double& value) const {
     if (!(square_ > std::numeric_limits<double>::min())) return false;
     value = product_ / square_;
@@ -31,7 +30,7 @@ class OffsetFit {
   double product_ = 0.0, square_ = 0.0;
 };
 
-// Only where nothing clips: there the gyro has told the rate, and what is off is off in time.
+// Uses unclipped samples only: there the gyro measures the rate, and the remaining error is a time offset.
 bool rate_offset(const ScoredEstimate& scored, double& value) {
   const ClippingTruth& truth = clipping_truth(scored);
   const std::int64_t period_ns = scored.sensors().imus.front().period_ns;
@@ -47,7 +46,7 @@ bool rate_offset(const ScoredEstimate& scored, double& value) {
   return fit.offset_s(value);
 }
 
-/// The rotation that takes the estimate to the truth, axes of the estimate's frame.
+/// Returns the rotation from the estimate to the truth, in axes of the estimate's frame.
 Eigen::Vector3d lacking_rad(const Eigen::Quaterniond& q_estimate, const Eigen::Quaterniond& q_true) {
   return so3::log(q_estimate.conjugate() * q_true);
 }

@@ -9,7 +9,7 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr double kSegmentM = 1.0;
-// segments begin at every such step of the path, so that standing still does not count many times
+// Segments start at every such step of the path, so that rest does not count many times.
 constexpr double kSegmentStepM = 0.05;
 
 bool ate(const ScoredEstimate& scored, double& value) {
@@ -36,7 +36,7 @@ struct SegmentErrors {
   std::vector<double> rotation_rad;
 };
 
-// motion from pose a to pose b in the axes of a
+// Returns the motion from pose a to pose b in the axes of a.
 Eigen::Isometry3d relative(const PoseState& a, const PoseState& b) {
   const Eigen::Quaterniond q_Wa_inverse = a.q_WA.conjugate();
   return Eigen::Translation3d(q_Wa_inverse * (b.p_WA_m - a.p_WA_m)) * (q_Wa_inverse * b.q_WA);

@@ -20,27 +20,27 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr std::size_t kValuesMin = 6;  // a 95 % interval of the median needs as many: 2 / 2^5 > 5 %
+constexpr std::size_t kValuesMin = 6;  // a 95 % interval of the median needs six values: 2 / 2^5 > 5 %
 
-// in double: the place of a rank needs no more digits, and long double takes three times as long
+// double precision is sufficient for ranks and three times as fast as long double
 using Quick = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
 
 double middle_of(double below, double above) {
   return below == above ? below : 0.5 * (below + above);
 }
 
-/// Median of a sorted sample.
+/// Returns the median of a sorted sample.
 double sorted_median(std::span<const double> sorted) {
   const std::size_t n = sorted.size();
   return middle_of(sorted[(n - 1) / 2], sorted[n / 2]);
 }
 
-/// Acceleration from the jackknife, statistics.md (S3). Of an even sample the medians left are two, as often each:
-/// none.
+/// Returns the acceleration from the jackknife, statistics.md (S3). It is zero for an even sample size, where two
+/// medians remain, equally often.
 double acceleration(std::span<const double> sorted) {
   const std::size_t n = sorted.size(), m = n / 2;
   if (n % 2 == 0) return 0.0;
-  // what is left when one above, one below and the median itself is taken out, and how often
+  // medians after removing a value above, a value below, or the median itself, with their counts
   const std::array<std::pair<double, double>, 3> left = {{{middle_of(sorted[m - 1], sorted[m]), static_cast<double>(m)},
                                                           {middle_of(sorted[m], sorted[m + 1]), static_cast<double>(m)},
                                                           {middle_of(sorted[m - 1], sorted[m + 1]), 1.0}}};
@@ -60,7 +60,7 @@ double acceleration(std::span<const double> sorted) {
 MedianBootstrap::MedianBootstrap(std::size_t size, std::size_t resamples) : size_(size) {
   if (size == 0) throw BadInput("bootstrap: there are no values");
   if (resamples < 100) throw BadInput(fmt::format("bootstrap: resamples is {}, must be at least 100", resamples));
-  // statistics.md (S1): the lower middle of n uniform numbers, and the one above it given that
+  // statistics.md (S1): the lower middle of n uniform numbers, and the one above, conditional on it
   sim::Stream stream(size, "statistics.bootstrap");
   const auto n = static_cast<double>(size);
   const std::size_t rank = (size + 1) / 2;

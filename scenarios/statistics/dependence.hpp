@@ -7,40 +7,42 @@
 
 #include "scenarios/statistics/statistics.hpp"
 
-/// What one number has to do with another over the same draws.
+/// Statistical dependence between two numbers over the same draws.
 namespace tumble::scenarios {
 
-/// Ranks from 1, ties share their mean; infinite values rank as what they are, of NaN the rank is NaN.
+/// Returns ranks from 1; ties get their mean rank. Infinite values are ranked normally; the rank of NaN is NaN.
 std::vector<double> mean_ranks(std::span<const double> values);
 
 struct Correlation {
   double rho = 0.0;
-  double low = -1.0, high = 1.0;  ///< 95 %
-  double chance = 1.0;            ///< of a rho as far from zero, were there none; 1 below ten pairs
+  double low = -1.0, high = 1.0;  ///< 95 % interval
+  double chance = 1.0;            ///< p-value of the hypothesis rho = 0; 1 below ten pairs
 };
 
-/// Spearman's rank correlation with the interval of Bonett and Wright (Psychometrika 65:23, 2000), statistics.md (S12),
-/// and the chance by Student's distribution, (S13). Pairs with NaN are left out; of fewer than four, or where one of
-/// the two does not vary, nothing is known. Throws BadInput on two lengths.
+/// Returns Spearman's rank correlation with the interval of Bonett and Wright (Psychometrika 65:23, 2000),
+/// statistics.md (S16), and the p-value of Student's distribution, (S17). Ignores pairs with NaN. The full interval
+/// [-1, 1] results for fewer than four pairs or a constant variable. Throws BadInput if the lengths differ.
 Correlation rank_correlation(std::span<const double> x, std::span<const double> y);
 
 struct FirstOrder {
   double index = 0.0;       ///< share of the variance of y that x alone explains, [0, 1]
-  double chance = 1.0;      ///< of one as large, were y the same for all x
-  std::size_t classes = 0;  ///< 0: too little to say anything
+  double chance = 1.0;      ///< p-value of the hypothesis that y does not depend on x
+  std::size_t classes = 0;  ///< 0: too few pairs
 };
 
-/// First-order index (Sobol') of y by x from given data, whatever y depends on besides: variance of the means over
-/// classes of x with as many draws each (Plischke, Borgonovo, Smith, EJOR 226:536, 2013), statistics.md (S14), less
-/// what chance alone would give, (S15). Where x takes few values each is a class. Of ranks of y the chance, (S16), is
-/// the Kruskal-Wallis test. Finite y; pairs with NaN are left out. At least 24 pairs. Throws BadInput on two lengths.
+/// Estimates the first-order (Sobol') index of y by x from given data, whatever else y depends on. The index is the
+/// variance of class means over equally large classes of x, statistics.md (S18), minus its expectation without
+/// dependence, (S19). Source: Plischke, Borgonovo, Smith, EJOR 226:536, 2013. If x takes few values, each is a class.
+/// If y are ranks, the p-value, (S20), is that of the Kruskal-Wallis test.
+///
+/// y must be finite; pairs with NaN are ignored. Needs at least 24 pairs. Throws BadInput if the lengths differ.
 FirstOrder first_order_index(std::span<const double> x, std::span<const double> y);
 
-/// What stands for the values of a class, with its 95 % interval: the mean (Student, of finite values), the median
-/// (order statistics, infinite values rank as what they are) or, of zeros and ones, the share (Clopper and Pearson).
+/// Statistic of a class with its 95 % interval: mean (Student, finite values), median (order statistics, infinite
+/// values are ranked normally), or share of ones (Clopper and Pearson).
 enum class Centre { mean, median, share };
 
-/// The draws whose x lies from `low` to `high`, both among them.
+/// The draws with x from `low` to `high`, both included.
 struct DependenceClass {
   double low = 0.0, high = 0.0;
   std::size_t draws = 0;
@@ -49,11 +51,12 @@ struct DependenceClass {
 
 inline constexpr std::size_t kDependenceClassesMax = 8, kDependenceDrawsMin = 12;
 
-/// Partial dependence of y on x from given data, statistics.md (S22), (S23): where the numbers of a draw are
-/// independent of each other it is what is seen of y where x is. Classes of x with as many draws each, at most
-/// `kDependenceClassesMax`, of `kDependenceDrawsMin` draws at least; what has one x is never parted, and where x takes
-/// few values each is a class. Pairs with NaN are left out; empty below `kDependenceDrawsMin` pairs. Throws BadInput on
-/// two lengths, and on a share of other values than 0 and 1.
+/// Returns the partial dependence of y on x from given data, statistics.md (S22), (S23), for draws with independent
+/// numbers. Uses at most `kDependenceClassesMax` equally large classes of x, with at least `kDependenceDrawsMin` draws
+/// each. Equal x are never separated; if x takes few values, each is a class.
+///
+/// Ignores pairs with NaN; empty below `kDependenceDrawsMin` pairs. Throws BadInput if the lengths differ, or if a
+/// share has values other than 0 and 1.
 std::vector<DependenceClass> partial_dependence(std::span<const double> x, std::span<const double> y, Centre centre);
 
 }  // namespace tumble::scenarios

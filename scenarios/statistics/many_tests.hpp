@@ -6,9 +6,9 @@
 
 namespace tumble::scenarios {
 
-/// Chances corrected for being many (Holm, Scandinavian Journal of Statistics 6:65, 1979), statistics.md (S8), in the
-/// order given: to refuse what is below a risk makes any false refusal among all of them no likelier than that risk,
-/// whatever they have to do with each other. NaN is no test: it counts for nothing and stays.
+/// Returns p-values corrected for multiple tests (Holm, Scandinavian Journal of Statistics 6:65, 1979), statistics.md
+/// (S8), in the given order. Rejecting those below a risk limits the probability of any false rejection to that risk,
+/// for any dependence. NaN is no test: it is not counted and stays NaN.
 std::vector<double> holm(std::span<const double> chances);
 
 }  // namespace tumble::scenarios

@@ -16,7 +16,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Of the differences that count, by rising size. Twice the mean rank of a tie is a whole number.
+/// Ranks of the non-zero differences by size. Twice the mean rank of a tie is an integer.
 struct SignedRanks {
   std::vector<std::size_t> doubled;
   std::size_t total = 0, positive = 0;  ///< sums of the doubled ranks
@@ -45,9 +45,9 @@ SignedRanks signed_ranks(std::span<const double> differences) {
   return out;
 }
 
-/// Chance that a sum of ranks of random signs reaches `sum`, by the distribution of all signs.
+/// Returns the probability that the rank sum with random signs reaches `sum`, from the exact distribution.
 double exact_chance(const SignedRanks& ranks, std::size_t sum) {
-  std::vector<double> chance(ranks.total + 1, 0.0);  // of each sum of the positive ranks
+  std::vector<double> chance(ranks.total + 1, 0.0);  // probability of each sum of the positive ranks
   chance[0] = 1.0;
   std::size_t reached = 0;
   for (const std::size_t rank : ranks.doubled) {

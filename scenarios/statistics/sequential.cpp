@@ -14,7 +14,7 @@ namespace tumble::scenarios {
 double spent_by(double risk, double share) {
   if (!(share > 0.0)) return 0.0;
   const boost::math::normal normal;
-  // statistics.md (S19)
+  // statistics.md (S13)
   return 2.0 * cdf(complement(normal, quantile(complement(normal, 0.25 * risk)) / std::sqrt(share)));
 }
 
@@ -41,7 +41,7 @@ SequentialSignTest::Verdict SequentialSignTest::look(double share, std::int64_t 
   return verdict_;
 }
 
-/// statistics.md (S20): each pair adds a positive sign or none.
+/// statistics.md (S14): each pair adds one positive sign or none.
 void SequentialSignTest::toss(std::int64_t pairs) {
   for (std::int64_t k = 0; k < pairs; ++k) {
     going_on_.push_back(0.0);
@@ -51,10 +51,10 @@ void SequentialSignTest::toss(std::int64_t pairs) {
   pairs_ += pairs;
 }
 
-/// statistics.md (S21). The distribution is symmetric: what is stopped above is stopped below as well.
+/// statistics.md (S15). The distribution is symmetric, so both sides stop equally.
 void SequentialSignTest::stop_beyond(double allowed) {
   std::size_t stopped = 0;
-  // never both sides of one number
+  // never stop both sides of one number
   while (2 * stopped + 1 < going_on_.size()) {
     const double more = going_on_[going_on_.size() - 1 - stopped];
     if (spent_a_side_ + more > allowed) break;

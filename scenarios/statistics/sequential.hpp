@@ -6,32 +6,32 @@
 
 namespace tumble::scenarios {
 
-/// Share of a two-sided risk that may be spent on one side by the time that `share` in [0, 1] of all draws have been
-/// seen: nearly none at first, half of `risk` at the end (Lan and DeMets, Biometrika 70:659, 1983, as O'Brien and
-/// Fleming's bounds), statistics.md (S19).
+/// Returns the part of a two-sided risk that one side may have spent after `share` in [0, 1] of all draws: almost
+/// nothing at first, half of `risk` at the end (Lan and DeMets, Biometrika 70:659, 1983, with O'Brien and Fleming's
+/// bounds), statistics.md (S13).
 double spent_by(double risk, double share);
 
-/// Sign test that is looked at while draws still come in (Armitage, McPherson, Rowe, JRSS A 132:235, 1969),
-/// statistics.md (S19) to (S21). Whenever it is looked at, both sides get a bound of which the chance to be reached now
-/// or at an earlier look, were both signs equally likely on each draw, is at most what may have been spent. The chances
-/// are exact, by the distribution of sums of signs that no earlier bound has ended; differences that are zero enter
-/// nowhere. How often and when it is looked at is free, as long as it does not depend on what was seen. Cost: O(pairs *
-/// sqrt(pairs in all)).
+/// Sign test with interim analyses (Armitage, McPherson, Rowe, JRSS A 132:235, 1969), statistics.md (S13) to (S15). At
+/// each look both sides get a bound. The probability of reaching a bound by this look, without a difference, is at most
+/// the risk that may have been spent. The probabilities are exact: they use the distribution of sign sums that passed
+/// no earlier bound. Zero differences are ignored. The number and times of looks are free if they do not depend on the
+/// results. Cost: O(pairs * sqrt(all pairs)).
 class SequentialSignTest {
  public:
-  enum class Verdict { open, negative, positive };  ///< which sign is the more frequent one
+  enum class Verdict { open, negative, positive };  ///< the more frequent sign
 
-  /// Throws BadInput on a risk beyond (0, 1).
+  /// Throws BadInput for a risk outside (0, 1).
   explicit SequentialSignTest(double risk);
 
-  /// The signs of the differences so far; `share` of the draws have been seen, 1 at the last look. What it has once
-  /// answered stays. Throws BadInput on a share beyond (0, 1], and on one, or a count of pairs, below the last look's.
+  /// Analyses the signs so far; `share` of the draws are complete, 1 at the last look. A verdict once reached does not
+  /// change. Throws BadInput for a share outside (0, 1], and if the share or a count decreases.
   Verdict look(double share, std::int64_t negative, std::int64_t positive);
 
   Verdict verdict() const { return verdict_; }
-  /// Of the last look: how many of its pairs a sign needed. More than there are: no outcome would have been an answer.
+  /// Returns how many pairs of one sign the last look needed. If this exceeds the pairs available, no outcome could
+  /// have been significant.
   std::int64_t needed() const { return needed_; }
-  /// Chance that any look until now says something, were there nothing to say; never more than the risk.
+  /// Returns the probability of a false verdict by now; never more than the risk.
   double spent() const { return 2.0 * spent_a_side_; }
 
  private:
@@ -41,7 +41,7 @@ class SequentialSignTest {
   double risk_;
   double share_ = 0.0, spent_a_side_ = 0.0;
   std::int64_t pairs_ = 0, needed_ = 0;
-  // chance of each number of positive signs, from `lowest_` on, that no look has ended
+  // probability of each number of positive signs, from `lowest_` on, without an earlier stop
   std::int64_t lowest_ = 0;
   std::vector<double> going_on_ = {1.0};
   Verdict verdict_ = Verdict::open;

@@ -17,7 +17,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr double kTail = 0.025;  // of either side of a 95 % interval
+constexpr double kTail = 0.025;  // each tail of a 95 % interval
 
 std::vector<double> numbers_of(std::span<const double> values) {
   std::vector<double> numbers;
@@ -25,7 +25,7 @@ std::vector<double> numbers_of(std::span<const double> values) {
   return numbers;
 }
 
-/// Where a share of so many ranked values lies: between two neighbours, or at one.
+/// Position of a quantile in a sorted sample: between two neighbours, or at one.
 struct RankPlace {
   RankPlace(double share, std::size_t count) {
     const double place = share * static_cast<double>(count - 1);
@@ -34,7 +34,7 @@ struct RankPlace {
     part = place - static_cast<double>(below);
   }
   double between(double low, double high) const {
-    // an infinity is not interpolated: what lies above minus infinity, or at a place itself, is that value
+    // Infinities are not interpolated: a position above minus infinity, or exactly at a value, returns that value.
     return part == 0.0 || std::isinf(low) ? low : low + part * (high - low);
   }
   std::size_t below, above;
@@ -48,7 +48,7 @@ double quantile(std::span<const double> values, double share) {
     throw BadInput(fmt::format("quantile: share is {}, must be within [0, 1]", std::to_string(share)));
   std::vector<double> numbers = numbers_of(values);
   if (numbers.empty()) return kNaN;
-  // two ranks are all that is asked: a report asks it of millions of values
+  // Two ranks are sufficient, and reports compute quantiles of millions of values: avoid a full sort.
   const RankPlace place(share, numbers.size());
   const auto below = numbers.begin() + static_cast<std::ptrdiff_t>(place.below);
   std::nth_element(numbers.begin(), below, numbers.end());
@@ -70,14 +70,14 @@ bool quantile_of(std::span<const double> values, double share, double& value) {
 
 namespace {
 
-/// The largest rank r (from 1) with P(fewer than r of n lie below the median) <= kTail; 0: none.
+/// Returns the largest rank r (from 1) with P(fewer than r of n are below the median) <= kTail; 0: none.
 std::size_t tail_rank(std::size_t values) {
   const auto n = static_cast<double>(values);
   const auto exponent = [&](std::size_t k) {
     const auto count = static_cast<double>(k);
     return std::lgamma(n + 1) - std::lgamma(count + 1) - std::lgamma(n - count + 1) - n * std::log(2.0);
   };
-  // the terms rise up to n / 2; those that are 0 as doubles, most of them where n is large, need not be summed
+  // Terms increase up to n / 2. For large n most of them underflow to 0 and can be skipped.
   constexpr double kNothing = -750.0;
   std::size_t first = 0;
   for (std::size_t above = values / 2; first < above;) {
@@ -103,7 +103,7 @@ Interval median_interval(std::span<const double> values) {
   std::vector<double> numbers = numbers_of(values);
   Interval interval{kNaN, -kInfinity, kInfinity};
   if (numbers.empty()) return interval;
-  // four ranks are all that is asked, as above
+  // four ranks are sufficient, as above
   const RankPlace middle(0.5, numbers.size());
   const auto begin = numbers.begin(), below = begin + static_cast<std::ptrdiff_t>(middle.below);
   std::nth_element(begin, below, numbers.end());
@@ -132,7 +132,7 @@ Interval share_interval(std::int64_t count, std::int64_t total) {
   }
   const auto k = static_cast<double>(count);
   const auto n = static_cast<double>(total);
-  // statistics.md (S18)
+  // statistics.md (S24)
   return {k / n, count == 0 ? 0.0 : boost::math::ibeta_inv(k, n - k + 1.0, kTail),
           count == total ? 1.0 : boost::math::ibetac_inv(k + 1.0, n - k, kTail)};
 }

@@ -13,17 +13,15 @@ struct Interval {
   double value, low, high;
 };
 
-/// Sample quantile (Hyndman and Fan type 7) of the values that are not NaN; NaN when there is none.
-/// An infinite value ranks as what it is (a failure counts as the worst of all), so a quantile may be infinite. `share`
-/// in [0, 1].
+/// Returns the sample quantile (Hyndman and Fan type 7) of the values that are not NaN; NaN if there are none. Infinite
+/// values are ranked normally, so that failures count as worst and a quantile may be infinite. `share` in [0, 1].
 double quantile(std::span<const double> values, double share);
-/// The same of values all of which count: one that is not finite spoils the figure instead of leaving it, NaN. Nothing
-/// when there are none.
+/// Returns the quantile without ignoring NaN: any value that is not finite gives NaN. Empty if there are no values.
 std::optional<double> quantile_of_all(std::span<const double> values, double share);
-/// The same into `value`, which is left as it is when there are none: false then.
+/// Writes the quantile to `value`. Returns false, with `value` unchanged, if there are no values.
 bool quantile_of(std::span<const double> values, double share, double& value);
 
-/// Median of one number of each row; as `quantile`.
+/// Returns the median of one number of each row, like `quantile`.
 template <class Row>
 double median_of(const std::vector<Row>& rows, double Row::*member) {
   std::vector<double> values;
@@ -31,14 +29,15 @@ double median_of(const std::vector<Row>& rows, double Row::*member) {
   return quantile(values, 0.5);
 }
 
-/// Median with its distribution-free interval from order statistics (binomial); infinite ends when too few values.
+/// Returns the median with its distribution-free interval from order statistics (binomial); infinite ends if there are
+/// too few values.
 Interval median_interval(std::span<const double> values);
 
-/// Share of successes with its exact interval (Clopper and Pearson).
+/// Returns the share of successes with its exact interval (Clopper and Pearson).
 Interval share_interval(std::int64_t count, std::int64_t total);
 
-/// The values of the runs that have one, and the value that a run without one ranks as for each that failed: what every
-/// statistic of a metric is taken over. NaN as the worst adds nothing (scenarios/scoring/metric.hpp, `worst_value`).
+/// Returns the values plus one `worst` for each failed run; all statistics of a metric use this list. Adds nothing if
+/// `worst` is NaN (scenarios/scoring/metric.hpp, `worst_value`).
 std::vector<double> with_failures(std::vector<double> values, std::size_t failed, double worst);
 
 }  // namespace tumble::scenarios

@@ -21,7 +21,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Values of the two on one draw.
+/// Values of the two methods on one draw.
 struct ValuePair {
   double own, other;
 };
@@ -41,7 +41,7 @@ void require_sound(const Summary& summary, const ComparisonOptions& options) {
   require_held(summary, methods, options.metrics);
 }
 
-/// Draws of which both have a value or have failed; where there is no worst value a failure has none.
+/// Returns the draws on which both methods have a value or failed. Without a worst value, failed runs are omitted.
 std::vector<ValuePair> pairs_of(const MetricSummary& own, const MetricSummary& other, double worst) {
   const std::vector<RankedValue> first = ranked_values(own, worst), second = ranked_values(other, worst);
   std::vector<ValuePair> pairs;
@@ -53,12 +53,12 @@ std::vector<ValuePair> pairs_of(const MetricSummary& own, const MetricSummary& o
   return pairs;
 }
 
-/// Less the other; nothing where both failed.
+/// Returns the difference; 0 if both failed.
 double less(double own, double other) {
   return own == other ? 0.0 : own - other;
 }
 
-/// How much worse each pair is than the margin allows.
+/// Returns how much worse each pair is than the margin allows.
 std::vector<double> beyond(const Margin& margin, const MetricInfo& info, const std::vector<ValuePair>& pairs) {
   std::vector<double> out;
   for (const ValuePair& pair : pairs) out.push_back(worse_by(info, pair.own, pair.other, margin));
@@ -130,13 +130,13 @@ class Comparing {
       for (double& each : relieved) each = -each;
       row.not_inferior_chance = signed_rank_chance(relieved);
     }
-    // the side is that of the ranks, as the test is
+    // the side of the rank sum, as in the test
     tends_.push_back(!contested ? 0.0 : signed_rank_chance(worse_by) < 0.5 ? 1.0 : -1.0);
     differences_.push_back(std::move(contested ? worse_by : raw));
     out_.metrics.push_back(std::move(row));
   }
 
-  /// Draws that both have; `seeds` are all, `failed` those that failed, both rising.
+  /// Compares failures on the draws of both methods. `seeds` are all, `failed` the failed ones, both ascending.
   void add_failures(const Contest& contest, const std::string& what, const std::vector<std::uint64_t>& seeds,
                     const std::vector<std::uint64_t>& failed, const std::vector<std::uint64_t>& other_seeds,
                     const std::vector<std::uint64_t>& other_failed) {
@@ -182,7 +182,7 @@ class Comparing {
     return found->second;
   }
 
-  /// Of the tests of a table, each at `risk` over their number: what the smallest chance is held to.
+  /// Plan of one test in a table, with the risk divided by the number of tests (Holm's bound for the smallest p-value).
   Plan plan(std::size_t tests) const {
     return {options_.risk / static_cast<double>(std::max<std::size_t>(tests, 1)), options_.power};
   }
@@ -218,8 +218,8 @@ class Comparing {
 
   const ComparisonOptions& options_;
   Comparison out_;
-  std::vector<std::vector<double>> differences_;  ///< of each metric's row
-  std::vector<double> tends_;                     ///< 1 to be worse, -1 to be better, 0 no contest
+  std::vector<std::vector<double>> differences_;  ///< one list per metric row
+  std::vector<double> tends_;                     ///< 1: tends to be worse, -1: better, 0: not ranked
   std::map<std::size_t, MedianBootstrap> bootstraps_;
 };
 

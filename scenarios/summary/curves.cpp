@@ -21,11 +21,11 @@ namespace {
 
 constexpr std::size_t kDrawsPerBin = 8;
 constexpr std::size_t kBinsMax = 6, kBinsMin = 3;
-/// What the simulated motion of a whole draw is sorted by (scenarios/sweep/motion_values.hpp).
+/// Measures for binning whole draws (scenarios/sweep/motion_values.hpp).
 constexpr std::array kDrawMeasures = {"motion_clipped_share", "motion_clip_depth_max_rad_s",
                                       "motion_clip_length_max_s"};
 
-/// One outcome: the scores that a curve may show, and whether it failed.
+/// One outcome: scores for curves, and whether it failed.
 struct Run {
   std::uint64_t seed = 0;
   bool ok = false, failed = false;
@@ -35,7 +35,7 @@ struct Run {
     std::size_t place = 0;
     return find(metric, place);
   }
-  /// The same; looks at `place` first, where another run of the method had it, and leaves there where it was.
+  /// Finds a score; tries index `place` first, which other runs of the method used, and updates it.
   const double* find(const std::string* metric, std::size_t& place) const {
     if (place < scores.size() && scores[place].metric == metric) return &scores[place].value;
     const auto found = std::find_if(scores.begin(), scores.end(), [&](const auto& s) { return s.metric == metric; });
@@ -45,13 +45,13 @@ struct Run {
   }
 };
 
-/// Runs of one kind of one scenario at one setting, by method; by rising seed.
+/// Runs of one kind and scenario at one setting, by method, sorted by seed.
 using Runs = std::map<std::string, std::vector<Run>, std::less<>>;
 using RunsBySetting = std::map<std::tuple<std::string, std::string, Kind>, std::map<double, Runs>>;
-/// Some of them.
+/// A selection of runs.
 using PickedRuns = std::map<std::string, std::vector<const Run*>>;
 
-/// What is to be known of a metric for each of its scores.
+/// Cached properties of a metric.
 struct Use {
   bool shown, verdict;
 };
@@ -110,7 +110,7 @@ PickedRuns all_of(const Runs& runs) {
   return all;
 }
 
-/// Whether any method has a value of the metric on that draw: if none has, a failure says nothing about it.
+/// Returns true if any method has a value of the metric on that draw. Otherwise failures are ignored.
 bool is_scored(const PickedRuns& runs, const std::string* metric, std::uint64_t seed) {
   return std::any_of(runs.begin(), runs.end(), [&](const auto& entry) {
     const auto& own = entry.second;
@@ -120,7 +120,7 @@ bool is_scored(const PickedRuns& runs, const std::string* metric, std::uint64_t 
   });
 }
 
-/// False when no draw has a value of the metric.
+/// Returns false if no draw has a value of the metric.
 bool point_of(const std::vector<const Run*>& own, const PickedRuns& runs, const std::string* metric,
               CurvePoint& point) {
   const MetricInfo& info = metric_info(*metric);
@@ -144,7 +144,7 @@ bool point_of(const std::vector<const Run*>& own, const PickedRuns& runs, const 
   return !ranked.empty() || point.failed > 0;
 }
 
-/// Adds the runs at one place to the lines of a curve.
+/// Adds one point to each line of a curve.
 void add_place(const PickedRuns& runs, const std::string* metric, const CurvePoint& place, Curve& curve) {
   for (const auto& [method, own] : runs) {
     CurvePoint point = place;
@@ -163,7 +163,7 @@ void keep(Curve curve, std::vector<Curve>& all) {
   if (!curve.lines.empty()) all.push_back(std::move(curve));
 }
 
-/// The reader's name, added where no score bears it.
+/// Returns the reader's name; adds it if no score has it.
 const std::string* name_of(const std::string& metric, Names& names) {
   return &*names.insert(metric).first;
 }
@@ -191,7 +191,7 @@ std::string bin_label(const BinnedMetric& bin, double factor) {
   return fmt::format("{:g} – {:g}", bin.low * factor, bin.high * factor);
 }
 
-/// Bins by axis and base, in rising order, each with the name that its scores bear.
+/// Bins by axis and base metric, ascending, each with its full metric name.
 using Bins =
     std::map<std::pair<std::string, std::string>, std::map<double, std::pair<BinnedMetric, const std::string*>>>;
 
@@ -228,7 +228,7 @@ void add_sample_curves(const RunsBySetting& plain, std::vector<Curve>& all) {
   }
 }
 
-/// Draws in bins of equally many, by rising measure: (median measure, rising seeds).
+/// Sorts draws into bins of equal counts by a measure: (median measure, ascending seeds).
 std::vector<std::pair<double, std::vector<std::uint64_t>>> bins_of_draws(std::span<const DrawValues> draws,
                                                                          const std::string& scenario,
                                                                          const std::string& measure) {
@@ -236,7 +236,7 @@ std::vector<std::pair<double, std::vector<std::uint64_t>>> bins_of_draws(std::sp
   for (const DrawValues& draw : draws) {
     if (draw.scenario != scenario) continue;
     for (const Score& score : draw.values) {
-      // draws that never clip have no place on an axis of clipping
+      // draws without clipping have no position on a clipping axis
       if (score.metric == measure && score.value > 0.0) ranked.emplace_back(score.value, draw.seed);
     }
   }

@@ -9,7 +9,7 @@
 
 #include "scenarios/summary/summary.hpp"
 
-/// Which draws of a sweep are shown to people: by what the results hold, not by name.
+/// Chooses the draws of a sweep to show as examples, from the results only.
 namespace tumble::scenarios {
 
 /// A scenario of the sweep, in the suite's order.
@@ -24,12 +24,11 @@ struct ExampleDraw {
   auto operator<=>(const ExampleDraw&) const = default;
 };
 
-/// The draw whose headline score under the baseline is the median one of its scenario: neither the best nor the worst.
-/// The first kind but attitude, which says least about the motion, and the first of its headline metrics that has a
-/// value choose. Returns false when the results have no such score.
+/// Finds the draw with the median headline score of the baseline in its scenario. Uses the first kind except attitude,
+/// and its first headline metric with a value. Returns false if there is no such score.
 bool typical_seed(const Summary& summary, const std::string& scenario, std::uint64_t& seed);
 
-/// At most `count` typical draws, in the order of the candidates: of each robot its first scenario, then of each its
+/// Returns at most `count` typical draws, in the order of the candidates: the first scenario of each robot, then each
 /// second, and so on.
 std::vector<ExampleDraw> choose_examples(const Summary& summary, std::span<const ExampleCandidate> candidates,
                                          std::size_t count);
@@ -37,22 +36,20 @@ std::vector<ExampleDraw> choose_examples(const Summary& summary, std::span<const
 /// A draw on which methods failed.
 struct FailedOn {
   ExampleDraw draw;
-  std::size_t methods = 0;  ///< of those that need no truth
+  std::size_t methods = 0;  ///< failed methods that need no truth
 };
 
-/// Every draw on which a method failed: those on which most methods did first, of equals by scenario and seed.
+/// Returns every draw with a failed method: most failures first, then by scenario and seed.
 std::vector<FailedOn> rank_failures(const Summary& summary);
 
-/// Of the candidates' scenarios the first `count` of these draws, but those on which only methods failed that know the
-/// truth.
+/// Returns the first `count` of these draws in the candidates' scenarios. Omits draws on which only oracles failed.
 std::vector<ExampleDraw> choose_failures(const Summary& summary, std::span<const ExampleCandidate> candidates,
                                          std::size_t count);
 
-/// The scored rows of a draw that an example shows: those without a variation.
+/// Returns the scored rows of a draw, without points of curves.
 std::vector<Outcome> rows_to_show(const Results& results, const ExampleDraw& draw);
 
-/// Digest of these rows and of the build that they are of: an example that was made of another digest is of other
-/// results.
+/// Returns a digest of these rows and their build. An example with another digest belongs to other results.
 std::string digest_of_rows(const Results& results, const ExampleDraw& draw);
 
 }  // namespace tumble::scenarios

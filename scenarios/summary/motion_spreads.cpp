@@ -14,12 +14,12 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Whose spread a quantity shows: the draws' own values; the share of draws that have it; all clipped samples of all
-/// draws as one heap.
+/// Which distribution a quantity shows: values of the draws, the share of draws that have it, or all clipped samples
+/// pooled.
 enum class Over { draws, share_of_draws, clipped_samples };
 
-/// A quantity and what the campaign of the tumbling rig (32 tumbles down a hill, ICRA 2024) and the project's own aim
-/// say of it. `low` and `high` shade the plot; equal: a line.
+/// A quantity with published values: the campaign of the tumbling rig (32 tumbles down a hill, ICRA 2024) and the
+/// project's target. The plot shades `low` to `high`; equal values give a line.
 struct Quantity {
   const char* metric;
   const char* name;
@@ -47,8 +47,8 @@ constexpr std::array kQuantities = {
              Over::share_of_draws},
 };
 
-/// Mean weighted by each draw's clipped samples, with its 95 % interval: the ratio estimator of a cluster sample
-/// (Cochran, Sampling Techniques, 1977, section 9A.2), since samples of one draw belong together.
+/// Returns the mean weighted by each draw's clipped samples, with its 95 % interval: the ratio estimator of a cluster
+/// sample (Cochran, Sampling Techniques, 1977, section 9A.2), because samples within a draw are correlated.
 Interval pooled(std::span<const DrawValues* const> draws, const std::string& metric) {
   std::vector<std::pair<double, double>> weighted;  // number of samples, share of them
   double samples = 0.0, hits = 0.0, square = 0.0;

@@ -19,13 +19,13 @@ namespace {
 
 constexpr int kLooksMax = 1000;
 
-/// "rate" of "rate/tumble"; of a name without a kind nothing.
+/// Returns "rate" for "rate/tumble"; empty for a name without a kind.
 std::string kind_of(const std::string& name) {
   const std::size_t slash = name.find('/');
   return slash == std::string::npos ? std::string() : name.substr(0, slash);
 }
 
-/// Throws BadInput on a metric that says nothing about which of two methods of this kind is better.
+/// Throws BadInput for a metric that cannot rank two methods of this kind.
 void require_contest(const std::string& metric, const std::string& kind) {
   const MetricInfo& info = metric_info(metric);
   const auto all = metrics();
@@ -37,11 +37,11 @@ void require_contest(const std::string& metric, const std::string& kind) {
                                to_string(own->kind), kind));
 }
 
-/// Of one draw what each of the two has: a value, or the worst in its place.
+/// Values of both methods on one draw; the worst value for a failure.
 struct AnswerPair {
   std::optional<double> own, other;
 };
-/// By scenario, then by seed.
+/// by scenario, then by seed
 using AnswerPairs = std::map<std::string, std::map<std::uint64_t, AnswerPair>, std::less<>>;
 
 std::optional<double> value_of(const OutcomeView& row, const Question& question) {
@@ -66,7 +66,7 @@ AnswerPairs pairs_of(const Results& results, const Question& question, std::uint
   return pairs;
 }
 
-/// Looks in their order until one answers.
+/// Evaluates the looks in order until one answers.
 Answer answer_of(const std::string& scenario, const std::map<std::uint64_t, AnswerPair>& pairs,
                  const Question& question, std::uint64_t last_seed) {
   SequentialSignTest test(question.risk / static_cast<double>(question.scenarios.size()));

@@ -24,7 +24,7 @@ void require_named(const std::string& what, std::span<const std::string> names, 
   }
 }
 
-using Seeds = std::vector<std::uint64_t>;  // rising
+using Seeds = std::vector<std::uint64_t>;  // ascending
 
 Seeds every_nth(const Seeds& seeds, std::size_t most) {
   Seeds out;
@@ -34,7 +34,7 @@ Seeds every_nth(const Seeds& seeds, std::size_t most) {
   return out;
 }
 
-/// Calls `visit` with the places of those of `seeds` that are kept.
+/// Calls `visit` with the indices of the kept seeds.
 template <typename Visit>
 void for_kept(const Seeds& kept, const Seeds& seeds, Visit visit) {
   auto at = kept.begin();
@@ -51,7 +51,7 @@ Seeds of_kept(const Seeds& kept, const Seeds& seeds) {
   return out;
 }
 
-/// Without a copy of what is left out, which is most.
+/// Copies only what is kept, usually a small part.
 MethodSummary of_kept(const Seeds& kept, const MethodSummary& method) {
   MethodSummary out{method.method,
                     method.needs_truth,
@@ -63,7 +63,7 @@ MethodSummary of_kept(const Seeds& kept, const MethodSummary& method) {
                     {},
                     method.what};
   for (const auto& entry : method.metrics) {
-    const MetricSummary& metric = entry.second;  // by name: Clang 14 captures no binding
+    const MetricSummary& metric = entry.second;  // no structured binding: Clang 14 cannot capture one
     MetricSummary& own = out.metrics[entry.first];
     own.centre = metric.centre;
     own.quantile_95 = metric.quantile_95;

@@ -12,11 +12,11 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// The score of a row's draws, as it is and as how bad it is.
+/// Scores of a row's draws, as values and as badness.
 struct Scored {
   std::vector<std::uint64_t> seeds;
   std::vector<double> values, badness;
-  Centre centre = Centre::median;  ///< of its partial dependence
+  Centre centre = Centre::median;  ///< statistic of the partial dependence
 };
 
 Scored scored(const MetricSummary& metric, const MetricInfo& info) {
@@ -24,9 +24,9 @@ Scored scored(const MetricSummary& metric, const MetricInfo& info) {
   if (info.unit == Unit::verdict) out.centre = Centre::share;
   for (const RankedValue& each : ranked_values(metric, worst_value(info))) {
     out.seeds.push_back(each.seed);
-    // of a verdict a failed run is one that is condemned
+    // for a verdict, a failed run counts as a failed verdict
     out.values.push_back(info.unit == Unit::verdict && each.value != 0.0 ? 1.0 : each.value);
-    // a verdict's bad value is the larger one; a cost has no bad side, and more of it counts as worse
+    // for verdicts and costs, larger counts as worse
     const bool contested = info.sense != Sense::none;
     out.badness.push_back(contested ? how_bad(info, each.value) : each.value);
   }
@@ -43,7 +43,7 @@ Scored failures(const MethodSummary& method) {
   return out;
 }
 
-/// Medians of the score over the quarters with the lowest and the highest numbers.
+/// Adds the medians of the score over the quarters with the lowest and highest numbers.
 void add_quarters(const std::vector<double>& numbers, const std::vector<double>& values, Influence& out) {
   const double low = quantile(numbers, 0.25), high = quantile(numbers, 0.75);
   std::vector<double> lowest, highest;
@@ -55,7 +55,7 @@ void add_quarters(const std::vector<double>& numbers, const std::vector<double>&
   out.median_high = quantile(highest, 0.5);
 }
 
-/// NaN where there is none.
+/// Returns the numbers at these seeds; NaN if missing.
 std::vector<double> at_seeds(const std::vector<RankedValue>& numbers, const std::vector<std::uint64_t>& seeds) {
   std::vector<double> column;
   column.reserve(seeds.size());
@@ -76,7 +76,7 @@ std::vector<Influence> influences(const Scored& scored, const NumbersOfDraws& nu
     Influence each{name, rank_correlation(column, ranks), first_order_index(column, ranks)};
     add_quarters(column, scored.values, each);
     each.dependence = partial_dependence(column, scored.values, scored.centre);
-    // statistics.md (S17): two tests of one question
+    // statistics.md (S21): two tests of one hypothesis
     chances.push_back(std::min(1.0, 2.0 * std::min(each.correlation.chance, each.first_order.chance)));
     out.push_back(std::move(each));
   }

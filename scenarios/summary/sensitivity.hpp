@@ -13,53 +13,54 @@
 #include "scenarios/summary/summary.hpp"
 #include "scenarios/sweep/outcome.hpp"
 
-/// What breaks a method: each score against each number that its draws differ in (docs/maths/statistics.md).
+/// Sensitivity of a method's scores to each random number of its draws (docs/maths/statistics.md).
 namespace tumble::scenarios {
 
-/// Below it a corrected chance does not explain an influence.
+/// An influence with a larger corrected p-value is not significant.
 inline constexpr double kInfluenceRisk = 0.05;
 
-/// Numbers of the draws of a scenario, by what they are called; each by rising seed.
+/// Numbers of a scenario's draws by name, sorted by seed.
 using NumbersOfDraws = std::map<std::string, std::vector<RankedValue>>;
 
-/// Those that the scenario draws, over the seeds that the summary has of it.
+/// Returns the scenario's random numbers for the summary's seeds.
 NumbersOfDraws numbers_of_draws(const Summary& summary, const Scenario& scenario);
-/// What the motion was like: an effect as the scores are, of the same cause or of another. Of one scenario.
+/// Returns the motion values of one scenario. These are effects like the scores, possibly of the same causes.
 NumbersOfDraws numbers_of_motion(std::span<const DrawValues> draws, const std::string& scenario);
 
-/// What one number has to do with one score.
+/// Influence of one number on one score.
 struct Influence {
   std::string number;
-  Correlation correlation;  ///< with the badness: above 0 where larger numbers are worse
+  Correlation correlation;  ///< with the badness: positive if larger numbers are worse
   FirstOrder first_order;   ///< of the ranks of the score
-  double corrected = 1.0;   ///< chance of both being so large, by Holm over all numbers of the row
-  /// Median of the score over the quarter of the draws with the lowest and with the highest numbers.
+  double corrected = 1.0;   ///< p-value of both statistics, corrected by Holm over all numbers of the row
+  /// Median of the score over the quarters of the draws with the lowest and highest numbers.
   double median_low = 0.0, median_high = 0.0;
-  /// Median of the score, or share that has failed, over classes of the number: its partial dependence.
+  /// Partial dependence: median of the score, or share of failures, over classes of the number.
   std::vector<DependenceClass> dependence = {};
-  /// What the influence is ranked by: the larger of the index and the square of rho.
+  /// Returns the larger of the index and the square of rho, for ranking.
   double strength() const;
 };
 
-/// One metric of one method on one scenario; `metric` is "not ok" for whether it failed.
+/// One metric of one method on one scenario; `metric` is "not ok" for failures.
 struct Sensitivity {
   std::string scenario;
   Kind kind = Kind::rate;
   std::string method, metric;
   std::size_t draws = 0;
-  std::vector<Influence> influences;  ///< the strongest first
+  std::vector<Influence> influences;  ///< strongest first
 };
 
 struct SensitivityOptions {
   std::vector<std::string> methods;  ///< "rate/tumble" or "tumble"; empty: all that need no truth
-  std::vector<std::string> metrics;  ///< empty: the headline ones of each kind
+  std::vector<std::string> metrics;  ///< empty: the headline metrics of each kind
 };
 
-/// Draws that a row needs, and of "not ok" how many of either sort. Below 24 the rank correlation speaks alone.
+/// Minimum number of draws for a row, and minimum of failures and of successes for "not ok". Below 24 draws only the
+/// rank correlation is used.
 inline constexpr std::size_t kSensitivityDrawsMin = 12, kSensitivityFailuresMin = 5;
 
-/// Of the sections of scenarios that `numbers` has, in their order; rows of fewer draws are left out. A failed run
-/// ranks as the worst. Throws BadInput on a method or metric that the results do not hold.
+/// Analyses the sections of scenarios in `numbers`, in their order; omits rows with too few draws. Failed runs rank
+/// worst. Throws BadInput for a method or metric that the results lack.
 std::vector<Sensitivity> sensitivities(const Summary& summary, const std::map<std::string, NumbersOfDraws>& numbers,
                                        const SensitivityOptions& options);
 

@@ -17,7 +17,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Position in the registry; unknown names stand behind the known ones.
+/// Returns the position in the registry; unknown names come last.
 std::size_t metric_rank(const std::string& name) {
   const auto all = metrics();
   return static_cast<std::size_t>(
@@ -29,7 +29,7 @@ const MethodInfo* registered(Kind kind, const std::string& name) {
   return rank < methods().size() ? &methods()[rank].info : nullptr;
 }
 
-/// The one that is registered as baseline where there is one; else the first of the registry that needs no truth.
+/// Returns the registered baseline if present, else the first registered method that needs no truth.
 std::string choose_baseline(Kind kind, const std::vector<MethodSummary>& methods) {
   for (const MethodSummary& method : methods) {
     const MethodInfo* info = registered(kind, method.method);
@@ -41,7 +41,7 @@ std::string choose_baseline(Kind kind, const std::vector<MethodSummary>& methods
   return methods.front().method;
 }
 
-/// Compares draw by draw; where both failed neither is better.
+/// Compares draw by draw; if both failed, neither is better.
 Wins paired_wins(const MetricSummary& own, const MetricSummary& base, const MetricInfo& info) {
   Wins wins;
   if (info.sense == Sense::none) return wins;
@@ -68,7 +68,7 @@ void finish(const std::string& name, MetricSummary& metric) {
   metric.quantile_95 = quantile(ranked, info.sense == Sense::higher ? 0.05 : 0.95);
 }
 
-/// Gives each failed outcome its place in every metric that some method has a value of on that draw.
+/// Adds each failed outcome to every metric for which another method has a value on that draw.
 void place_failures(Section& section) {
   std::set<std::string> names;
   for (const MethodSummary& method : section.methods) {
@@ -92,7 +92,7 @@ void place_failures(Section& section) {
   }
 }
 
-/// Values by rising seed, whatever the order in the database.
+/// Sorts values by seed.
 void sort_by_seed(MetricSummary& metric) {
   if (std::is_sorted(metric.seeds.begin(), metric.seeds.end())) return;
   std::vector<RankedValue> sorted = ranked_values(metric, std::nan(""));
@@ -103,7 +103,7 @@ void sort_by_seed(MetricSummary& metric) {
   }
 }
 
-/// What one method has on one scenario, and where its metrics are by the reader's names.
+/// Data of one method on one scenario, and the index of its metrics by the reader's names.
 struct Gathered {
   MethodSummary summary;
   std::unordered_map<const std::string*, MetricSummary*> places;
@@ -127,7 +127,7 @@ struct Gathered {
 
   MethodSummary sorted() {
     for (std::vector<std::uint64_t>* seeds : {&summary.seeds, &summary.not_ok_seeds}) {
-      // mostly they are: to look is a hundredth of sorting a million
+      // usually sorted already, and checking is much cheaper
       if (!std::is_sorted(seeds->begin(), seeds->end())) std::sort(seeds->begin(), seeds->end());
     }
     for (auto& [name, metric] : summary.metrics) sort_by_seed(metric);
@@ -135,7 +135,7 @@ struct Gathered {
   }
 };
 
-/// By scenario and kind, then by method.
+/// by scenario and kind, then by method
 using GatheredSections = std::map<std::pair<std::string, Kind>, std::map<std::string, Gathered, std::less<>>>;
 
 GatheredSections gather(const Results& results, Names& names, const std::function<void(const OutcomeView&)>& beside) {
@@ -165,7 +165,7 @@ void finish(Section& section) {
     method.not_ok_share = share_interval(method.not_ok, method.outcomes);
     for (auto& [name, metric] : method.metrics) {
       finish(name, metric);
-      if (!parse_binned(name)) names.insert(name);  // those are drawn as curves
+      if (!parse_binned(name)) names.insert(name);  // binned metrics appear only as curves
     }
   }
   section.metrics.assign(names.begin(), names.end());

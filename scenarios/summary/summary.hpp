@@ -14,39 +14,39 @@
 
 namespace tumble::scenarios {
 
-/// How the values of the metric of this name are shown.
+/// Returns the display style of a metric.
 inline MetricStyle metric_style(const std::string& metric) {
   return style_of(metric_info(metric).unit);
 }
 
-/// Position of a method in the registry; unknown names stand behind the known ones.
+/// Returns the position of a method in the registry; unknown names come last.
 std::size_t method_rank(Kind kind, const std::string& name);
 
-/// Draws on which one method was better than the baseline, of those that both have a value for.
+/// Draws on which one method was better than the baseline, among those with values of both.
 struct Wins {
   std::int64_t count = 0, pairs = 0;
 };
 
-/// One metric of one method over all draws of a scenario. Only outcomes with status `ok` give values; an outcome that
-/// failed ranks as the worst value of all in median, quantile and pairs (a draw that gives no method a value of this
-/// metric does not count), so a median is infinite once half of the runs fail.
+/// One metric of one method over all draws of a scenario. Only `ok` outcomes have values. Failed outcomes rank worst in
+/// median, quantile and pairs, so the median is infinite once half of the runs fail. Draws without a value from any
+/// method do not count.
 struct MetricSummary {
-  Interval centre{};  ///< median, or for a verdict its share; with the 95 % interval
+  Interval centre{};  ///< median, or share for a verdict; with the 95 % interval
   double quantile_95 = 0.0;
-  std::vector<std::uint64_t> seeds;   ///< rising
+  std::vector<std::uint64_t> seeds;   ///< ascending
   std::vector<double> values;         ///< parallel to `seeds`
-  std::vector<std::uint64_t> failed;  ///< seeds of the outcomes that failed, rising
+  std::vector<std::uint64_t> failed;  ///< seeds of failed outcomes, ascending
   Wins wins;                          ///< no pairs for the baseline itself
 };
 
 struct MethodSummary {
   std::string method;
-  bool needs_truth = false;  ///< as registered: not to be had on a real robot
+  bool needs_truth = false;  ///< as registered; oracles are not available on a real robot
   std::int64_t outcomes = 0, not_ok = 0;
   Interval not_ok_share{};                         ///< Clopper and Pearson, 95 %
-  std::vector<std::uint64_t> seeds, not_ok_seeds;  ///< of all outcomes, and of those that failed; rising
+  std::vector<std::uint64_t> seeds, not_ok_seeds;  ///< of all outcomes, and of failed ones; ascending
   std::map<std::string, MetricSummary> metrics;
-  std::string what;  ///< one sentence and the source, as registered; "" of a method out of a file
+  std::string what;  ///< description and source, as registered; "" for an external method
   const MetricSummary* find(const std::string& metric) const;
 };
 
@@ -54,7 +54,7 @@ struct MethodSummary {
 struct Section {
   std::string scenario;
   Kind kind = Kind::rate;
-  std::string baseline;  ///< what the others are paired with: the method that does nothing about the problem
+  std::string baseline;  ///< reference for the paired comparisons: the method without a treatment of the problem
   std::vector<MethodSummary> methods;  ///< in the order of the registry
   std::vector<std::string> metrics;    ///< in the order of the registry, then by name
   const MethodSummary* find(const std::string& method) const;
@@ -66,18 +66,18 @@ struct Summary {
   std::map<std::string, std::int64_t> draws, rejected;  ///< per scenario
 };
 
-/// The value of one draw, or the worst in its place.
+/// The value of one draw, or the worst value for a failure.
 struct RankedValue {
   std::uint64_t seed;
   double value;
 };
 
-/// Values and failures by rising seed; where there is no worst (NaN) the failures have none.
+/// Returns values and failures by ascending seed. If `worst` is NaN, failures are omitted.
 std::vector<RankedValue> ranked_values(const MetricSummary& metric, double worst);
 
-/// O(number of scores * log).
+/// Summarises the results in O(number of scores * log).
 Summary summarize(const Results& results);
-/// The same, which hands each plain outcome on as it is read, for who would read them all once more.
+/// The same; also passes each plain outcome to `beside` while reading, to avoid a second pass.
 Summary summarize(const Results& results, Names& names, const std::function<void(const OutcomeView&)>& beside);
 
 }  // namespace tumble::scenarios

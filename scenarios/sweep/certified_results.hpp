@@ -8,12 +8,11 @@
 
 namespace tumble::scenarios {
 
-/// The certificate of this build if `results` or the store hold it, and puts it into `results`; measures nothing.
+/// Returns this build's certificate if `results` or the store contain it, and stores it in `results`; measures nothing.
 std::optional<Certificate> known_certificate(Results& results, const CertificateStore& store);
 
-/// Puts the certificate of this build into `results` unless they hold it: out of the store, or measured now and kept in
-/// both. Returns it. A certificate whose measuring was stopped has no entries and is kept nowhere. Throws as
-/// measure_certificate does.
+/// Stores this build's certificate in `results` if missing: from the store, or measured now and saved in both. Returns
+/// the certificate. An interrupted measurement gives no entries and is not saved. Throws as measure_certificate does.
 Certificate certify_results(Results& results, const CertificateStore& store, const CertificateInput& input,
                             const CertifyOptions& options);
 

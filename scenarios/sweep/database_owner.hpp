@@ -8,16 +8,16 @@
 
 namespace tumble::scenarios {
 
-/// The one that writes to a results database: a second sweep on it, or a merge into it, says so and leaves. The lock
-/// (flock) is on FILE.lock beside it, which says who holds it; the system lets go of it when the process ends, however
-/// it ends. A signal that ends the program takes the file away (unfinished.hpp); one that a killed program has left
-/// behind is taken over. Reading needs no owner. Where the file system
-/// is shared, it holds between machines as far as its locks do.
+/// Exclusive write access to a results database; a second sweep or merge reports the conflict and exits. The lock
+/// (flock) is on FILE.lock next to the database, which states the owner. The system releases the lock when the process
+/// ends. A signal that ends the program removes the file (unfinished.hpp); a stale file of a killed program is reused.
+/// Readers need no lock. On a shared file system the lock works between machines if the file system supports this.
 class DatabaseOwner {
  public:
-  /// Throws BadInput: another owns it (its process, machine and since when), or no file can be made there.
+  /// Throws BadInput if another process owns the database (states process, machine and time), or if the lock file
+  /// cannot be created.
   explicit DatabaseOwner(const std::filesystem::path& database);
-  /// Lets go, and takes the file away.
+  /// Releases the lock and removes the file.
   ~DatabaseOwner();
   DatabaseOwner(const DatabaseOwner&) = delete;
   DatabaseOwner& operator=(const DatabaseOwner&) = delete;

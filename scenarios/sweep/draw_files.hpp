@@ -11,35 +11,36 @@
 #include "scenarios/sweep/keep.hpp"
 #include "scenarios/sweep/unfinished_folder.hpp"
 
-/// What the process of a draw leaves on the disk of it.
+/// Files that a draw's process stores on disk.
 namespace tumble::scenarios {
 
-/// The file with the command that makes a kept draw again.
+/// File with the command that reproduces a kept draw.
 inline constexpr const char* kDrawCommand = "command";
 
-/// Whether and where the process of a draw keeps it.
+/// Whether and where a draw is kept.
 struct Keeping {
   enum class When { never, if_failed, always };
   When when = When::never;
-  std::filesystem::path folder;  ///< of the draw: FOLDER/SCENARIO/SEED
-  std::string command;           ///< that makes it again
-  RecordingInfo versions;        ///< of the program and the engine: what a recording says of itself beyond its draw
-  bool lidars = false;           ///< whether a method of the draw reads lidars, be it run with this task or not
+  std::filesystem::path folder;  ///< FOLDER/SCENARIO/SEED
+  std::string command;           ///< command that reproduces the draw
+  RecordingInfo versions;        ///< versions of the program and the engine, for the recording's metadata
+  bool lidars = false;           ///< whether any method of the draw reads lidars, including methods not run in this
+                                 ///< task
 };
 
-/// A draw that is kept, in the making. What it cannot write is trouble of the keeping alone: the draw goes on.
+/// Writes a draw that is kept. A write error does not affect the draw's outcomes.
 class DrawFiles {
  public:
   explicit DrawFiles(const Keeping& keeping);
 
-  /// Where a method is to leave its estimate; empty where it need not.
+  /// Returns where a method must write its estimate; empty if not needed.
   std::filesystem::path estimate(const MethodInfo& method);
-  /// Writes the recording and moves all of it to its place, or removes it. What other methods have left there of the
-  /// same sensors stays.
+  /// Writes the recording and moves everything to its final folder, or removes it. Estimates of other methods for the
+  /// same sensors remain.
   void finish(const SimulatedDraw& draw, bool failed);
-  /// An estimate could not be written.
+  /// Records that an estimate could not be written.
   void miss(const std::string& why) { trouble_ = why; }
-  /// What went wrong, one line; empty where nothing did.
+  /// Returns the error in one line; empty if none.
   const std::string& trouble() const { return trouble_; }
 
  private:
@@ -47,7 +48,7 @@ class DrawFiles {
 
   const Keeping& keeping_;
   std::optional<UnfinishedFolder> folder_;
-  std::set<std::filesystem::path> asked_;  ///< names of the folders of estimates that are to be made
+  std::set<std::filesystem::path> asked_;  ///< folder names of the requested estimates
   std::string trouble_;
 };
 

@@ -28,7 +28,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-// resident size of this process now
+// Returns the resident size of this process.
 double resident_mib() {
   std::ifstream file("/proc/self/statm");
   double pages = 0.0;
@@ -43,8 +43,8 @@ double peak_mib() {
   return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
-/// What cannot be written costs the outcome nothing; that it is missing is seen (KeptDraws::holds). The reason, or
-/// nothing.
+/// Writes an estimate. A failure does not affect the outcome; KeptDraws::holds detects the missing file. Returns the
+/// error, or empty.
 std::string leave_estimate(const Method& method, const SimulatedDraw& draw, const Estimate& estimate,
                            const std::filesystem::path& folder) {
   if (folder.empty()) return {};
@@ -64,7 +64,7 @@ void run_method_child(const Method& method, const SimulatedDraw& draw, const Sim
   const double before_mib = resident_mib();
   Outcome outcome;
   const Estimate estimate = run_method(method, draw, outcome);
-  // of a command of somebody else's the system counts what it was forked from
+  // for an external command, the system counts memory from the fork on
   const bool own = method.info.version.empty();
   if (own) outcome.scores.push_back({"estimate_peak_mib", std::max(0.0, peak_mib() - before_mib)});
   assess(method, scored, surface, estimate, outcome);
@@ -73,7 +73,7 @@ void run_method_child(const Method& method, const SimulatedDraw& draw, const Sim
   write_all(fd, to_line({outcome, {}}));
 }
 
-// reads until the process closes its pipe; false at the deadline
+// Reads until the process closes its pipe; false at the deadline.
 bool read_until(Process& process, double deadline_s, std::string& buffer) {
   while (true) {
     const double left_s = deadline_s - now_s();
@@ -84,12 +84,12 @@ bool read_until(Process& process, double deadline_s, std::string& buffer) {
   }
 }
 
-/// Of this build's, those that make maps alone; somebody else's may read all that its kind is given.
+/// Of the built-in methods only slam methods read lidars; external methods may read all that their kind receives.
 bool reads_lidars(const MethodInfo& info) {
   return info.kind == Kind::slam || (info.kind != Kind::rate && !info.version.empty());
 }
 
-/// Methods of kind `rate` read no lidar. What is kept has them as the draw's methods read them, whichever are run now.
+/// Methods of kind `rate` read no lidar. Kept recordings contain lidars if any method of the draw reads them.
 Lidars lidars_for(const DrawTask& task, bool recordings_unseen) {
   const bool kept = task.keeping.when != Keeping::When::never && task.keeping.lidars;
   const bool read =
@@ -100,7 +100,7 @@ Lidars lidars_for(const DrawTask& task, bool recordings_unseen) {
   return read ? Lidars::simulated : Lidars::left_out;
 }
 
-/// A draw as a setting changes it for the methods; empty where it does not.
+/// A draw modified by a setting for the methods; empty if unmodified.
 struct Given {
   Setting setting;
   std::optional<SimulatedDraw> draw, scored;
@@ -126,17 +126,17 @@ Outcome unanswered(const DrawTask& task, const DrawTask::Run& run, OutcomeStatus
   return outcome;
 }
 
-/// The draw cannot be drawn or simulated, here or anywhere.
+/// Reports that the draw cannot be drawn or simulated on any machine.
 void reject(const DrawTask& task, const std::exception& error, int fd) {
   write_all(fd, to_line({{}, RejectedDraw{task.name, task.seed, one_line(error.what()), task.setting}}));
 }
 
-/// Nothing is known of the draw: each of its runs gets `status`.
+/// Assigns `status` to each run of a draw that could not be produced.
 void give_up(const DrawTask& task, OutcomeStatus status, const std::string& message, int fd) {
   for (const Outcome& outcome : without_answer(task, status, message)) write_all(fd, to_line({outcome, {}}));
 }
 
-/// A draw as simulated or read, and where there are maps to score the surface that they are scored against.
+/// A simulated or recorded draw, and the surface to score maps against, if there are maps.
 struct MadeDraw {
   SimulatedDraw draw;
   std::optional<sim::Surface> surface;
@@ -161,7 +161,7 @@ DrawValues motion_of(const DrawTask& task, const sim::Recording& recording) {
   return values;
 }
 
-/// Tells of the draw's motion; null, and told why, where the draw cannot be had.
+/// Produces the draw and reports its motion. Returns null after reporting the reason if this fails.
 std::unique_ptr<MadeDraw> made_draw(const DataRoot& data, const DrawTask& task, int fd, bool recordings_unseen) {
   try {
     std::unique_ptr<MadeDraw> made = make(data, task, recordings_unseen);
@@ -181,7 +181,7 @@ std::unique_ptr<MadeDraw> made_draw(const DataRoot& data, const DrawTask& task, 
   return nullptr;
 }
 
-/// One method on the draw. `given`: as the run before was given it, which most settings share.
+/// Runs one method on the draw. `given`: the modified draw of the previous run, reused if the setting is the same.
 Outcome run_one(const DrawTask& task, const DrawTask::Run& run, const MadeDraw& made, double timeout_s, Given& given,
                 DrawFiles& files) {
   Outcome outcome;
@@ -247,7 +247,7 @@ std::vector<Outcome> without_answer(const DrawTask& task, OutcomeStatus status, 
 void run_draw(const DataRoot& data, const DrawTask& task, double timeout_s, int fd, bool recordings_unseen) {
   const std::unique_ptr<const MadeDraw> made = made_draw(data, task, fd, recordings_unseen);
   if (!made) return;
-  // what the simulation gave back is not to hide what a method takes
+  // Otherwise memory freed by the simulation would hide the method's memory use.
   malloc_trim(0);
   DrawFiles files(task.keeping);
   bool failed = false;

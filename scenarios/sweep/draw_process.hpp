@@ -12,42 +12,42 @@
 
 namespace tumble::scenarios {
 
-/// One simulation, or one recording, and what is run on it.
+/// One simulation or recording, and the methods to run on it.
 struct DrawTask {
-  std::string name;                         ///< of the scenario, or of the recording
-  const Scenario* scenario = nullptr;       ///< to be simulated; or
-  const RecordedDraw* recording = nullptr;  ///< to be read
+  std::string name;                         ///< name of the scenario or recording
+  const Scenario* scenario = nullptr;       ///< set for a simulation
+  const RecordedDraw* recording = nullptr;  ///< set for a recording
   std::uint64_t seed = 0;
-  Setting setting;  ///< that the simulation is made with
+  Setting setting;  ///< setting of the simulation
   struct Run {
     const Method* method;
-    Setting setting;  ///< the simulation's, or one that leaves the simulation alone
+    Setting setting;  ///< the simulation's setting, or one that does not affect the simulation
   };
   std::vector<Run> runs;
-  Keeping keeping;  ///< of a plain setting alone
+  Keeping keeping;  ///< only for plain settings
 };
 
-/// How long one waits for workers at a time before looking at the clock.
+/// Longest wait for workers before checking deadlines.
 inline constexpr int kPollMs = 200;
-/// What the simulation of a draw may take beyond its runs, in units of a run's time-out.
+/// Time limit of a draw's simulation, in multiples of a run's time-out.
 inline constexpr double kSimulateTimeouts = 2.0;
 
-/// Of a run whose process ended without an answer.
+/// Returns the status of a run whose process ended without an answer.
 OutcomeStatus ended_as(const Process::End& end);
 
-/// A row per run of a draw whose process gave no answer.
+/// Returns one outcome per run of a draw whose process gave no answer.
 std::vector<Outcome> without_answer(const DrawTask& task, OutcomeStatus status, const std::string& message);
 
-/// Simulates one draw, without lidars where no method reads them, and tells `fd` what came of it, one message a line: a
-/// rejection when it cannot be drawn or simulated, or an outcome per run as each ends. The last word, an empty message,
-/// is its caller's. `recordings_unseen` as in SweepOptions. Runs in a worker.
+/// Simulates one draw, without lidars if no method reads them, and writes the results to `fd`, one message per line: a
+/// rejection if the draw cannot be drawn or simulated, else an outcome as each run ends. The caller writes the final
+/// empty message. `recordings_unseen` as in SweepOptions. Runs in a worker.
 void run_draw(const DataRoot& data, const DrawTask& task, double timeout_s, int fd, bool recordings_unseen = false);
 
-/// Runs one method in a process of its own for at most `timeout_s` of wall time. A crash, a time-out or an exception is
-/// an outcome. Cost: CPU and peak memory of the estimate alone, memory above what the draw's process held. The estimate
-/// is scored against the sensors and the truth of `scored`, which is `draw` unless its sensors have been changed
-/// (triage). It is left in `folder` (estimate_file.hpp) unless that is empty; one that cannot be written is not there,
-/// and `not_kept` says why.
+/// Runs one method in a separate process for at most `timeout_s` of wall time. Crashes, time-outs and exceptions become
+/// outcomes. Cost: CPU time and peak memory of the estimate, excluding the memory of the draw's process.
+///
+/// The estimate is scored against `scored`, which equals `draw` unless its sensors were changed (triage). It is written
+/// to `folder` (estimate_file.hpp) unless that is empty; on failure `not_kept` states why.
 Outcome run_isolated(const Method& method, const SimulatedDraw& draw, const SimulatedDraw& scored,
                      const sim::Surface* surface, double timeout_s, const std::filesystem::path& folder = {},
                      std::string* not_kept = nullptr);

@@ -11,7 +11,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// The next line that comes, without its end; nothing when there is nobody who would send another.
+/// Returns the next line without its newline; empty if the other end is closed.
 std::optional<std::string> next_line(int fd, std::string& buffer) {
   char chunk[8192];
   std::size_t newline;
@@ -26,15 +26,15 @@ std::optional<std::string> next_line(int fd, std::string& buffer) {
   return line;
 }
 
-/// In the worker: one line a draw, an empty one at the end.
+/// Runs in the worker: reads one line per draw until an empty line.
 void serve(const WorkerTerms& terms, int tasks, int fd) {
   limit_memory(terms.memory_mib);
   std::string buffer;
   while (const std::optional<std::string> line = next_line(tasks, buffer)) {
     if (line->empty()) return;
     run_draw(terms.data, terms.plan.from_line(*line), terms.timeout_s, fd, terms.recordings_unseen);
-    malloc_trim(0);  // an idle worker holds nothing of its last draw
-    // the last word: whatever ends the process before it, the draw's own destructors too, is of this draw
+    malloc_trim(0);  // An idle worker must not hold memory of its last draw.
+    // Sent last: if the process dies earlier, including in destructors, the fault belongs to this draw.
     write_all(fd, to_line({}));
   }
 }
@@ -75,7 +75,7 @@ void DrawWorker::take_up(const Message& message) {
              run.setting == message.outcome->setting;
     });
   } else if (message.rejected) {
-    draw_.runs.clear();  // none of them is owed an answer
+    draw_.runs.clear();  // they no longer expect an answer
   } else if (message.is_last()) {
     busy_ = false;
   }

@@ -11,41 +11,39 @@
 
 namespace tumble::scenarios {
 
-/// What a worker is made with.
+/// Parameters of a worker.
 struct WorkerTerms {
   const DataRoot& data;
   const SweepPlan& plan;
-  double timeout_s;                ///< of a method
-  double memory_mib;               ///< of data, of the worker and of each process that it makes
+  double timeout_s;                ///< time limit of a method
+  double memory_mib;               ///< memory limit of the worker and of each process that it starts
   bool recordings_unseen = false;  ///< as in SweepOptions
 };
 
-/// A process that serves one draw after the other. What it is told and what it says are lines of text, so that nothing
-/// of a draw is there at the next. It is not used again after a draw on which a process came to no end of its own, nor
-/// after `kDrawsPerWorker` draws.
+/// A process that runs one draw after another. It communicates in lines of text, so that no state of a draw remains for
+/// the next. It is not reused after `kDrawsPerWorker` draws, or after a draw with a process that did not end normally.
 class DrawWorker {
  public:
   static constexpr int kDrawsPerWorker = 200;
 
-  /// Throws std::system_error when no process can be made.
+  /// Throws std::system_error if no process can be started.
   explicit DrawWorker(const WorkerTerms& terms);
 
-  /// Hands it a draw, of which it has to be done by `deadline_s` (of now_s()). False when it has died while it was
-  /// idle.
+  /// Sends a draw that must be complete by `deadline_s` (of now_s()). Returns false if the idle worker has died.
   bool give(const DrawTask& task, double deadline_s);
 
   bool is_busy() const { return busy_; }
   bool is_late() const { return busy_ && now_s() > deadline_s_; }
-  /// Whether it may serve one more.
+  /// Returns true if it may run another draw.
   bool is_fresh() const { return !busy_ && !spoilt_ && served_ < kDrawsPerWorker; }
   int read_end() const { return process_.read_end(); }
-  /// The draw that it is at, less the runs that it has answered.
+  /// Returns the current draw without the runs already answered.
   const DrawTask& draw() const { return draw_; }
 
-  /// Adds what it has said since; with its last word on a draw it is idle. False when it has ended.
+  /// Appends new messages; after the last message of a draw the worker is idle. Returns false if the process has ended.
   bool hear(std::vector<Message>& said);
   void kill() { process_.kill(); }
-  /// Its end, waited for; one that is idle is told to come to it.
+  /// Ends an idle worker and waits for its end.
   Process::End dismiss();
 
  private:

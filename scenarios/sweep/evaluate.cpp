@@ -72,7 +72,7 @@ OutcomeStatus status_of(NoAnswer::Why why) {
   return OutcomeStatus::killed;
 }
 
-/// Of a method that gave no answer: what its files say of it, too.
+/// Returns the estimate of a method that gave no answer, with the program's output.
 Estimate no_estimate(const std::string& transcript = "") {
   Estimate none;
   none.transcript = transcript;

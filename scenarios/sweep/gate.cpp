@@ -29,13 +29,13 @@ bool by_difference(const MetricInfo& info) {
   return info.compared == Compared::by_difference;
 }
 
-/// What of `difference` does not matter.
+/// Returns the part of `difference` that is tolerated.
 double margin_of(const MetricInfo& info, const GatePolicy& policy) {
   if (!by_difference(info)) return std::log1p(policy.margin);
   return info.unit == Unit::time_offset ? policy.time_margin_s : policy.share_margin;
 }
 
-/// How much more `now` is than `before`, as the metric is compared.
+/// Returns the change from `before` to `now` in the metric's comparison.
 double difference(const MetricInfo& info, double before, double now) {
   if (before == now) return 0.0;
   if (by_difference(info)) return now - before;
@@ -44,8 +44,8 @@ double difference(const MetricInfo& info, double before, double now) {
   return std::log(now / before);
 }
 
-/// How bad a draw is: what `GatePolicy::worst` is a multiple of. Of a share what it lacks, of what has a sign how far
-/// it lies from its target.
+/// Returns how bad a draw is, for `GatePolicy::worst`: one minus the value of a share, the distance from the target of
+/// a signed value.
 double badness(const MetricInfo& info, double value) {
   if (!by_difference(info)) return value;
   return info.unit == Unit::share ? 1.0 - value : std::abs(value - info.target);
@@ -53,11 +53,10 @@ double badness(const MetricInfo& info, double value) {
 
 struct GatePair {
   std::uint64_t seed = 0;
-  double before = 0.0, now = 0.0;  ///< infinite where it was not ok, as the worst
+  double before = 0.0, now = 0.0;  ///< infinite (worst) if it was not ok
 };
 
-/// GatePairs of a metric. A draw on which both runs are without a value says nothing; one that has lost it is in
-/// `lost`.
+/// Pairs of a metric. Draws without a value in both runs are omitted; draws that lost their value are in `lost`.
 struct GatePairs {
   std::vector<GatePair> pairs;
   std::vector<std::uint64_t> lost;
@@ -75,7 +74,7 @@ GatePairs pairs_of(const GateRun& all, const MethodRun& before, const MethodRun&
     GatePair pair{all.seeds[k], value_at(before, info.name, k), value_at(now, info.name, k)};
     if (was_ok && std::isnan(pair.before)) continue;
     if (was_ok && is_ok && std::isnan(pair.now)) out.lost.push_back(pair.seed);
-    // a run that is not ok ranks as the worst, whatever numbers it left
+    // runs that are not ok rank as worst, whatever their values
     if (!was_ok) pair.before = worst_value(info);
     if (!is_ok) pair.now = worst_value(info);
     if (!std::isnan(pair.before) && !std::isnan(pair.now)) out.pairs.push_back(pair);
@@ -83,13 +82,13 @@ GatePairs pairs_of(const GateRun& all, const MethodRun& before, const MethodRun&
   return out;
 }
 
-/// The chance of differences as positive as these, were their middle at `margin` or below.
+/// Returns the p-value of the differences under the hypothesis that their median is at most `margin`.
 double chance_beyond(std::vector<double> differences, double margin) {
   for (double& each : differences) each -= margin;
   return signed_rank_chance(differences);
 }
 
-/// Whether a draw is worse than any accepted one was, beyond the allowed; the fault says which.
+/// Checks that no draw is worse than the worst accepted draw times the allowed factor; the fault states which draw.
 void hold_worst_draw(const MetricInfo& info, const std::vector<GatePair>& pairs, const GatePolicy& policy,
                      GateResult& result) {
   if (pairs.empty()) return;
@@ -107,8 +106,8 @@ void hold_worst_draw(const MetricInfo& info, const std::vector<GatePair>& pairs,
                              three_digits(now.now), now.seed, three_digits(before.before));
 }
 
-/// Tests of a metric count once, two-sided ones too: they take twice the smaller chance. Puts a shift of the pairs, and
-/// the fault where it is one, into a result that says of what they are.
+/// Each metric counts as one test; two-sided ones use twice the smaller p-value. Adds the shift and any fault to the
+/// result.
 void hold_middle(const std::vector<GatePair>& pairs, const MetricInfo& info, const GatePolicy& policy,
                  std::size_t tests, GateResult& result) {
   result.draws = pairs.size();
@@ -150,7 +149,7 @@ GateResult hold_metric(const GatePairs& found, const MethodRun& before, const Me
   return result;
 }
 
-/// A verdict is a failure as a status is: 0 has to stay 0.
+/// A verdict counts as a failure: 0 must stay 0.
 bool is_condemned(const MethodRun& run, const MetricInfo& verdict, std::size_t draw) {
   return value_at(run, verdict.name, draw) > 0.0;
 }
@@ -176,7 +175,7 @@ GateResult hold_outcomes(const GateRun& all, const MethodRun& before, const Meth
       fault = condemned(now);
     was += was_good ? 0 : 1;
     is += fault.empty() ? 0 : 1;
-    // a draw that has gone is a fault also where it had failed
+    // a missing draw is a fault even if it failed in the accepted run
     if (result.fault.empty() && !fault.empty() && (was_good || !now.status[k])) {
       result.fault = fault + seed;
       result.seed = all.seeds[k];
@@ -197,7 +196,7 @@ MethodRun without_outcomes(const MethodRun& like) {
   return none;
 }
 
-/// A metric of a method over all scenarios that hold it.
+/// A metric of a method over all scenarios that have it.
 struct Pooled {
   Kind kind = Kind::rate;
   std::string method;
@@ -208,7 +207,7 @@ struct Pooled {
   }
 };
 
-/// Those that more than one scenario holds, in the order of the accepted run.
+/// Returns the metrics of more than one scenario, in the order of the accepted run.
 std::vector<Pooled> pooled_metrics(const GateRun& accepted) {
   std::vector<Pooled> seen, out;
   const auto has = [](const std::vector<Pooled>& list, const MethodRun& run, const MetricInfo& info) {

@@ -72,7 +72,7 @@ Kind read_kind(const GateLine& line) {
   line.fail("unknown kind '" + line.cells[1] + "'" + suggestion(line.cells[1], known));
 }
 
-/// A method of this build, or one that was described.
+/// Throws unless the method is built in or described by a file.
 void require_method(const GateLine& line, const MethodRun& run, std::span<const MethodPointer> described) {
   if (std::any_of(described.begin(), described.end(), [&](const MethodPointer& method) {
         return method->info.kind == run.kind && method->info.name == run.method;

@@ -12,7 +12,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr std::uint64_t kDrawsMax = 1000;  // the tests are exact, and cubic in the draws
+constexpr std::uint64_t kDrawsMax = 1000;  // the tests are exact and cubic in the number of draws
 
 MethodRun& method_run(const Outcome& outcome, GateRun& run) {
   for (MethodRun& each : run.methods) {
@@ -56,10 +56,10 @@ GateRun gate_run(std::span<const Outcome> outcomes, std::uint64_t first, std::ui
 
 GateRun gate_run(const Results& results, std::uint64_t first, std::uint64_t last) {
   std::vector<Outcome> outcomes = results.outcomes();
-  // both come in one order: by scenario, seed, kind, method
+  // both lists are sorted by scenario, seed, kind, method
   std::size_t at = 0;
   for (const ScoreRow& row : results.scores()) {
-    if (row.kind.empty()) continue;  // a rejected draw
+    if (row.kind.empty()) continue;  // rejected draw
     const auto is_of = [&](const Outcome& outcome) {
       return outcome.scenario == row.scenario && outcome.seed == row.seed && row.kind == to_string(outcome.kind) &&
              outcome.method == row.method;

@@ -40,7 +40,7 @@ void require_same_origin(const Notes& first, const Notes& other, const fs::path&
   }
 }
 
-/// The versions of methods that are not of the build are joined with their rows; two of one method are refused.
+/// Joins the versions of external methods with their rows; rejects two versions of one method.
 void join_method_notes(const Notes& shard, const fs::path& path, bool mixed, Results& into) {
   for (const auto& [key, theirs] : shard) {
     if (!is_method_note(key)) continue;
@@ -52,21 +52,21 @@ void join_method_notes(const Notes& shard, const fs::path& path, bool mixed, Res
   }
 }
 
-/// Where descriptions and recordings stand; of two places the first, which need not be there any more.
+/// Joins the paths of descriptions and recordings. For conflicting paths the first wins, even if it no longer exists.
 void join_place_notes(const Notes& shard, Results& into) {
   for (const auto& [key, place] : shard) {
     if (is_place_note(key) && into.note(key).empty()) into.set_note(key, place);
   }
 }
 
-/// How the rows of all of them were asked for.
+/// Joins the commands that produced the rows.
 void join_command_notes(const std::vector<Notes>& notes, Results& into) {
   std::string commands = into.note(kCommandNote);
   for (const Notes& own : notes) commands = with_commands(commands, text_of(own, kCommandNote));
   if (!commands.empty()) into.set_note(kCommandNote, commands);
 }
 
-/// Of every input, so that none is read in vain; one is open at a time.
+/// Reads the notes of all inputs before any merge, opening one input at a time.
 std::vector<Notes> checked_notes(std::span<const fs::path> in, bool mixed) {
   std::vector<Notes> notes;
   for (const fs::path& path : in) {
@@ -76,14 +76,14 @@ std::vector<Notes> checked_notes(std::span<const fs::path> in, bool mixed) {
   return notes;
 }
 
-/// By which the draws of all inputs were kept; empty where they differ.
+/// Returns the keep rule of all inputs; empty if they differ.
 std::string common_rule(const std::vector<Notes>& notes) {
   const std::string rule = text_of(notes.front(), kKeepNote);
   const auto is_it = [&](const Notes& each) { return text_of(each, kKeepNote) == rule; };
   return std::all_of(notes.begin(), notes.end(), is_it) ? rule : std::string();
 }
 
-/// A database that was made for a merge which failed goes again.
+/// Removes a newly created database if the merge fails.
 class Made {
  public:
   explicit Made(const fs::path& path) : path_(path), is_new_(!fs::exists(path)) {}
@@ -121,7 +121,7 @@ MergeCounts merge_results(const DatabaseOwner& owner, std::span<const fs::path> 
       }
       for (const Notes& own : notes) join_place_notes(own, results);
       join_command_notes(notes, results);
-      // the joined database says where its rows come from, not which program has joined them
+      // The result keeps the origin of its rows, not the program that joined them.
       for (const char* key : {"suite", "build", "data"}) {
         std::string text;
         for (std::size_t i = 0; i < notes.size() && text.empty(); ++i) text = text_of(notes[i], key);

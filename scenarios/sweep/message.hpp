@@ -8,21 +8,21 @@
 
 namespace tumble::scenarios {
 
-/// What a worker tells the sweep of the draw that it is at, one JSON object a line. At most one field is set; none: the
-/// draw is done.
+/// A message from a worker about its current draw, one JSON object per line. At most one field is set; none: the draw
+/// is complete.
 struct Message {
   std::optional<Outcome> outcome;
   std::optional<RejectedDraw> rejected;
   std::optional<DrawValues> draw = std::nullopt;
   std::optional<std::string> not_kept = std::nullopt;  ///< why the draw's files could not be kept
-  /// Whether it is the last of its draw.
+  /// Returns true for the last message of a draw.
   bool is_last() const { return !outcome && !rejected && !draw && !not_kept; }
 };
 
-/// With the newline. Numbers come back to the bit; what is not finite comes back as NaN.
+/// Returns the message with a newline. Numbers round-trip bit-exactly; non-finite numbers become NaN.
 std::string to_line(const Message& message);
 
-/// Without the newline. Nothing when the line is no message (a process that died in the middle of it).
+/// Parses a line without its newline; empty if it is not a message (the process died while writing).
 std::optional<Message> from_line(const std::string& line);
 
 }  // namespace tumble::scenarios

@@ -9,7 +9,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Numbers one after the other; no padding of a struct ever enters.
+/// Hashes numbers one by one, so that no struct padding enters.
 class NumberHasher : public Hasher {
  public:
   template <typename Number>

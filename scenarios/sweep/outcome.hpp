@@ -11,8 +11,8 @@
 
 namespace tumble::scenarios {
 
-/// The point of a curve that a row belongs to (variation.hpp): what was varied, and its value. Without a key: the
-/// scenario and the methods as they are.
+/// The point of a curve that a row belongs to (variation.hpp): varied key and value. Without a key: unmodified scenario
+/// and methods.
 struct Setting {
   std::string key;
   double value = 0.0;
@@ -21,21 +21,21 @@ struct Setting {
   auto operator<=>(const Setting&) const = default;
 };
 
-/// One row of the results: what one method did on one draw.
+/// One row of the results: one method on one draw.
 struct Outcome {
   std::string scenario;
   std::uint64_t seed = 0;
   Kind kind = Kind::rate;
   std::string method;
   OutcomeStatus status = OutcomeStatus::failed;
-  std::string message;  ///< one line when not ok
+  std::string message;  ///< one line if not ok
   std::vector<Score> scores;
   std::string recording_digest;
-  std::string estimate_digest;  ///< of the estimate's numbers, 32 hexadecimal digits
+  std::string estimate_digest;  ///< digest of the estimate's numbers, 32 hexadecimal digits
   Setting setting = {};
 };
 
-/// What the motion of one draw was like, whatever the methods make of it (scenarios/scoring/motion_summary.hpp).
+/// Motion values of one draw, independent of the methods (scenarios/scoring/motion_summary.hpp).
 struct DrawValues {
   std::string scenario;
   std::uint64_t seed = 0;
@@ -43,18 +43,18 @@ struct DrawValues {
   Setting setting = {};
 };
 
-/// Of a method that came to its end: ok, diverged, failed.
+/// Returns true for methods that completed: ok, diverged, failed.
 bool was_scored(OutcomeStatus status);
 
-/// Whether a status says more of the method than another: one that came to its end more than crashed and timeout, these
-/// more than killed.
+/// Returns true if `status` has more information about the method. Order: completed, then crashed and timeout, then
+/// killed.
 bool outranks(OutcomeStatus status, OutcomeStatus other);
 
-/// Whether a sweep may be asked to run rows of this status once more: crashed, timeout, killed.
+/// Returns true if a sweep may repeat rows of this status: crashed, timeout, killed.
 bool may_run_again(OutcomeStatus status);
 
-/// A draw that cannot be drawn or simulated, whatever the machine: an outcome of its own, kind and method empty in the
-/// database. A process that died over it is none: its methods are crashed, timeout or killed.
+/// A draw that cannot be drawn or simulated on any machine; kind and method are empty in the database. If a process
+/// dies instead, its methods are crashed, timeout or killed.
 struct RejectedDraw {
   std::string scenario;
   std::uint64_t seed = 0;
@@ -62,7 +62,7 @@ struct RejectedDraw {
   Setting setting = {};
 };
 
-/// Digest of all numbers of an estimate (XXH3, 128 bit), costs and health timings excluded.
+/// Returns a digest of all numbers of an estimate (XXH3, 128 bit), except costs and timings.
 std::string digest(const Estimate& estimate);
 
 }  // namespace tumble::scenarios

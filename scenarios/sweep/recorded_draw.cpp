@@ -15,7 +15,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// The folder's own name is no pattern.
+/// Escapes the folder's name, which is not a pattern.
 std::string escaped(const std::string& text) {
   std::string out;
   for (const char c : text) {
@@ -40,7 +40,7 @@ std::vector<std::filesystem::path> matches(const std::string& pattern, const std
   return paths;
 }
 
-/// As stored, or made of the data of a file whose writer left it out.
+/// Returns the stored digest, or computes it if the file has none.
 std::string digest_of(const RecordingInfo& info, const sim::Sensors& sensors, const std::filesystem::path& path) {
   if (!info.digest.empty()) return info.digest;
   if (!info.has_truth) return digest(sensors, nullptr);

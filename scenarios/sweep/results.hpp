@@ -18,8 +18,8 @@
 
 namespace tumble::scenarios {
 
-/// One row of the view scores(scenario, seed, kind, method, status, metric, value). An outcome without any score has
-/// one row with an empty metric and NaN; a rejected draw one with kind and method empty too, status `rejected`.
+/// One row of the view scores(scenario, seed, kind, method, status, metric, value). An outcome without scores has one
+/// row with an empty metric and NaN. A rejected draw has one row with empty kind and method and status `rejected`.
 struct ScoreRow {
   std::string scenario;
   std::uint64_t seed;
@@ -30,20 +30,19 @@ struct ScoreRow {
   Setting setting = {};
 };
 
-/// Which rows are asked for: those of the scenarios and methods as they are, those that belong to a curve, or both.
+/// Which rows are selected: unmodified scenarios and methods, points of curves, or both.
 enum class Rows { plain, curves, all };
 
-/// What a merge wrote: rows that were not there, rows that took the place of a worse one, and what the inputs held
-/// besides, which stood already.
+/// Row counts of a merge: added, replaced a lower-ranked row, and already present.
 struct MergeCounts {
   std::size_t added = 0, replaced = 0, held = 0;
-  std::size_t rejected = 0;  ///< draws, of those added
+  std::size_t rejected = 0;  ///< rejected draws among the added
 };
 
-/// Names that rows share, kept once by who reads them.
+/// Names shared by many rows, stored once by the reader.
 using Names = std::set<std::string, std::less<>>;
 
-/// An outcome as it is read, for results of any size: what it points to goes with the next one, but the names.
+/// An outcome while reading. Its pointers are valid until the next outcome, except names.
 struct OutcomeView {
   struct Value {
     const std::string* metric;  ///< in the `Names` of the reader
@@ -56,61 +55,60 @@ struct OutcomeView {
   OutcomeStatus status;
   std::string_view varied;
   double setting;
-  std::span<const Value> scores;  ///< by name
+  std::span<const Value> scores;  ///< sorted by name
 };
 
-/// Key of the note that tells the version of a method that is not of the build: "method slam/theirs".
+/// Returns the key of the note with the version of an external method: "method slam/theirs".
 std::string method_note(Kind kind, const std::string& name);
 bool is_method_note(const std::string& key);
 
 /// The results database (SQLite). Rows are unique by (scenario, seed, kind, method, setting); storing again replaces.
-/// Each store is one transaction, so that whatever has finished survives a kill.
+/// Each store is one transaction, so that completed results survive a kill.
 class Results {
  public:
-  /// `join` is `create_or_append` for who calls `absorb` and stores no outcome besides: that each score has its outcome
-  /// is seen to there, and the engine does not look it up for each.
+  /// `join` is `create_or_append` for callers that only use `absorb`, which itself ensures that each score has an
+  /// outcome. The database then skips this check.
   enum class Mode { create_or_append, join, read_only };
-  /// Throws BadInput: absent (read_only), not a results database, without a table, column or view of the schema,
-  /// written by another build (but read_only; note "build"), no room. So do all members, with the path in the
-  /// message, also where a value that they read is no number (text, a blob).
+  /// Throws BadInput: missing file (read_only), not a results database, incomplete schema, another build (except
+  /// read_only; note "build"), or no space. All members throw likewise, with the path, also for stored values that are
+  /// not numbers.
   Results(const std::filesystem::path& path, Mode mode);
   ~Results();
   Results(Results&&) noexcept;
 
-  /// A score without a name, as `scores()` has it for an outcome that has none, is left out. A rejection of the same
-  /// draw goes: what has run could be drawn.
+  /// Stores an outcome. Omits scores without a name, which `scores()` returns for outcomes without any. Removes a
+  /// rejection of the same draw.
   void store(const Outcome& outcome);
-  /// Not where an outcome of the draw stands; false then.
+  /// Stores a rejection. Returns false, without storing, if the draw has an outcome.
   bool store(const RejectedDraw& rejected);
   void store(const DrawValues& draw);
-  /// Replaces what was known of its build.
+  /// Stores a certificate; replaces an existing one of its build.
   void store(const Certificate& certificate);
-  /// A free text kept with the results: "suite", "build", "data".
+  /// Stores a named text with the results: "suite", "build", "data".
   void set_note(const std::string& key, const std::string& text);
   std::string note(const std::string& key) const;
   std::map<std::string, std::string> notes() const;
-  /// All rows of another database but its notes, by the rule of merge.hpp, row by row: memory does not grow with their
-  /// number. Throws BadInput when two rows that were scored differ in status, digest or a score that is no cost, unless
-  /// `mixed`.
+  /// Copies all rows of another database, without notes, by the rule of merge.hpp, with constant memory. Throws
+  /// BadInput if two scored rows differ in status, digest or a score other than cost, unless `mixed`.
   void absorb(const Results& shard, bool mixed, MergeCounts& counts);
-  /// All that `work` stores, or, when it throws, nothing of it. Throws what it throws.
+  /// Runs `work` in one transaction; stores nothing if it throws, and rethrows.
   void in_one_transaction(const std::function<void()>& work);
 
-  /// Whether any draw has an outcome or a rejection.
+  /// Returns true if any draw has an outcome or a rejection.
   bool has_rows() const;
-  /// The row with the scenario, seed, kind, method and setting of `key`, without its scores.
+  /// Returns the row with the scenario, seed, kind, method and setting of `key`, without scores.
   std::optional<Outcome> find(const Outcome& key) const;
-  /// What is held of one draw, curves included, without scores.
+  /// Returns the rows of one draw, curves included, without scores.
   std::vector<Outcome> outcomes_of(const std::string& scenario, std::uint64_t seed) const;
   std::vector<RejectedDraw> rejected_of(const std::string& scenario, std::uint64_t seed) const;
-  /// Every outcome with its scores, in the order of storing; nothing is kept but the metrics' names.
+  /// Visits every outcome with its scores, in the order of storing; keeps only the metrics' names in memory.
   void each(Rows rows, Names& names, const std::function<void(const OutcomeView&)>& visit) const;
   std::vector<ScoreRow> scores(Rows rows = Rows::plain) const;
-  /// Every outcome without its scores.
+  /// Returns every outcome without its scores.
   std::vector<Outcome> outcomes(Rows rows = Rows::plain) const;
   std::vector<RejectedDraw> rejected(Rows rows = Rows::plain) const;
   std::vector<DrawValues> draws(Rows rows = Rows::plain) const;
-  /// One per build, its entries in their order; a database that was merged may hold several.
+  /// Returns one certificate per build; a merged database may have several.
   std::vector<Certificate> certificates() const;
 
  private:

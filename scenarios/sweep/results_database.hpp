@@ -16,11 +16,11 @@
 namespace tumble::scenarios {
 
 inline constexpr int kBusyTimeoutMs = 20000;
-inline constexpr int kSqliteBusy = 5;  // as sqlite3.h has it
+inline constexpr int kSqliteBusy = 5;  // as in sqlite3.h
 inline constexpr const char* kBusy =
     "another program is writing to this database; try again when that program has ended";
 
-/// SQLite's integers have a sign, seeds have none: the same bits.
+/// SQLite's integers are signed, seeds unsigned: keep the bits.
 inline std::int64_t stored_seed(std::uint64_t seed) {
   return std::bit_cast<std::int64_t>(seed);
 }
@@ -28,13 +28,13 @@ inline std::uint64_t read_seed(std::int64_t stored) {
   return std::bit_cast<std::uint64_t>(stored);
 }
 
-/// An open results database: what reading (results_reading.cpp) and writing (results.cpp) share.
+/// An open results database, shared by reading (results_reading.cpp) and writing (results.cpp).
 struct Results::Impl {
   std::filesystem::path path;
   SQLite::Database database;
-  bool in_transaction = false;  ///< of the caller
+  bool in_transaction = false;  ///< a transaction of the caller
 
-  /// One of its own, unless the caller has begun one.
+  /// Opens a transaction unless the caller has one.
   class Transaction {
    public:
     explicit Transaction(Impl& impl) {
@@ -50,18 +50,18 @@ struct Results::Impl {
 
   Impl(const std::filesystem::path& file, Mode mode)
       : path(file),
-        // one thread's alone: each value that is read would else lock and unlock it several times
+        // single-threaded: avoids a lock for each value
         database(file.string(),
                  SQLite::OPEN_NOMUTEX |
                      (mode == Mode::read_only ? SQLite::OPEN_READONLY : SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE),
                  kBusyTimeoutMs) {
-    // a rollback journal: one file, readable from a read-only folder; a store is on the disk before it returns
+    // Rollback journal: one file, readable in a read-only folder, and each store is on the disk before it returns.
     if (mode == Mode::read_only) return;
     database.exec("PRAGMA synchronous = FULL");
     database.exec(mode == Mode::join ? "PRAGMA foreign_keys = OFF" : "PRAGMA foreign_keys = ON");
   }
 
-  // SQLite's trouble as one line with the path
+  // Converts SQLite errors to one line with the path.
   template <typename Action>
   auto guarded(Action&& action) const {
     try {
@@ -77,7 +77,7 @@ struct Results::Impl {
 
   void create() {
     SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
-    // somebody else may have made it while this one waited for the lock
+    // another process may have created it while this one waited for the lock
     if (is_empty()) {
       database.exec(kSchema);
       database.exec("PRAGMA application_id = " + std::to_string(kApplicationId));

@@ -21,15 +21,15 @@ namespace {
 
 constexpr const char* kDraw = " WHERE scenario = ? AND seed = ? AND varied = ? AND setting = ? AND kind ";
 
-/// A row of `outcomes` as it stands in the shard; its texts are valid until the next one.
+/// A row of `outcomes` in the shard; its texts are valid until the next row.
 struct ShardRow {
   std::int64_t id, seed;
   const char *scenario, *kind, *method, *status, *message, *recording_digest, *estimate_digest, *varied;
   double setting;
 };
 
-/// Rows of a shard on their way into another database, each statement prepared once. Outcomes and scores are read side
-/// by side in the order of the outcomes' numbers; new numbers rise with the old ones, so that scores are appended.
+/// Copies rows of a shard to another database with prepared statements. Reads outcomes and scores in parallel, sorted
+/// by outcome number. New numbers increase with the old ones, so that scores are appended.
 class Joining {
  public:
   Joining(SQLite::Database& into, const SQLite::Database& shard, const std::filesystem::path& path, bool mixed,
@@ -62,7 +62,7 @@ class Joining {
     draws.flush();
   }
 
-  /// Only where no outcome of the draw stands.
+  /// Only for draws without an outcome.
   void join_rejections() {
     SQLite::Statement select(shard_, std::string(kColumns) + "WHERE kind = '' ORDER BY id");
     SQLite::Statement ran(into_, std::string("SELECT 1 FROM outcomes") + kDraw + "<> '' LIMIT 1");
@@ -110,7 +110,7 @@ class Joining {
     statement.bind(4, row.setting);
   }
 
-  /// The next row of the shard; trouble in it is told with its path.
+  /// Advances to the next row; errors include the shard's path.
   bool next(SQLite::Statement& select) const {
     try {
       return select.executeStep();
@@ -119,7 +119,7 @@ class Joining {
     }
   }
 
-  /// Returns the number of rows that it changed.
+  /// Returns the number of changed rows.
   static int run(SQLite::Statement& statement) {
     const int changed = statement.exec();
     statement.reset();
@@ -138,7 +138,7 @@ class Joining {
     throw BadInput(path_.string() + ": unknown kind '" + name + "'");
   }
 
-  /// False where a row of its key stands.
+  /// Returns false if a row with the same key exists.
   bool insert(const ShardRow& row) {
     insert_.bindNoCopy(1, row.scenario);
     insert_.bind(2, row.seed);
@@ -153,7 +153,7 @@ class Joining {
     return run(insert_) == 1;
   }
 
-  /// Whether the row now stands, under which number.
+  /// Inserts or replaces the row; returns true if it was stored, with its number in `id`.
   bool take(const ShardRow& row, std::int64_t& id) {
     require_kind(row.kind);
     const OutcomeStatus own = status(row.status);
@@ -174,7 +174,7 @@ class Joining {
     return true;
   }
 
-  /// Takes the held row away where this one says more.
+  /// Removes the existing row if the new one outranks it.
   bool replaces_held(const ShardRow& row, OutcomeStatus own) {
     scores_into_.flush();
     held_.bindNoCopy(1, row.scenario);
@@ -199,8 +199,7 @@ class Joining {
     }
     if (outranks(known, own) || mixed_ || !was_scored(known)) return false;
     if (own != known || estimate != row.estimate_digest ||
-        // recordings are simulated without lidars where only rates are asked for: their digest is no part of the
-        // answer
+        // Lidars are not simulated if only rates are wanted, so the recording's digest is not compared for kind rate.
         (std::string(to_string(Kind::rate)) != row.kind && recording != row.recording_digest))
       complain(row, status_text, estimate);
     require_same_scores(row, id);
@@ -213,7 +212,7 @@ class Joining {
         path_.string(), words(row), row.status, row.estimate_digest, known, digest));
   }
 
-  /// Of two rows with one digest the scores are the same bits too, but for what the runs cost.
+  /// Rows with one digest must have bit-identical scores, except costs.
   void require_same_scores(const ShardRow& row, std::int64_t held) {
     std::map<std::string, double> known;
     held_scores_.bind(1, held);
@@ -247,7 +246,7 @@ class Joining {
                                words(row), metric, here, elsewhere));
   }
 
-  /// The scores of a row of the shard, by name; rows are asked for in their order.
+  /// Visits the scores of a row of the shard, sorted by name; rows must be requested in order.
   template <typename Visit>
   void each_score(const ShardRow& row, const Visit& visit) {
     while (more_scores_ && scores_.getColumn(0).getInt64() < row.id) more_scores_ = next(scores_);
@@ -281,7 +280,8 @@ class Joining {
                           "SELECT id, status, recording_digest, estimate_digest FROM outcomes WHERE scenario = ? AND "
                           "seed = ? AND kind = ? AND method = ? AND varied = ? AND setting = ?"};
   SQLite::Statement held_scores_{into_, "SELECT metric, value FROM score_values WHERE outcome = ?"};
-  SQLite::Statement remove_scores_{into_, "DELETE FROM score_values WHERE outcome = ?"};  // Mode::join leaves them
+  // Mode::join does not cascade deletes
+  SQLite::Statement remove_scores_{into_, "DELETE FROM score_values WHERE outcome = ?"};
   SQLite::Statement remove_{into_, "DELETE FROM outcomes WHERE id = ?"};
   SQLite::Statement forget_{into_, std::string("DELETE FROM outcomes") + kDraw + "= ''"};
   RowsInto<ScoreValue> scores_into_{into_};

@@ -7,10 +7,10 @@
 
 namespace tumble::scenarios {
 
-// seeds are 64 bit unsigned, kept as the signed number of the same bits. A rejected draw is an outcome with kind and
-// method empty and status 'rejected'. The view has a row for each score, and one with a null metric for an outcome
-// without any. A point of a curve carries in `varied` the keys and in `setting` their value; `varied` is empty for the
-// scenario and the methods as they are, and only those are in the view `scores`: points of curves are in `curves`.
+// Seeds are unsigned 64-bit numbers, stored as signed numbers with the same bits. A rejected draw is an outcome with
+// empty kind and method and status 'rejected'. The view `scores` has a row per score, and one with a null metric for an
+// outcome without scores. A point of a curve has its keys in `varied` and their value in `setting`. `varied` is empty
+// for unmodified scenarios and methods, the only rows in `scores`; points of curves are in the view `curves`.
 const char* const kSchema = R"sql(
 CREATE TABLE notes (
   key TEXT PRIMARY KEY NOT NULL,
@@ -74,8 +74,7 @@ CREATE TABLE certificates (
 
 namespace {
 
-/// "table outcomes", "column seed of table outcomes", "view scores". Of views the names alone: what they have follows
-/// from the tables.
+/// Returns "table outcomes", "column seed of table outcomes", "view scores". Columns of views follow from the tables.
 std::set<std::string> parts_of(const SQLite::Database& database) {
   std::set<std::string> parts;
   SQLite::Statement objects(database, "SELECT type || ' ' || name FROM sqlite_master WHERE type IN ('table', 'view')");
@@ -93,7 +92,7 @@ std::string missing_of_schema(const SQLite::Database& database) {
   SQLite::Database model(":memory:", SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
   model.exec(kSchema);
   const std::set<std::string> found = parts_of(database);
-  // a table that is not there is told as such, before its columns and the views on it
+  // A missing table is reported before its columns and views.
   std::string missing;
   for (const std::string& part : parts_of(model)) {
     if (found.contains(part)) continue;

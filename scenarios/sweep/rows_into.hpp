@@ -11,10 +11,10 @@
 #include <string_view>
 #include <vector>
 
-/// Rows on their way into a results database by the million.
+/// Fast insertion of many rows into a results database.
 namespace tumble::scenarios {
 
-// SQLite has no NaN: a number that is none is null
+// SQLite has no NaN: store null instead.
 inline void bind_number(double value, SQLite::Statement& to, int index) {
   if (std::isnan(value))
     to.bind(index);
@@ -22,7 +22,7 @@ inline void bind_number(double value, SQLite::Statement& to, int index) {
     to.bind(index, value);
 }
 
-/// Texts that many rows share, each kept once, as long as this lives.
+/// Stores each of the texts shared by many rows once.
 class Kept {
  public:
   const std::string& operator()(std::string_view text) {
@@ -74,7 +74,7 @@ struct DrawValue {
   }
 };
 
-/// Rows of a table in the order of adding, many by one statement: beginning and ending one costs as much as a row.
+/// Inserts rows in order, many per statement, because each statement has a fixed cost as large as a row's.
 template <typename Row>
 class RowsInto {
  public:
@@ -84,7 +84,7 @@ class RowsInto {
     rows_.push_back(row);
     if (rows_.size() == kMany) flush();
   }
-  /// To be called before anybody looks for the rows.
+  /// Must be called before the rows are read.
   void flush() {
     if (rows_.size() == kMany) {
       for (std::size_t i = 0; i < kMany; ++i) rows_[i].bind(many_, static_cast<int>(i) * Row::kColumns);

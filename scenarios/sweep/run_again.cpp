@@ -21,7 +21,7 @@ std::string note_or(const std::map<std::string, std::string>& notes, const std::
   return found == notes.end() || found->second.empty() ? otherwise : found->second;
 }
 
-/// The word after --method: of somebody else's the file. Whether it is of the build tells the note of its version.
+/// Returns the argument of --method: for an external method its file. A version note marks external methods.
 std::string method_word(const RunKey& run, const std::map<std::string, std::string>& notes) {
   const std::string full = run.kind + "/" + run.method;
   const bool own = !notes.contains("method " + full);

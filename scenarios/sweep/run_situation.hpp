@@ -16,12 +16,12 @@
 
 namespace tumble::scenarios {
 
-/// Everything that one situation gave: recording, and per method its estimate and outcome.
+/// Results of one situation: the recording, and each method's estimate and outcome.
 struct RunResult {
   std::string scenario;
   std::uint64_t seed = 0;
-  std::optional<sim::BuiltSituation> built;     ///< what it was simulated in
-  std::shared_ptr<const sim::Surface> surface;  ///< what its maps were scored against; null when no method makes one
+  std::optional<sim::BuiltSituation> built;     ///< the simulated situation
+  std::shared_ptr<const sim::Surface> surface;  ///< reference surface of the map scores; null if no method maps
   sim::Recording recording;
   std::string recording_digest;
   double simulate_cpu_s = 0;
@@ -30,14 +30,14 @@ struct RunResult {
   std::vector<Outcome> outcomes;    ///< parallel to methods
 };
 
-/// Draws, simulates, estimates and scores one situation in this process. Methods that do not apply to the robot are
-/// left out. With a `setting` the run is the point of a curve that a sweep makes of it (variation.hpp), the recording
-/// what the methods were given. Throws BadInput, sim::InvalidSituation, sim::SimulationFailure.
+/// Draws, simulates, estimates and scores one situation in this process. Skips methods that do not apply to the robot.
+/// With a `setting` the run is that point of a sweep's curve (variation.hpp), and the recording is the methods' input.
+/// Throws BadInput, sim::InvalidSituation, sim::SimulationFailure.
 RunResult run_situation(const DataRoot& data, const Scenario& scenario, std::uint64_t seed,
                         std::span<const MethodPointer> methods, int threads, Lidars lidars = Lidars::simulated,
                         const Setting& setting = {});
 
-/// Digest of a whole run: recording and every estimate.
+/// Returns a digest of the recording and every estimate.
 std::string run_digest(const RunResult& result);
 
 }  // namespace tumble::scenarios

@@ -7,7 +7,7 @@
 
 namespace tumble::scenarios {
 
-/// A setting as a pair of JSON: its key and its value. Private to scenarios/sweep.
+/// Converts a setting to a JSON pair of key and value. Private to scenarios/sweep.
 nlohmann::json to_json(const Setting& setting);
 Setting setting_from(const nlohmann::json& pair);
 

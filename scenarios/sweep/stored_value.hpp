@@ -11,8 +11,8 @@
 
 namespace tumble::scenarios {
 
-/// A number as results databases store it: null is NaN, which SQLite has not. Columns of SQLite take text and blobs
-/// too, and would give these as 0: throws BadInput with the path and `row()`, which says whose value it is.
+/// Reads a number from a results database; null is NaN. SQLite columns may also contain text and blobs, which SQLite
+/// would convert to 0: throws BadInput with the path and `row()`, a description of the row.
 template <typename Row>
 double stored_value(const SQLite::Column& column, const std::filesystem::path& path, const Row& row) {
   const int type = column.getType();

@@ -36,10 +36,10 @@ void read_seeds(const YamlNode& node, Suite& suite) {
   if (suite.last_seed < suite.first_seed) node.fail("the last seed is below the first");
 }
 
-/// "a + b" as its keys.
+/// Splits "a + b" into its keys.
 std::vector<std::string> keys_of(const std::string& text, const YamlNode& node) {
   std::vector<std::string> keys;
-  std::stringstream stream(text + "+");  // what ends in a separator has an empty key behind it
+  std::stringstream stream(text + "+");  // a trailing separator must give an empty key, which is rejected later
   for (std::string key; std::getline(stream, key, '+');) {
     std::erase(key, ' ');
     if (key.empty() || std::find(keys.begin(), keys.end(), key) != keys.end()) {
@@ -96,8 +96,7 @@ void read_scenarios(const DataRoot& data, const YamlNode& node, Suite& suite) {
   if (suite.scenarios.empty()) node.fail("needs at least one scenario");
 }
 
-/// `draws: {mild: {hill: [3, 8]}}`: scenarios, and seeds from the lowest to the highest, of which these are the
-/// suite's.
+/// Reads `draws: {mild: {hill: [3, 8]}}`: scenarios with their seeds.
 void read_classes(const DataRoot& data, const YamlNode& node, Suite& suite) {
   const std::vector<std::string> known = scenario_names(data);
   std::set<std::pair<std::string, std::uint64_t>> seen;
@@ -141,7 +140,7 @@ void read_recordings(const YamlNode& node, Suite& suite) {
   if (suite.recordings.empty()) node.fail("needs at least one recording");
 }
 
-/// What a suite is of: recordings alone, draws that are named, or scenarios with their seeds.
+/// Reads the suite's content: recordings, named draws, or scenarios with seeds.
 void read_draws(const DataRoot& data, const YamlNode& root, const std::map<std::string, YamlNode>& fields,
                 Suite& suite) {
   if (fields.contains("recordings")) {
@@ -165,12 +164,12 @@ void read_draws(const DataRoot& data, const YamlNode& root, const std::map<std::
   read_scenarios(data, fields.at("scenarios"), suite);
 }
 
-/// A description of somebody else's method stands beside the suite, unless its path is absolute.
+/// Resolves a relative path of an external method against the suite's folder.
 std::string method_name(const std::string& text, const std::filesystem::path& folder) {
   return is_method_file(text) ? (folder / text).string() : text;
 }
 
-// names are checked here, so that a suite with a slip of the pen does not begin
+// Check names early, so that a misspelt suite does not start.
 void require_no_scenario(const YamlNode& root) {
   if (!root.is_map()) return;
   for (const auto& [key, value] : root.entries()) {
@@ -217,7 +216,7 @@ Suite read_suite(const DataRoot& data, const std::filesystem::path& path) {
   return suite;
 }
 
-/// Every method on one scenario.
+/// Returns a suite of all methods on one scenario.
 Suite suite_of_scenario(const std::string& name) {
   Suite suite;
   suite.name = name;

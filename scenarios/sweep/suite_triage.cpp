@@ -19,9 +19,9 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr char kBetween = '\t';  // the input's name and its outcome; no name holds one
+constexpr char kBetween = '\t';  // separates the input's name from its outcome; no name contains a tab
 
-/// In the draw's own process: a line per row as it comes, then an empty one; or the reason why there are no more.
+/// Runs in the draw's process: writes each row as a line, then an empty line or an error.
 void tell_rows(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, const Method& method,
                const SuiteTriageOptions& options, int fd) {
   const auto tell_trouble = [&](const std::string& why) {
@@ -48,7 +48,7 @@ std::string doc_of(const std::string& input) {
   return "unchanged recording";
 }
 
-/// What a process has said. False when it did not come to its end.
+/// Reads the rows of a process. Returns false if it did not complete.
 bool read_rows(const std::string& text, const Failure& failure, DrawTriage& out) {
   std::size_t begin = 0;
   for (std::size_t end; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
@@ -70,12 +70,12 @@ bool read_rows(const std::string& text, const Failure& failure, DrawTriage& out)
 
 struct Worker {
   std::size_t index;  ///< of the draw
-  double deadline_s;  ///< of now_s()
+  double deadline_s;  ///< time of now_s()
   Process process;
   std::string said;
 };
 
-/// The draw as its process leaves it, which has ended or is too late.
+/// Finishes a draw whose process has ended or timed out.
 void conclude(Worker& worker, bool late, const Failure& failure, DrawTriage& draw) {
   if (late) worker.process.kill();
   const Process::End end = worker.process.wait();
@@ -83,7 +83,7 @@ void conclude(Worker& worker, bool late, const Failure& failure, DrawTriage& dra
   draw.trouble = late ? "the draw did not finish within its time limit" : "the draw's process " + end.describe();
 }
 
-/// Makes the process of a draw. False when there can be none before another has ended.
+/// Starts the process of a draw. Returns false if another process must end first.
 bool begin(std::list<Worker>& workers, std::size_t index, double deadline_s, const std::function<void(int)>& work) {
   try {
     workers.push_back({index, deadline_s, Process(work, true), {}});

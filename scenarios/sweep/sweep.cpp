@@ -40,7 +40,7 @@ void claim(Results& results, const DataRoot& data, const Suite& suite, const std
   if (!suite.recordings.empty()) results.set_note("source", kRecordingsSource);
 }
 
-/// So that each run can be asked for once more (run_again.hpp), whatever folder it is asked from.
+/// Stores absolute paths, so that each run can be repeated from any folder (run_again.hpp).
 void note_descriptions(Results& results, const Suite& suite) {
   for (const std::string& name : suite.methods) {
     if (!is_method_file(name)) continue;
@@ -50,7 +50,7 @@ void note_descriptions(Results& results, const Suite& suite) {
   }
 }
 
-/// Rows of two versions of somebody else's method do not stand under one name.
+/// Rejects rows of two versions of an external method under one name.
 void claim_methods(Results& results, std::span<const MethodPointer> methods) {
   for (const MethodPointer& method : methods) {
     if (method->info.version.empty()) continue;
@@ -95,7 +95,7 @@ class Sweep {
 
   bool stopped() const { return options_.stop != nullptr && options_.stop->load(); }
 
-  /// Until there is no next draw and all are done, or it is stopped.
+  /// Runs until all draws are complete, or stopped.
   void work(const NextDraw& next) {
     std::optional<DrawTask> waiting = next();
     while (!stopped()) {
@@ -108,7 +108,7 @@ class Sweep {
       }
       report();
     }
-    // what the stopped ones have said already is kept
+    // Store the messages that stopped workers had sent.
     for (DrawWorker& worker : workers_) {
       const bool busy = worker.is_busy();
       hear(worker);
@@ -122,7 +122,7 @@ class Sweep {
         std::count_if(workers_.begin(), workers_.end(), [](const DrawWorker& worker) { return worker.is_busy(); }));
   }
 
-  /// The next draw that has something to run.
+  /// Returns the next draw with something to run.
   std::optional<DrawTask> next_draw() {
     for (; !plan_.at_end() && !stopped(); plan_.advance()) {
       DrawTask task = plan_.next(results_);
@@ -136,7 +136,7 @@ class Sweep {
     return std::nullopt;
   }
 
-  /// Hands the draw to a worker that is idle, or to a new one; false when none can have it now.
+  /// Gives the draw to an idle or new worker; false if none is available.
   bool give(const DrawTask& task) {
     if (busy() >= options_.jobs) return false;
     const double deadline_s = now_s() + suite_.timeout_s * (static_cast<double>(task.runs.size()) + kSimulateTimeouts);
@@ -148,7 +148,7 @@ class Sweep {
       workers_.emplace_back(terms_);
     } catch (const std::system_error& error) {
       if (workers_.empty()) throw BadInput(std::string("cannot start a worker process: ") + error.what());
-      return false;  // when one of the others has ended
+      return false;  // retry after another process has ended
     }
     return workers_.back().give(task, deadline_s);
   }
@@ -168,7 +168,7 @@ class Sweep {
     poll(waiting.data(), waiting.size(), kPollMs);
   }
 
-  /// Stores what the worker has said; true when it has ended in the middle of a draw.
+  /// Stores a worker's messages. Returns true if the worker died during a draw.
   bool serve(DrawWorker& worker) {
     if (!worker.is_busy()) return false;
     const bool open = hear(worker);
@@ -186,13 +186,13 @@ class Sweep {
     return true;
   }
 
-  /// False when it has ended.
+  /// Returns false if the worker has ended.
   bool hear(DrawWorker& worker) {
     std::vector<Message> said;
     const bool open = worker.hear(said);
     for (const Message& message : said) {
       if (message.not_kept) progress_.not_kept = *message.not_kept;
-      if (updating_kept_) continue;  // of rows that stand
+      if (updating_kept_) continue;  // the rows exist already
       if (message.outcome) keep(*message.outcome);
       if (message.draw) results_.store(*message.draw);
       if (message.rejected && results_.store(*message.rejected)) ++progress_.rejected;
@@ -200,7 +200,7 @@ class Sweep {
     return open;
   }
 
-  // the process of a draw died: what is left over of its runs has no answer
+  // The process of a draw died: its remaining runs have no answer.
   void account_for_death(const DrawTask& draw, bool late, const Process::End& end) {
     const std::string what =
         late ? "the draw did not finish within its time limit" : "the draw's process " + end.describe();
@@ -218,8 +218,8 @@ class Sweep {
     if (outcome.status != OutcomeStatus::ok) ++progress_.failures[outcome.status];
   }
 
-  /// What the results say is to be kept: made again where it does not stand, removed where it stands and is not of it.
-  /// What the disk refuses is trouble of the keeping alone.
+  /// Updates the kept draws to match the results: reproduces missing ones, removes obsolete ones. File system errors do
+  /// not fail the sweep.
   void update_kept() {
     updating_kept_ = true;
     const std::set<DrawName> wanted = draws_to_keep(results_, options_.keep);
@@ -283,7 +283,7 @@ class Sweep {
   std::list<DrawWorker> workers_;
   SweepProgress progress_;
   std::uint64_t done_before_ = 0;
-  bool updating_kept_ = false;  ///< draws are made again for their files alone
+  bool updating_kept_ = false;  ///< draws are only reproduced for their files
 };
 
 }  // namespace

@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-// of a method's time-out: by then a command of somebody else's is ended by what knows all that it has started
+// Fraction of a method's time-out for an external command, so that the process that knows its children ends it first.
 constexpr double kOwnShare = 0.9;
 
 }  // namespace
@@ -46,7 +46,7 @@ SweepPlan::SweepPlan(const DataRoot& data, const Suite& suite, const SweepOption
       std::all_of(recordings_.begin(), recordings_.end(), idle)) {
     throw BadInput("suite " + suite.name + ": none of its methods applies to its scenarios");
   }
-  // a catalogue that cannot be drawn from is the caller's mistake, not an outcome
+  // A catalogue that cannot be drawn from is the caller's error, not an outcome.
   for (const Planned& each : scenarios_) draw(data, each.scenario, suite.first_seed);
   next_.seed = suite.first_seed;
   next_.past_seeds = scenarios_.empty();
@@ -102,7 +102,7 @@ DrawTask SweepPlan::next(const Results& results) const {
   return next_.recording < recordings_.size() ? of_recording(results) : of_scenario(results);
 }
 
-/// Adds to the task what has no row yet with `setting`, or one that is to be run again.
+/// Adds runs without a row for `setting`, or with a row to be repeated.
 void SweepPlan::add_missing(const std::vector<MethodPointer>& methods, const std::vector<Outcome>& held,
                             const Setting& setting, DrawTask& task) const {
   const auto stands = [&](const MethodInfo& info) {
@@ -165,8 +165,8 @@ DrawTask SweepPlan::again(const DrawName& draw, const Results& results) const {
   return task;
 }
 
-/// Whether one of the methods of a draw reads lidars, of this sweep or of one before: neither what is left to run nor
-/// what came to an answer says what a recording holds.
+/// Returns true if any method of a draw reads lidars, in this sweep or an earlier one. Remaining and completed runs
+/// alone do not show this.
 bool SweepPlan::read_lidars(const Planned& planned, const std::vector<Outcome>& held) const {
   const auto reads = [](Kind kind) { return kind != Kind::rate; };
   return std::any_of(planned.methods.begin(), planned.methods.end(),

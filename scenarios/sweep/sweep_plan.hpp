@@ -14,12 +14,12 @@
 
 namespace tumble::scenarios {
 
-/// The draws of a suite one after the other, and what is to run on each; memory does not grow with their number. A
-/// worker that was forked after it was made reads the lines that it writes of a task.
+/// Iterates over the draws of a suite with the runs on each, in constant memory. Workers forked later can parse the
+/// tasks that it writes as lines.
 class SweepPlan {
  public:
-  /// Throws BadInput: an unknown method, scenario or recording, a catalogue that cannot be drawn from, methods none of
-  /// which applies.
+  /// Throws BadInput: unknown method, scenario or recording, a catalogue that cannot be drawn from, or no method that
+  /// applies.
   SweepPlan(const DataRoot& data, const Suite& suite, const SweepOptions& options,
             const std::filesystem::path& database);
 
@@ -28,30 +28,30 @@ class SweepPlan {
 
   std::uint64_t draws_total() const;
   const std::vector<MethodPointer>& methods() const { return methods_; }
-  /// Rows of a recording that has been imported anew do not stand beside those of the old one: throws BadInput.
+  /// Throws BadInput if the results contain rows of an older import of a recording.
   void require_same_recordings(const Results& results) const;
-  /// Leaves where each recording lies, so that its runs can be asked for once more (run_again.hpp).
+  /// Stores the paths of the recordings, so that their runs can be repeated (run_again.hpp).
   void note_recordings(Results& results) const;
 
-  /// Recordings come first, then seeds, which are outermost, so that a sweep that is stopped has all scenarios and all
-  /// points of the curves in it.
+  /// Recordings come first, then seeds as the outer loop, so that a stopped sweep covers all scenarios and curve
+  /// points.
   bool at_end() const { return next_.recording == recordings_.size() && next_.past_seeds; }
   void advance();
-  /// The draw that comes next, with what has no row yet or one that is to be run again.
+  /// Returns the next draw with the runs that have no row yet or are to be repeated.
   DrawTask next(const Results& results) const;
 
-  /// Whether it is a draw of the suite's scenarios, of whatever seed.
+  /// Returns true for a draw of the suite's scenarios, for any seed.
   bool has(const DrawName& draw) const;
-  /// A draw that the suite `has`, once more with what has come to its end on it, to be kept.
+  /// Returns a draw that the suite `has` with its completed runs, to be kept.
   DrawTask again(const DrawName& draw, const Results& results) const;
 
   std::string to_line(const DrawTask& task) const;
   DrawTask from_line(const std::string& line) const;
 
  private:
-  /// A scenario or a recording of the suite, and the methods that apply to it.
+  /// A scenario or recording of the suite with the methods that apply.
   struct Planned {
-    std::string asked;  ///< as the suite has it
+    std::string asked;  ///< name in the suite
     Scenario scenario;
     std::vector<MethodPointer> methods;
   };
@@ -66,7 +66,7 @@ class SweepPlan {
     bool past_seeds = false;
   };
 
-  /// Whether the draw that comes next is one of the suite's, where these are named one by one.
+  /// Returns true if the next draw is one of the suite's named draws, or none are named.
   bool is_wanted() const;
   void step();
   void add_missing(const std::vector<MethodPointer>& methods, const std::vector<Outcome>& held, const Setting& setting,
@@ -79,7 +79,7 @@ class SweepPlan {
   const Suite& suite_;
   const SweepOptions& options_;
   KeptDraws kept_;
-  /// Of the plain draw and of each one that a curve simulates anew; and what is run on the plain one besides.
+  /// settings that need their own simulation, and those that reuse the plain one
   std::vector<Setting> simulated_ = {Setting{}}, shared_;
   std::vector<MethodPointer> methods_;
   std::vector<Planned> scenarios_;

@@ -30,7 +30,7 @@ bool Failure::holds(const Outcome& outcome) const {
   if (condemned) return true;
   if (metric.empty()) return false;
   const Score* score = find_score(outcome.scores, metric);
-  if (score == nullptr || std::isnan(score->value)) return true;  // a run without the number has not shown it
+  if (score == nullptr || std::isnan(score->value)) return true;  // without the metric the run counts as a failure
   return metric_info(metric).sense == Sense::higher ? score->value < limit : score->value > limit;
 }
 

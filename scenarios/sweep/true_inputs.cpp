@@ -14,7 +14,7 @@ namespace {
 using Readings = std::vector<Eigen::Vector3d>;
 
 constexpr std::uint8_t kAccelClipFlags = 0b111000;
-constexpr std::uint32_t kInstant_ns = 1000;  // nothing moves in it, yet stamps still differ, as mappers ask for
+constexpr std::uint32_t kInstant_ns = 1000;  // short enough for no motion, but stamps still differ, as mappers require
 
 double largest(const Readings& readings) {
   double largest = 0.0;
@@ -22,7 +22,7 @@ double largest(const Readings& readings) {
   return largest;
 }
 
-/// A range beyond every reading, so that none of the true ones is taken for clipped.
+/// States a range beyond every reading, so that none counts as clipped.
 double beyond(double stated, const Readings& readings) {
   return stated > 0.0 ? std::max(stated, 1.1 * largest(readings)) : stated;
 }
@@ -43,7 +43,7 @@ bool replace_accel(sim::ImuRecord& imu, const Readings& readings) {
   return true;
 }
 
-/// Applies `replace(record, truth)` to each IMU; true when one of them did something.
+/// Applies `replace(record, truth)` to each IMU; true if any of them changed.
 template <typename Replace>
 bool each_imu(sim::Sensors& sensors, const sim::Truth& truth, Replace&& replace) {
   bool changed = false;
@@ -93,7 +93,7 @@ bool exact_mounting(sim::Sensors& sensors, const sim::Truth& truth) {
   return changed;
 }
 
-/// The end of each sample's window, when the recording has every sample.
+/// Sets each stamp to the end of its sample's window; needs a complete recording.
 bool exact_stamps(sim::Sensors& sensors, const sim::Truth& truth) {
   bool changed = false;
   const std::int64_t end_ns = static_cast<std::int64_t>(truth.q_WB.size() - 1) * truth.period_ns;
@@ -108,7 +108,7 @@ bool exact_stamps(sim::Sensors& sensors, const sim::Truth& truth) {
   return changed;
 }
 
-/// The lidar's poses; `lidar` must be the first one, whose frame a track knows.
+/// Returns the lidar's pose; `lidar` must be the first one, whose frame the track has.
 Eigen::Isometry3d pose_of(const TruthTrack& track, std::int64_t time_ns) {
   const PoseState pose = track.pose(std::min(time_ns, track.last_ns()));
   Eigen::Isometry3d T_WL = Eigen::Isometry3d::Identity();
@@ -117,7 +117,7 @@ Eigen::Isometry3d pose_of(const TruthTrack& track, std::int64_t time_ns) {
   return T_WL;
 }
 
-/// Each return where the beam truly hit.
+/// Moves each return to the beam's true hit.
 bool exact_ranges(sim::Sensors& sensors, const sim::Truth& truth) {
   if (sensors.lidars.empty() || truth.lidars.empty()) return false;
   sim::LidarRecord& lidar = sensors.lidars.front();
@@ -133,7 +133,8 @@ bool exact_ranges(sim::Sensors& sensors, const sim::Truth& truth) {
   return !lidar.range_m.empty();
 }
 
-/// Every sweep as if it had been cast within a microsecond, at its last point; errors of range stay.
+/// Removes motion distortion: moves all points to the sensor pose at the last point, with stamps within a microsecond.
+/// Range errors remain.
 bool unbent_sweeps(sim::Sensors& sensors, const sim::Truth& truth) {
   if (sensors.lidars.empty() || truth.lidars.empty()) return false;
   sim::LidarRecord& lidar = sensors.lidars.front();
@@ -155,7 +156,7 @@ bool unbent_sweeps(sim::Sensors& sensors, const sim::Truth& truth) {
   return !lidar.range_m.empty();
 }
 
-/// Each reading of a series its true mean over the window.
+/// Replaces each reading by its true mean over the window.
 bool exact_series(sim::Sensors& sensors, const sim::Truth& truth) {
   bool changed = false;
   for (std::size_t i = 0; i < std::min(sensors.series.size(), truth.series.size()); ++i) {
@@ -170,7 +171,7 @@ bool exact_series(sim::Sensors& sensors, const sim::Truth& truth) {
   return changed;
 }
 
-/// Errors of ranges first: they are undone at each point's own time, which unbending takes away.
+/// Range errors first: they are corrected at each point's own time, which removing distortion deletes.
 bool everything(sim::Sensors& sensors, const sim::Truth& truth) {
   bool changed = false;
   for (const auto& replace :

@@ -5,11 +5,11 @@
 
 namespace tumble::scenarios {
 
-/// Where folders in the making stand, within the one that holds those that are done.
+/// Subfolder for incomplete folders, next to the complete ones.
 inline constexpr const char* kUnfinished = ".unfinished";
 
-/// A folder in the making, WITHIN/.unfinished/NAME, until it is moved to its place whole; gone when it is not. One
-/// process at a time makes what belongs to one place. Throws std::filesystem::filesystem_error.
+/// A folder under construction, WITHIN/.unfinished/NAME, until it is moved to its final path; else removed. Only one
+/// process may build a given folder at a time. Throws std::filesystem::filesystem_error.
 class UnfinishedFolder {
  public:
   UnfinishedFolder(const std::filesystem::path& place, const std::filesystem::path& within);
@@ -17,7 +17,7 @@ class UnfinishedFolder {
   UnfinishedFolder(const UnfinishedFolder&) = delete;
   UnfinishedFolder& operator=(const UnfinishedFolder&) = delete;
   const std::filesystem::path& path() const { return path_; }
-  /// In the place of what stands there.
+  /// Replaces any existing folder.
   void move_into_place();
 
  private:

@@ -12,44 +12,44 @@
 
 namespace tumble::scenarios {
 
-/// A curve of a suite: one number, or several that move together, set to one value after the other. A key is
+/// A curve of a suite: one number, or several that change together, set to a list of values. A key is
 ///
 /// | key | is | for each value |
 /// | --- | --- | --- |
-/// | `world.rock_count`, `sensors.imu.output_rate_hz` | a number of the scenario (fixed_number.hpp) | simulated anew |
-/// | `given.lever_arm_error_m` | an error in what methods are given (given_errors.hpp) | the draw's one simulation |
-/// | `rate/saave.jerk_psd_rad2_s5` | a parameter of one method | the same, for that method alone |
+/// | `world.rock_count`, `sensors.imu.output_rate_hz` | a number of the scenario (fixed_number.hpp) | new simulation |
+/// | `given.lever_arm_error_m` | an error in the methods' input (given_errors.hpp) | one simulation for all |
+/// | `rate/saave.jerk_psd_rad2_s5` | a parameter of one method | one simulation for all, only this method |
 struct Variation {
   std::vector<std::string> keys;  ///< all of one sort
-  std::vector<double> values;     ///< as written, none twice
-  /// As outcomes carry it: the keys joined by "+".
+  std::vector<double> values;     ///< as written, each once
+  /// Returns the keys joined by "+", as stored with outcomes.
   std::string key() const;
   std::vector<Setting> settings() const;
 };
 
-/// Where a setting acts, and so what is done again for it.
+/// What a setting affects, and hence what must be repeated.
 enum class Reach { nothing, simulation, input, method };
 Reach reach(const Setting& setting);
 
-/// Whether the setting is an error of a lidar in what methods are given.
+/// Returns true if the setting is an input error of a lidar.
 bool needs_lidar(const Setting& setting);
 
-/// Throws BadInput when a key is unknown (the nearest named), is not of one sort with the others, or does not apply to
-/// one of the scenarios, or when no situation with seed `seed` can be drawn with one of the values.
+/// Throws BadInput if a key is unknown (suggests the nearest), of another sort than the others, or does not apply to
+/// one of the scenarios; or if no situation with seed `seed` can be drawn with one of the values.
 void check(const Variation& variation, const DataRoot& data, std::span<const std::string> scenarios,
            std::uint64_t seed);
 
-/// The scenario with the setting's numbers fixed; as it is when the setting does not reach the simulation.
+/// Returns the scenario with the setting's numbers fixed; unchanged if the setting does not affect the simulation.
 Scenario with_setting(Scenario scenario, const Setting& setting);
 
-/// The draw with the setting's errors put into its sensors. Throws BadInput when it lacks the sensor
-/// or is a recording: the error's direction and the device's own numbers are its situation's.
+/// Returns the draw with the setting's errors applied to its sensors. Throws BadInput if the sensor is missing, or for
+/// a recording, which lacks the situation that determines the error.
 SimulatedDraw with_setting(const SimulatedDraw& draw, const Setting& setting);
 
-/// The method with what the setting makes of its parameters.
+/// Returns the method with the setting's parameters.
 Method with_setting(const Method& method, const Setting& setting);
 
-/// Whether the setting concerns the method: a parameter of another method does not.
+/// Returns true unless the setting is a parameter of another method.
 bool concerns(const Setting& setting, const MethodInfo& method);
 
 }  // namespace tumble::scenarios

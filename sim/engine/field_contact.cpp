@@ -15,8 +15,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// One cell of a field under the part of a strut's axis that lies over it, relative to the cell's first corner. The
-/// engine divides a cell along its diagonal from the first corner to the last, into a half above it and one below.
+/// One cell of a field below a part of a strut's axis, relative to the cell's first corner. The engine divides a cell
+/// along the diagonal from its first to its last corner.
 class Cell {
  public:
   Cell(const Field& field, int row, int column, const Strut& strut, const Part& over)
@@ -49,11 +49,11 @@ class Cell {
  private:
   Vector3d first() const { return {0, 0, heights_m_[0]}; }
   Vector3d last() const { return {dx_, dy_, heights_m_[2]}; }
-  /// Positive below the diagonal.
+  /// Distance from the diagonal; positive below it.
   double beside_diagonal_m(const Vector3d& p_m) const {
     return (p_m.x() * dy_ - p_m.y() * dx_) / std::sqrt(dx_ * dx_ + dy_ * dy_);
   }
-  /// Whether the axis is out of reach above the plane through the first corner with these slopes.
+  /// True if the axis is out of reach above the plane through the first corner with these slopes.
   bool above_plane(double slope_x, double slope_y) const {
     const auto above_m = [&](const Vector3d& p_m) {
       return p_m.z() - heights_m_[0] - slope_x * p_m.x() - slope_y * p_m.y();
@@ -63,16 +63,16 @@ class Cell {
   }
 
   double dx_, dy_, foot_m_, reach_m_;
-  std::array<double, 4> heights_m_;  ///< of the corners, anticlockwise from the first
+  std::array<double, 4> heights_m_;  ///< heights of the corners, anticlockwise from the first
 };
 
-/// What a strut touches, prism by prism.
+/// Collects the contacts of a strut, prism by prism.
 class Touched {
  public:
   Touched(const Strut& strut, const Vector3d& origin_W_m, mjPreContact* contacts)
       : radius_m_(strut.radius_m), origin_W_m_(origin_W_m), contacts_(contacts) {}
 
-  /// False when the axis is in the prism.
+  /// Returns false if the axis is inside the prism.
   bool add(const Cell& cell, const Prism& prism) {
     Closest closest;
     const Meeting how = meet(cell.a_m, cell.b_m, prism, radius_m_, closest);
@@ -102,7 +102,7 @@ bool turned(const mjData& data, int geom) {
   return turn[0] != 1.0 || turn[4] != 1.0 || turn[8] != 1.0;
 }
 
-/// The engine's own function, which the table holds until the first call of this: that is before it is replaced.
+/// The engine's own function. The first call reads it from the table, before it is replaced.
 mjfCollision engines_own() {
   static const mjfCollision kOwn = mjCOLLISIONFUNC[mjGEOM_HFIELD][mjGEOM_CAPSULE];
   return kOwn;
@@ -130,7 +130,7 @@ std::optional<int> field_contacts(const mjModel& model, const mjData& data, int 
   for (int row = rows.first; row <= rows.last; ++row) {
     const Part in_row = Part{}.within(strut, 1, field.y_m(row), field.y_m(row + 1));
     if (in_row.none()) continue;
-    // most cells that a strut lies over are below it: that is asked before where it lies over them
+    // most cells are entirely below the strut, so this cheap test comes first
     const double lowest_m = std::min(strut.at_m(in_row.first).z(), strut.at_m(in_row.last).z()) - strut.reach_m;
     double left_m = field.higher_m(row, columns.first), right_m;
     for (int column = columns.first; column <= columns.last; ++column, left_m = right_m) {

@@ -7,10 +7,11 @@
 #include <algorithm>
 #include <cmath>
 
-/// A height field of the engine and a strut above it, in the axes of the field's geom, which are those of the world.
+/// Geometry of a height field and of a strut above it, in the axes of the field's geom, which are parallel to the
+/// world's.
 namespace tumble::sim::engine {
 
-/// Heights over a regular grid; a column leads along x.
+/// Heights on a regular grid; columns are along x.
 struct Field {
   const float* heights;
   int rows, columns;
@@ -32,13 +33,13 @@ struct Field {
   double x_m(int column) const { return cell_x_m * column - half_x_m; }
   double y_m(int row) const { return cell_y_m * row - half_y_m; }
   double height_m(int row, int column) const { return scale_m * heights[row * columns + column]; }
-  /// Of the corner and the one after it in the next row.
+  /// The larger height of this corner and the next one in the following row.
   double higher_m(int row, int column) const {
     return scale_m * std::max(heights[row * columns + column], heights[(row + 1) * columns + column]);
   }
 
-  /// How far a point is below the plane of the triangle of ground over it; negative above, and 0 beyond the rim. The
-  /// engine divides a cell along its diagonal from the first corner to the last.
+  /// Depth of a point below the plane of the ground triangle at its position; negative above, and 0 outside of the
+  /// field. The engine divides a cell along the diagonal from its first to its last corner.
   double depth_m(const Eigen::Vector3d& p_m) const {
     const double across = (p_m.x() + half_x_m) / cell_x_m, along = (p_m.y() + half_y_m) / cell_y_m;
     if (!(across >= 0.0 && across <= columns - 1 && along >= 0.0 && along <= rows - 1)) return 0.0;
@@ -54,7 +55,7 @@ struct Field {
   }
 };
 
-/// A capsule: its axis from one end to the other, its radius, and how far from its axis it is asked for.
+/// A capsule: its axis, its radius, and the distance from the axis within which contacts are searched.
 struct Strut {
   Eigen::Vector3d from_m, along_m;
   double radius_m, reach_m;
@@ -67,7 +68,7 @@ struct Strut {
     from_m = middle_m - half_m;
     along_m = 2.0 * half_m;
     radius_m = model.geom_size[3 * capsule];
-    constexpr double kSlack_m = 1e-6;  // more than all rounding here
+    constexpr double kSlack_m = 1e-6;  // larger than all rounding errors here
     reach_m = radius_m + kSlack_m;
   }
   bool finite() const { return from_m.allFinite() && along_m.allFinite(); }
@@ -76,12 +77,12 @@ struct Strut {
   double highest_m(int axis) const { return from_m[axis] + std::max(0.0, along_m[axis]) + reach_m; }
 };
 
-/// Shares of the axis from the first to the last; none when they are the wrong way round.
+/// A part of the axis, from `first` to `last` as shares of its length; empty if `first` exceeds `last`.
 struct Part {
   double first = 0.0, last = 1.0;
   bool none() const { return first > last; }
 
-  /// The share of it whose coordinate lies between the two, the reach added to both sides.
+  /// The part of the axis whose coordinate is between the two bounds, both widened by the reach.
   Part within(const Strut& strut, int axis, double low_m, double high_m) const {
     const double from_m = strut.from_m[axis], along_m = strut.along_m[axis];
     low_m -= strut.reach_m;
@@ -92,7 +93,7 @@ struct Part {
   }
 };
 
-/// First and last cell, in one direction, that a strut's box overlaps; none when they are the wrong way round.
+/// First and last cell in one direction that a strut's box overlaps; empty if `first` exceeds `last`.
 struct Cells {
   int first, last;
   Cells(double low_m, double high_m, double half_m, double cell_m, int count)

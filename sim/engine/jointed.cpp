@@ -22,7 +22,7 @@ Eigen::Quaterniond attitude(const mjData& data, int body) {
   return {q[0], q[1], q[2], q[3]};
 }
 
-/// What is missing to the pose, in world axes: metres, then radians.
+/// Difference to the target pose in world axes: metres, then radians.
 Vector6d missing(const Eigen::Isometry3d& T_WB, const mjData& data, int body) {
   const Eigen::AngleAxisd turn(Eigen::Quaterniond(T_WB.linear()) * attitude(data, body).conjugate());
   Vector6d out;
@@ -39,7 +39,7 @@ void update_bodies(const mjModel& model, mjData& data) {
 }
 
 BodyState state_on_joints(const mjModel& model, const mjData& data, int body) {
-  mjtNum velocity[6];  // rate, then velocity of the body's origin, in world axes
+  mjtNum velocity[6];  // angular velocity, then velocity of the body's origin, in world axes
   mj_objectVelocity(&model, &data, mjOBJ_XBODY, body, velocity, 0);
   BodyState out;
   out.time_s = data.time;

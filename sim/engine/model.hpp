@@ -10,7 +10,7 @@
 
 #include "sim/situation.hpp"
 
-/// Private to sim: the only headers that include mujoco.h are in this folder and beside the sources that need them.
+/// Private to sim: mujoco.h is included only by headers in this folder and headers next to the sources that need them.
 namespace tumble::sim::engine {
 
 struct ModelDeleter {
@@ -22,7 +22,7 @@ struct DataDeleter {
 using ModelPtr = std::unique_ptr<mjModel, ModelDeleter>;
 using DataPtr = std::unique_ptr<mjData, DataDeleter>;
 
-/// A rectangle of floor with its own sliding friction; where the robot touches inside of it, it holds.
+/// A rectangle of floor with its own sliding friction, which applies while the robot touches inside it.
 struct FrictionPatch {
   double centre_x_m, centre_y_m, half_x_m, half_y_m, yaw_rad, friction;
   bool contains(double x_m, double y_m) const;
@@ -31,19 +31,22 @@ struct FrictionPatch {
 /// A compiled situation: world and robot in one model.
 struct World {
   ModelPtr model;
-  /// Id of the robot's body that carries the sensors (its frame is B: inertial frame position zero).
+  /// id of the body that carries the sensors; its inertial frame is B
   int robot_body = -1;
-  bool free = true;                   ///< that body is the whole robot and floats; else it hangs on joints
+  bool free = true;                   ///< true: the robot is a single free body; false: the body is attached by joints
   std::vector<std::string> surfaces;  ///< surface id -> name; parallel to `surface_geom`
-  std::vector<int> surface_geom;      ///< surface id -> geom id: the static geoms that a lidar sees and a robot touches
+  std::vector<int> surface_geom;      ///< surface id -> geom id of the static geoms that a lidar sees and a robot
+                                      ///< touches
   std::vector<FrictionPatch> patches;
-  double half_extent_m = 0;                                ///< beyond this |x| or |y| the robot has left the world
-  Eigen::Vector3d start_W_m = Eigen::Vector3d::Zero();     ///< on the ground, where a robot begins; +x leads away
-  Eigen::Vector3d com_offset_m = Eigen::Vector3d::Zero();  ///< true centre of mass in the robot's design frame, B axes
-  double sphere_radius_m = 0;                              ///< 0 when the robot is not a sphere
+  double half_extent_m = 0;                                ///< the robot has left the world beyond this |x| or |y|
+  Eigen::Vector3d start_W_m = Eigen::Vector3d::Zero();     ///< point on the ground where a robot starts; the motion is
+                                                           ///< along +x
+  Eigen::Vector3d com_offset_m = Eigen::Vector3d::Zero();  ///< true centre of mass in the robot's design frame, in B
+                                                           ///< axes
+  double sphere_radius_m = 0;                              ///< 0 if the robot is not a sphere
 };
 
-/// The same with a model of its own, for who changes it: the physics (a floor's friction), a trial, a picture's look.
+/// Copies the world with its own model, for changes to the physics (friction of a floor), trials and pictures.
 World copy_of(const World& world);
 
 }  // namespace tumble::sim::engine

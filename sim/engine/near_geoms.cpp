@@ -11,9 +11,10 @@ namespace {
 using Eigen::Vector3d;
 using Box = Eigen::Matrix<double, 6, 1>;
 
-/// Geoms this much beyond the robot's reach are kept, so that the tree is made anew once in hundreds of steps.
+/// Geoms up to this distance beyond the robot's reach are kept, so that the tree is rebuilt only once in hundreds of
+/// steps.
 constexpr double kMargin_m = 0.5;
-/// What is left of it when the tree is made anew: more than a step goes, 400 m/s.
+/// Remaining margin at which the tree is rebuilt: more than a step at 400 m/s.
 constexpr double kStep_m = 0.2;
 
 Box everything() {
@@ -34,7 +35,7 @@ double distance_m(const Box& box, const Vector3d& p_m) {
   return ((p_m - box.head<3>()).cwiseAbs() - box.tail<3>()).cwiseMax(0.0).norm();
 }
 
-/// The farthest that a geom of the robot reaches from its body's origin; negative where one has no bound.
+/// Largest distance of a robot geom from its body's origin; negative if a geom is unbounded.
 double reach_of_robot_m(const mjModel& model) {
   double reach_m = 0.0;
   for (int i = 0; i < model.ngeom; ++i) {
@@ -85,8 +86,8 @@ void NearGeoms::around(const Vector3d& p_WB_m) {
   for (const Leaf& leaf : leaves_) {
     if (leaf.always || distance_m(leaf.box, p_WB_m) <= reach_m_ + kMargin_m) near_.push_back(leaf);
   }
-  if (near_.empty()) near_.push_back(leaves_.front());  // a tree has one leaf at least
-  // those without end at the front, so that they do not widen the boxes of the others
+  if (near_.empty()) near_.push_back(leaves_.front());  // a tree needs at least one leaf
+  // unbounded geoms first, so that they do not widen the boxes of the others
   std::stable_partition(near_.begin(), near_.end(), [](const Leaf& leaf) { return leaf.always; });
   planted_ = 0;
   plant(near_.begin(), near_.end());
@@ -102,7 +103,7 @@ int NearGeoms::plant(Nodes first, Nodes last) {
     box = first->box;
     return node;
   }
-  Nodes middle = first + 1;  // one without end stands alone
+  Nodes middle = first + 1;  // an unbounded geom has a separate node
   if (!first->always) {
     Box all = first->box;
     for (Nodes leaf = middle; leaf != last; ++leaf) all = around_both(all, leaf->box);

@@ -8,28 +8,28 @@
 
 namespace tumble::sim::engine {
 
-/// Keeps in the engine's tree over the world's geoms those that a floating robot may touch soon, and puts the tree of
-/// the compiler back at the end. The engine asks the rest of each pair as ever and sorts contacts by geom, so that no
-/// bit of a motion depends on it. Planes and height fields are always in it, with boxes without end, which spares
-/// asking for them. Does nothing to a model with other moving bodies, and to one whose world has no tree.
+/// Restricts the engine's tree over the world's geoms to those that a floating robot may touch soon, and restores the
+/// compiler's tree at the end. The engine tests the remaining pairs as before and sorts contacts by geom, so that the
+/// motion stays bit-identical. Planes and height fields are always in the tree, with unbounded boxes, because testing
+/// their boxes is not worthwhile. Models with other moving bodies, or without a tree, are unchanged.
 class NearGeoms {
  public:
-  /// `model` outlives it and is copied by nobody meanwhile.
+  /// `model` must outlive this object, and must not be copied while it exists.
   explicit NearGeoms(mjModel& model);
   ~NearGeoms();
   NearGeoms(const NearGeoms&) = delete;
   NearGeoms& operator=(const NearGeoms&) = delete;
 
-  /// Whether one floating body is all that moves.
+  /// True if a single floating body is the only moving one.
   static bool serves(const mjModel& model);
 
-  /// Before each step: where the robot's body is. Good for the step unless it goes more than 0.2 m in it.
+  /// Call before each step with the position of the robot's body. Valid for a step of at most 0.2 m.
   void around(const Eigen::Vector3d& p_WB_m);
 
  private:
   struct Leaf {
     int geom;
-    bool always;                      ///< whatever is near
+    bool always;                      ///< kept at any distance
     Eigen::Matrix<double, 6, 1> box;  ///< centre and half sizes, world axes
   };
   using Nodes = std::vector<Leaf>::iterator;
@@ -38,7 +38,7 @@ class NearGeoms {
   int plant(Nodes first, Nodes last);
 
   mjModel& model_;
-  double reach_m_ = -1.0;  ///< of the robot about its body; negative: nothing is done
+  double reach_m_ = -1.0;  ///< reach of the robot about its body; negative if this object does nothing
   Eigen::Vector3d asked_W_m_;
   std::vector<Leaf> leaves_, near_;
   int planted_ = 0;

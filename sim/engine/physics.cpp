@@ -46,7 +46,8 @@ Physics::Physics(World& world)
 
 BodyState Physics::state() const {
   if (!world_.free) return state_on_joints(*world_.model, *data_, world_.robot_body);
-  const mjtNum* q = data_->qpos;  // free joint: position, quaternion; velocity in world axes, rate in body axes
+  const mjtNum* q = data_->qpos;  // free joint: position and quaternion; velocity in world axes, angular velocity in
+                                  // body axes
   return {data_->time, vector(q), Eigen::Quaterniond(q[3], q[4], q[5], q[6]), vector(data_->qvel),
           vector(data_->qvel + 3)};
 }
@@ -57,7 +58,7 @@ void Physics::set_state(const BodyState& state) {
     constexpr double kSame = 1e-9;
     const BodyState now = this->state();
     if ((now.p_WB_m - state.p_WB_m).norm() > kSame || now.q_WB.angularDistance(state.q_WB) > kSame) {
-      throw InvalidSituation("motion: the robot hangs on its joints and cannot be put elsewhere");
+      throw InvalidSituation("motion: the robot hangs on its joints, so its pose cannot be set");
     }
     return;
   }
@@ -135,15 +136,17 @@ void Physics::append_contacts(std::int64_t time_ns, std::vector<ContactTruth>& c
   const Eigen::Vector3d w_W = now.q_WB * now.w_WB_B_rad_s;
   for (int i = 0; i < data_->ncon; ++i) {
     const mjContact& contact = data_->contact[i];
-    if (contact.efc_address < 0) continue;  // found, but too far apart to push
+    if (contact.efc_address < 0) continue;  // detected, but too far apart for a force
     const bool robot_second = model->geom_bodyid[contact.geom[1]] == world_.robot_body;
-    if (!robot_second && model->geom_bodyid[contact.geom[0]] != world_.robot_body) continue;  // of another segment
+    // contact of another segment
+    if (!robot_second && model->geom_bodyid[contact.geom[0]] != world_.robot_body) continue;
     mjtNum force[6];
     mj_contactForce(model, data_.get(), i, force);
     ContactTruth truth;
     truth.time_ns = time_ns;
     truth.point_W_m = vector(contact.pos);
-    truth.normal_W = (robot_second ? 1.0 : -1.0) * vector(contact.frame);  // MuJoCo: from the first geom to the second
+    truth.normal_W = (robot_second ? 1.0 : -1.0) * vector(contact.frame);  // MuJoCo's normal is from the first geom to
+                                                                           // the second
     const Eigen::Vector3d v_W = now.v_WB_m_s + w_W.cross(truth.point_W_m - now.p_WB_m);
     truth.slip_velocity_W_m_s = v_W - v_W.dot(truth.normal_W) * truth.normal_W;
     truth.normal_force_n = force[0];

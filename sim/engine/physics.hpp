@@ -12,31 +12,33 @@
 
 namespace tumble::sim::engine {
 
-/// One robot in one world, advanced step by step (RK4); its state is that of the body that carries the sensors. Any
-/// warning of the engine ends it: a run that lost contacts or numbers is not evidence.
+/// Simulates one robot in one world step by step (RK4). Its state is that of the body that carries the sensors. Any
+/// warning of the engine ends the run, because lost contacts or invalid numbers would make the data worthless.
 class Physics {
  public:
-  /// Works on `world`'s model (the floor's friction changes with the place of the contact, the tree over the world's
-  /// geoms with the robot's place, which ends with this). `world` outlives it.
+  /// Modifies `world`'s model: the floor's friction follows the contact's position, and the tree over the world's geoms
+  /// follows the robot until this object is destroyed. `world` must outlive this object.
   explicit Physics(World& world);
 
   double step_s() const { return world_.model->opt.timestep; }
   BodyState state() const;
-  /// Throws InvalidSituation for a robot on joints, unless it is where it is already: then the time is set alone.
+  /// Throws InvalidSituation for a robot on joints, unless its pose is unchanged; then only the time is set.
   void set_state(const BodyState& state);
 
-  /// Angle and rate of a hinge by its name; throws InvalidSituation when the robot has none of that name.
+  /// Returns angle and angular velocity of a hinge by name. Throws InvalidSituation if the robot has no hinge of that
+  /// name.
   double joint_rad(const std::string& name) const;
   double joint_rate_rad_s(const std::string& name) const;
   void set_joint(const std::string& name, double angle_rad, double rate_rad_s);
 
-  /// Advances by one step under gravity, contacts and `wrench`, held constant. Throws SimulationFailure with the reason
-  /// and the simulated time: a warning of the engine, a state that is not finite, a robot that left its world.
+  /// Advances by one step under gravity, contacts and `wrench`, which is constant over the step. Throws
+  /// SimulationFailure with reason and simulated time for a warning of the engine, a state that is not finite, or a
+  /// robot that left its world.
   void step(const Wrench& wrench);
 
-  /// Appends the contacts of the robot with the world that the last step ended with, in no order. They stem from the
-  /// last stage of RK4, whose position differs from the state's by an error of second order in the step. `time_ns` is
-  /// noted.
+  /// Appends the robot's contacts with the world at the end of the last step, in arbitrary order. They belong to the
+  /// last stage of RK4, whose position differs from the state by a second-order error in the step. `time_ns` is stored
+  /// with each contact.
   void append_contacts(std::int64_t time_ns, std::vector<ContactTruth>& contacts) const;
 
  private:

@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 
 constexpr double kTouching_m = 1e-5;
 
-/// The closest pair so far.
+/// Closest pair of points found so far.
 struct Pair {
   double distance2_m2;
   Vector3d axis_m, prism_m;
@@ -24,12 +24,12 @@ struct Pair {
   }
 };
 
-/// How far a point is to the left of the edge, seen from above, times the edge's length over the level.
+/// Signed distance of a point to the left of the edge, seen from above, times the edge's horizontal length.
 double left_of(const Vector3d& edge_m, const Vector3d& beside_m) {
   return edge_m.x() * beside_m.y() - edge_m.y() * beside_m.x();
 }
 
-/// The box around the axis, in which what lies beyond the closest pair so far is told without working out where.
+/// Bounding box of the axis: quickly rejects what is farther than the closest pair found so far.
 class AxisBox {
  public:
   AxisBox(const Vector3d& a_m, const Vector3d& b_m)
@@ -42,7 +42,7 @@ class AxisBox {
     const double z = apart_m(2, std::min(from_m.z(), to_m.z()), std::max(from_m.z(), to_m.z()));
     return x * x + y * y + z * z > closest.distance2_m2;
   }
-  /// Of all that is below a point.
+  /// True if everything below `top_m` is farther away than the closest pair.
   bool is_beyond_below(const Vector3d& top_m, const Pair& closest) const {
     const double x = apart_m(0, top_m.x(), top_m.x()), y = apart_m(1, top_m.y(), top_m.y());
     const double z = std::max(low_m_.z() - top_m.z(), 0.0);
@@ -50,7 +50,7 @@ class AxisBox {
   }
 
  private:
-  static constexpr double kSlack_m = 1e-9;  // more than all rounding here
+  static constexpr double kSlack_m = 1e-9;  // larger than all rounding errors here
 
   double apart_m(int axis, double low_m, double high_m) const {
     return std::max(std::max(low_m_[axis] - high_m, low_m - high_m_[axis]), 0.0);
@@ -59,18 +59,19 @@ class AxisBox {
   Vector3d low_m_, high_m_;
 };
 
-/// The axis p + s u and an edge q + t v, both with s and t in [0, 1] (Ericson, Real-Time Collision Detection, 5.1.9).
+/// Closest points of the axis p + s u and an edge q + t v, with s and t in [0, 1] (Ericson, Real-Time Collision
+/// Detection, 5.1.9).
 void meet_edge(const Vector3d& p, const Vector3d& u, const Vector3d& q, const Vector3d& v, Pair& closest) {
   const Vector3d r = p - q;
   const double a = u.squaredNorm(), e = v.squaredNorm(), b = u.dot(v), c = u.dot(r), f = v.dot(r);
-  const double apart = a * e - b * b;  // 0 when they are parallel
+  const double apart = a * e - b * b;  // 0 if they are parallel
   double s = apart > 1e-12 * a * e ? std::clamp((b * f - c * e) / apart, 0.0, 1.0) : 0.0;
   const double t = std::clamp((b * s + f) / e, 0.0, 1.0);
   if (a > 0.0) s = std::clamp((b * t - c) / a, 0.0, 1.0);
   closest.take(p + s * u, q + t * v);
 }
 
-/// An end of the axis above the inside of the top.
+/// Closest points of an end of the axis and the inside of the top.
 void meet_top(const Vector3d& end_m, const Prism& prism, const Vector3d& normal, Pair& closest) {
   const double above_m = normal.dot(end_m - prism.top_m[0]);
   if (above_m < 0.0 || above_m * above_m >= closest.distance2_m2) return;
@@ -81,11 +82,11 @@ void meet_top(const Vector3d& end_m, const Prism& prism, const Vector3d& normal,
   closest.take(end_m, on_top_m);
 }
 
-/// An end of the axis beside the inside of the upright face below edge `i`.
+/// Closest points of an end of the axis and the inside of the vertical face below edge `i`.
 void meet_side(const Vector3d& end_m, const Prism& prism, int i, Pair& closest) {
   const Vector3d& from_m = prism.top_m[i];
   const Vector3d edge_m = prism.top_m[(i + 1) % 3] - from_m, beside_m = end_m - from_m;
-  if (left_of(edge_m, beside_m) > 0.0) return;  // on the inner side
+  if (left_of(edge_m, beside_m) > 0.0) return;  // the end is on the inner side
   const double share = edge_m.head<2>().dot(beside_m.head<2>()) / edge_m.head<2>().squaredNorm();
   if (share < 0.0 || share > 1.0 || beside_m.z() > share * edge_m.z()) return;
   Vector3d on_face_m = from_m + share * edge_m;
@@ -93,7 +94,7 @@ void meet_side(const Vector3d& end_m, const Prism& prism, int i, Pair& closest) 
   closest.take(end_m, on_face_m);
 }
 
-/// Whether what of the axis stands over the triangle dips below its plane.
+/// True if the part of the axis above the triangle reaches below its plane.
 bool pierces(const Vector3d& a_m, const Vector3d& along_m, const Prism& prism, const Vector3d& normal) {
   double first = 0.0, last = 1.0;
   for (int i = 0; i < 3; ++i) {

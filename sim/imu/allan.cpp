@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kLeastClusters = 9;
 
-/// Integral of the samples less their mean: a rate that drifts little keeps its small numbers small.
+/// Integrates the samples minus their mean, so that a slowly drifting rate keeps small numbers.
 std::vector<double> integrate(std::span<const double> samples) {
   double mean = 0.0;
   for (const double sample : samples) mean += sample;
@@ -22,8 +22,8 @@ std::vector<double> integrate(std::span<const double> samples) {
   return sums;
 }
 
-/// `sums` in units of the period: the second difference over `cluster` samples is the difference of two means, times
-/// it.
+/// `sums` are in units of the period. The second difference over `cluster` samples is `cluster` times the difference of
+/// two means.
 double deviation_of(const std::vector<double>& sums, std::size_t cluster) {
   const std::size_t count = sums.size() - 2 * cluster;
   double total = 0.0;
@@ -86,7 +86,7 @@ const AllanPoint& nearest_point(std::span<const AllanPoint> curve, double tau_s)
 }
 
 double degrees_of_freedom(const AllanPoint& point, AllanNoise noise) {
-  const double n = static_cast<double>(point.samples) + 1.0;  // the table counts the points of the integral
+  const double n = static_cast<double>(point.samples) + 1.0;  // the table counts points of the integral
   const double m = static_cast<double>(point.cluster);
   double degrees = 0.0;
   switch (noise) {
@@ -121,7 +121,7 @@ double walk_deviation(double walk_sqrt_s, double tau_s) {
 
 double gauss_markov_deviation(double sigma, double time_s, double tau_s) {
   const double x = tau_s / time_s;
-  // the bracket cancels to x^2 / 3 - x^3 / 4 for small x
+  // for small x the bracket suffers from cancellation and is x^2 / 3 - x^3 / 4
   const double bracket =
       x < 1e-3 ? x * x / 3.0 - x * x * x / 4.0 : 1.0 - (3.0 - 4.0 * std::exp(-x) + std::exp(-2.0 * x)) / (2.0 * x);
   return sigma * std::sqrt(2.0 / x * bracket);

@@ -11,10 +11,10 @@ namespace tumble::sim {
 
 namespace {
 
-constexpr double kRatio = 10.0;  // between correlation times: ripple of the floor below 2 %
+constexpr double kRatio = 10.0;  // ratio of correlation times: ripple of the floor below 2 %
 
-/// Standard deviation of one process of an endless row of them whose Allan deviation is `floor`: each gives
-/// sigma^2 / (f ln ratio) to the spectrum, and flicker of spectrum h / f has the Allan variance 2 ln 2 h.
+/// Standard deviation of one process of an infinite series whose Allan deviation is `floor`. Each process contributes
+/// sigma^2 / (f ln ratio) to the spectrum, and flicker noise of spectrum h / f has the Allan variance 2 ln 2 h.
 double sigma_of_one(double floor) {
   return floor * std::sqrt(std::log(kRatio) / (2.0 * std::numbers::ln2));
 }

@@ -8,15 +8,15 @@
 
 namespace tumble::sim {
 
-/// Bias of a triad: a turn-on value (normal, drawn once), an in-run instability and a random walk, each axis on its
-/// own.
+/// Bias of a triad: a turn-on value (normal, drawn once), an in-run instability and a random walk, independent for each
+/// axis.
 ///
-/// The instability is flicker noise over three decades: four first-order Gauss-Markov processes of equal size, their
-/// correlation times a factor of ten apart, started in their stationary state. It is bounded (standard deviation 2.58
-/// times the floor), and its Allan deviation is flat at `in_run` from 1/200 to 1/2 of `in_run_s` within 5 %, which is
-/// what a data sheet's "in-run bias stability" states (IEEE Std 952-1997, annex C; the sum of Gauss-Markov processes as
-/// flicker: Keshner, "1/f noise", Proc. IEEE 70, 1982).
-/// What it does not model: temperature, and any dependence on what the device went through.
+/// The instability is flicker noise over three decades: four first-order Gauss-Markov processes of equal size, with
+/// correlation times a factor of ten apart, which start in their stationary state. The sum is bounded (its standard
+/// deviation is 2.58 times the floor). Its Allan deviation is flat at `in_run` from 1/200 to 1/2 of `in_run_s` within 5
+/// %. Data sheets state this as "in-run bias stability" (IEEE Std 952-1997, annex C; the sum of Gauss-Markov processes
+/// as flicker: Keshner, "1/f noise", Proc. IEEE 70, 1982).
+/// Not modelled: temperature, and any dependence on earlier motion.
 class Bias {
  public:
   struct Params {
@@ -25,12 +25,12 @@ class Bias {
     double in_run_s = 1000.0;  ///< longest correlation time of the instability
     double walk_sqrt_s = 0.0;  ///< standard deviation of the walk after one second
   };
-  /// Advances in steps of `period_s`. Draws nothing from `stream` for what is 0.
+  /// Advances in steps of `period_s`. Components of size 0 draw no random numbers.
   Bias(const Params& params, double period_s, const Stream& stream);
-  /// The bias in force now; then advances by one period.
+  /// Returns the current bias, then advances by one period.
   Eigen::Vector3d next();
 
-  /// Allan deviation of the instability alone, in closed form.
+  /// Returns the Allan deviation of the instability alone, in closed form.
   static double in_run_deviation(const Params& params, double tau_s);
 
  private:

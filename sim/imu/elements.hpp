@@ -9,47 +9,46 @@
 
 namespace tumble::sim {
 
-/// The sensing elements of a triad: each along an axis of its own, with its own scale and zero offset, and each with
-/// its own rail. Let u be the signal in the device's axes, all errors but the rail's included. Element i senses
-/// s_i = m_i . u + o_i, row i of M; the rail takes s to c(s); the device takes the offset off again and undoes the
-/// matrix: y = M^-1 (c(s) - o). So
-///   - while no element meets its rail the reading is u, bit for bit: neither M nor o can be seen;
-///   - while element j alone is at its rail r, m_j . y = +r - o_j or -r - o_j: the rail is a plane in the readings,
-///     tilted against the axes, not the same for the two signs;
-///   - the axes beside it are wrong too, by entries of M^-1 times the deficit, while m_i . y = m_i . u still holds for
-///     the free elements.
-/// Seen on real devices: planes tilted by 0.02 and 0.05, offsets of 0.05 and 0.14 rad/s (RepoIMU, the wand and the
-/// pendulum; scenarios/certificate/real_rails.cpp has the figures).
-/// What it does not model: noise and quantum of their own along the elements' axes (both stay in the device's), a
-/// compensation that errs at the rail other than elsewhere (its errors are in u), offsets that drift within a
-/// recording.
+/// Sensing elements of a triad. Each has its own axis, scale, zero offset and saturation limit. Let u be the signal in
+/// the device's axes with all errors except saturation. Element i senses s_i = m_i . u + o_i, with row i of M.
+/// Saturation maps s to c(s). The device subtracts the offset and inverts the matrix: y = M^-1 (c(s) - o).
+/// Consequences:
+///   - While no element saturates, the reading is u, bit for bit: neither M nor o is observable.
+///   - While only element j is at its limit r, m_j . y = +r - o_j or -r - o_j. The limit is a plane in the readings,
+///     tilted against the axes, and different for the two signs.
+///   - The other axes are then also wrong, by entries of M^-1 times the saturation deficit. For the free elements, m_i
+///     . y = m_i . u still holds.
+/// Real devices show planes tilted by 0.02 and 0.05, and offsets of 0.05 and 0.14 rad/s (wand and pendulum of RepoIMU;
+/// scenarios/certificate/real_rails.cpp has the values).
+/// Not modelled: noise and quantum along the elements' own axes (both are in the device's axes), compensation errors
+/// that differ at saturation (its errors are in u), and offsets that drift within a recording.
 class Elements {
  public:
   struct Params {
-    double misalignment = 0.0;  ///< of each entry off M's diagonal [1]: standard deviation, cut at three of them
-    double scale = 0.0;         ///< of each entry on the diagonal, about 1: the same
-    double offset = 0.0;        ///< of each element's o: the same [unit of the signal]
+    double misalignment = 0.0;  ///< standard deviation of each entry off M's diagonal [1], truncated at three standard
+                                ///< deviations
+    double scale = 0.0;         ///< the same for each entry on the diagonal, about 1
+    double offset = 0.0;        ///< the same for each element's o [unit of the signal]
   };
-  static constexpr double kMostMisalignment =
-      0.1;  ///< up to here, and for the scale, M can be inverted whatever is drawn
+  static constexpr double kMostMisalignment = 0.1;  ///< upper bound of both spreads, for which M is always invertible
 
-  /// Upright: M the identity, no offset.
+  /// Upright elements: M is the identity, and there is no offset.
   Elements() = default;
-  /// Drawn; nothing from `stream` for what is 0.
+  /// Draws the elements; parameters of 0 draw no random numbers.
   Elements(const Params& params, Stream stream);
-  /// As given: `axes` is M, which must have an inverse.
+  /// Uses `axes` as M, which must be invertible.
   Elements(const Eigen::Matrix3d& axes, const Eigen::Vector3d& offset);
 
   const Eigen::Matrix3d& axes() const { return axes_; }
   const Eigen::Vector3d& offset() const { return offset_; }
-  /// M is the identity, and there is no offset.
+  /// True if M is the identity and there is no offset.
   bool upright() const { return upright_; }
 
-  /// The device's reading of `signal` behind `rail`, both in the device's axes; sets bit `first_bit + i` of `flags`
-  /// where the rail of element i acted. Upright: the rail's own output.
+  /// Returns the device's reading of `signal` after saturation by `rail`, both in the device's axes. Sets bit
+  /// `first_bit + i` of `flags` if element i saturated. For upright elements it is the rail's own output.
   Eigen::Vector3d clip(const Eigen::Vector3d& signal, Rail& rail, int first_bit, std::uint8_t& flags) const;
 
-  /// `reading`, but with what the elements in `mask` (bit i) say taken from `other`.
+  /// Returns `reading` with the components of the elements in `mask` (bit i) replaced by those of `other`.
   Eigen::Vector3d with_elements_of(const Eigen::Vector3d& other, std::uint8_t mask,
                                    const Eigen::Vector3d& reading) const;
 

@@ -14,51 +14,52 @@
 
 namespace tumble::sim {
 
-/// What a triad makes of one output window.
+/// Output of a triad for one window.
 struct TriadReading {
-  Eigen::Vector3d delivered;  ///< as the device says it
-  Eigen::Vector3d unclipped;  ///< the same errors, no rail
-  Eigen::Vector3d bias;       ///< in force at the window's end
+  Eigen::Vector3d delivered;  ///< reading as delivered by the device
+  Eigen::Vector3d unclipped;  ///< reading with the same errors, but without saturation
+  Eigen::Vector3d bias;       ///< bias at the end of the window
 };
 
-/// Error chain of one triad (gyroscope or accelerometer), fed at the rate of the physics, read once per output window:
-/// analogue low-pass, scale and misalignment, bias, what is added from outside (g-sensitivity), white noise of the part
-/// in range, the sensing elements and their rail, the device's compensation of them, quantum, digital low-pass, mean
-/// over the window. With `clip_after_low_pass` elements and rail act on that mean instead.
+/// Error chain of one triad (gyroscope or accelerometer), updated at the physics rate and read once per output window.
+/// Stages in order: analogue low-pass, scale and misalignment, bias, external additions (g-sensitivity), white noise of
+/// the active range, sensing elements with saturation, the device's compensation of the elements, quantum, digital
+/// low-pass, mean over the window. With `clip_after_low_pass`, elements and saturation act on that mean instead.
 ///
-/// The mean of a turning triad's readings is not the increment of its motion (coning, sculling). The window's ideal
-/// reading is therefore given from outside, exact, and the mean of the chain's errors is added to it; an element that
-/// met its rail in the window reports the plain mean of what came through. With every stage off the reading is the
-/// exact one, bit for bit. The unclipped twin goes through the same stages with the same noise.
-/// A device with a window or a rate of its own (sampling.hpp) does not integrate: its reading is the plain mean of that
-/// window.
+/// The mean of a rotating triad's readings is not the increment of its motion (coning, sculling). The caller therefore
+/// passes the exact ideal reading of the window, and the chain adds the mean of its errors. An element that saturated
+/// in the window reports the plain mean of the chain's output. With every stage off, the reading is the exact one, bit
+/// for bit. The unclipped twin passes the same stages with the same noise.
+/// A device with its own window or update rate (sampling.hpp) does not integrate: its reading is the plain mean over
+/// that window.
 class TriadChain {
  public:
-  /// `prefix` and `unit` select the numbers: "gyro", "rad_s" or "accel", "m_s2". Streams are named after
-  /// `stream_name`; `steps` is the number of physics steps in a window.
+  /// `prefix` and `unit` select the parameters: "gyro", "rad_s" or "accel", "m_s2". Random streams are named after
+  /// `stream_name`; `steps` is the number of physics steps per window.
   TriadChain(const Values& values, const std::string& prefix, const std::string& unit, double rate_hz, int steps,
              std::uint64_t seed, const std::string& stream_name);
 
-  /// One physics step: the ideal mean over it, and what is added to the signal before its noise.
+  /// Processes one physics step: `ideal` is the ideal mean over the step, and `added` is added to the signal before its
+  /// noise.
   void step(const Eigen::Vector3d& ideal, const Eigen::Vector3d& added);
-  /// Ends the window, whose exact reading is `exact`; sets bit `first_bit + i` of `flags` for each element i that met
-  /// its rail.
+  /// Ends the window with the exact reading `exact`. Sets bit `first_bit + i` of `flags` for each element i that
+  /// saturated.
   TriadReading take(const Eigen::Vector3d& exact, int first_bit, std::uint8_t& flags);
 
   const Elements& elements() const { return elements_; }
-  /// In place of those drawn, before the first step.
+  /// Replaces the drawn elements; call before the first step.
   void set_elements(const Elements& elements) { elements_ = elements; }
 
  private:
-  /// From the signal to the mean of a window, with the rail or without.
+  /// Path from the signal to the mean of a window, with or without saturation.
   struct Path {
     LowPass low_pass;
     Eigen::Vector3d sum = Eigen::Vector3d::Zero(), error = Eigen::Vector3d::Zero();
-    /// Returns what came through.
+    /// Returns the signal after all stages.
     Eigen::Vector3d add(const Eigen::Vector3d& signal, const Eigen::Vector3d& ideal);
   };
 
-  /// The reading of a device that integrates from output to output.
+  /// Reading of a device that integrates between outputs.
   TriadReading integrated(const Eigen::Vector3d& exact) const;
 
   double rate_hz_, noise_, precise_noise_, quantum_, precise_quantum_;

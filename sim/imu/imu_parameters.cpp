@@ -11,54 +11,53 @@ namespace tumble::sim {
 namespace {
 
 constexpr std::string_view kClampDoc =
-    "rail kind clamp: where the output really stops, at the stated range or above it; 0: nowhere";
+    "rail kind clamp: level at which the output stops, at or above the stated range; 0: no saturation";
 constexpr std::string_view kAxisSpreadDoc =
-    "rail kind plateau: standard deviation of the rail from axis to axis and sign to sign, within 3 of them; 0: off";
+    "rail kind plateau: standard deviation of the level between axes and signs, truncated at 3 of them; 0: off";
 constexpr std::string_view kEventSpreadDoc =
-    "rail kind plateau: standard deviation of the rail from one clipping to the next, within 3 of them; 0: off";
+    "rail kind plateau: standard deviation of the level between clipping events, truncated at 3 of them; 0: off";
 constexpr std::string_view kWrapDoc =
-    "rail kind wrap: 1: beyond the rail the sign changes, as when a 16-bit word overflows";
+    "rail kind wrap: 1: a reading beyond the level changes its sign, as when a 16-bit word overflows";
 constexpr std::string_view kRecoveryDoc =
-    "rail kind slow_recovery: time with which the offset that clipping leaves builds up and fades; 0: off";
+    "rail kind slow_recovery: time constant of the offset that clipping leaves; 0: off";
 constexpr std::string_view kRecoveryShareDoc =
-    "rail kind slow_recovery: largest offset that clipping leaves, as a share of the rail";
+    "rail kind slow_recovery: largest offset that clipping leaves, as a share of the level";
 constexpr std::string_view kElementMisalignmentDoc =
-    "the sensing elements' own axes, along which they clip: standard deviation of each entry off the diagonal of their "
-    "matrix, within 3 of them, as a share; the device undoes it after the rail; 0: upright";
+    "axes of the sensing elements, along which they clip: standard deviation of each off-diagonal entry of their "
+    "matrix, truncated at 3 of them; the device inverts the matrix after saturation; 0: upright";
 constexpr std::string_view kElementScaleDoc =
-    "the sensing elements' own scale: standard deviation of each diagonal entry of their matrix about 1, within 3 of "
-    "them";
+    "scale of the sensing elements: standard deviation of each diagonal entry of their matrix about 1, truncated at 3 "
+    "of them";
 constexpr std::string_view kElementOffsetDoc =
-    "the sensing elements' own zero offset, taken off after the rail, so that the two signs clip apart: standard "
-    "deviation, within 3 of them";
+    "zero offset of the sensing elements, subtracted after saturation, so that the two signs clip at different "
+    "readings: standard deviation, truncated at 3 of them";
 constexpr std::string_view kInRunDoc =
     "in-run instability: floor of the Allan deviation (a bounded process, flicker over three decades)";
 constexpr std::string_view kInRunTimeDoc =
     "longest correlation time of the in-run instability; its Allan deviation is flat from 1/200 to 1/2 of it";
 constexpr std::string_view kWalkDoc = "random walk of the bias: standard deviation after one second";
-constexpr std::string_view kTurnOnDoc = "standard deviation of the bias from switch-on to switch-on";
+constexpr std::string_view kTurnOnDoc = "standard deviation of the turn-on bias";
 constexpr std::string_view kScaleDoc = "standard deviation of each axis's scale error";
 constexpr std::string_view kMisalignmentDoc = "standard deviation of each cross-axis angle";
 constexpr std::string_view kNoiseDoc = "density of the white noise; a sample at rate f has density * sqrt(f)";
 constexpr std::string_view kBandwidthDoc = "-3 dB of the analogue low-pass, second order; 0: off";
-constexpr std::string_view kQuantumDoc = "step of the converter, before digital low-pass and mean; 0: off";
+constexpr std::string_view kQuantumDoc = "resolution of the converter, before digital low-pass and mean; 0: off";
 constexpr std::string_view kWindowDoc =
-    "each reading is the plain mean over the last so many seconds, to the nearest physics step, as of a device that "
-    "samples; 0: it integrates from output to output, or from one reading of its own rate to the next";
+    "window of the plain mean that forms a reading, rounded to physics steps; 0: the device integrates between outputs "
+    "or between readings of its own rate";
 constexpr std::string_view kUpdateDoc =
-    "sample and hold: the device's own readings per second, not in step with the outputs, which say the last one once "
-    "more until there is a new one; 0: a new one for each output; else at least 0.1";
+    "sample and hold: the device's own readings per second, not synchronous with the outputs, which repeat the last "
+    "reading; 0: one reading per output; else at least 0.1";
 constexpr std::string_view kHandoverDoc =
-    "an axis is read by the precise part up to here (back below 0.9 of it) and by the coarse one beyond; 0: coarse "
-    "always";
+    "range of the precise part of each axis (back below 0.9 of it); the coarse part is used beyond; 0: always coarse";
 constexpr std::string_view kPreciseNoiseDoc = "density of the white noise of the precise part";
-constexpr std::string_view kPreciseQuantumDoc = "step of the precise part; 0: off";
+constexpr std::string_view kPreciseQuantumDoc = "resolution of the precise part; 0: off";
 
 constexpr std::array kParameters = {
     Parameter{"output_rate_hz", 100.0, 1.0, 8000.0, "Hz",
-              "samples per second; must divide the physics rate of 2000 Hz or be a multiple of it: then the readings "
-              "within a step differ by their noise alone"},
-    Parameter{"gyro_range_rad_s", 34.9, 0.1, 1000.0, "rad/s", "range that the data sheet states"},
+              "samples per second; must divide the physics rate of 2000 Hz or be a multiple of it; readings within one "
+              "physics step then differ only by noise"},
+    Parameter{"gyro_range_rad_s", 34.9, 0.1, 1000.0, "rad/s", "range stated by the data sheet"},
     Parameter{"gyro_rail_rad_s", 0.0, 0.0, 1000.0, "rad/s", kClampDoc},
     Parameter{"gyro_plateau_axis_spread_rad_s", 0.0, 0.0, 100.0, "rad/s", kAxisSpreadDoc},
     Parameter{"gyro_plateau_event_spread_rad_s", 0.0, 0.0, 100.0, "rad/s", kEventSpreadDoc},
@@ -70,7 +69,7 @@ constexpr std::array kParameters = {
     Parameter{"gyro_element_offset_rad_s", 0.0, 0.0, 100.0, "rad/s", kElementOffsetDoc},
     Parameter{"gyro_noise_rad_s_sqrt_hz", 0.0, 0.0, 1.0, "rad/s/sqrt(Hz)", kNoiseDoc},
     Parameter{"gyro_bandwidth_hz", 0.0, 0.0, 900.0, "Hz", kBandwidthDoc},
-    Parameter{"gyro_delay_s", 0.0, 0.0, 0.1, "s", "the gyroscope's signal is late by this; 0: off"},
+    Parameter{"gyro_delay_s", 0.0, 0.0, 0.1, "s", "delay of the gyroscope's signal; 0: off"},
     Parameter{"gyro_bias_turn_on_rad_s", 0.0, 0.0, 1.0, "rad/s", kTurnOnDoc},
     Parameter{"gyro_bias_in_run_rad_s", 0.0, 0.0, 1.0, "rad/s", kInRunDoc},
     Parameter{"gyro_bias_in_run_s", 1000.0, 0.1, 1e5, "s", kInRunTimeDoc},
@@ -78,16 +77,17 @@ constexpr std::array kParameters = {
     Parameter{"gyro_scale_error", 0.0, 0.0, 0.2, "1", kScaleDoc},
     Parameter{"gyro_misalignment_rad", 0.0, 0.0, 0.2, "rad", kMisalignmentDoc},
     Parameter{"gyro_g_sensitivity_s_m", 0.0, 0.0, 0.01, "rad/s/(m/s^2)",
-              "rate per specific force, each axis on itself"},
-    Parameter{"gyro_g_sensitivity_spread_s_m", 0.0, 0.0, 0.01, "rad/s/(m/s^2)",
-              "rate per specific force beyond that: standard deviation of each of the nine entries of its matrix"},
+              "false rate per specific force along the same axis"},
+    Parameter{
+        "gyro_g_sensitivity_spread_s_m", 0.0, 0.0, 0.01, "rad/s/(m/s^2)",
+        "standard deviation of each of the nine entries of the additional matrix of false rate per specific force"},
     Parameter{"gyro_window_s", 0.0, 0.0, 0.1, "s", kWindowDoc},
     Parameter{"gyro_update_hz", 0.0, 0.0, 8000.0, "Hz", kUpdateDoc},
     Parameter{"gyro_quantum_rad_s", 0.0, 0.0, 1.0, "rad/s", kQuantumDoc},
     Parameter{"gyro_handover_rad_s", 0.0, 0.0, 1000.0, "rad/s", kHandoverDoc},
     Parameter{"gyro_precise_noise_rad_s_sqrt_hz", 0.0, 0.0, 1.0, "rad/s/sqrt(Hz)", kPreciseNoiseDoc},
     Parameter{"gyro_precise_quantum_rad_s", 0.0, 0.0, 1.0, "rad/s", kPreciseQuantumDoc},
-    Parameter{"accel_range_m_s2", 156.9, 1.0, 1e5, "m/s^2", "range that the data sheet states"},
+    Parameter{"accel_range_m_s2", 156.9, 1.0, 1e5, "m/s^2", "range stated by the data sheet"},
     Parameter{"accel_rail_m_s2", 0.0, 0.0, 1e5, "m/s^2", kClampDoc},
     Parameter{"accel_plateau_axis_spread_m_s2", 0.0, 0.0, 1000.0, "m/s^2", kAxisSpreadDoc},
     Parameter{"accel_plateau_event_spread_m_s2", 0.0, 0.0, 1000.0, "m/s^2", kEventSpreadDoc},
@@ -99,7 +99,7 @@ constexpr std::array kParameters = {
     Parameter{"accel_element_offset_m_s2", 0.0, 0.0, 1000.0, "m/s^2", kElementOffsetDoc},
     Parameter{"accel_noise_m_s2_sqrt_hz", 0.0, 0.0, 1.0, "m/s^2/sqrt(Hz)", kNoiseDoc},
     Parameter{"accel_bandwidth_hz", 0.0, 0.0, 900.0, "Hz", kBandwidthDoc},
-    Parameter{"accel_delay_s", 0.0, 0.0, 0.1, "s", "the accelerometer's signal is late by this; 0: off"},
+    Parameter{"accel_delay_s", 0.0, 0.0, 0.1, "s", "delay of the accelerometer's signal; 0: off"},
     Parameter{"accel_bias_turn_on_m_s2", 0.0, 0.0, 10.0, "m/s^2", kTurnOnDoc},
     Parameter{"accel_bias_in_run_m_s2", 0.0, 0.0, 10.0, "m/s^2", kInRunDoc},
     Parameter{"accel_bias_in_run_s", 1000.0, 0.1, 1e5, "s", kInRunTimeDoc},
@@ -113,36 +113,38 @@ constexpr std::array kParameters = {
     Parameter{"accel_precise_noise_m_s2_sqrt_hz", 0.0, 0.0, 1.0, "m/s^2/sqrt(Hz)", kPreciseNoiseDoc},
     Parameter{"accel_precise_quantum_m_s2", 0.0, 0.0, 10.0, "m/s^2", kPreciseQuantumDoc},
     Parameter{"digital_bandwidth_hz", 0.0, 0.0, 900.0, "Hz",
-              "-3 dB of the low-pass after sampling, second order; 0: the mean over the output window alone"},
+              "-3 dB of the low-pass after sampling, second order; 0: only the mean over the output window"},
     Parameter{"clip_after_low_pass", 0.0, 0.0, 1.0, "1",
-              "0: the rail meets the signal before digital low-pass and mean; 1: after them"},
-    Parameter{"clip_flags", 0.0, 0.0, 1.0, "1", "1: the device flags axes that met their rail"},
-    Parameter{"time_offset_s", 0.0, -0.1, 0.1, "s", "stamp minus the true end of the window"},
+              "0: saturation acts before digital low-pass and mean; 1: after them"},
+    Parameter{"clip_flags", 0.0, 0.0, 1.0, "1", "1: the device flags axes that saturated"},
+    Parameter{"time_offset_s", 0.0, -0.1, 0.1, "s", "time stamp minus true end of the window"},
     Parameter{"time_jitter_s", 0.0, 0.0, 0.1, "s",
-              "standard deviation of the stamp, within 3 of them; below a sixth of the period; 0: off"},
-    Parameter{"dropout_share", 0.0, 0.0, 0.5, "1", "share of samples that never arrive; 0: off"},
+              "standard deviation of the time stamp, truncated at 3 of them; below a sixth of the period; 0: off"},
+    Parameter{"dropout_share", 0.0, 0.0, 0.5, "1", "share of lost samples; 0: off"},
     Parameter{"dropout_mean_samples", 1.0, 1.0, 1e4, "1", "mean length of a run of lost samples"},
     Parameter{"magnetometer", 0.0, 0.0, 1.0, "1", "1: the magnetic field is recorded with every sample"},
-    Parameter{"mag_range_t", 1e-3, 1e-6, 1.0, "T", "range that the data sheet states"},
-    Parameter{"mag_rail_t", 0.0, 0.0, 1.0, "T", "where the output stops; 0: nowhere"},
+    Parameter{"mag_range_t", 1e-3, 1e-6, 1.0, "T", "range stated by the data sheet"},
+    Parameter{"mag_rail_t", 0.0, 0.0, 1.0, "T", "level at which the output stops; 0: no saturation"},
     Parameter{"mag_noise_t", 0.0, 0.0, 1e-3, "T", "standard deviation of each sample's white noise"},
     Parameter{"mag_hard_iron_t", 0.0, 0.0, 1e-3, "T", "standard deviation of the constant offset of each axis"},
     Parameter{"mag_scale_error", 0.0, 0.0, 0.5, "1", "soft iron: standard deviation of each axis's scale error"},
     Parameter{"mag_misalignment_rad", 0.0, 0.0, 0.5, "rad", "soft iron: standard deviation of each cross-axis angle"},
-    Parameter{"mag_quantum_t", 0.0, 0.0, 1e-3, "T", "step of the output; 0: off"},
-    Parameter{"earth_field_t", 4.9e-5, 0.0, 1e-3, "T", "strength of the Earth's field where the robot is"},
+    Parameter{"mag_quantum_t", 0.0, 0.0, 1e-3, "T", "resolution of the output; 0: off"},
+    Parameter{"earth_field_t", 4.9e-5, 0.0, 1e-3, "T", "strength of the Earth's field at the robot"},
     Parameter{"earth_inclination_rad", 1.14, -1.5708, 1.5708, "rad", "angle of the Earth's field below the horizon"},
     Parameter{"earth_north_rad", 0.0, -3.1416, 3.1416, "rad", "magnetic north, from the world's x axis towards y"},
-    Parameter{"magnetic_sources", 0.0, 0.0, 100.0, "1", "dipoles that disturb the field beside the path; 0: none"},
+    Parameter{"magnetic_sources", 0.0, 0.0, 100.0, "1",
+              "number of dipoles that disturb the field near the path; 0: none"},
     Parameter{"magnetic_source_moment_a_m2", 5.0, 0.0, 1e4, "A m^2",
               "moment of a dipole, log-uniform within a factor of 3; 5: some kilograms of steel"},
-    Parameter{"magnetic_source_nearest_m", 0.4, 0.05, 100.0, "m", "no dipole comes nearer to the path"},
-    Parameter{"magnetic_source_farthest_m", 1.5, 0.05, 100.0, "m", "farthest from the place that it stands beside"},
+    Parameter{"magnetic_source_nearest_m", 0.4, 0.05, 100.0, "m", "minimum distance of a dipole from the path"},
+    Parameter{"magnetic_source_farthest_m", 1.5, 0.05, 100.0, "m",
+              "maximum distance of a dipole from its random position of the path"},
 };
 
 constexpr double kSlowestUpdate_hz = 0.1;
 
-/// One triad's rail.
+/// Checks the saturation parameters of one triad.
 void check_rail(const Values& values, const std::string& place, const std::string& prefix, const std::string& unit) {
   const std::string rail_name = prefix + "_rail_" + unit;
   const std::string axis_name = prefix + "_plateau_axis_spread_" + unit;
@@ -150,7 +152,7 @@ void check_rail(const Values& values, const std::string& place, const std::strin
   const double rail = values.at(rail_name), spread = values.at(axis_name) + values.at(event_name);
   for (const std::string& name : {axis_name, event_name, prefix + "_wrap", prefix + "_slow_recovery_s"}) {
     if (rail > 0.0 || values.at(name) == 0.0) continue;
-    throw InvalidSituation(place + "." + name + " needs a rail: " + rail_name + " is 0");
+    throw InvalidSituation(place + "." + name + " needs a saturation level: " + rail_name + " is 0");
   }
   if (rail > 0.0 && 3.0 * spread >= rail) {
     std::ostringstream text;
@@ -168,11 +170,11 @@ void check_rail(const Values& values, const std::string& place, const std::strin
   }
   if (values.at(prefix + "_wrap") > 0.5 && values.at(prefix + "_slow_recovery_s") > 0.0) {
     throw InvalidSituation(place + "." + prefix + "_slow_recovery_s must be 0 with " + prefix +
-                           "_wrap: a word that overflows does not charge");
+                           "_wrap: an overflowing word has no slow recovery");
   }
 }
 
-/// The readings of a triad's every update are held until the next one: a rate that is hardly any would fill the memory.
+/// Readings between two updates are buffered, so a very low update rate would exhaust the memory.
 void check_update(const Values& values, const std::string& place, const std::string& prefix) {
   const std::string name = prefix + "_update_hz";
   const double update_hz = values.at(name);

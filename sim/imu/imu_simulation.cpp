@@ -15,7 +15,7 @@ namespace tumble::sim {
 
 namespace {
 
-/// Ideal mean rate and specific force over some time, in I.
+/// Ideal mean angular velocity and specific force over an interval, in I.
 struct Ideal {
   Eigen::Vector3d rate_rad_s, force_m_s2;
 };
@@ -31,7 +31,7 @@ std::optional<Eigen::Matrix3d> draw_g_sensitivity(const SensorSpec& sensor, std:
   return drawn;
 }
 
-/// Both triads of a device, its stamps, and where the samples go.
+/// Both triads of a device, its time stamps, and the output of its samples.
 class Device {
  public:
   Device(const SensorSpec& sensor, double rate_hz, int steps, std::uint64_t seed, const GivenElements& given,
@@ -56,7 +56,7 @@ class Device {
     accel_.step(ideal.force_m_s2, Eigen::Vector3d::Zero());
   }
 
-  /// Ends a window; false when its sample is lost.
+  /// Ends a window; returns false if its sample is lost.
   bool take(const Ideal& exact, std::int64_t end_ns) {
     std::uint8_t flags = 0;
     const TriadReading gyro = gyro_.take(exact.rate_rad_s, 0, flags);
@@ -92,11 +92,11 @@ class Device {
   TriadChain gyro_, accel_;
   TimeStamps stamps_;
   double g_sensitivity_;
-  std::optional<Eigen::Matrix3d> g_sensitivity_drawn_;  ///< nothing when it has no spread
+  std::optional<Eigen::Matrix3d> g_sensitivity_drawn_;  ///< empty if it has no spread
   bool flagged_;
 };
 
-/// The magnetometer of a device, when it has one: true field averaged over each window.
+/// Optional magnetometer of a device: the true field, averaged over each window.
 class Compass {
  public:
   Compass(const Truth& truth, const SensorSpec& sensor, const Eigen::Isometry3d& T_BI, std::uint64_t seed)
@@ -129,10 +129,10 @@ class Compass {
   int count_ = 0;
 };
 
-/// How the samples of a device lie in the steps of a chain.
+/// Relation between the samples of a device and the steps of its chain.
 struct Pace {
-  int steps = 1;   ///< of the chain, per sample
-  int shares = 1;  ///< of one step of the physics, per step of the chain: more than one for a device that is faster
+  int steps = 1;   ///< chain steps per sample
+  int shares = 1;  ///< chain steps per physics step; above 1 for devices faster than the physics
 };
 
 Pace pace_of(const SensorSpec& sensor, double step_ns) {
@@ -153,15 +153,15 @@ BodyState state_at(const Truth& truth, std::size_t k) {
           truth.v_WB_m_s[k], truth.w_WB_B_rad_s[k]};
 }
 
-/// Lever arm and mounting: what the ideal device at T_BI says of the motion from one state to another.
+/// Ideal reading of a device mounted at T_BI for the motion between two states, including the lever arm.
 Ideal ideal_between(const BodyState& before, const BodyState& after, const Eigen::Isometry3d& T_BI,
                     double gravity_m_s2) {
   const Eigen::Matrix3d R_IB = T_BI.linear().transpose();
   return {R_IB * mean_rate_B(before, after), R_IB * specific_force_B(before, after, T_BI.translation(), gravity_m_s2)};
 }
 
-/// The rotation between two attitudes has many vectors, whole turns apart: the one that the steps of the window made.
-/// Below half a turn in a window this is the vector as it is.
+/// A rotation between two attitudes has several rotation vectors, which differ by full turns. Selects the one that
+/// agrees with the steps of the window. Below half a turn per window it is the unchanged vector.
 Eigen::Vector3d unwound(const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& mean_of_steps_rad_s, double time_s) {
   constexpr double kRevolution_rad = 6.283185307179586;
   const double norm = rate_rad_s.norm();
@@ -213,7 +213,7 @@ void simulate_imu(const Truth& truth, const SensorSpec& sensor, const Eigen::Iso
     const BodyState after = state_at(truth, k);
     const Ideal step = ideal_between(before, after, T_BI, gravity_m_s2);
     before = after;
-    if (shares > 1) {  // the physics says no more of its step: rate and force are those of the whole
+    if (shares > 1) {  // the physics does not resolve its step: rate and force are those of the whole step
       for (int share = 1; share <= shares; ++share) {
         device.step(step);
         if (compass) compass->step(k);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kMu0Over4Pi = 1e-7;  // T m / A
 constexpr int kTries = 200;
-constexpr std::size_t kPositions = 500;  // of the path, against which distances are held
+constexpr std::size_t kPositions = 500;  // number of path positions for which distances are checked
 
 Eigen::Vector3d random_direction(Stream& stream) {
   const double z = stream.uniform(-1.0, 1.0), turn = stream.uniform(0.0, 2.0 * std::numbers::pi);
@@ -29,7 +29,7 @@ double distance_to_path(std::span<const Eigen::Vector3d> path, const Eigen::Vect
   return nearest;
 }
 
-/// A position beside the path; of the tries that all come too near, the farthest.
+/// Returns a position near the path. If all attempts are too close, returns the farthest of them.
 Eigen::Vector3d draw_position(std::span<const Eigen::Vector3d> path, double nearest_m, double farthest_m,
                               Stream& stream) {
   Eigen::Vector3d best = Eigen::Vector3d::Zero();

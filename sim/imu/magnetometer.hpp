@@ -12,31 +12,31 @@
 
 namespace tumble::sim {
 
-/// A small magnet or piece of iron that stands in the world.
+/// A small static magnet or piece of iron in the world.
 struct MagneticDipole {
   Eigen::Vector3d p_W_m;
   Eigen::Vector3d moment_W_a_m2;
 };
 
-/// Magnetic flux density in the world [T]: the Earth's field, the same everywhere, and point dipoles,
-/// B = mu_0 / (4 pi) (3 (m r) r - m r^2) / r^5 (Jackson, Classical Electrodynamics, equation 5.56).
-/// What it does not model: iron that turns with the field, currents, anything that moves.
+/// Magnetic flux density in the world [T]: the uniform field of the Earth and point dipoles, B = mu_0 / (4 pi) (3 (m r)
+/// r - m r^2) / r^5 (Jackson, Classical Electrodynamics, equation 5.56). Not modelled: induced magnetisation, currents,
+/// moving sources.
 struct MagneticField {
   Eigen::Vector3d earth_W_t = Eigen::Vector3d::Zero();
   std::vector<MagneticDipole> dipoles;
   Eigen::Vector3d at(const Eigen::Vector3d& p_W_m) const;
 };
 
-/// The field of one draw: earth_field_t, dipping by earth_inclination_rad, its horizontal part earth_north_rad from the
-/// world's x axis towards y; magnetic_sources dipoles around the way `p_W_m`, none nearer to it than
-/// magnetic_source_nearest_m, each beside a random position of it by at most magnetic_source_farthest_m, their moments
-/// log-uniform within a factor of 3 of magnetic_source_moment_a_m2, in random directions. Equal numbers and seed give
-/// the same field to every magnetometer.
+/// Draws the field of one situation. The Earth's field is earth_field_t with dip earth_inclination_rad; its horizontal
+/// part points earth_north_rad from the world's x axis towards y. There are magnetic_sources dipoles around the path
+/// `p_W_m`, at least magnetic_source_nearest_m away from it. Each is within magnetic_source_farthest_m of a random
+/// position of the path. Their moments are log-uniform within a factor of 3 of magnetic_source_moment_a_m2, in random
+/// directions. Equal numbers and seed give the same field to every magnetometer.
 MagneticField draw_magnetic_field(const Values& values, std::span<const Eigen::Vector3d> p_W_m, std::uint64_t seed);
 
 /// Error model of a magnetometer triad: soft iron (scale and misalignment), hard iron (an offset in the sensor's axes,
-/// drawn once), white noise of each sample, rail, quantum. With every number 0 the reading is the true field, bit for
-/// bit. What it does not model: bandwidth and delay, temperature.
+/// drawn once), white noise of each sample, saturation, quantum. With every number 0 the reading is the true field, bit
+/// for bit. Not modelled: bandwidth and delay, temperature.
 class Magnetometer {
  public:
   Magnetometer(const Values& values, std::uint64_t seed, const std::string& stream_name);

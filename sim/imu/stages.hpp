@@ -7,35 +7,36 @@
 
 #include "sim/random/stream.hpp"
 
-/// The small stages of an inertial sensor's error model, one triad each (bias.hpp and rail.hpp hold the larger ones).
-/// Every stage that is off returns its input, bit for bit, and draws nothing.
+/// Small stages of an inertial sensor's error model, each for one triad (bias.hpp and rail.hpp contain the larger
+/// ones). A stage that is off returns its input, bit for bit, and draws no random numbers.
 namespace tumble::sim {
 
-/// Three normal numbers of this standard deviation; zero, and nothing drawn, for 0.
+/// Returns three normal numbers of this standard deviation. For 0 they are zero, and no random number is drawn.
 Eigen::Vector3d normals(Stream& stream, double sigma);
 
-/// One normal number of this standard deviation, cut at three of them; 0, and nothing drawn, for 0.
+/// Returns a normal number of this standard deviation, truncated at three of them. For 0 it is 0, and no random number
+/// is drawn.
 double bounded_normal(Stream& stream, double sigma);
 
-/// A signal that arrives late by `delay_s`, held at its first value until then; between samples it is interpolated
-/// linearly. The whole of it arrives: sums over a long time are kept. A delay of 0 is off.
+/// Delays a signal by `delay_s`. The output has the first value until then; values between samples are interpolated
+/// linearly. The sum of the signal over a long time is preserved. A delay of 0 is off.
 class DelayLine {
  public:
   DelayLine(double delay_s, double rate_hz);
   Eigen::Vector3d operator()(const Eigen::Vector3d& input);
 
  private:
-  double fraction_ = 0.0;              ///< of a sample
-  std::vector<Eigen::Vector3d> past_;  ///< ring of the last samples; empty: off
+  double fraction_ = 0.0;              ///< fraction of a sample
+  std::vector<Eigen::Vector3d> past_;  ///< ring buffer of the last samples; empty: off
   std::size_t next_ = 0;
   bool started_ = false;
 };
 
-/// Low-pass of second order (Butterworth, bilinear transform with the cutoff prewarped); gain 1 at rest. The first
-/// sample sets the steady state. A cutoff of 0 is off.
+/// Second-order low-pass (Butterworth, bilinear transform with prewarped cutoff) with gain 1 at rest. The first sample
+/// sets the steady state. A cutoff of 0 is off.
 class LowPass {
  public:
-  /// `cutoff_hz` below half of `rate_hz`.
+  /// `cutoff_hz` must be below half of `rate_hz`.
   LowPass(double cutoff_hz, double rate_hz);
   Eigen::Vector3d operator()(const Eigen::Vector3d& input);
 
@@ -46,19 +47,19 @@ class LowPass {
   Eigen::Vector3d s1_ = Eigen::Vector3d::Zero(), s2_ = Eigen::Vector3d::Zero();
 };
 
-/// Scale and misalignment of a triad: 1 + scale errors on the diagonal, six independent small angles off it, all
-/// normal. Exactly the identity where both are 0.
+/// Draws scale and misalignment errors of a triad: 1 plus scale errors on the diagonal, and six independent small
+/// angles off the diagonal, all normal. The result is exactly the identity if both are 0.
 Eigen::Matrix3d draw_axis_errors(Stream& stream, double scale_sigma, double misalignment_sigma_rad);
 
-/// Which of two parts of a device answers for each axis: the precise one up to `handover`, the coarse one beyond, back
-/// to the precise one below `handover` less a tenth. A handover of 0: the coarse one always. The change is seamless:
-/// bias, scale and axes stay, noise and quantum change.
+/// Selects, for each axis, the part of a device that provides the reading: the precise part up to `handover`, the
+/// coarse part beyond, and again the precise part below 90 % of `handover`. A handover of 0 always selects the coarse
+/// part. Bias, scale and axes do not change with the part; noise and quantum do.
 class RangeChoice {
  public:
   explicit RangeChoice(double handover) : handover_(handover) {}
-  /// Chooses for each axis by its signal before noise and rail.
+  /// Selects the part for each axis by the signal before noise and saturation.
   void update(const Eigen::Vector3d& signal);
-  /// One number for each axis: of the part that answers for it.
+  /// Returns for each axis the number of the selected part.
   Eigen::Vector3d pick(double coarse, double precise) const;
 
  private:
@@ -66,7 +67,7 @@ class RangeChoice {
   std::array<bool, 3> precise_ = {false, false, false};
 };
 
-/// White noise of `density` [unit / sqrt(Hz)] for each axis, sampled at `rate_hz`: standard deviation density *
+/// Returns white noise of `density` [unit / sqrt(Hz)] for each axis, sampled at `rate_hz`: standard deviation density *
 /// sqrt(rate).
 Eigen::Vector3d white_noise(Stream& stream, const Eigen::Vector3d& density, double rate_hz);
 

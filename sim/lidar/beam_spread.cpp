@@ -13,7 +13,7 @@ struct Share {
   int ray;
 };
 
-/// The echo [first, last) of shares in rising range that holds the most energy; the nearest one of equals.
+/// The echo [first, last) of the energy shares, sorted by range, that has the most energy; of equals the nearest.
 struct Echo {
   int first = 0, last = 0;
   float energy = 0.0f;
@@ -48,7 +48,7 @@ BeamSpread::BeamSpread(const Values& values) : echo_length_m_(static_cast<float>
   firings = axis;
   for (int s = 0; s < kLanes; ++s) {
     const double x = axis.direction_x[s], y = axis.direction_y[s], z = axis.direction_z[s];
-    // horizontal is (-y, x, 0); along the z axis of L, where no beam of the known devices points, any will do
+    // the horizontal axis is (-y, x, 0); for a beam along z of L, which no known device has, any direction is valid
     const double flat = std::sqrt(x * x + y * y), per = flat > 0.0 ? 1.0 / flat : 0.0;
     const double hx = flat > 0.0 ? -y * per : 1.0, hy = x * per;
     const double vx = -z * hy, vy = z * hx, vz = x * hy - y * hx;

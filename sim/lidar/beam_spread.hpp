@@ -8,38 +8,38 @@
 
 namespace tumble::sim {
 
-/// Most rays of a beam.
+/// Maximum number of rays per beam.
 inline constexpr int kMaxBeamRays = 16;
 
-/// What a beam of some width meets, one lane a firing: the echo that a device ranges on.
+/// The echo on which the device ranges for beams of finite width, one lane per firing.
 struct Echoes {
-  RayPacket packet;  ///< range of the echo; reflectivity and cosine as a single surface of that echo would have them
-  alignas(64) float hit_x[kLanes], hit_y[kLanes], hit_z[kLanes];  ///< of the ray that returned the most, world axes
+  RayPacket packet;  ///< range of the echo; reflectivity and cosine as for a single surface with that echo
+  alignas(64) float hit_x[kLanes], hit_y[kLanes], hit_z[kLanes];  ///< hit of the ray with the most energy, world axes
 };
 
-/// The width of a beam, sampled by a fixed pattern of rays (H. Vogel, Math. Biosci. 44, 1979: equal shares of the
-/// ellipse's area). Each ray returns energy as reflectivity times cosine over range squared. Hits nearer to each other
-/// in range than the echo's length merge; of several echoes the strongest counts, at the mean of its ranges weighted by
-/// energy: a beam across an edge gives a mixed return between the two surfaces, or a jump from one to the other where
-/// they lie farther apart. Surface id and exact hit are those of the ray that returned the most of it.
-/// Not modelled: a profile of intensity over the beam, several returns of a firing.
+/// Finite beam width, sampled by a fixed pattern of rays with equal shares of the ellipse's area (H. Vogel, Math.
+/// Biosci. 44, 1979). Each ray returns an energy of reflectivity times cosine over range squared. Hits whose ranges
+/// differ by less than the length of the echo are merged. The strongest echo counts, with the energy-weighted mean of
+/// its ranges. A beam across an edge therefore returns a range between the two surfaces, or a jump if they are farther
+/// apart. Surface id and exact hit are those of the ray with the most energy. Not modelled: an intensity profile over
+/// the beam, several returns per firing.
 class BeamSpread {
  public:
   explicit BeamSpread(const Values& values);
 
   int rays() const { return rays_; }  ///< 1: off
-  /// Firings along ray `k` of the beams; the axis is the given direction.
+  /// Returns the firings along ray `k` of the beams, given the beam axes.
   void bend(const ChannelFirings& axis, int k, ChannelFirings& firings) const;
-  /// One echo a lane out of the hits of all rays.
+  /// Merges the hits of all rays into one echo per lane.
   void merge(const std::array<RayPacket, kMaxBeamRays>& rays, Echoes& echoes) const;
 
  private:
   int rays_;
   float echo_length_m_;
-  std::array<double, kMaxBeamRays> across_, up_;  ///< tangents of the offsets
+  std::array<double, kMaxBeamRays> across_, up_;  ///< tangents of the angular offsets
 };
 
-/// The exact hits of rays without width.
+/// Sets the exact hits of rays without width.
 void set_hits(Echoes& echoes);
 
 }  // namespace tumble::sim

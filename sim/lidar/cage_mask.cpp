@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A shape that holds every point within `margin_m` of the given bounded one.
+/// Returns a shape that contains every point within `margin_m` of a bounded shape.
 Shape widened(Shape shape, double margin_m) {
   Vector3d& size = shape.size_m;
   switch (shape.kind) {
@@ -21,7 +21,7 @@ Shape widened(Shape shape, double margin_m) {
       size = Vector3d(size.x() + margin_m, size.y() + margin_m, margin_m);
       break;
     case ShapeKind::ellipsoid:
-      // its support function |a n| grows by at least the margin when scaled so
+      // scaled such that the support function |a n| grows by at least the margin
       size *= 1.0 + margin_m / size.minCoeff();
       break;
     case ShapeKind::capsule:
@@ -63,11 +63,11 @@ CageMask::CageMask(const SceneGeometry& cage, const BeamPattern& pattern)
   for (const SceneShape& part : wide.shapes) {
     reach_m = std::max(reach_m, part.shape.p_FS_m.norm() + half_extent(part.shape).norm());
   }
-  if (!std::isfinite(reach_m)) {  // a plane without edge: no bound to work with
+  if (!std::isfinite(reach_m)) {  // an infinite plane gives no bound
     std::fill(meets_.begin(), meets_.end(), std::uint8_t{1});
     return;
   }
-  // a beam of the cell is the middle one turned about z by no more than the half angle; the rest is float rounding
+  // a beam of the cell is the middle beam, rotated about z by at most the half angle; the rest is float rounding
   const double margin_m = reach_m * pattern.cell_half_angle_rad() + 1e-4 * (1.0 + reach_m);
   for (SceneShape& part : wide.shapes) part.shape = widened(part.shape, margin_m);
 

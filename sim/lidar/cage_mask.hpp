@@ -9,15 +9,15 @@
 
 namespace tumble::sim {
 
-/// Which firings of a repeating pattern can meet the robot's own cage, worked out once: the cage is rigid to the lidar,
-/// and most firings miss it. Never says no to a firing that does meet it: each cell's middle is cast against shapes
-/// widened by the way that a beam of the cell can be off the middle.
+/// Precomputes which firings of a repeating pattern may hit the robot's own cage. The cage is rigidly attached to the
+/// lidar, and most firings miss it. The mask has no false negatives: the middle of each cell is cast against shapes
+/// that are widened by the largest distance of a beam of the cell from the middle.
 class CageMask {
  public:
-  /// `cage` in the axes of L. Of a pattern that does not repeat every firing is said to meet it.
+  /// `cage` is in the axes of L. For a pattern that does not repeat, every firing may hit.
   CageMask(const SceneGeometry& cage, const BeamPattern& pattern);
 
-  /// Whether any firing of a channel in the block may meet the cage.
+  /// True if any firing of a channel in the block may hit the cage.
   bool may_hit(const FiringBlock& block, int channel) const {
     if (cells_ == 0) return !is_empty_;
     bool may = false;
@@ -28,7 +28,7 @@ class CageMask {
  private:
   bool is_empty_;
   int cells_;
-  std::vector<std::uint8_t> meets_;  ///< by channel, then cell
+  std::vector<std::uint8_t> meets_;  ///< by channel, then by cell
 };
 
 }  // namespace tumble::sim

@@ -14,7 +14,7 @@ struct Words {
   alignas(64) std::uint32_t word[4][kBlocks];
 };
 
-/// philox4x32_10 of the counters (first + i), all rounds in step.
+/// Computes philox4x32_10 for the counters (first + i), with all rounds in parallel.
 [[gnu::target("avx2")]] void philox(std::uint64_t first, std::array<std::uint32_t, 2> key, Words& words) {
   for (int i = 0; i < kBlocks; ++i) {
     const std::uint64_t counter = first + static_cast<std::uint64_t>(i);
@@ -36,7 +36,7 @@ struct Words {
   }
 }
 
-/// In (0, 1]; the relative precision of float is kept towards zero, where the logarithm needs it.
+/// Maps a word to (0, 1]. Small results keep float's relative precision, which the logarithm needs.
 float unit_of(std::uint32_t word) {
   return (static_cast<float>(static_cast<std::int32_t>(word >> 1)) + 0.5f) * 0x1p-31f;
 }
@@ -52,7 +52,7 @@ float log_of(float x) {
   return static_cast<float>(exponent) * 0.693147181f + series;
 }
 
-/// Cosine and sine of a whole turn times word / 2^32: quadrant, then Taylor series within +-pi/4. Error 1e-7.
+/// Cosine and sine of a full turn times word / 2^32: quadrant, then Taylor series within +-pi/4. Error 1e-7.
 void cos_sin_of(std::uint32_t word, float& cosine, float& sine) {
   const std::uint32_t quadrant = (word + 0x20000000u) >> 30;
   const auto rest = static_cast<std::int32_t>(word - (quadrant << 30));
@@ -83,7 +83,7 @@ LaneNoiseSource::LaneNoiseSource(const Stream& stream) {
     noise.normal[i + kBlocks] = radius * sine;
   }
   for (int i = 0; i < kBlocks; ++i) {
-    // 23 bits: the middle of the cell stays below one in float
+    // with 23 bits, the middle of the last cell is below one in float
     noise.uniform[i] = (static_cast<float>(static_cast<std::int32_t>(words.word[2][i] >> 9)) + 0.5f) * 0x1p-23f;
     noise.uniform[i + kBlocks] =
         (static_cast<float>(static_cast<std::int32_t>(words.word[3][i] >> 9)) + 0.5f) * 0x1p-23f;

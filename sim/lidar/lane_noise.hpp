@@ -9,21 +9,21 @@
 
 namespace tumble::sim {
 
-/// Random numbers of one packet of rays, one of each kind a lane.
+/// Random numbers of one packet of rays, one of each kind per lane.
 struct LaneNoise {
-  alignas(64) float normal[kLanes];   ///< mean 0, standard deviation 1, tails cut at 6.6
+  alignas(64) float normal[kLanes];   ///< mean 0, standard deviation 1, tails truncated at 6.6
   alignas(64) float uniform[kLanes];  ///< in (0, 1)
 };
 
-/// Random numbers sixteen lanes at a time: Philox 4x32-10 and Box-Muller (1958) written as loops over lanes, in single
-/// precision and without calls, so that a compiler turns them into vector instructions. Pure: the numbers belong to
-/// (stream, index, lane) alone.
+/// Random numbers for sixteen lanes at a time. Philox 4x32-10 and Box-Muller (1958) are written as loops over lanes, in
+/// single precision and without calls, so that the compiler vectorises them. The numbers depend only on (stream, index,
+/// lane).
 class LaneNoiseSource {
  public:
-  /// Keyed by a block of the stream that draw() never uses.
+  /// The key is a block of the stream that draw() never uses.
   explicit LaneNoiseSource(const Stream& stream);
 
-  /// `index` names the packet, below 2^61.
+  /// `index` identifies the packet; must be below 2^61.
   void draw(std::uint64_t index, LaneNoise& noise) const;
 
  private:

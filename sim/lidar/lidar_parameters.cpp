@@ -14,7 +14,7 @@ constexpr Parameter elevation(std::string_view name, double value_rad) {
   return {name, value_rad, -kRightAngle_rad, kRightAngle_rad, "rad", "elevation of this channel, in firing order"};
 }
 
-// Both kinds share the errors of ranging; the values are the RS-16's and the Mid-100's.
+// Both kinds of lidar have the same range errors. The values are those of the RS-16 and the Mid-100.
 constexpr Parameter kRangeNoise{
     "range_noise_m", 0.02, 0.0, 10.0, "m", "standard deviation of a range, white from point to point; 0: off"};
 constexpr Parameter kReferenceReflectivity{
@@ -26,37 +26,35 @@ constexpr Parameter kSteepness{"detection_steepness",
                                "1",
                                "k of the share of returns kept, s^k / (1 + s^k), with the signal s = (reflectivity "
                                "cos(incidence) / detection_reflectivity) (detection_range_m / range)^2"};
-constexpr Parameter kDropout{"dropout_share", 0.0, 0.0, 1.0, "1", "share of returns lost whatever their signal"};
+constexpr Parameter kDropout{"dropout_share", 0.0, 0.0, 1.0, "1", "share of returns lost independent of their signal"};
 constexpr Parameter kIntensityQuantum{
-    "intensity_quantum", 1.0 / 255.0, 0.0, 1.0, "1", "step of the reported intensity; 0: off"};
+    "intensity_quantum", 1.0 / 255.0, 0.0, 1.0, "1", "resolution of the reported intensity; 0: off"};
 constexpr Parameter kBeamRays{
-    "beam_rays", 1.0, 1.0,
-    16.0,        "1", "rays that sample the width of a beam, a whole number; 1: off, the beam is its axis"};
+    "beam_rays", 1.0, 1.0, 16.0, "1", "number of rays that sample the width of a beam; 1: off, the beam is its axis"};
 constexpr Parameter kEchoLength{"echo_length_m",
                                 0.75,
                                 0.0,
                                 100.0,
                                 "m",
-                                "with beam_rays above 1: echoes nearer to each other than this merge into one mixed "
-                                "return; 0.75 m is a pulse of 5 ns, assumed"};
+                                "with beam_rays above 1: echoes whose ranges differ by less than this merge into one "
+                                "mixed return; 0.75 m corresponds to an assumed pulse of 5 ns"};
 
 constexpr Parameter divergence(std::string_view name, double value_rad) {
-  return {name, value_rad, 0.0, 0.1, "rad", "full angle over which beam_rays spread, in this direction of L"};
+  return {name, value_rad, 0.0, 0.1, "rad", "full angle of the beam's width in this direction of L"};
 }
 
 constexpr Parameter kCage{
     "sees_own_cage", 1.0, 0.0, 1.0, "1", "1: the robot's own struts give returns; 0: transparent"};
 
-// Elevations: the calibrated ones of the published rig, in radians.
+// Elevations [rad] are the calibrated ones of the published rig.
 constexpr std::array kSpinning = {
     Parameter{"spin_rate_hz", 10.0, 1.0, 50.0, "Hz", "turns per second; one turn is one sweep"},
     Parameter{"clockwise", 1.0, 0.0, 1.0, "1", "1: the azimuth turns from x towards -y; 0: towards +y"},
     Parameter{"firing_period_s", 3e-6, 1e-7, 1e-3, "s", "time between two channels of a sequence"},
     Parameter{"sequence_period_s", 50e-6, 2e-6, 1e-2, "s", "time between two sequences of all channels"},
-    Parameter{
-        "current_driver_timing", 0.0, 0.0, 1.0, "1",
-        "1: fires as the vendor's current rs_driver times the RS-16, channels 2.8 us and sequences 55.5 us apart, "
-        "whatever firing_period_s and sequence_period_s say"},
+    Parameter{"current_driver_timing", 0.0, 0.0, 1.0, "1",
+              "1: timing of the RS-16 in the vendor's current rs_driver, with channels 2.8 us and sequences 55.5 us "
+              "apart; ignores firing_period_s and sequence_period_s"},
     elevation("elevation_01_rad", -0.262371856),
     elevation("elevation_02_rad", -0.227077808),
     elevation("elevation_03_rad", -0.192403351),
@@ -73,15 +71,15 @@ constexpr std::array kSpinning = {
     elevation("elevation_14_rad", 0.086844093),
     elevation("elevation_15_rad", 0.052016048),
     elevation("elevation_16_rad", 0.017060593),
-    Parameter{"mirror_radius_m", 0.04638, 0.0, 1.0, "m", "R1: the beams leave at this distance from the spin axis"},
-    Parameter{"mirror_drop_m", 0.010875, -1.0, 1.0, "m", "R2: and this far below the origin of L"},
-    Parameter{"range_min_m", 0.2, 0.0, 100.0, "m", "nearer returns are lost"},
-    Parameter{"range_max_m", 150.0, 0.1, 10000.0, "m", "farther returns are lost"},
+    Parameter{"mirror_radius_m", 0.04638, 0.0, 1.0, "m", "R1: distance from the spin axis at which the beams leave"},
+    Parameter{"mirror_drop_m", 0.010875, -1.0, 1.0, "m", "R2: distance below the origin of L at which the beams leave"},
+    Parameter{"range_min_m", 0.2, 0.0, 100.0, "m", "minimum range; nearer returns are lost"},
+    Parameter{"range_max_m", 150.0, 0.1, 10000.0, "m", "maximum range; farther returns are lost"},
     kRangeNoise,
-    Parameter{"range_quantum_m", 0.005, 0.0, 1.0, "m", "step of the reported range; 0: off"},
-    Parameter{
-        "detection_range_m", 150.0, 0.0, 10000.0, "m",
-        "range where half of the returns of detection_reflectivity at normal incidence are lost; 0: no such loss"},
+    Parameter{"range_quantum_m", 0.005, 0.0, 1.0, "m", "resolution of the reported range; 0: off"},
+    Parameter{"detection_range_m", 150.0, 0.0, 10000.0, "m",
+              "range at which half of the returns with detection_reflectivity and normal incidence are lost; 0: no "
+              "such loss"},
     kReferenceReflectivity,
     kSteepness,
     kDropout,
@@ -92,28 +90,28 @@ constexpr std::array kSpinning = {
     kEchoLength,
     kCage,
     Parameter{"driver_stamp_fault", 0.0, 0.0, 1.0, "1",
-              "1: time stamps as the published rig's driver wrote them, two sequences to a block of one period, which "
+              "1: time stamps as in the published rig's driver, with two sequences per block of one period, which "
               "compresses time twofold within packets of 24 sequences"},
 };
 
 constexpr std::array kRosette = {
-    Parameter{"units", 3.0, 1.0, 3.0, "1", "scanning units side by side; a whole number"},
+    Parameter{"units", 3.0, 1.0, 3.0, "1", "number of adjacent scanning units"},
     Parameter{"unit_spacing_rad", 0.5235987755982988, 0.0, 1.6, "rad", "yaw between neighbouring units"},
     Parameter{"point_period_s", 10e-6, 1e-7, 1e-3, "s", "time between two points of a unit"},
-    Parameter{"sweep_period_s", 0.1, 1e-3, 10.0, "s", "points are bundled into sweeps of this length"},
+    Parameter{"sweep_period_s", 0.1, 1e-3, 10.0, "s", "duration of the sweeps into which points are grouped"},
     Parameter{"prism_1_rate_hz", 7294.0 / 60.0, -1000.0, 1000.0, "Hz", "turns per second of the first prism"},
     Parameter{"prism_2_rate_hz", -4664.0 / 60.0, -1000.0, 1000.0, "Hz", "turns per second of the second prism"},
     Parameter{"prism_1_amplitude", 0.1713, 0.0, 1.0, "1", "tangent of the first prism's deflection"},
     Parameter{"prism_2_amplitude", 0.1744, 0.0, 1.0, "1", "tangent of the second prism's deflection"},
     Parameter{"mixed_amplitude", 0.0022, 0.0, 1.0, "1",
               "tangent of the deflection at twice the first rate minus the second; 0: off"},
-    Parameter{"range_min_m", 1.0, 0.0, 100.0, "m", "nearer returns are lost"},
-    Parameter{"range_max_m", 260.0, 0.1, 10000.0, "m", "farther returns are lost"},
+    Parameter{"range_min_m", 1.0, 0.0, 100.0, "m", "minimum range; nearer returns are lost"},
+    Parameter{"range_max_m", 260.0, 0.1, 10000.0, "m", "maximum range; farther returns are lost"},
     kRangeNoise,
-    Parameter{"range_quantum_m", 0.001, 0.0, 1.0, "m", "step of the reported range; 0: off"},
-    Parameter{
-        "detection_range_m", 130.0, 0.0, 10000.0, "m",
-        "range where half of the returns of detection_reflectivity at normal incidence are lost; 0: no such loss"},
+    Parameter{"range_quantum_m", 0.001, 0.0, 1.0, "m", "resolution of the reported range; 0: off"},
+    Parameter{"detection_range_m", 130.0, 0.0, 10000.0, "m",
+              "range at which half of the returns with detection_reflectivity and normal incidence are lost; 0: no "
+              "such loss"},
     kReferenceReflectivity,
     kSteepness,
     kDropout,
@@ -122,8 +120,9 @@ constexpr std::array kRosette = {
     divergence("divergence_horizontal_rad", 0.03 * kDegree_rad),
     divergence("divergence_vertical_rad", 0.28 * kDegree_rad),
     kEchoLength,
-    Parameter{"sees_own_cage", 0.0, 0.0, 1.0, "1",
-              "1: the robot's own struts give returns; 0: transparent, as the shell around the lidar of the sphere"},
+    Parameter{
+        "sees_own_cage", 0.0, 0.0, 1.0, "1",
+        "1: the robot's own struts give returns; 0: they are transparent, as is the shell around the sphere's lidar"},
 };
 
 }  // namespace

@@ -7,13 +7,13 @@
 
 namespace tumble::sim {
 
-/// Channels of a spinning lidar; elevation_01_rad is the first to fire.
+/// Number of channels of a spinning lidar; elevation_01_rad fires first.
 inline constexpr int kSpinningChannels = 16;
 
-/// Numbers of a lidar whose column of lasers turns about the z axis of L (RoboSense RS-16).
+/// Parameters of a lidar whose column of lasers rotates about the z axis of L (RoboSense RS-16).
 std::span<const Parameter> spinning_lidar_parameters();
 
-/// Numbers of a lidar whose beam draws a rosette, one or several units side by side (Livox Mid-40, Mid-100).
+/// Parameters of a lidar with a rosette pattern and one or several adjacent units (Livox Mid-40, Mid-100).
 std::span<const Parameter> rosette_lidar_parameters();
 
 }  // namespace tumble::sim

@@ -20,7 +20,7 @@ void append(const std::vector<T>& from, std::size_t count, std::vector<T>& to) {
   to.insert(to.end(), from.begin(), from.begin() + static_cast<std::ptrdiff_t>(count));
 }
 
-/// Room for every firing: pages that no return ever touches cost nothing, and no growth moves the points about.
+/// Reserves room for every firing, so that points are never moved. Pages that no return touches cost no memory.
 void reserve(std::size_t points, LidarRecord& record, LidarTruth& truth) {
   record.position_L_m.reserve(points);
   record.range_m.reserve(points);
@@ -41,7 +41,7 @@ void append_sweep(const SweepPoints& sweep, LidarRecord& record, LidarTruth& tru
   append(sweep.surface_id, sweep.count, truth.surface_id);
 }
 
-/// Sweeps that end within the motion; its last sample holds for one period more.
+/// Number of sweeps that end within the motion; the last sample is valid for one more period.
 std::int64_t whole_sweeps(const MotionTrack& motion, std::int64_t sweep_period_ns) {
   if (motion.period_ns <= 0 || motion.p_WB_m.size() != motion.q_WB.size()) {
     throw std::invalid_argument("simulate_lidar: motion needs a positive period and as many attitudes as positions");
@@ -70,9 +70,9 @@ void simulate_lidar(const engine::World& world, const SensorSpec& sensor, const 
   record.sweep_first.push_back(0);
   if (sweeps > 0) reserve(caster.firings(0) * static_cast<std::size_t>(sweeps), record, truth);
 
-  // a few sweeps at a time, so that the memory beside the record stays small
+  // only a few sweeps at a time, so that the memory for intermediate results stays small
   const auto allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
-  threads = std::clamp(threads, 1, static_cast<int>(allowed));  // oneTBB prints a warning when asked for more
+  threads = std::clamp(threads, 1, static_cast<int>(allowed));  // oneTBB prints a warning for larger numbers
   const std::int64_t at_once = 2 * threads;
   std::vector<SweepPoints> done(static_cast<std::size_t>(at_once));
   tbb::task_arena arena(threads);

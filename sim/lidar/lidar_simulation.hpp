@@ -12,17 +12,17 @@
 
 namespace tumble::sim {
 
-/// True motion of the body at a fixed period from time 0, as LidarSimulation asks for it.
+/// True motion of the body at a fixed period from time 0.
 struct MotionTrack {
   std::int64_t period_ns = 0;
   std::span<const Eigen::Vector3d> p_WB_m;
   std::span<const Eigen::Quaterniond> q_WB;
 };
 
-/// Casts all sweeps of one lidar over a motion, each point from the pose that the sensor has at its firing.
-/// Static world and the robot's own cage are both hit (Embree); misses leave no point. Then the device's errors: range
-/// noise and quantum, drop-outs. Results do not depend on `threads`.
-/// `T_BL` is the true mounting. `record` and `truth` come back complete but for the calibration in `record.T_BL`.
+/// Casts all sweeps of one lidar over a motion, each point from the true sensor pose at its firing. Rays hit the static
+/// world and the robot's own cage (Embree); rays without a hit give no point. Then the device's errors are applied:
+/// range noise and quantum, drop-outs. Results do not depend on `threads`. `T_BL` is the true mounting. `record` and
+/// `truth` are complete afterwards, except for the calibration in `record.T_BL`.
 void simulate_lidar(const engine::World& world, const SensorSpec& sensor, const Eigen::Isometry3d& T_BL,
                     const MotionTrack& motion, std::uint64_t seed, int threads, LidarRecord& record, LidarTruth& truth);
 

@@ -5,16 +5,16 @@
 
 #include "sim/lidar/ray_scene.hpp"
 
-/// Private to sim: what the rays of a packet have met so far.
+/// Private to sim: the nearest hits found so far for a packet of rays.
 namespace tumble::sim {
 
-/// The nearest hit of each lane, in our own arithmetic: by its range, and of hits at the same range the first by
-/// number, in whatever order they come.
+/// Nearest hit of each lane, computed with our own arithmetic. Of hits at the same range, the lowest geometry number
+/// counts, so that the result does not depend on the order of calls.
 class NearestHits {
  public:
   static constexpr unsigned int kNone = ~0u;
 
-  /// Nothing yet, within the packet's ranges.
+  /// Starts without hits, limited to the packet's ranges.
   explicit NearestHits(const RayPacket& packet);
 
   bool is_replaced(unsigned int lane, double by_range_m, unsigned int by_geometry, unsigned int by_primitive) const {
@@ -23,7 +23,7 @@ class NearestHits {
            (geometry_[lane] != kNone &&
             (by_geometry < geometry_[lane] || (by_geometry == geometry_[lane] && by_primitive < primitive_[lane])));
   }
-  /// The normal may be of any length.
+  /// The normal may have any length.
   void replace(unsigned int lane, double range_m, double normal_x, double normal_y, double normal_z,
                unsigned int geometry, unsigned int primitive) {
     range_m_[lane] = range_m;
@@ -36,7 +36,7 @@ class NearestHits {
 
   unsigned int geometry(int lane) const { return geometry_[static_cast<std::size_t>(lane)]; }  ///< kNone: no hit
   unsigned int primitive(int lane) const { return primitive_[static_cast<std::size_t>(lane)]; }
-  /// Ranges and cosines of what was hit; the other lanes stay as they are.
+  /// Writes ranges and cosines of lanes with hits; other lanes are unchanged.
   void write(RayPacket& packet) const;
 
  private:

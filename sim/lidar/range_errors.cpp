@@ -8,12 +8,13 @@ namespace tumble::sim {
 
 namespace {
 
-// Two bounds that spare most returns the power: below this uniform number a return is kept from sure_signal_ on; from
-// certain_signal_ on, whose odds of loss are below the step of the uniform numbers, whatever the number.
+// Two bounds that avoid the power function for most returns. For a uniform number below this value, a return is kept
+// from sure_signal_ on. From certain_signal_ on it is always kept, because the probability of loss is below the
+// resolution of the uniform numbers.
 constexpr double kSure = 0.99;
 constexpr double kCertainOdds = 0x1p25;
 
-/// Nearest whole multiple, ties to even: adding 1.5 * 2^52 leaves no digit behind the point, without a call.
+/// Rounds to the nearest multiple, ties to even: adding 1.5 * 2^52 removes the fraction without a function call.
 double rounded(double value, double quantum) {
   constexpr double kShift = 0x1.8p52;
   return quantum * ((value / quantum + kShift) - kShift);
@@ -38,11 +39,11 @@ RangeErrors::RangeErrors(const Values& values, std::uint64_t seed, std::string_v
 bool RangeErrors::is_detected(float signal, double uniform) const {
   if (uniform >= kept_share_) return false;
   if (detection2_m2_ == 0.0 || signal >= certain_signal_) return true;
-  // what is left of the uniform number after the random loss is uniform again
+  // given that the return survived the random loss, the rescaled number is uniform again
   const double u = uniform / kept_share_;
   if (u < kSure && signal >= sure_signal_) return true;
   const double odds = std::pow(signal, steepness_);
-  // odds overflow to infinity where a return cannot be missed
+  // the odds overflow to infinity for a return that cannot be missed
   return u < 1.0 - 1.0 / (1.0 + odds);
 }
 

@@ -9,22 +9,22 @@
 
 namespace tumble::sim {
 
-/// What a device makes of sixteen exact hits; numbers count where `kept` is set.
+/// The device's measurements of sixteen exact hits; values are valid only if `kept` is set.
 struct Returns {
   bool kept[kLanes];
   alignas(64) float range_m[kLanes];
   alignas(64) float intensity[kLanes];  ///< 0..1
 };
 
-/// Errors of ranging, in this order: loss of weak returns (by range, incidence, reflectivity) and at random, white
-/// noise, limits of range, quantum. Intensity is reflectivity times the cosine of incidence, as a device that
-/// compensates for range reports it, cut to its quantum. Not modelled: range bias by incidence or intensity,
-/// cross-talk, several returns of one firing. Divergence and mixed returns: BeamSpread, before this.
+/// Range errors in this order: loss of weak returns (by range, incidence, reflectivity), random loss, white noise,
+/// range limits, quantum. Intensity is reflectivity times the cosine of incidence, rounded down to its quantum, as
+/// reported by devices that compensate for range. Not modelled: range bias by incidence or intensity, cross-talk,
+/// several returns per firing. Divergence and mixed returns are modelled before this stage by BeamSpread.
 class RangeErrors {
  public:
   RangeErrors(const Values& values, std::uint64_t seed, std::string_view stream_name);
 
-  /// Pure: depends on the seed, the name, `index` (unique for a packet) and the hits alone.
+  /// The result depends only on seed, name, `index` (unique per packet) and hits.
   void apply(const RayPacket& hits, std::uint64_t index, Returns& returns) const;
 
  private:

@@ -9,10 +9,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// How much of an interval is over at each lane, and by that the weights of its turns.
+/// Elapsed share of an interval at each lane, and the resulting weights of its rotations.
 struct Shares {
   alignas(64) double share[kLanes], first[kLanes], second[kLanes];
-  alignas(64) double within[kLanes];  ///< 1 from the first lane on that the interval is for, 0 before
+  alignas(64) double within[kLanes];  ///< 1 from the interval's first lane on, 0 before
 };
 
 [[gnu::target("avx2")]] void weigh(const TrackCursor::Interval& now, Shares& shares) {
@@ -35,7 +35,7 @@ struct Shares {
   }
 }
 
-/// One number of the pose, and its rate of change per second, of the lanes that the interval is for.
+/// Computes one number of the pose and its rate per second, for the lanes of the interval.
 [[gnu::target("avx2")]] void follow_number(const TrackCursor::Interval& now, const Shares& shares, int row, int column,
                                            double (&pose)[kLanes], double (&rate)[kLanes]) {
   const double start = now.start(row, column), turned = now.turned(row, column), twice = now.rotated_twice(row, column);
@@ -58,7 +58,7 @@ struct Shares {
   }
 }
 
-/// One world coordinate of all lanes: `row` of the rotation and the position's coordinate of that row.
+/// Computes one world coordinate for all lanes: `row` of the rotation and the same coordinate of the position.
 [[gnu::target("avx2")]] void aim_coordinate(const double (*pose)[kLanes], const double (*rate)[kLanes], int row,
                                             double after_s, const ChannelFirings& firings, float* origin,
                                             float* direction) {
@@ -77,7 +77,7 @@ struct Shares {
 
 void BlockPoses::follow(const BeamPattern& pattern, const FiringBlock& block, TrackCursor& track) {
   const std::int64_t length_ns = pattern.slot_length_ns();
-  // lanes without a slot follow the last one, so that nothing is computed from numbers never set
+  // lanes without a slot repeat the last slot, so that all lanes are initialised
   const auto start_ns = [&](int lane) { return block.start_ns[std::min(lane, block.slots - 1)]; };
   const auto middle_ns = [&](int lane) { return start_ns(lane) + length_ns / 2; };
   broken_count_ = 0;
@@ -85,7 +85,7 @@ void BlockPoses::follow(const BeamPattern& pattern, const FiringBlock& block, Tr
     const TrackCursor::Interval& now = track.interval(middle_ns(from));
     Shares shares;
     for (int s = 0; s < kLanes; ++s) {
-      // later lanes that the interval does not hold are set anew by the next
+      // lanes beyond the interval are overwritten by the next interval
       shares.within[s] = s >= from ? 1.0 : 0.0;
       shares.share[s] = now.share(middle_ns(std::max(s, from)));
     }

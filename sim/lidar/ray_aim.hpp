@@ -6,14 +6,15 @@
 
 namespace tumble::sim {
 
-/// Poses of the lidar over a block of firings, and rays in world axes from them, each at its own firing's time.
-/// Within a slot (50 us) the pose goes on at the rate of the slot's middle: at 20 rad/s that leaves (rate dt)^2 / 2 =
-/// 1e-7 rad. A slot in which the motion changes its rate (a sample of the track lies inside) gets a pose per firing.
+/// Poses of the lidar for a block of firings; converts firings to rays in world axes, each at its own firing time.
+/// Within a slot (50 us) the pose is extrapolated with the rate at the middle of the slot. At 20 rad/s the error is
+/// (rate dt)^2 / 2 = 1e-7 rad. A slot that contains a sample of the track, where the rate changes, gets one pose per
+/// firing.
 class BlockPoses {
  public:
   void follow(const BeamPattern& pattern, const FiringBlock& block, TrackCursor& track);
 
-  /// Origins and directions of `rays` from those of a channel; everything else is left alone.
+  /// Sets origins and directions of `rays` for one channel; other members are unchanged.
   void aim(const BeamPattern& pattern, const FiringBlock& block, const ChannelFirings& firings, int channel,
            RayPacket& rays) const;
 
@@ -24,11 +25,11 @@ class BlockPoses {
 
   alignas(64) double pose_[kPose][kLanes], rate_[kPose][kLanes];
   int broken_count_ = 0;
-  int broken_lane_[kLanes];  ///< slots with a change of rate inside
+  int broken_lane_[kLanes];  ///< slots that contain a change of rate
   Pose34 broken_pose_[kLanes][kMaxChannels];
 };
 
-/// Rays in the axes of L.
+/// Returns rays in the axes of L.
 void aim_in_lidar_axes(const ChannelFirings& firings, RayPacket& rays);
 
 }  // namespace tumble::sim

@@ -30,22 +30,22 @@ struct SceneDeleter {
 using DevicePtr = std::unique_ptr<RTCDeviceTy, DeviceDeleter>;
 using ScenePtr = std::unique_ptr<RTCSceneTy, SceneDeleter>;
 
-/// One kernel on every CPU: with AVX2 alone, in packets of its own width. Embree would choose by the CPU, and its
-/// kernels differ in the last bits.
+/// Selects the same kernel on every CPU: AVX2 with its native packet width. Embree would choose by CPU, and its kernels
+/// differ in the last bits.
 constexpr const char* kDevice =
-    // not "threads=1", which would limit oneTBB in the whole process for as long as the device lives
+    // "threads=1" would limit oneTBB in the whole process during the device's life
     "start_threads=0,set_affinity=0,isa=avx2,frequency_level=simd256,ignore_config_files=1";
 constexpr int kKernelLanes = 8;
 static_assert(kKernelLanes == kShapeLanes && NearestHits::kNone == RTC_INVALID_GEOMETRY_ID);
-/// Embree divides by way of an approximate reciprocal that vendors are free to choose. Its ranges only decide what is
-/// looked at: whatever they put within this share of the nearest hit is looked at too.
+/// Embree divides with an approximate reciprocal that differs between CPU vendors. Its ranges only select candidates:
+/// everything within this factor of the nearest hit is examined.
 constexpr float kReach = 1.0f + 4e-6f;
 
 struct MeshLabel {
   std::int32_t surface_id = kNothing;
   float reflectivity = 0.0f;
   bool as_quads = false;
-  const float* vertices = nullptr;  ///< of Embree's buffers
+  const float* vertices = nullptr;  ///< points into Embree's buffers
   const std::uint32_t* faces = nullptr;
 
   Vector3f corner(std::uint32_t face, std::uint32_t i) const {
@@ -53,7 +53,7 @@ struct MeshLabel {
   }
 };
 
-/// What the callbacks are given; Embree hands its first member on. A lane's index is in the ray's id.
+/// Data of the callbacks; Embree passes its first member. The lane's index is in the ray's id.
 struct CastContext {
   RTCIntersectContext embree;
   const std::vector<MeshLabel>* meshes;
@@ -68,9 +68,9 @@ float searched_to(double range_m) {
   return static_cast<float>(range_m) * kReach;
 }
 
-/// Triangles (a, b, c), (a, c, d) in pairs throughout, as a height field has them, make quads (b, c, d, a), which
-/// Embree cuts along the same diagonal: half the time to build, a tenth off the time to cast. Empty when they do not
-/// pair.
+/// Combines pairs of triangles (a, b, c), (a, c, d), as in a height field, to quads (b, c, d, a), which Embree cuts
+/// along the same diagonal. Building takes half the time, and casting 10 % less. Empty if the triangles do not form
+/// pairs.
 std::vector<std::array<std::uint32_t, 4>> paired(const std::vector<std::array<std::uint32_t, 3>>& triangles) {
   std::vector<std::array<std::uint32_t, 4>> quads;
   if (triangles.size() % 2 != 0) return quads;
@@ -84,7 +84,7 @@ std::vector<std::array<std::uint32_t, 4>> paired(const std::vector<std::array<st
   return quads;
 }
 
-/// Axis-aligned box of a bounded shape, a little widened because Embree rounds to float.
+/// Axis-aligned box of a bounded shape, slightly widened because Embree rounds to float.
 void shape_bounds(const RTCBoundsFunctionArguments* args) {
   const Shape& shape = static_cast<const SceneShape*>(args->geometryUserPtr)[args->primID].shape;
   const Vector3d half = shape.R_FS.cwiseAbs() * half_extent(shape);
@@ -103,23 +103,22 @@ Ray ray_at(RTCRayN* rays, unsigned int count, unsigned int i) {
           Vector3d(RTCRayN_dir_x(rays, count, i), RTCRayN_dir_y(rays, count, i), RTCRayN_dir_z(rays, count, i))};
 }
 
-/// Range at which a ray meets the plane of a face that Embree found it to hit, and the plane's normal, of any length;
-/// of a quad, that of the half which it passes.
-/// `second_half` is Embree's word on that, which it says by way of its approximate reciprocal: good enough for a quad
-/// whose halves lie one behind the other.
+/// Computes the range at which a ray meets the plane of a face that Embree reported, and the normal of the plane (any
+/// length). For a quad, `second_half` selects the half that the ray passes. It comes from Embree's approximate
+/// reciprocal, which is accurate enough because the two halves are adjacent.
 double meet_face(const MeshLabel& mesh, unsigned int face, const Ray& ray, bool second_half, Vector3d& normal) {
-  // relative to the origin, where double holds what float gave without loss
+  // relative to the origin; double represents the float differences exactly
   const auto corner = [&](std::uint32_t i) -> Vector3d { return mesh.corner(face, i).cast<double>() - ray.origin; };
   Vector3d a = corner(0), b = corner(1), c = corner(2);
   if (mesh.as_quads) {
     const Vector3d d = corner(3);
-    // (b, c, d, a) of the pair (a, b, c), (a, c, d): its corners 1 and 3 are the ends of the diagonal
+    // for (b, c, d, a) of the pair (a, b, c), (a, c, d), corners 1 and 3 are the ends of the diagonal
     const Vector3d across = b.cross(d);
     const bool beside_first = across.dot(a) >= 0.0, beside_second = across.dot(c) >= 0.0;
     const bool in_second =
         beside_first == beside_second ? second_half : (across.dot(ray.direction) >= 0.0) == beside_second;
     if (in_second)
-      a = d;  // (d, b, c) turns as the other one does
+      a = d;  // (d, b, c) has the same orientation
     else
       c = d;
   }
@@ -127,7 +126,7 @@ double meet_face(const MeshLabel& mesh, unsigned int face, const Ray& ray, bool 
   return normal.dot(a) / normal.dot(ray.direction);
 }
 
-/// Embree's filter: called at every hit that it finds within a ray's reach, in no stated order.
+/// Embree's filter callback: called for every hit within a ray's reach, in unspecified order.
 void keep_nearest(const RTCFilterFunctionNArguments* args) {
   CastContext& cast = cast_context(args->context);
   for (unsigned int i = 0; i < args->N; ++i) {
@@ -146,7 +145,7 @@ void keep_nearest(const RTCFilterFunctionNArguments* args) {
   }
 }
 
-/// Packets alone are cast, so that there are always eight rays, of which some may be spent.
+/// Only packets are cast, so there are always eight rays; some may be inactive.
 void intersect_shape(const RTCIntersectFunctionNArguments* args) {
   const Shape& shape = static_cast<const SceneShape*>(args->geometryUserPtr)[args->primID].shape;
   CastContext& cast = cast_context(args->context);
@@ -180,8 +179,8 @@ bool approach_shape(RTCPointQueryFunctionArguments* args) {
 struct RayScene::Impl {
   DevicePtr device;
   ScenePtr scene;
-  std::vector<SceneShape> bounded;    ///< behind geometry `shape_geometry`, primitive by primitive
-  std::vector<SceneShape> unbounded;  ///< planes without edge
+  std::vector<SceneShape> bounded;    ///< behind geometry `shape_geometry`, in the order of primitives
+  std::vector<SceneShape> unbounded;  ///< infinite planes
   std::vector<MeshLabel> meshes;      ///< by Embree geometry id
   unsigned int shape_geometry = RTC_INVALID_GEOMETRY_ID;
 
@@ -213,7 +212,7 @@ void RayScene::Impl::add_mesh(const SceneMesh& part) {
   rtcSetGeometryIntersectFilterFunction(geometry, keep_nearest);
   rtcCommitGeometry(geometry);
   const unsigned int id = rtcAttachGeometry(scene.get(), geometry);
-  rtcReleaseGeometry(geometry);  // the scene holds it, and its buffers with it
+  rtcReleaseGeometry(geometry);  // the scene keeps a reference to it and its buffers
   meshes.resize(std::max<std::size_t>(meshes.size(), id + 1), MeshLabel{});
   meshes[id] = {part.surface_id, part.reflectivity, as_quads,
                 static_cast<const float*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_VERTEX, 0)),
@@ -235,17 +234,17 @@ void RayScene::Impl::add_shapes() {
 
 RayScene::RayScene(const SceneGeometry& geometry) : impl_(std::make_unique<Impl>()) {
   impl_->device.reset(rtcNewDevice(kDevice));
-  // a bound on memory is no defect of the CPU
+  // a memory limit is not a missing CPU feature
   if (!impl_->device && rtcGetDeviceError(nullptr) == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
-  if (!impl_->device) throw std::runtime_error("lidar: Embree gives no device; the CPU must have AVX2 and FMA");
+  if (!impl_->device) throw std::runtime_error("lidar: Embree cannot create a device; the CPU must have AVX2 and FMA");
   impl_->scene.reset(rtcNewScene(impl_->device.get()));
-  rtcSetSceneFlags(impl_->scene.get(), RTC_SCENE_FLAG_ROBUST);  // no ray slips through between two triangles
+  rtcSetSceneFlags(impl_->scene.get(), RTC_SCENE_FLAG_ROBUST);  // no ray passes between two adjacent triangles
   for (const SceneShape& part : geometry.shapes) {
     (half_extent(part.shape).allFinite() ? impl_->bounded : impl_->unbounded).push_back(part);
   }
   for (const SceneMesh& part : geometry.meshes) impl_->add_mesh(part);
   impl_->add_shapes();
-  // an arena of one: building must not start threads that the caller did not give
+  // an arena of one thread: building must not use threads that the caller did not provide
   tbb::task_arena(1).execute([this] { rtcCommitScene(impl_->scene.get()); });
   const RTCError error = rtcGetDeviceError(impl_->device.get());
   if (error != RTC_ERROR_NONE) throw std::runtime_error("lidar: Embree error " + std::to_string(error));
@@ -279,7 +278,7 @@ void RayScene::Impl::cast_lanes(const RayPacket& packet, int first, CastContext&
   RTCRayHit8 rays;
   alignas(32) int valid[kKernelLanes];
   for (int i = 0; i < kKernelLanes; ++i) {
-    // a lane that is not used repeats the first one and ends before it begins: nothing undefined goes in
+    // an unused lane repeats the first one with an empty range, so that its input is defined
     const bool used = first + i < packet.count;
     const int lane = used ? first + i : first;
     valid[i] = used ? -1 : 0;
@@ -306,7 +305,7 @@ void RayScene::cast(RayPacket& packet) const {
   if (impl_->bounded.empty() && impl_->meshes.empty()) return;
   CastContext cast{{}, &impl_->meshes, NearestHits(packet)};
   rtcInitIntersectContext(&cast.embree);
-  // a channel's rays look in almost the same direction
+  // the rays of a channel have similar directions
   cast.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   for (int first = 0; first < packet.count; first += kKernelLanes) impl_->cast_lanes(packet, first, cast);
   cast.nearest.write(packet);

@@ -9,28 +9,28 @@
 
 namespace tumble::sim {
 
-/// Rays are cast sixteen at a time: one channel's in consecutive slots, which look in almost the same direction.
+/// Rays are cast sixteen at a time: one channel in consecutive slots, with similar directions.
 inline constexpr int kLanes = 16;
 
-/// Sixteen rays and what they hit. Lanes from `count` on are not cast.
+/// Sixteen rays and their hits. Lanes from `count` on are not cast.
 struct RayPacket {
   int count = kLanes;
   alignas(64) float origin_x[kLanes], origin_y[kLanes], origin_z[kLanes];
-  alignas(64) float direction_x[kLanes], direction_y[kLanes], direction_z[kLanes];  ///< unit
-  /// In: no hit beyond this counts. Out: range of the hit, unchanged when nothing was hit.
+  alignas(64) float direction_x[kLanes], direction_y[kLanes], direction_z[kLanes];  ///< unit vectors
+  /// Input: maximum range. Output: range of the hit, or unchanged without a hit.
   alignas(64) float range[kLanes];
-  alignas(64) float cosine[kLanes];  ///< of the angle of incidence, 0..1
+  alignas(64) float cosine[kLanes];  ///< cosine of the angle of incidence, 0..1
   alignas(64) float reflectivity[kLanes];
-  alignas(64) std::int32_t surface_id[kLanes];  ///< in: kNothing, or what was hit before; out: of the hit
+  alignas(64) std::int32_t surface_id[kLanes];  ///< input: kNothing, or an earlier hit; output: surface of the hit
 };
 
 inline constexpr std::int32_t kNothing = -1;
 
-/// Rays and nearest points against a fixed geometry (Embree; unbounded planes beside it). Building takes about 0.07 s
-/// for 320 000 triangles; a cast is logarithmic in the geometry. Const members may be called from several threads.
-/// Coordinates are float: at 50 m from the origin a hit is good to about 1e-5 m. Embree finds what a ray meets, with
-/// its kernel for AVX2 on every CPU; where it meets it is computed here in double: the same bits on every x86-64 with
-/// AVX2 and FMA. Throws std::runtime_error on a CPU without.
+/// Casts rays and finds nearest points on a fixed geometry (Embree, plus infinite planes). Building takes about 0.07 s
+/// for 320 000 triangles; the cost of a cast is logarithmic in the geometry. Const members may be called from several
+/// threads. Coordinates are float: at 50 m from the origin a hit is accurate to about 1e-5 m. Embree selects the
+/// surface with its AVX2 kernel on every CPU, and the hit is then computed in double. Results are therefore
+/// bit-identical on every x86-64 CPU with AVX2 and FMA. Throws std::runtime_error on other CPUs.
 class RayScene {
  public:
   explicit RayScene(const SceneGeometry& geometry);
@@ -39,9 +39,9 @@ class RayScene {
   RayScene& operator=(RayScene&&) noexcept;
 
   bool empty() const;
-  /// Nearest hit of each lane.
+  /// Finds the nearest hit of each lane.
   void cast(RayPacket& packet) const;
-  /// Distance from a point to the nearest surface, at most `limit_m` [m].
+  /// Returns the distance from a point to the nearest surface [m], at most `limit_m`.
   float distance(const Eigen::Vector3f& point_m, float limit_m) const;
 
  private:

@@ -18,7 +18,7 @@ bool is_seen(const mjModel& model, int geom) {
   return (model.geom_contype[geom] != 0 || model.geom_conaffinity[geom] != 0) && alpha != 0.0f;
 }
 
-/// Vertices of a height field in the axes of its geom: nodes in rows along x.
+/// Vertices of a height field in the axes of its geom; rows of nodes are along x.
 class HeightField {
  public:
   HeightField(const mjModel& model, int geom)
@@ -42,7 +42,8 @@ class HeightField {
   const float* data_;
 };
 
-/// Two triangles a cell, cut along the diagonal from (row, column) to (row + 1, column + 1), as the engine cuts it.
+/// Returns two triangles per cell, cut along the diagonal from (row, column) to (row + 1, column + 1), as in the
+/// engine.
 TriangleMesh height_field_top(const HeightField& field, const Isometry3d& T_FS) {
   TriangleMesh mesh;
   mesh.vertices_F_m.reserve(static_cast<std::size_t>(field.rows()) * field.columns());
@@ -63,7 +64,7 @@ TriangleMesh height_field_top(const HeightField& field, const Isometry3d& T_FS) 
   return mesh;
 }
 
-/// A wall from the height field's edge down to height zero, over the nodes `from`, `from` + `step`, ...
+/// Adds a wall from the edge of the height field down to height zero, over the nodes `from`, `from` + `step`, ...
 void append_wall(const HeightField& field, const Isometry3d& T_FS, int row, int column, int row_step, int column_step,
                  TriangleMesh& mesh) {
   const int count = row_step != 0 ? field.rows() : field.columns();
@@ -114,7 +115,7 @@ TriangleMesh geom_mesh(const mjModel& model, int geom, const Isometry3d& T_FS) {
   return mesh;
 }
 
-/// Whether the geom is a primitive, and which.
+/// Returns false if the geom is not a primitive.
 bool primitive_kind(int type, ShapeKind& kind) {
   switch (type) {
     case mjGEOM_PLANE:
@@ -173,7 +174,7 @@ void append_geom(const mjModel& model, int geom, const Isometry3d& T_FS, std::in
   } else {
     const char* name = mj_id2name(&model, mjOBJ_GEOM, geom);
     throw InvalidSituation("lidar: geom '" + std::string(name != nullptr ? name : std::to_string(geom)) +
-                           "' has a type that no ray can be cast against: " + std::to_string(type));
+                           "' has a type without a surface for rays: " + std::to_string(type));
   }
 }
 

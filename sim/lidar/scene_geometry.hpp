@@ -10,10 +10,10 @@
 #include "sim/engine/model.hpp"
 #include "sim/lidar/shape.hpp"
 
-/// Private to sim: what a ray can meet, taken out of a compiled model.
+/// Private to sim: extracts the surfaces that rays can hit from a compiled model.
 namespace tumble::sim {
 
-/// Surface id of a return from the robot's own struts. Ids from 0 up index engine::World::surfaces.
+/// Surface id of a return from the robot's own struts. Non-negative ids are indices of engine::World::surfaces.
 inline constexpr std::int32_t kOwnCage = -2;
 
 struct TriangleMesh {
@@ -21,7 +21,7 @@ struct TriangleMesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// Everything has a surface id and a diffuse reflectivity (0..1).
+/// A primitive with its surface id and diffuse reflectivity (0..1).
 struct SceneShape {
   Shape shape;
   std::int32_t surface_id;
@@ -38,28 +38,30 @@ struct SceneGeometry {
   std::vector<SceneMesh> meshes;
 };
 
-/// How a height field becomes triangles: its top alone, or closed by the side walls and base box that mj_ray also hits.
+/// Conversion of a height field to triangles: only its top, or closed by the side walls and base box that mj_ray also
+/// hits.
 enum class HeightFieldSides { open, closed };
 
-/// The geoms of engine::World::surface_geom in world axes, surface id = index there; visual-only geoms (contype and
-/// conaffinity zero) and invisible ones (alpha zero, as mj_ray has it) are left out. Throws InvalidSituation on a geom
-/// type that has no surface here (SDF).
+/// Returns the geoms of engine::World::surface_geom in world axes; the surface id is the index there. Visual geoms
+/// (contype and conaffinity zero) and invisible ones (alpha zero, as in mj_ray) are left out. Throws InvalidSituation
+/// for a geom type without a surface here (SDF).
 SceneGeometry static_geometry(const engine::World& world, HeightFieldSides sides);
 
-/// The robot's colliding geoms in the axes of a lidar mounted at `T_BL`, with id kOwnCage. A primitive that holds the
-/// origin of L inside is the lidar's own housing or a shell around it: transparent.
+/// Returns the robot's colliding geoms in the axes of a lidar mounted at `T_BL`, with id kOwnCage. A primitive that
+/// contains the origin of L is the lidar's housing or a surrounding shell, and is treated as transparent.
 SceneGeometry cage_geometry(const engine::World& world, const Eigen::Isometry3d& T_BL);
 
-/// Pose of a geom in W where the data's kinematics have it.
+/// Returns the pose of a geom in W by the current kinematics of the data.
 Eigen::Isometry3d geom_pose(const mjData& data, int geom);
 
-/// Adds one geom, whatever it is for, in the axes F that `T_FS` leads to from its own. Throws InvalidSituation on a
-/// type that has no surface here (SDF).
+/// Adds one geom of any purpose; `T_FS` maps its axes to F. Throws InvalidSituation for a type without a surface here
+/// (SDF).
 void append_geom(const mjModel& model, int geom, const Eigen::Isometry3d& T_FS, std::int32_t surface_id,
                  HeightFieldSides sides, SceneGeometry& scene);
 
-/// Diffuse reflectivity of a geom: the luminance (ITU-R BT.709) of its colour times the mean colour of its texture,
-/// within 0.05..0.95. Colour stands for 905 nm here, which real surfaces do not obey.
+/// Returns the diffuse reflectivity of a geom: the luminance (ITU-R BT.709) of its colour times the mean colour of its
+/// texture, clamped to 0.05..0.95. The visible colour approximates the reflectivity at 905 nm, which differs for real
+/// surfaces.
 float geom_reflectivity(const mjModel& model, int geom);
 
 }  // namespace tumble::sim

@@ -16,7 +16,8 @@ struct Roots {
   double first, second;
 };
 
-/// Solutions of a x^2 + 2 b x + c = 0 in rising order; NaN when there are none (comparisons with them fail).
+/// Returns the solutions of a x^2 + 2 b x + c = 0 in increasing order; NaN without real solutions (comparisons are then
+/// false).
 Roots solve_quadratic(double a, double b, double c) {
   const double discriminant = b * b - a * c;
   if (!(discriminant > 0.0) || !(a > 0.0)) return {std::nan(""), std::nan("")};
@@ -46,7 +47,7 @@ double cast_sphere(double radius, const Vector3d& o, const Vector3d& d, Vector3d
 }
 
 double cast_ellipsoid(const Vector3d& size, const Vector3d& o, const Vector3d& d, Vector3d& normal) {
-  // scaled to the unit sphere, along which the parameter stays the distance in F
+  // scaled to the unit sphere; the parameter remains the distance in F
   const Vector3d so = o.cwiseQuotient(size), sd = d.cwiseQuotient(size);
   const double x = first_ahead(solve_quadratic(sd.squaredNorm(), so.dot(sd), so.squaredNorm() - 1.0));
   if (x < kNone) normal = (so + x * sd).cwiseQuotient(size).normalized();
@@ -130,7 +131,7 @@ double cast_box(const Vector3d& half, const Vector3d& o, const Vector3d& d, Vect
   return outside ? enter : leave;
 }
 
-/// Signed distance to a box of any dimension: negative inside.
+/// Returns the signed distance to a box of any dimension; negative inside.
 template <typename Vector>
 double signed_box_distance(const Vector& point, const Vector& half) {
   const Vector beyond = point.cwiseAbs() - half;
@@ -138,8 +139,8 @@ double signed_box_distance(const Vector& point, const Vector& half) {
   return outside > 0.0 ? outside : beyond.maxCoeff();
 }
 
-/// Nearest point of an ellipsoid: the root of sum (a_i y_i / (t + a_i^2))^2 = 1 in t > -min a_i^2 (D. Eberly, Distance
-/// from a point to an ellipsoid), found by bisection, since the sum falls steadily there.
+/// Finds the nearest point of an ellipsoid: the root of sum (a_i y_i / (t + a_i^2))^2 = 1 in t > -min a_i^2 (D. Eberly,
+/// Distance from a point to an ellipsoid). Bisection is used because the sum decreases monotonically there.
 double ellipsoid_distance(const Vector3d& size, const Vector3d& point) {
   const double scale = size.maxCoeff();
   const Vector3d a = size / scale, y = point.cwiseAbs() / scale;
@@ -153,8 +154,7 @@ double ellipsoid_distance(const Vector3d& size, const Vector3d& point) {
     (outside(middle) > 0.0 ? low : high) = middle;
   }
   Vector3d nearest = a2.cwiseProduct(y).cwiseQuotient(a2 + Vector3d::Constant(high));
-  // a point on a plane of symmetry, close to the centre: the coordinate of the shortest axis is free, the surface sets
-  // it
+  // for a point on a plane of symmetry near the centre, the surface determines the coordinate along the shortest axis
   int shortest = 0;
   a.minCoeff(&shortest);
   if (y[shortest] < 1e-12) {

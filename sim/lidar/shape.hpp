@@ -9,9 +9,9 @@ namespace tumble::sim {
 
 enum class ShapeKind : std::uint8_t { plane, sphere, capsule, ellipsoid, cylinder, box };
 
-/// A primitive with its pose in a frame F (world or body); its axes S and `size_m` as MuJoCo defines them:
-/// plane half sizes x, y about the z axis (0: infinite), sphere radius, capsule and cylinder radius and half length
-/// along z, ellipsoid semi-axes, box half sizes.
+/// A primitive with its pose in a frame F (world or body). Its axes S and `size_m` are as in MuJoCo: plane half sizes
+/// x, y about the z axis (0: infinite); sphere radius; capsule and cylinder radius and half length along z; ellipsoid
+/// semi-axes; box half sizes.
 struct Shape {
   ShapeKind kind = ShapeKind::sphere;
   Eigen::Vector3d size_m = Eigen::Vector3d::Zero();
@@ -19,18 +19,19 @@ struct Shape {
   Eigen::Vector3d p_FS_m = Eigen::Vector3d::Zero();
 };
 
-/// Distance along the unit `direction_F` to the first crossing of the surface, from outside or inside; infinity when
-/// there is none. A plane is met from its front only, as mj_ray has it. `normal_F` is the outward unit normal there.
+/// Returns the distance along the unit vector `direction_F` to the first crossing of the surface, from outside or
+/// inside; infinity without a crossing. A plane is hit only from its front, as in mj_ray. `normal_F` is the outward
+/// unit normal at the hit.
 double cast_ray(const Shape& shape, const Eigen::Vector3d& origin_F_m, const Eigen::Vector3d& direction_F,
                 Eigen::Vector3d& normal_F);
 
-/// Distance of a point to the surface, whichever side it is on [m]; exact but for the ellipsoid (1e-9 relative).
+/// Returns the distance of a point on either side to the surface [m]; exact except for the ellipsoid (1e-9 relative).
 double surface_distance(const Shape& shape, const Eigen::Vector3d& point_F_m);
 
-/// Whether a point lies inside; a plane contains nothing.
+/// True if a point is inside; always false for a plane.
 bool contains(const Shape& shape, const Eigen::Vector3d& point_F_m);
 
-/// Half sizes of the box along S that holds the shape; infinite along an unbounded plane.
+/// Returns the half sizes along S of the box that contains the shape; infinite along an unbounded plane.
 Eigen::Vector3d half_extent(const Shape& shape);
 
 }  // namespace tumble::sim

@@ -3,27 +3,27 @@
 
 #include "sim/lidar/shape.hpp"
 
-/// Private to sim: eight rays against one shape at a time.
+/// Private to sim: intersection of eight rays with one shape.
 namespace tumble::sim {
 
-/// Rays that Embree hands over at once.
+/// Number of rays that Embree passes at once.
 inline constexpr int kShapeLanes = 8;
 
-/// Where eight rays meet a shape: what cast_ray() says of each.
+/// Hits of eight rays on a shape, as computed by cast_ray().
 struct ShapeHits {
-  alignas(64) double range_m[kShapeLanes];  ///< infinity where there is none
-  /// Of the surface there, unit, in F; without meaning where there is no hit. Zeros may bear the other sign.
+  alignas(64) double range_m[kShapeLanes];  ///< infinity without a hit
+  /// Unit normal of the surface in F; undefined without a hit. Zeros may have either sign.
   alignas(64) double normal_x[kShapeLanes], normal_y[kShapeLanes], normal_z[kShapeLanes];
 };
 
-/// Eight rays in F, a coordinate at a time.
+/// Eight rays in F, stored by coordinate.
 struct ShapeRays {
   const float *origin_x_m, *origin_y_m, *origin_z_m;
-  const float *direction_x, *direction_y, *direction_z;  ///< unit
+  const float *direction_x, *direction_y, *direction_z;  ///< unit vectors
 };
 
-/// cast_ray() of eight rays, to the last bit. Planes and boxes, of which rooms are made, are met by all at once. Hits
-/// of rays that are not `wanted` (0) have no meaning.
+/// Computes cast_ray() for eight rays, bit-identically. Planes and boxes, which make up rooms, are computed for all
+/// rays at once. Hits of rays that are not `wanted` (0) are undefined.
 void cast_rays(const Shape& shape, const ShapeRays& rays, const int* wanted, ShapeHits& hits);
 
 }  // namespace tumble::sim

@@ -10,17 +10,17 @@
 
 namespace tumble::sim {
 
-/// The true surface of a situation's world, for scoring maps: distance to the nearest surface of the static world.
+/// The true surface of a situation's static world: returns distances for the scoring of maps.
 class Surface {
  public:
-  /// Takes the world's static geoms over into a scene for rays; nothing is composed again. Throws InvalidSituation on a
-  /// geom that has no surface.
+  /// Copies the world's static geoms to a scene for rays; the world is not composed again. Throws InvalidSituation for
+  /// a geom without a surface.
   explicit Surface(const BuiltSituation& built);
   ~Surface();
   Surface(Surface&&) noexcept;
   Surface& operator=(Surface&&) noexcept;
 
-  /// Distance of each point to the nearest surface [m], at most `limit_m` (what lies farther gives `limit_m`).
+  /// Returns the distance of each point to the nearest surface [m], at most `limit_m`.
   std::vector<float> distances(std::span<const Eigen::Vector3f> points_W_m, float limit_m) const;
 
  private:

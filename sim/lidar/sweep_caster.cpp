@@ -10,7 +10,7 @@ namespace {
 std::unique_ptr<BeamPattern> pattern_of(const SensorSpec& sensor) {
   if (sensor.kind == "spinning_lidar") return std::make_unique<SpinningPattern>(sensor.values);
   if (sensor.kind == "rosette_lidar") return std::make_unique<RosettePattern>(sensor.values);
-  throw InvalidSituation("sensor '" + sensor.name + "': '" + sensor.kind + "' is no kind of lidar");
+  throw InvalidSituation("sensor '" + sensor.name + "': '" + sensor.kind + "' is not a kind of lidar");
 }
 
 bool any_hit(const RayPacket& rays) {
@@ -19,7 +19,7 @@ bool any_hit(const RayPacket& rays) {
   return any;
 }
 
-/// What one channel brings back from a block.
+/// Returns of one channel from a block.
 struct ChannelReturns {
   alignas(64) float position_x[kLanes], position_y[kLanes], position_z[kLanes];  ///< in L
   Returns returns;
@@ -55,7 +55,7 @@ struct SweepCaster::Workspace {
   ChannelFirings bent;
   std::array<RayPacket, kMaxBeamRays> beam;
   std::array<ChannelReturns, kMaxChannels> channel;
-  int active_count = 0;  ///< channels with any return
+  int active_count = 0;  ///< number of channels with at least one return
   std::array<int, kMaxChannels> active;
 };
 
@@ -69,7 +69,7 @@ SweepCaster::SweepCaster(const engine::World& world, const SensorSpec& sensor, c
       cage_(cage_geometry_),
       cage_mask_(cage_geometry_, *pattern_),
       T_BL_(T_BL),
-      // noise can bring back a hit from just beyond the limit
+      // noise can move a hit from just beyond the limit into range
       reach_m_(static_cast<float>(sensor.values.at("range_max_m") + 10.0 * sensor.values.at("range_noise_m"))),
       motion_(motion) {}
 
@@ -119,7 +119,7 @@ void SweepCaster::cast_block(Workspace& work) const {
     } else {
       for (int k = 0; k < spread_.rays(); ++k) {
         spread_.bend(firings, k, work.bent);
-        // the mask knows the axes of beams alone
+        // the mask knows only the axes of beams
         cast_channel(work.block, work.poses, c, !cage_.empty(), work.bent, work.beam[k]);
       }
       spread_.merge(work.beam, out.echoes);

@@ -16,7 +16,7 @@
 
 namespace tumble::sim {
 
-/// The returns of one sweep in the order of time. Sized once for all firings, then reused.
+/// The returns of one sweep in order of time. Sized once for all firings, then reused.
 struct SweepPoints {
   std::vector<Eigen::Vector3f> position_L_m, hit_W_m;
   std::vector<float> range_m, intensity;
@@ -28,21 +28,22 @@ struct SweepPoints {
   void make_room(std::size_t points);
 };
 
-/// Casts the sweeps of one lidar: a block of slots at a time, one packet of rays a channel. Const throughout: sweeps
-/// may run on several threads.
+/// Casts the sweeps of one lidar: one block of slots at a time, one packet of rays per channel. All members are const,
+/// so that sweeps may run in several threads.
 class SweepCaster {
  public:
-  /// Builds the mirror of the world (about 0.07 s for a height field of 400 x 400 cells). Throws InvalidSituation.
+  /// Builds the ray scene of the world (about 0.07 s for a height field of 400 x 400 cells). Throws InvalidSituation.
   SweepCaster(const engine::World& world, const SensorSpec& sensor, const Eigen::Isometry3d& T_BL,
               const MotionTrack& motion, std::uint64_t seed);
 
   const BeamPattern& pattern() const { return *pattern_; }
   std::size_t firings(std::int64_t sweep) const;
-  /// Sweep `number` of the recording, from nothing but the motion and the seed. No allocation once `points` has room.
+  /// Casts sweep `number` of the recording; it depends only on the motion and the seed. Allocates no memory once
+  /// `points` has room.
   void cast_sweep(std::int64_t number, SweepPoints& points) const;
 
  private:
-  /// Everything that a block needs, so that no lane allocates.
+  /// Buffers for a block, so that lanes allocate no memory.
   struct Workspace;
 
   void cast_channel(const FiringBlock& block, const BlockPoses& poses, int channel, bool meets_cage,

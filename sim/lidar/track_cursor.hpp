@@ -14,19 +14,19 @@ namespace tumble::sim {
 /// Rotation and position side by side: T_WL is (R_WL, p_WL).
 using Pose34 = Eigen::Matrix<double, 3, 4>;
 
-/// The true pose of a lidar between the samples of its body's motion: the body's position is linear in time, its
-/// attitude turns at a constant rate about a fixed axis. With samples 0.5 ms apart that leaves a dt^2 / 8 = 3e-8 s^2
-/// times the acceleration: 13 um at 400 m/s^2. Beyond the last sample its last interval goes on. Keeps the interval it
-/// is in, so that ascending times are cheap.
+/// Interpolates the true pose of a lidar between the samples of its body's motion. The body's position is linear in
+/// time, and its attitude rotates at a constant rate about a fixed axis. With samples 0.5 ms apart, the error is a dt^2
+/// / 8 = 3e-8 s^2 times the acceleration: 13 um at 400 m/s^2. Beyond the last sample, the last interval is
+/// extrapolated. The current interval is cached, so that ascending times are cheap.
 class TrackCursor {
  public:
-  /// Between two samples. `x`, the share of it that is over, has turned the body by a = x |turn| [rad]; with
-  /// first = x sin(a)/a and second = x^2 (1 - cos(a))/a^2 the pose is start + first turned + second rotated_twice, and
-  /// x step_m farther on (Rodrigues: exp(x K) = I + first K + second K^2).
+  /// Interval between two samples. At share `x` the body has rotated by a = x |turn| [rad]. With first = x sin(a)/a and
+  /// second = x^2 (1 - cos(a))/a^2, the pose is start + first turned + second rotated_twice, plus x step_m (Rodrigues:
+  /// exp(x K) = I + first K + second K^2).
   struct Interval {
     std::int64_t start_ns = 0, end_ns = 0;
     double per_ns = 0.0, per_s = 0.0;
-    double angle2 = 0.0;  ///< of the angle turned over the whole of it
+    double angle2 = 0.0;  ///< square of the angle over the whole interval
     Eigen::Vector3d step_m = Eigen::Vector3d::Zero();
     Pose34 start = Pose34::Zero(), turned = Pose34::Zero(), rotated_twice = Pose34::Zero();
 
@@ -34,8 +34,8 @@ class TrackCursor {
     double share(std::int64_t time_ns) const { return static_cast<double>(time_ns - start_ns) * per_ns; }
   };
 
-  /// Below this square of an angle the series of sin(a)/a and (1 - cos(a))/a^2 are exact to 1e-16: 0.02 rad, which is
-  /// 40 rad/s over 0.5 ms.
+  /// Below this square of an angle, the series of sin(a)/a and (1 - cos(a))/a^2 are accurate to 1e-16. It is 0.02 rad,
+  /// or 40 rad/s over 0.5 ms.
   static constexpr double kSmall2 = 4e-4;
   static double sinc_of_small(double angle2) {
     return 1.0 - angle2 / 6.0 * (1.0 - angle2 / 20.0 * (1.0 - angle2 / 42.0));
@@ -46,18 +46,18 @@ class TrackCursor {
   static double sinc_of(double angle2) { return std::sin(std::sqrt(angle2)) / std::sqrt(angle2); }
   static double cosc_of(double angle2) { return (1.0 - std::cos(std::sqrt(angle2))) / angle2; }
 
-  /// `motion` has at least two samples and must outlive the cursor.
+  /// `motion` must have at least two samples and outlive the cursor.
   TrackCursor(const MotionTrack& motion, const Eigen::Isometry3d& T_BL) : motion_(motion) {
     T_BL_ << T_BL.linear(), T_BL.translation();
   }
 
-  /// The interval that a time lies in, until the next call.
+  /// Returns the interval that contains a time; valid until the next call.
   const Interval& interval(std::int64_t time_ns) {
     if (!now_.holds(time_ns)) enter_interval(time_ns);
     return now_;
   }
 
-  /// Pose at a time.
+  /// Returns the pose at a time.
   Pose34 at(std::int64_t time_ns) {
     const Interval& now = interval(time_ns);
     const double share = now.share(time_ns), angle2 = share * share * now.angle2;
@@ -81,7 +81,7 @@ class TrackCursor {
     now_.step_m = motion_.p_WB_m[i + 1] - motion_.p_WB_m[i];
     Eigen::Quaterniond relative = motion_.q_WB[i].conjugate() * motion_.q_WB[i + 1];
     if (relative.w() < 0.0) relative.coeffs() = -relative.coeffs();
-    // atan2 keeps its precision at small angles, where acos loses it
+    // atan2 is precise at small angles, unlike acos
     const double sine = relative.vec().norm();
     const Eigen::Vector3d rotation_rad =
         sine > 0.0 ? Eigen::Vector3d(relative.vec() * (2.0 * std::atan2(sine, relative.w()) / sine))

@@ -6,7 +6,8 @@
 
 namespace tumble::sim {
 
-/// Distance of a point to a triangle, its inside included [m]; a degenerate triangle counts as its edges.
+/// Returns the distance of a point to a triangle, including its inside [m]. A degenerate triangle is treated as its
+/// edges.
 float triangle_distance(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c,
                         const Eigen::Vector3f& point);
 

@@ -7,7 +7,7 @@ namespace tumble::sim {
 
 namespace {
 
-/// Rotation vector from one attitude to another, in the axes of either.
+/// Returns the rotation vector from one attitude to another, in the axes of either.
 Eigen::Vector3d turn(const Eigen::Quaterniond& from, const Eigen::Quaterniond& to) {
   const Eigen::AngleAxisd turned(from.conjugate() * to);
   return turned.angle() * turned.axis();
@@ -17,8 +17,9 @@ Eigen::Vector3d turn(const Eigen::Quaterniond& from, const Eigen::Quaterniond& t
 
 Wrench carry_along(const HoldingHand& hand, const Eigen::Matrix3d& inertia_B_kg_m2, const BodyState& state,
                    const CarriedPath& path) {
-  constexpr double kDifference_s = 1e-3;     // over which the way's rates are taken
-  constexpr double kFrequency_rad_s = 60.0;  // of spring and damper: the wander of the hand is in its way
+  constexpr double kDifference_s = 1e-3;     // interval of the numerical derivatives of the path
+  constexpr double kFrequency_rad_s = 60.0;  // natural frequency of spring and damper; high, because the hand's tremor
+                                             // is part of the path
   constexpr double kStiffness_1_s2 = kFrequency_rad_s * kFrequency_rad_s, kDamping_1_s = 2.0 * kFrequency_rad_s;
   const CarriedPose before = path(state.time_s - kDifference_s), now = path(state.time_s),
                     after = path(state.time_s + kDifference_s);
@@ -31,7 +32,7 @@ Wrench carry_along(const HoldingHand& hand, const Eigen::Matrix3d& inertia_B_kg_
   Wrench out;
   out.force_W_n = hand.weight_n() + hand.mass_kg() * (a_m_s2 + kStiffness_1_s2 * (now.p_m - state.p_WB_m) +
                                                       kDamping_1_s * (v_m_s - state.v_WB_m_s));
-  // in body axes: what Euler's equation takes, and the spring
+  // angular acceleration of the path plus spring and damper, in body axes
   const Eigen::Vector3d aim_rad_s2 =
       alpha_rad_s2 + kStiffness_1_s2 * turn(state.q_WB, now.q) + kDamping_1_s * (w_rad_s - state.w_WB_B_rad_s);
   out.torque_W_nm =

@@ -9,24 +9,25 @@
 
 namespace tumble::sim {
 
-/// Where a hand means a robot to be.
+/// Target pose of a robot that a hand carries.
 struct CarriedPose {
-  Eigen::Vector3d p_m;  ///< of the centre of mass, W
+  Eigen::Vector3d p_m;  ///< centre of mass, in W
   Eigen::Quaterniond q;
 };
 
-/// A smooth way in time, at any time, also before 0. It is differenced twice: no jumps of velocity.
+/// Smooth path over time, defined at any time, also before 0. It is differentiated twice numerically, so velocities
+/// must be continuous.
 using CarriedPath = std::function<CarriedPose(double time_s)>;
 
-/// The wrench of a hand that carries a robot along a way: a spring and a damper hold it there, the forces that the way
-/// takes added beforehand. The hand is no body. `inertia_B_kg_m2` is about the centre of mass, B axes.
+/// Returns the wrench of a hand that carries a robot along a path: the feed-forward force of the path, plus a spring
+/// and a damper. The hand has no body in the simulation. `inertia_B_kg_m2` is about the centre of mass, in B axes.
 Wrench carry_along(const HoldingHand& hand, const Eigen::Matrix3d& inertia_B_kg_m2, const BodyState& state,
                    const CarriedPath& path);
 
-/// Moment of inertia of the robot that `hand` holds, about its centre of mass, B axes [kg m^2].
+/// Returns the moment of inertia of the robot that `hand` holds, about its centre of mass in B axes [kg m^2].
 Eigen::Matrix3d carried_inertia_B_kg_m2(const HoldingHand& hand);
 
-/// 0 before 0, 1 after 1, rising without a jump of acceleration in between: 10 u^3 - 15 u^4 + 6 u^5.
+/// Smooth step from 0 at u = 0 to 1 at u = 1 with continuous acceleration: 10 u^3 - 15 u^4 + 6 u^5; constant outside.
 double eased(double u);
 
 }  // namespace tumble::sim

@@ -9,11 +9,11 @@ namespace tumble::sim {
 namespace {
 
 constexpr std::array kDropParameters = {
-    Parameter{"rest_s", 1.75, 0.5, 30.0, "s", "held still before it is let go"},
-    Parameter{"release_s", 0.15, 0.0, 1.0, "s", "length over which the hand gives way: its hold fades out"},
-    Parameter{"height_m", 1.0, 0.1, 20.0, "m", "of the lowest point of the held robot above the ground at the start"},
-    Parameter{"forward_m", 0.0, -5.0, 10.0, "m", "it is held this far from the start, down the slope"},
-    Parameter{"roll_rad", 0.0, -3.2, 3.2, "rad", "how it is held: turned about its x axis, then"},
+    Parameter{"rest_s", 1.75, 0.5, 30.0, "s", "time for which the hand holds the robot before the release"},
+    Parameter{"release_s", 0.15, 0.0, 1.0, "s", "duration of the release, during which the hand's force fades out"},
+    Parameter{"height_m", 1.0, 0.1, 20.0, "m", "height of the held robot's lowest point above the ground at the start"},
+    Parameter{"forward_m", 0.0, -5.0, 10.0, "m", "distance of the held robot from the start, down the slope"},
+    Parameter{"roll_rad", 0.0, -3.2, 3.2, "rad", "attitude of the held robot: rotation about its x axis, then"},
     Parameter{"pitch_rad", 0.0, -1.6, 1.6, "rad", "about y, then"},
     Parameter{"yaw_rad", 0.0, -3.2, 3.2, "rad", "about z"},
 };
@@ -24,7 +24,7 @@ Eigen::Quaterniond attitude(const Values& values) {
          Eigen::AngleAxisd(values.at("roll_rad"), Eigen::Vector3d::UnitX());
 }
 
-/// Held by a stiff hand, let go without a push.
+/// A stiff hand holds the robot and releases it without a push.
 class Drop : public Motion {
  public:
   Drop(const Values& values, const engine::World& world)
@@ -53,7 +53,8 @@ std::unique_ptr<Motion> make_drop(const Values& values, const engine::World& wor
 }  // namespace
 
 const MotionType& drop_motion() {
-  static const MotionType kType{{"drop", "held still above the ground and let go", kDropParameters}, make_drop};
+  static const MotionType kType{{"drop", "the robot is held above the ground and released", kDropParameters},
+                                make_drop};
   return kType;
 }
 

@@ -10,10 +10,12 @@ namespace tumble::sim {
 namespace {
 
 constexpr double kTremorLow_hz = 0.7, kTremorHigh_hz = 9.0;
-constexpr double kFullTremor_m_s = 0.1;  // a hand that waits is steady; from this speed on the tremor is in full force
+constexpr double kFullTremor_m_s = 0.1;  // a waiting hand is steady; the tremor has its full amplitude from this speed
+                                         // on
 
-/// The smallest turn that takes the unit vector `from` up; a half turn about x where it points straight down. Written
-/// out: Eigen's setFromTwoVectors compiles a singular value decomposition for that last case, which takes 6 s.
+/// Returns the smallest rotation that turns the unit vector `from` up; a half turn about x if it points straight down.
+/// It is written out because Eigen's setFromTwoVectors compiles a singular value decomposition for that last case,
+/// which takes 6 s.
 Eigen::Quaterniond turn_up(const Eigen::Vector3d& from) {
   const double cosine = from.z();
   if (cosine < -1.0 + 1e-12) return {0.0, 1.0, 0.0, 0.0};
@@ -56,7 +58,7 @@ Wrench Hand::wrench(const BodyState& state, const Reference& reference) {
   const double unsteady = std::min(reference.v_m_s.norm() / kFullTremor_m_s, 1.0);
 
   Wrench out;
-  // a rolling sphere resists with mass + inertia / radius^2; the rest is left to the hand's stiffness
+  // a rolling sphere resists with mass + inertia / radius^2; the hand's stiffness corrects the rest
   const double rolling_mass_kg = mass_kg_ + inertia_kg_m2_ / (radius_m_ * radius_m_);
   out.force_W_n = values_.at("stiffness_n_m") * (reference.p_m - p_G) +
                   values_.at("damping_n_s_m") * (reference.v_m_s - v_G) + rolling_mass_kg * reference.a_m_s2;

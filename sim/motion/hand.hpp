@@ -10,28 +10,30 @@
 
 namespace tumble::sim {
 
-/// Where a hand wants the geometric centre of a sphere to be.
+/// Target of the hand for the geometric centre of a sphere.
 struct Reference {
   Eigen::Vector3d p_m = Eigen::Vector3d::Zero(), v_m_s = Eigen::Vector3d::Zero(), a_m_s2 = Eigen::Vector3d::Zero();
 };
 
-/// Numbers that every motion by hand takes.
+/// Parameters that every hand motion has.
 inline constexpr std::array kHandParameters = {
-    Parameter{"stiffness_n_m", 400.0, 1.0, 5000.0, "N/m", "of the hand about its path, level; assumed"},
-    Parameter{"damping_n_s_m", 90.0, 0.0, 1000.0, "N s/m", "of the hand, level; assumed"},
-    Parameter{"twist_damping_nm_s", 0.03, 0.0, 10.0, "N m s", "of the hand against spin about the vertical; assumed"},
+    Parameter{"stiffness_n_m", 400.0, 1.0, 5000.0, "N/m", "stiffness of the hand about its path, horizontal; assumed"},
+    Parameter{"damping_n_s_m", 90.0, 0.0, 1000.0, "N s/m", "damping of the hand, horizontal; assumed"},
+    Parameter{"twist_damping_nm_s", 0.03, 0.0, 10.0, "N m s",
+              "damping of the hand against spin about the vertical; assumed"},
     Parameter{"tremor_n", 0.0, 0.0, 20.0, "N",
-              "root mean square of the hand's unsteady force per level axis while it leads, 0.7 to 9 Hz; assumed"},
-    Parameter{"tremor_nm", 0.0, 0.0, 1.0, "N m", "the same of its torque, per axis; fingers rub the shell; assumed"},
-    Parameter{"hand_seed", 0.0, 0.0, 1e9, "1", "what is random about the hand belongs to this number, rounded down"},
+              "root mean square of the hand's tremor force per horizontal axis while it leads, 0.7 to 9 Hz; assumed"},
+    Parameter{"tremor_nm", 0.0, 0.0, 1.0, "N m",
+              "root mean square of the tremor torque per axis, from fingers that rub the shell; assumed"},
+    Parameter{"hand_seed", 0.0, 0.0, 1e9, "1", "number that selects the hand's random behaviour, rounded down"},
     Parameter{"torque_limit_nm", 3.0, 0.0, 50.0, "N m", "largest torque of a burst"},
     Parameter{"burst_time_s", 0.04, 0.005, 1.0, "s", "time constant with which a burst reaches its rate"},
-    Parameter{"burst_s", 1.0, 0.0, 30.0, "s", "longest burst; it ends earlier where the patch ends"},
-    Parameter{"patch_1_spin_ratio", 1.0, -3.0, 15.0, "1",
-              "rate over the rate of pure rolling that a burst aims at on patch 1: above 1 it spins, below 1 it "
-              "slides; 1: no burst"},
+    Parameter{"burst_s", 1.0, 0.0, 30.0, "s", "longest burst; it ends earlier if the sphere leaves the patch"},
+    Parameter{
+        "patch_1_spin_ratio", 1.0, -3.0, 15.0, "1",
+        "target rate of a burst on patch 1 relative to pure rolling: above 1 it spins, below 1 it slides; 1: no burst"},
     Parameter{"patch_1_axis_rad", 0.0, -1.6, 1.6, "rad",
-              "turn of the burst's axis about the vertical against that of rolling"},
+              "rotation of the burst's axis about the vertical, relative to the rolling axis"},
     Parameter{"patch_2_spin_ratio", 1.0, -3.0, 15.0, "1", "as patch 1"},
     Parameter{"patch_2_axis_rad", 0.0, -1.6, 1.6, "rad", "as patch 1"},
     Parameter{"patch_3_spin_ratio", 1.0, -3.0, 15.0, "1", "as patch 1"},
@@ -39,7 +41,7 @@ inline constexpr std::array kHandParameters = {
 };
 inline constexpr std::size_t kHandPatches = 3;
 
-/// The hand's numbers and a motion's own, as one table.
+/// Combines the hand's parameters with those of a motion in one table.
 template <std::size_t N>
 constexpr std::array<Parameter, kHandParameters.size() + N> with_hand(const std::array<Parameter, N>& own) {
   std::array<Parameter, kHandParameters.size() + N> all{};
@@ -48,18 +50,19 @@ constexpr std::array<Parameter, kHandParameters.size() + N> with_hand(const std:
   return all;
 }
 
-/// A hand on a sphere: a level force at its centre that follows a reference (spring, damper, and the force that rolling
-/// takes), unsteady as hands are, and bursts of torque on patches of other friction. It neither lifts nor presses.
-/// The hand is no body: nothing of it touches the sphere.
+/// A hand on a sphere: a horizontal force at its centre that follows a reference (spring, damper, and the feed-forward
+/// force of rolling), with tremor, and bursts of torque on patches of other friction. The hand applies no vertical
+/// force and has no body in the simulation.
 class Hand {
  public:
-  /// `motion` begins messages. Throws InvalidSituation when the robot is not a sphere. `world` outlives the hand.
+  /// Messages start with `motion`. Throws InvalidSituation if the robot is not a sphere. `world` must outlive the hand.
   Hand(const std::string& motion, const Values& values, const engine::World& world);
 
   double radius_m() const { return radius_m_; }
-  /// At rest with the centre at `p_G_m`; the heavy side points down, so that gravity holds the sphere.
+  /// Returns the state at rest with the centre at `p_G_m`; the heavy side points down, so that the sphere is in
+  /// equilibrium.
   BodyState at_rest(const Eigen::Vector3d& p_G_m) const;
-  /// Remembers when a burst began; call it with rising times.
+  /// Returns the current wrench. It stores when a burst began, so times must increase between calls.
   Wrench wrench(const BodyState& state, const Reference& reference);
 
  private:

@@ -15,18 +15,18 @@ constexpr std::array kHandPathParameters = with_hand(std::array{
     Parameter{"rest_s", 1.5, 0.0, 30.0, "s", "rest before the path"},
     Parameter{"shape", 0.0, 0.0, kPathShapes - 1.0, "1",
               "0: line along +x; 1: L, two equal legs; 2: eight; 3: free, smooth and random"},
-    Parameter{"length_m", 4.0, 0.05, 100.0, "m", "of the path; its bounding box is centred in the world"},
-    Parameter{"heading_rad", 0.0, -3.2, 3.2, "rad", "turn of the path about the vertical"},
+    Parameter{"length_m", 4.0, 0.05, 100.0, "m", "length of the path; its bounding box is centred in the world"},
+    Parameter{"heading_rad", 0.0, -3.2, 3.2, "rad", "rotation of the path about the vertical"},
     Parameter{"sway_m", 0.0, 0.0, 2.0, "m", "amplitude with which a line sways from side to side"},
-    Parameter{"sway_length_m", 4.0, 0.5, 50.0, "m", "wavelength of that"},
-    Parameter{"speed_m_s", 0.6, 0.02, 5.0, "m/s", "speed that the hand aims at between start and end"},
-    Parameter{"acceleration_m_s2", 1.0, 0.05, 20.0, "m/s^2", "of starting and stopping"},
+    Parameter{"sway_length_m", 4.0, 0.5, 50.0, "m", "wavelength of the sway"},
+    Parameter{"speed_m_s", 0.6, 0.02, 5.0, "m/s", "target speed between start and end"},
+    Parameter{"acceleration_m_s2", 1.0, 0.05, 20.0, "m/s^2", "acceleration of starting and stopping"},
     Parameter{"smooth_s", 0.15, 0.01, 2.0, "s",
-              "the path in time is averaged twice over as long: corners are rounded, no force jumps"},
+              "time over which the path is averaged twice, which rounds corners and avoids force jumps"},
     Parameter{"stroke_share", 0.0, 0.0, 0.5, "1",
-              "root mean square of the speed's unsteadiness, 0.3 to 1.5 Hz: a hand pushes in strokes; assumed"},
+              "root mean square of the variation of the speed, 0.3 to 1.5 Hz: a hand pushes in strokes; assumed"},
     Parameter{"patch_1_push_ratio", 1.0, 0.2, 5.0, "1",
-              "speed on patch 1 over the speed before, by a push through the centre; 1: none"},
+              "speed on patch 1 relative to the speed before, caused by a push through the centre; 1: none"},
     Parameter{"patch_2_push_ratio", 1.0, 0.2, 5.0, "1", "as patch 1"},
     Parameter{"patch_3_push_ratio", 1.0, 0.2, 5.0, "1", "as patch 1"},
 });
@@ -34,7 +34,8 @@ constexpr std::array kHandPathParameters = with_hand(std::array{
 constexpr double kTick_s = 0.001;
 constexpr double kPathLongest_s = 600.0;
 
-/// A way in time: where the hand wants the centre at each tick from `start_s` on, level, from rest to rest.
+/// The hand's path over time: target position of the centre at each tick from `start_s` on, horizontal, from rest to
+/// rest.
 class Schedule {
  public:
   Schedule(const Values& values, const engine::World& world, Stream& stream) {
@@ -53,7 +54,7 @@ class Schedule {
   const Eigen::Vector2d& first() const { return nodes_.front(); }
 
   void add_to(double time_s, Reference& reference) const {
-    // three ticks about the middle: value, first and second difference
+    // three ticks about the middle give value, first and second difference
     const double at = (time_s - start_s_) / kTick_s;
     const auto last = static_cast<double>(ticks_.size()) - 2.0;
     const double inside = std::clamp(at, 1.0, last);
@@ -76,7 +77,7 @@ class Schedule {
     return nodes_[i - 1] + u * (nodes_[i] - nodes_[i - 1]);
   }
 
-  /// The way tick by tick, before smoothing.
+  /// Returns the path tick by tick, before smoothing.
   std::vector<Eigen::Vector2d> travel(const Values& values, const engine::World& world, Stream& stream) const {
     const Tremor strokes(stream, values.at("stroke_share"), 0.3, 1.5);
     const double speed_m_s = values.at("speed_m_s"), acceleration_m_s2 = values.at("acceleration_m_s2");
@@ -98,10 +99,10 @@ class Schedule {
         break;
       }
       const double left_m = length_m - s_m;
-      constexpr double kLastTau_s = 0.15;  // the last centimetres are approached, not hit
+      constexpr double kLastTau_s = 0.15;  // time constant of the approach over the last centimetres
       aim_m_s = std::min({aim_m_s, std::sqrt(1.6 * acceleration_m_s2 * left_m), left_m / kLastTau_s});
       const double change = acceleration_m_s2 * kTick_s;
-      // a push is as quick as the averaging lets it be
+      // only the averaging limits the acceleration of a push
       v_m_s = std::clamp(aim_m_s, v_m_s - change, pushed ? aim_m_s : v_m_s + change);
       v_m_s = std::max(v_m_s, 1e-3);
       s_m += v_m_s * kTick_s;
@@ -111,7 +112,7 @@ class Schedule {
     return ticks;
   }
 
-  /// Mean over `width` ticks; the ends are held, so that start and end stay where they are.
+  /// Returns the mean over `width` ticks. The end values are extended, so that start and end are preserved.
   static std::vector<Eigen::Vector2d> averaged(const std::vector<Eigen::Vector2d>& in, int width) {
     std::vector<Eigen::Vector2d> out;
     out.reserve(in.size() + static_cast<std::size_t>(width));

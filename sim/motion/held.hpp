@@ -9,12 +9,12 @@
 
 namespace tumble::sim {
 
-/// A hand that holds a robot still in the air: a critically damped spring and a turning spring about the position of
-/// holding, and the weight. The force acts at the centre of mass.
+/// A hand that holds a robot still in the air: critically damped springs for position and attitude, and a force that
+/// carries the weight. The force acts at the centre of mass.
 class HoldingHand {
  public:
-  /// Holds the robot turned by `q_WB`, `offset_W_m` from the world's start, its lowest point `height_m` above the
-  /// start's ground. Throws InvalidSituation for a height of 0 or less.
+  /// Holds the robot with attitude `q_WB` at `offset_W_m` from the world's start, with its lowest point `height_m`
+  /// above the ground at the start. Throws InvalidSituation for a height of 0 or less.
   HoldingHand(const engine::World& world, const Eigen::Quaterniond& q_WB, const Eigen::Vector3d& offset_W_m,
               double height_m);
 
@@ -22,7 +22,7 @@ class HoldingHand {
   Wrench hold(const BodyState& state) const;
   Eigen::Vector3d weight_n() const { return weight_n_; }  ///< force that carries the robot
   double mass_kg() const { return mass_kg_; }
-  const Eigen::Matrix3d& inertia_W_kg_m2() const { return inertia_W_kg_m2_; }  ///< as it is held
+  const Eigen::Matrix3d& inertia_W_kg_m2() const { return inertia_W_kg_m2_; }  ///< for the attitude in which it is held
 
  private:
   BodyState start_;

@@ -8,17 +8,18 @@
 
 namespace tumble::sim {
 
-/// Where an impulse goes and how it spins what it hits, for every motion that begins with one.
+/// Parameters of an initial impulse: its direction and the resulting spin.
 inline constexpr std::array kImpulseParameters = {
     Parameter{"direction_rad", 0.0, -3.2, 3.2, "rad", "direction of the impulse about z; 0: down the slope"},
     Parameter{"spin_forward_rad_s", 4.0, -30.0, 30.0, "rad/s",
               "angular impulse over inertia about the axis of forward rolling"},
-    Parameter{"spin_side_rad_s", 0.0, -30.0, 30.0, "rad/s", "the same about the direction of the impulse"},
-    Parameter{"spin_up_rad_s", 0.0, -30.0, 30.0, "rad/s", "the same about the vertical"},
+    Parameter{"spin_side_rad_s", 0.0, -30.0, 30.0, "rad/s",
+              "angular impulse over inertia about the direction of the impulse"},
+    Parameter{"spin_up_rad_s", 0.0, -30.0, 30.0, "rad/s", "angular impulse over inertia about the vertical"},
 };
 
-/// Linear and angular impulse, in world axes [N s, N m s], that gives a body at rest the level velocity `velocity_m_s`
-/// and the upward one `lift_m_s` of the values, and the three spins.
+/// Returns the linear and angular impulse in world axes [N s, N m s] that gives a body at rest the horizontal velocity
+/// `velocity_m_s`, the upward velocity `lift_m_s`, and the three spins.
 Wrench whole_impulse(const Values& values, double mass_kg, const Eigen::Matrix3d& inertia_W_kg_m2);
 
 }  // namespace tumble::sim

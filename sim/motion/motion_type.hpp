@@ -10,43 +10,44 @@
 
 namespace tumble::sim {
 
-/// What sets a robot in motion: where it begins and the wrench that acts on it. Never a jump of velocity: no
-/// accelerometer would see it.
+/// Cause of a robot's motion: its start pose and the wrench that acts on it. Velocities are never set directly, because
+/// accelerometers would not measure such a jump.
 class Motion {
  public:
   virtual ~Motion() = default;
-  /// Pose from which the robot settles under gravity before the recording begins; at rest, just above the ground.
+  /// Returns the pose at rest just above the ground, from which the robot settles under gravity before the recording
+  /// starts.
   virtual BodyState start() const = 0;
-  /// Wrench from `state.time_s` to the next step. Negative times are the settling before the recording.
+  /// Returns the wrench from `state.time_s` to the next step. Negative times are the settling before the recording.
   virtual Wrench wrench(const BodyState& state) = 0;
 };
 
-/// A kind of motion: its parameters and how it is made for a world. `world` outlives the motion.
+/// A kind of motion with its parameters and its factory for a world. `world` must outlive the motion.
 struct MotionType {
   ComponentType component;
   std::unique_ptr<Motion> (*make)(const Values& values, const engine::World& world);
 };
 
-/// A push by force and torque over a short time, then free.
+/// A push by force and torque for a short time, then free motion.
 const MotionType& push_motion();
-/// Held above the ground, swung and let go.
+/// A hand holds the robot above the ground, swings it and releases it.
 const MotionType& throw_motion();
-/// Held above the ground and let go.
+/// A hand holds the robot above the ground and releases it.
 const MotionType& drop_motion();
-/// A hand that leads a sphere along two legs.
+/// A hand leads a sphere along two straight legs.
 const MotionType& hand_roll_motion();
-/// A hand that leads a sphere along a way of some shape.
+/// A hand leads a sphere along a path of selectable shape.
 const MotionType& hand_path_motion();
-/// A robot carried in a hand and twirled about its x axis.
+/// A hand carries a robot and twirls it about its x axis.
 const MotionType& twirl_motion();
-/// A robot carried by a walker along a level eight.
+/// A walker carries a robot along a horizontal figure of eight.
 const MotionType& stroll_motion();
-/// A robot that hangs is led aside by a hand and let go, now and then.
+/// A hand repeatedly leads a hanging robot aside and releases it.
 const MotionType& swing_motion();
 
-/// All kinds, in the order of registration: a new one is a file and a line in motion_type.cpp.
+/// All kinds in the order of registration. A new kind is a file and a line in motion_type.cpp.
 std::span<const MotionType* const> all_motion_types();
-/// Throws InvalidSituation, naming the nearest known type.
+/// Throws InvalidSituation for an unknown name, with the nearest known type.
 const MotionType& find_motion_type(std::string_view name);
 
 }  // namespace tumble::sim

@@ -37,7 +37,7 @@ Nodes corner(const PathPlan& plan, int count) {
   return nodes;
 }
 
-/// Gerono's lemniscate, through the crossing at the start; its length is set afterwards.
+/// Returns Gerono's lemniscate from its crossing point; its length is set afterwards.
 Nodes eight(int count) {
   Nodes nodes;
   for (int i = 0; i <= count; ++i) {
@@ -47,7 +47,7 @@ Nodes eight(int count) {
   return nodes;
 }
 
-/// The heading is a sum of slow sinusoids: bends of all sides, none sharper than the shortest of them.
+/// The heading is a sum of slow sinusoids: bends to both sides, none sharper than the shortest sinusoid allows.
 Nodes free_path(const PathPlan& plan, int count, Stream& stream) {
   struct Bend {
     double turns, phase_rad, amplitude_rad;

@@ -8,25 +8,25 @@
 
 namespace tumble::sim {
 
-/// Shapes of a level path, by the number that a scenario gives.
+/// Shapes of a horizontal path; scenarios select them by number.
 enum class PathShape {
-  line,   ///< straight, along +x; it may sway from side to side
+  line,   ///< straight along +x, with an optional lateral sway
   l,      ///< two equal legs with a corner to the left
-  eight,  ///< two equal loops through the start, which is also the end
+  eight,  ///< two equal loops; the start is their crossing and also the end
   free,   ///< a smooth random path
 };
 inline constexpr int kPathShapes = 4;
 
 struct PathPlan {
   PathShape shape = PathShape::line;
-  double length_m = 1.0;       ///< of the line without its sway, of the others along the path
-  double heading_rad = 0.0;    ///< turn of the whole about the vertical
-  double sway_m = 0.0;         ///< of the line: amplitude, fading over its first and last half metre
-  double sway_length_m = 4.0;  ///< of the line: wavelength
+  double length_m = 1.0;       ///< along the path; for the line without its sway
+  double heading_rad = 0.0;    ///< rotation of the path about the vertical
+  double sway_m = 0.0;         ///< line only: amplitude, which fades over the first and last half metre
+  double sway_length_m = 4.0;  ///< line only: wavelength
 };
 
-/// Nodes of the path, about 5 mm apart, the middle of their bounding box at the origin. The free one draws its bends
-/// from `stream`; the others take nothing from it. O(length).
+/// Returns nodes of the path about 5 mm apart, with the centre of their bounding box at the origin. Only the free path
+/// draws random numbers from `stream`. O(length).
 std::vector<Eigen::Vector2d> plan_path(const PathPlan& plan, Stream& stream);
 
 }  // namespace tumble::sim

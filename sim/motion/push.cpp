@@ -11,10 +11,10 @@ namespace {
 
 constexpr std::array kOwnPushParameters = {
     Parameter{"rest_s", 1.75, 0.0, 30.0, "s", "rest before the push"},
-    Parameter{"push_s", 0.2, 0.02, 2.0, "s", "length of the push; force and torque rise and fall as a raised cosine"},
+    Parameter{"push_s", 0.2, 0.02, 2.0, "s", "duration of the push; force and torque rise and fall as a raised cosine"},
     Parameter{"yaw_rad", 0.0, -3.2, 3.2, "rad", "heading of the robot at rest; 0: its x axis points down the slope"},
-    Parameter{"velocity_m_s", 2.0, 0.0, 10.0, "m/s", "impulse over mass, level"},
-    Parameter{"lift_m_s", 1.0, 0.0, 10.0, "m/s", "impulse over mass, upwards"},
+    Parameter{"velocity_m_s", 2.0, 0.0, 10.0, "m/s", "horizontal impulse over mass"},
+    Parameter{"lift_m_s", 1.0, 0.0, 10.0, "m/s", "upward impulse over mass"},
 };
 constexpr std::array kPushParameters = joined(kOwnPushParameters, kImpulseParameters);
 
@@ -51,8 +51,8 @@ std::unique_ptr<Motion> make_push(const Values& values, const engine::World& wor
 }  // namespace
 
 const MotionType& push_motion() {
-  static const MotionType kType{{"push", "at rest, then pushed by force and torque, then free", kPushParameters},
-                                make_push};
+  static const MotionType kType{
+      {"push", "the robot rests, is pushed by force and torque, and then moves freely", kPushParameters}, make_push};
   return kType;
 }
 

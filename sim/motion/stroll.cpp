@@ -14,25 +14,26 @@ namespace tumble::sim {
 namespace {
 
 constexpr std::array kStrollParameters = {
-    Parameter{"rest_s", 1.75, 0.5, 30.0, "s", "held still before the first step"},
-    Parameter{"height_m", 1.0, 0.1, 10.0, "m", "of the lowest point of the held robot above the ground at the start"},
-    Parameter{"heading_rad", 0.0, -3.2, 3.2, "rad", "turn of the whole path about the vertical"},
+    Parameter{"rest_s", 1.75, 0.5, 30.0, "s", "time for which the robot is held still before the first step"},
+    Parameter{"height_m", 1.0, 0.1, 10.0, "m", "height of the held robot's lowest point above the ground at the start"},
+    Parameter{"heading_rad", 0.0, -3.2, 3.2, "rad", "rotation of the whole path about the vertical"},
     Parameter{"half_length_m", 2.4, 0.2, 20.0, "m",
-              "of the eight x = a sin u, y = b sin 2u that is walked, from its crossing on: a"},
-    Parameter{"half_width_m", 1.2, 0.1, 20.0, "m", "the same: b"},
-    Parameter{"loops", 1.0, 0.1, 100.0, "1", "how often the eight is walked"},
-    Parameter{"speed_m_s", 1.2, 0.05, 3.0, "m/s", "at the crossing, where it is fastest"},
-    Parameter{"ease_s", 1.5, 0.2, 10.0, "s", "over which the walker reaches that, and stops at the end"},
-    Parameter{"step_hz", 1.8, 0.2, 4.0, "Hz", "steps a second; those of a walker, assumed"},
+              "half length a of the eight x = a sin u, y = b sin 2u, which starts at its crossing"},
+    Parameter{"half_width_m", 1.2, 0.1, 20.0, "m", "half width b of the eight"},
+    Parameter{"loops", 1.0, 0.1, 100.0, "1", "number of rounds of the eight"},
+    Parameter{"speed_m_s", 1.2, 0.05, 3.0, "m/s", "speed at the crossing, where it is largest"},
+    Parameter{"ease_s", 1.5, 0.2, 10.0, "s", "time in which the walker reaches that speed, and stops at the end"},
+    Parameter{"step_hz", 1.8, 0.2, 4.0, "Hz", "steps per second of the walker; assumed"},
     Parameter{"step_m", 0.015, 0.0, 0.1, "m", "amplitude with which the steps lift the robot; assumed"},
     Parameter{"sway_rad", 0.08, 0.0, 0.5, "rad", "root mean square of roll, pitch and yaw, 0.2 to 1.2 Hz; assumed"},
-    Parameter{"sway_m", 0.02, 0.0, 0.2, "m", "the same of the position, per axis; assumed"},
-    Parameter{"hand_seed", 0.0, 0.0, 1e9, "1", "what is random about the hand belongs to this number, rounded down"},
+    Parameter{"sway_m", 0.02, 0.0, 0.2, "m", "root mean square of the position's tremor, per axis; assumed"},
+    Parameter{"hand_seed", 0.0, 0.0, 1e9, "1", "number that selects the hand's random behaviour, rounded down"},
 };
 
 constexpr double kSwayLow_hz = 0.2, kSwayHigh_hz = 1.2;
 
-/// Carried by a walker along a level eight, looking ahead, unsteady as hands are; from rest to rest.
+/// A walker carries the robot along a horizontal figure of eight, from rest to rest. The robot faces along the path,
+/// with the tremor of a hand.
 class Stroll : public Motion {
  public:
   Stroll(const Values& values, const engine::World& world)
@@ -56,7 +57,7 @@ class Stroll : public Motion {
   }
 
  private:
-  /// How far along the eight [rad]: the integral of a rate that is eased in and out, in closed form.
+  /// Phase along the eight [rad]: the integral of an eased rate in closed form.
   double phase_rad(double walked_s) const {
     const auto begun_s = [this](double t_s) {  // integral of `eased` over the first `ease_s`
       const double u = std::clamp(t_s / ease_s_, 0.0, 1.0);
@@ -68,7 +69,7 @@ class Stroll : public Motion {
     return phase_rate_rad_s_ * (walk_s_ - ease_s_ - begun_s(walk_s_ - t_s));
   }
 
-  /// Along the path at a phase.
+  /// Attitude along the path at a phase.
   Eigen::Quaterniond heading(double phase_rad) const {
     const double yaw_rad =
         std::atan2(2.0 * half_width_m_ * std::cos(2.0 * phase_rad), half_length_m_ * std::cos(phase_rad));
@@ -77,7 +78,7 @@ class Stroll : public Motion {
 
   CarriedPose path(double time_s) const {
     const double walked_s = time_s - values_.at("rest_s"), phase = phase_rad(walked_s);
-    // the unsteadiness sets in and ends within a second, without a jump of acceleration
+    // the tremor starts and ends within a second, with continuous acceleration
     const double share = eased(walked_s) * eased(walk_s_ - walked_s);
     const double step_rad = 2.0 * std::numbers::pi * values_.at("step_hz") * walked_s;
     const Eigen::Vector3d eight_m(half_length_m_ * std::sin(phase), half_width_m_ * std::sin(2.0 * phase),
@@ -105,7 +106,7 @@ std::unique_ptr<Motion> make_stroll(const Values& values, const engine::World& w
 
 const MotionType& stroll_motion() {
   static const MotionType kType{
-      {"stroll", "carried by hand along a level eight at a walker's pace, from rest to rest", kStrollParameters},
+      {"stroll", "a walker carries the robot along a horizontal eight, from rest to rest", kStrollParameters},
       make_stroll};
   return kType;
 }

@@ -13,24 +13,24 @@ namespace tumble::sim {
 namespace {
 
 constexpr std::array kSwingParameters = {
-    Parameter{"rest_s", 1.75, 0.5, 30.0, "s", "hanging before the hand takes hold"},
-    Parameter{"lift_s", 1.0, 0.2, 10.0, "s", "in which the hand leads the lowest segment aside and up"},
-    Parameter{"hold_s", 0.5, 0.0, 10.0, "s", "it holds it there"},
-    Parameter{"release_s", 0.03, 0.005, 1.0, "s", "in which its grip ends"},
+    Parameter{"rest_s", 1.75, 0.5, 30.0, "s", "time before the hand grips the robot"},
+    Parameter{"lift_s", 1.0, 0.2, 10.0, "s", "time in which the hand leads the lowest segment aside and up"},
+    Parameter{"hold_s", 0.5, 0.0, 10.0, "s", "time for which the hand holds the segment there"},
+    Parameter{"release_s", 0.03, 0.005, 1.0, "s", "time in which the grip ends"},
     Parameter{"interval_s", 19.0, 2.0, 120.0, "s",
-              "mean time from one letting go to the next, give or take a tenth; at least lift and hold"},
+              "mean time between releases, varied by a tenth; at least lift and hold"},
     Parameter{"aside_m", 0.4, 0.0, 3.0, "m", "mean distance aside, across the hinges"},
     Parameter{"up_m", 0.45, 0.0, 3.0, "m", "mean distance up"},
-    Parameter{"spread_m", 0.05, 0.0, 0.5, "m", "standard deviation of both from swing to swing, within 2 of them"},
+    Parameter{"spread_m", 0.05, 0.0, 0.5, "m", "standard deviation of both between swings, truncated at 2 of them"},
     Parameter{"sideways_m", 0.02, 0.0, 0.5, "m",
-              "standard deviation of the distance along the hinges, within 2 of them"},
-    Parameter{"other_side_share", 0.3, 0.0, 1.0, "1", "of the swings, that begin on the other side"},
-    Parameter{"hand_seed", 0.0, 0.0, 1e9, "1", "what is random about the hand belongs to this number, rounded down"},
+              "standard deviation of the distance along the hinges, truncated at 2 of them"},
+    Parameter{"other_side_share", 0.3, 0.0, 1.0, "1", "share of the swings that start on the other side"},
+    Parameter{"hand_seed", 0.0, 0.0, 1e9, "1", "number that selects the hand's random behaviour, rounded down"},
 };
 
 constexpr double kSwingLongest_s = 3600.0;
 
-/// One swing: taken hold of, led away, held, let go.
+/// One swing: grip, lead aside, hold, release.
 struct Lift {
   double start_s;
   Eigen::Vector3d lift_W_m;
@@ -54,14 +54,14 @@ std::vector<Lift> plan_lifts(const Values& values, Stream& stream) {
   return lifts;
 }
 
-/// From 0 to 1 with neither velocity nor acceleration at its ends.
+/// Smooth step from 0 to 1 with zero velocity and acceleration at its ends.
 double smooth(double share) {
   const double u = std::clamp(share, 0.0, 1.0);
   return u * u * u * (10.0 + u * (-15.0 + 6.0 * u));
 }
 
-/// A hand that takes the lowest segment by its centre of mass: a spring and a damper to a place that moves. It turns
-/// nothing, and is no body.
+/// A hand that grips the lowest segment at its centre of mass: a spring and a damper to a moving target. It applies no
+/// torque and has no body in the simulation.
 class Swing : public Motion {
  public:
   Swing(const Values& values, const engine::World& world)
@@ -69,7 +69,7 @@ class Swing : public Motion {
         hold_s_(values.at("hold_s")),
         release_s_(values.at("release_s")),
         mass_kg_(world.model->body_subtreemass[world.model->body_rootid[world.robot_body]]) {
-    if (world.free) throw InvalidSituation("motion.swing: the robot hangs on nothing");
+    if (world.free) throw InvalidSituation("motion.swing: the robot is not attached by joints");
     start_ = engine::state_at_rest(world);
     Stream stream(static_cast<std::uint64_t>(values.at("hand_seed")), "hand.swing");
     lifts_ = plan_lifts(values, stream);
@@ -83,8 +83,9 @@ class Swing : public Motion {
     if (after == lifts_.begin()) return {};
     const Lift& lift = *std::prev(after);
     const double since_s = state.time_s - lift.start_s;
-    constexpr double kGrip_s = 0.3;            // in which the fingers close
-    constexpr double kFrequency_rad_s = 15.0;  // of the spring with all that hangs: an arm's
+    constexpr double kGrip_s = 0.3;            // time in which the fingers close
+    constexpr double kFrequency_rad_s = 15.0;  // natural frequency of the spring with the hanging mass, typical of an
+                                               // arm
     const double grip = smooth(since_s / kGrip_s) * (1.0 - smooth((since_s - lift_s_ - hold_s_) / release_s_));
     if (grip <= 0.0) return {};
 
@@ -102,7 +103,7 @@ class Swing : public Motion {
 
  private:
   double lift_s_, hold_s_, release_s_;
-  double mass_kg_;  ///< of all segments
+  double mass_kg_;  ///< mass of all segments
   BodyState start_;
   std::vector<Lift> lifts_;
 };
@@ -115,7 +116,7 @@ std::unique_ptr<Motion> make_swing(const Values& values, const engine::World& wo
 
 const MotionType& swing_motion() {
   static const MotionType kType{
-      {"swing", "a hand leads what hangs aside and lets it go, again and again", kSwingParameters}, make_swing};
+      {"swing", "a hand repeatedly leads a hanging robot aside and releases it", kSwingParameters}, make_swing};
   return kType;
 }
 

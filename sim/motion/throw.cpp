@@ -11,16 +11,17 @@ namespace tumble::sim {
 namespace {
 
 constexpr std::array kOwnThrowParameters = {
-    Parameter{"rest_s", 1.75, 0.5, 30.0, "s", "held still before the throw"},
-    Parameter{"throw_s", 0.3, 0.05, 2.0, "s", "length of the swing; force and torque rise and fall as a raised cosine"},
-    Parameter{"height_m", 1.0, 0.1, 10.0, "m", "of the lowest point of the held robot above the ground at the start"},
+    Parameter{"rest_s", 1.75, 0.5, 30.0, "s", "time for which the robot is held still before the throw"},
+    Parameter{"throw_s", 0.3, 0.05, 2.0, "s",
+              "duration of the swing; force and torque rise and fall as a raised cosine"},
+    Parameter{"height_m", 1.0, 0.1, 10.0, "m", "height of the held robot's lowest point above the ground at the start"},
     Parameter{"yaw_rad", 0.0, -3.2, 3.2, "rad", "heading of the held robot; 0: its x axis points down the slope"},
-    Parameter{"velocity_m_s", 4.0, 0.0, 15.0, "m/s", "level velocity when it leaves the hand"},
-    Parameter{"lift_m_s", 4.0, 0.0, 15.0, "m/s", "upward velocity when it leaves the hand"},
+    Parameter{"velocity_m_s", 4.0, 0.0, 15.0, "m/s", "horizontal velocity at the release"},
+    Parameter{"lift_m_s", 4.0, 0.0, 15.0, "m/s", "upward velocity at the release"},
 };
 constexpr std::array kThrowParameters = joined(kOwnThrowParameters, kImpulseParameters);
 
-/// Held by a stiff hand, swung, let go.
+/// A stiff hand holds the robot, swings it and releases it.
 class Throw : public Motion {
  public:
   Throw(const Values& values, const engine::World& world)
@@ -36,7 +37,7 @@ class Throw : public Motion {
     if (state.time_s < rest_s_) return hand_.hold(state);
     const double share = (state.time_s - rest_s_) / throw_s_;
     if (share >= 1.0) return {};
-    // the hand carries the weight until it lets go
+    // the hand carries the weight until the release
     const double rate_1_s = raised_cosine(share) / throw_s_;
     return {hand_.weight_n() + impulse_.force_W_n * rate_1_s, impulse_.torque_W_nm * rate_1_s};
   }
@@ -54,7 +55,7 @@ std::unique_ptr<Motion> make_throw(const Values& values, const engine::World& wo
 }  // namespace
 
 const MotionType& throw_motion() {
-  static const MotionType kType{{"throw", "held still above the ground, swung and let go", kThrowParameters},
+  static const MotionType kType{{"throw", "the robot is held above the ground, swung and released", kThrowParameters},
                                 make_throw};
   return kType;
 }

@@ -7,8 +7,9 @@
 
 namespace tumble::sim {
 
-/// Smooth unsteadiness: a sum of sinusoids of random phase, frequencies log-uniform between the two given, amplitudes
-/// as the inverse of the frequency. A pure function of time. The root mean square over long times is the given one.
+/// Smooth random unsteadiness as a pure function of time: a sum of sinusoids of random phase. Frequencies are
+/// log-uniform between the two given limits; amplitudes are inversely proportional to frequency. The root mean square
+/// over a long time has the given value.
 class Tremor {
  public:
   Tremor(Stream& stream, double rms, double lowest_hz, double highest_hz);

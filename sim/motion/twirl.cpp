@@ -14,35 +14,38 @@ namespace tumble::sim {
 namespace {
 
 constexpr std::array kTwirlParameters = {
-    Parameter{"rest_s", 1.75, 0.5, 30.0, "s", "held still before the first stroke"},
-    Parameter{"height_m", 1.0, 0.1, 10.0, "m", "of the lowest point of the held robot above the ground at the start"},
+    Parameter{"rest_s", 1.75, 0.5, 30.0, "s", "time for which the robot is held still before the first stroke"},
+    Parameter{"height_m", 1.0, 0.1, 10.0, "m", "height of the held robot's lowest point above the ground at the start"},
     Parameter{"yaw_rad", 0.0, -3.2, 3.2, "rad", "heading of the held robot"},
     Parameter{"spin_rad_s", 10.5, 0.0, 40.0, "rad/s", "mean of the strokes' peak rates about the robot's x axis"},
-    Parameter{"spin_spread_rad_s", 2.0, 0.0, 20.0, "rad/s", "standard deviation of that, within 2.5 of them"},
-    Parameter{"stroke_s", 0.9, 0.1, 5.0, "s", "length of a stroke; it rises for a third of it"},
+    Parameter{"spin_spread_rad_s", 2.0, 0.0, 20.0, "rad/s",
+              "standard deviation of the peak rates, truncated at 2.5 of them"},
+    Parameter{"stroke_s", 0.9, 0.1, 5.0, "s", "duration of a stroke; the rate rises for a third of it"},
     Parameter{"interval_s", 1.65, 0.1, 20.0, "s",
-              "mean time from stroke to stroke, give or take a quarter; never before the last has ended"},
-    Parameter{"turn_back_share", 0.45, 0.0, 1.0, "1", "of the strokes, that turn the other way than the one before"},
+              "mean time between strokes, varied by a quarter; a stroke starts only after the previous one has ended"},
+    Parameter{"turn_back_share", 0.45, 0.0, 1.0, "1",
+              "share of the strokes that turn in the direction opposite to the previous one"},
     Parameter{"twist_rad", 0.4, 0.0, 3.0, "rad",
-              "root mean square of the unsteady turn about x, beside the strokes, 0.3 to 4 Hz; as on the real wand"},
+              "root mean square of the tremor about x in addition to the strokes, 0.3 to 4 Hz; as on the real wand"},
     Parameter{"sway_rad", 0.03, 0.0, 0.5, "rad",
-              "root mean square of the unsteady pitch and yaw, 0.3 to 4 Hz; assumed"},
-    Parameter{"sway_m", 0.01, 0.0, 0.2, "m", "the same of the position of the grip, per axis; assumed"},
-    Parameter{"grip_x_m", 0.0, -0.5, 0.5, "m", "what the hand carries, in the robot's design frame, B axes"},
+              "root mean square of the tremor in pitch and yaw, 0.3 to 4 Hz; assumed"},
+    Parameter{"sway_m", 0.01, 0.0, 0.2, "m",
+              "root mean square of the tremor of the grip's position, per axis; assumed"},
+    Parameter{"grip_x_m", 0.0, -0.5, 0.5, "m", "point that the hand holds, in the robot's design frame, B axes"},
     Parameter{"grip_y_m", 0.0, -0.5, 0.5, "m", "the same along y"},
     Parameter{"grip_z_m", 0.0, -0.5, 0.5, "m", "the same along z"},
-    Parameter{"hand_seed", 0.0, 0.0, 1e9, "1", "what is random about the hand belongs to this number, rounded down"},
+    Parameter{"hand_seed", 0.0, 0.0, 1e9, "1", "number that selects the hand's random behaviour, rounded down"},
 };
 
 constexpr double kTwirlSwayLow_hz = 0.3, kTwirlSwayHigh_hz = 4.0;
 constexpr double kTwirlLongest_s = 120.0;
 
-/// One twist of the wrist or the fingers: its rate rises and falls as sin^2, from rest to rest.
+/// One twist of the wrist or the fingers, from rest to rest; its rate is a sin^2 pulse.
 struct Stroke {
   static constexpr double kRise = 1.0 / 3.0;
   double start_s, length_s, peak_rad_s;
 
-  /// Turned so far, in closed form.
+  /// Angle turned so far, in closed form.
   double angle_rad(double time_s) const {
     constexpr double kFall = 1.0 - kRise;
     const double u = std::clamp((time_s - start_s) / length_s, 0.0, 1.0);
@@ -66,8 +69,8 @@ std::vector<Stroke> plan_strokes(const Values& values, Stream& stream) {
   return strokes;
 }
 
-/// Carried by a point of it and twirled about x, stroke by stroke: a spring and a damper hold it to a path that the
-/// hand means to go, the forces that this takes added beforehand. The hand is no body.
+/// A hand carries the robot by one of its points and twirls it about x, stroke by stroke. A spring and a damper keep
+/// the robot on the intended path, with the path's feed-forward forces. The hand has no body in the simulation.
 class Twirl : public Motion {
  public:
   Twirl(const Values& values, const engine::World& world)
@@ -93,14 +96,14 @@ class Twirl : public Motion {
   }
 
  private:
-  /// Where the hand means the robot to be.
+  /// Intended pose of the robot.
   CarriedPose path(double time_s) const {
     double spun_rad = 0.0;
     for (const Stroke& stroke : strokes_) {
       if (time_s <= stroke.start_s) break;
       spun_rad += stroke.angle_rad(time_s);
     }
-    // the unsteadiness sets in within a second, without a jump of acceleration
+    // the tremor starts within a second, with continuous acceleration
     const double share = eased(time_s - rest_s_);
     const Eigen::Vector3d sway_m(positions_[0].at(time_s), positions_[1].at(time_s), positions_[2].at(time_s));
     const BodyState start = hand_.start();
@@ -128,7 +131,8 @@ std::unique_ptr<Motion> make_twirl(const Values& values, const engine::World& wo
 
 const MotionType& twirl_motion() {
   static const MotionType kType{
-      {"twirl", "carried in a hand and twirled about its x axis, stroke by stroke", kTwirlParameters}, make_twirl};
+      {"twirl", "a hand carries the robot and twirls it about its x axis, stroke by stroke", kTwirlParameters},
+      make_twirl};
   return kType;
 }
 

@@ -19,7 +19,7 @@ std::uint64_t fnv1a(std::string_view text) {
   return hash;
 }
 
-/// Upper 53 bits as a number in [0, 1).
+/// Converts the upper 53 bits to a number in [0, 1).
 double unit(std::uint64_t bits) {
   return static_cast<double>(bits >> 11) * 0x1.0p-53;
 }
@@ -31,8 +31,8 @@ std::uint64_t join(std::uint32_t low, std::uint32_t high) {
 }  // namespace
 
 Stream::Stream(std::uint64_t seed, std::string_view name) {
-  // The key has 64 bits, seed and name 128: one Philox block folds them, so that near seeds and names give unrelated
-  // keys.
+  // The key has 64 bits, but seed and name have 128. One Philox block combines them, so that similar seeds and names
+  // give unrelated keys.
   const std::uint64_t hash = fnv1a(name);
   const auto folded = philox4x32_10({static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32), 0, 0},
                                     {static_cast<std::uint32_t>(hash), static_cast<std::uint32_t>(hash >> 32)});

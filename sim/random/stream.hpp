@@ -7,19 +7,19 @@
 
 namespace tumble::sim {
 
-/// An independent stream of random numbers, named: `Stream(seed, "imu.noise")`. Counter-based (Philox 4x32-10, Salmon
-/// et al., SC 2011), so the n-th number can be had without the ones before it, and results depend neither on threads
-/// nor on order. Distributions are our own: the standard library's differ between vendors.
+/// A named, independent stream of random numbers: `Stream(seed, "imu.noise")`. It is counter-based (Philox 4x32-10,
+/// Salmon et al., SC 2011): the n-th number is available without its predecessors, and results depend neither on
+/// threads nor on order. Distributions are our own, because those of standard libraries differ.
 class Stream {
  public:
   Stream(std::uint64_t seed, std::string_view name);
 
-  /// 128 bits that belong to (seed, name, index). Pure.
+  /// Returns 128 bits that depend only on (seed, name, index).
   std::array<std::uint32_t, 4> block(std::uint64_t index) const;
-  /// Two standard normal numbers that belong to (seed, name, index). Pure.
+  /// Returns two standard normal numbers that depend only on (seed, name, index).
   std::array<double, 2> normal_pair(std::uint64_t index) const;
 
-  /// Next number of the sequence.
+  /// Returns the next number of the sequence.
   std::uint64_t bits();
   double uniform();  ///< in [0, 1)
   double uniform(double low, double high);

@@ -11,7 +11,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kFieldGrid_m = 1.0, kFieldStep_m = 0.2, kPlaneGrid_m = 0.5, kPlaneHalf_m = 10.0;
-constexpr double kLift_m = 0.012;  // above the surface, so that the lines are not swallowed by it
+constexpr double kLift_m = 0.012;  // height above the surface, so that lines are not hidden by it
 constexpr float kGridColour[4] = {0.12f, 0.14f, 0.10f, 0.30f};
 constexpr double kGridPixels = 2.0;
 constexpr std::size_t kManyPoints = 4000;
@@ -30,7 +30,7 @@ void add_line(mjvScene& scene, const Vector3d& from, const Vector3d& to) {
   }
 }
 
-/// A geom's frame in the world.
+/// Transforms a point from a geom's frame to the world.
 Vector3d to_world(const mjData& data, int geom, const Vector3d& p_S) {
   const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> R_WS(data.geom_xmat + 9 * geom);
   return Eigen::Map<const Vector3d>(data.geom_xpos + 3 * geom) + R_WS * p_S;
@@ -48,7 +48,8 @@ double field_height_m(const mjModel& model, int field, double x_m, double y_m) {
          ((1 - b) * ((1 - a) * data[0] + a * data[1]) + b * ((1 - a) * data[columns] + a * data[columns + 1]));
 }
 
-/// Lines along both axes of a rectangle, `height(x, y)` above its plane; calls `line(from, to)` for every segment.
+/// Draws lines along both axes of a rectangle, at `height(x, y)` above its plane; calls `line(from, to)` for every
+/// segment.
 template <typename Height, typename Line>
 void drape(double half_x_m, double half_y_m, double grid_m, double step_m, const Height& height, const Line& line) {
   for (const int axis : {0, 1}) {
@@ -113,11 +114,11 @@ void add_paths(const View& view, mjvScene& scene) {
         from = &to;
         continue;
       }
-      // samples closer than the line is wide add nothing but time
+      // samples closer than the width of the line only cost time
       if ((to - *from).norm() < path.width_m && &to != &path.points_W_m.back()) continue;
       if (mjvGeom* geom = next_geom(scene, mjGEOM_CAPSULE, path.rgba.data())) {
         mjv_connector(geom, mjGEOM_CAPSULE, 0.5 * path.width_m, from->data(), to.data());
-        geom->emission = 0.35f;  // its own colour in the shade too
+        geom->emission = 0.35f;  // visible in its own colour in the shade
         geom->specular = 0.0f;
       }
       from = &to;

@@ -4,15 +4,16 @@
 #include "sim/engine/model.hpp"
 #include "sim/render/renderer.hpp"
 
-/// Private to sim: what a picture adds to the engine's scene. A full scene is a defect, so callers count first.
+/// Private to sim: additions of a picture to the engine's scene. Callers must count first, because a full scene is a
+/// defect.
 namespace tumble::sim {
 
-/// Engine geoms that decorating a view takes at most.
+/// Maximum number of engine geoms that the decoration of a view uses.
 int decoration_size(const engine::World& world, const View& view);
 
-/// Lines 1 m apart over height fields, 0.5 m apart over planes: they show slope and scale.
+/// Adds lines 1 m apart over height fields and 0.5 m apart over planes, which show slope and scale.
 void add_grid(const engine::World& world, const mjData& data, mjvScene& scene);
-/// Paths as connected capsules, clouds as balls (boxes when there are many).
+/// Adds paths as connected capsules and clouds as balls (boxes if there are many).
 void add_paths(const View& view, mjvScene& scene);
 void add_points(const View& view, mjvScene& scene);
 

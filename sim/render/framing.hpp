@@ -7,14 +7,14 @@
 
 namespace tumble::sim {
 
-/// Where a camera stands: as MuJoCo's free camera has it.
+/// Camera pose in the form of MuJoCo's free camera.
 struct Framing {
   Eigen::Vector3d look_at_W_m;
   double distance_m;
 };
 
-/// The view's own framing, or one that keeps all its paths and robots within the picture.
-/// `robot_radius_m` is the room around a robot's origin, `fovy_rad` the vertical field of view.
+/// Returns the view's own framing, or one that keeps its paths and robots within the picture. `robot_radius_m` is the
+/// room around a robot's origin, `fovy_rad` the vertical field of view.
 Framing frame(const View& view, double robot_radius_m, double fovy_rad);
 
 }  // namespace tumble::sim

@@ -10,7 +10,7 @@ namespace tumble::sim {
 
 namespace {
 
-/// What links with OSMesa asks for by this name, which says the binary interface of its header.
+/// Programs that link with OSMesa request this name, which identifies the binary interface of its header.
 constexpr const char* kLibrary = "libOSMesa.so.8";
 
 [[noreturn]] void fail() {
@@ -37,7 +37,7 @@ OsMesa load() {
 }  // namespace
 
 const OsMesa& osmesa() {
-  static const OsMesa kLoaded = load();  // where loading throws, the next call tries again
+  static const OsMesa kLoaded = load();  // if loading throws, the next call tries again
   return kLoaded;
 }
 

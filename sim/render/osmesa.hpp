@@ -5,16 +5,16 @@
 
 namespace tumble::sim {
 
-/// Private to sim: what pictures need of OSMesa, which is loaded when the first one is drawn. It brings LLVM with it,
-/// and a program that begins with it starts a third later, whatever it does (docs/figures.md).
+/// Private to sim: functions of OSMesa, which is loaded when the first picture is drawn. OSMesa loads LLVM, which makes
+/// the start of every program a third longer (docs/figures.md).
 struct OsMesa {
   decltype(&::OSMesaCreateContextExt) create_context;
   decltype(&::OSMesaDestroyContext) destroy_context;
   decltype(&::OSMesaMakeCurrent) make_current;
 };
 
-/// Loaded once, for the life of the process; its names are then seen by the engine, which asks for OpenGL by name.
-/// Throws std::runtime_error when it cannot be loaded. From any thread.
+/// Loads OSMesa once for the life of the process and returns its functions. Its symbols are then visible to the engine,
+/// which looks up OpenGL by name. Throws std::runtime_error if loading fails. May be called from any thread.
 const OsMesa& osmesa();
 
 }  // namespace tumble::sim

@@ -21,7 +21,7 @@ struct Picture {
   std::vector<std::uint8_t> rgb;
 };
 
-/// A line through the scene.
+/// A line in the scene.
 struct DrawnPath {
   std::vector<Eigen::Vector3d> points_W_m;
   std::array<float, 4> rgba = {1, 1, 1, 1};
@@ -35,10 +35,10 @@ struct DrawnPoints {
   double radius_m = 0.02;
 };
 
-/// What a picture shows. The camera looks at `look_at_W_m`; NaN there frames the robots and
-/// the paths near them by itself (all paths when there is no robot).
+/// Content of a picture. The camera looks at `look_at_W_m`. If it is NaN, the robots and nearby paths are framed
+/// automatically (all paths if there is no robot).
 struct View {
-  std::vector<Eigen::Isometry3d> robots_T_WB;  ///< the robot is drawn at each of these poses
+  std::vector<Eigen::Isometry3d> robots_T_WB;  ///< poses at which the robot is drawn
   std::vector<DrawnPath> paths;
   std::vector<DrawnPoints> points;
   int width = 1280;
@@ -49,11 +49,11 @@ struct View {
   double elevation_rad = -0.45;
 };
 
-/// Pictures of a situation's world without a display (OSMesa).
+/// Renders pictures of a situation's world without a display (OSMesa).
 class Renderer {
  public:
-  /// Dresses a copy of the world; its shadows are sharp to one of `shadow_pixels` along each side of what is seen, and
-  /// cost their square. Throws std::runtime_error when no OSMesa context can be made.
+  /// Prepares a copy of the world. The shadow map has `shadow_pixels` per side; its cost grows with the square. Throws
+  /// std::runtime_error if no OSMesa context can be created.
   explicit Renderer(const BuiltSituation& built, int shadow_pixels = 4096);
   ~Renderer();
   Renderer(Renderer&&) noexcept;
@@ -66,10 +66,10 @@ class Renderer {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Pictures side by side, in rows of `columns` (a film strip). All must have the same size.
+/// Arranges pictures of equal size in rows of `columns` (a film strip).
 Picture film_strip(std::span<const Picture> pictures, int columns);
 
-/// The PNG as bytes, of a file or for a page that carries its pictures.
+/// Returns the picture as a PNG file.
 std::vector<std::uint8_t> png_bytes(const Picture& picture);
 
 }  // namespace tumble::sim

@@ -16,14 +16,14 @@ namespace {
 
 constexpr double kRadPerDegree = 0.017453292519943295;
 constexpr int kLargestSide = 4096;
-constexpr int kOversampling = 2;  // rendered at twice the size and averaged: smooth edges without multisampling
+constexpr int kOversampling = 2;  // renders at twice the size and averages: smooth edges without multisampling
 
 struct ContextDeleter {
   void operator()(OSMesaContext context) const { osmesa().destroy_context(context); }
 };
 using ContextPtr = std::unique_ptr<osmesa_context, ContextDeleter>;
 
-/// Makes a context current for as long as it lives.
+/// Makes a context current during its lifetime.
 class Current {
  public:
   explicit Current(OSMesaContext context) {
@@ -36,7 +36,7 @@ class Current {
   Current& operator=(const Current&) = delete;
 
  private:
-  // pictures are drawn into a frame buffer object; the context's own buffer is a formality
+  // pictures are drawn into a frame buffer object; the context's own buffer is not used
   static constexpr int kSide = 16;
   unsigned char pixels_[4 * kSide * kSide];
 };
@@ -57,7 +57,7 @@ class Scene {
   mjvScene scene_;
 };
 
-/// Halves a picture in both directions and turns it upside up: OpenGL's rows begin at the bottom.
+/// Halves a picture in both directions and flips it vertically, because OpenGL's rows start at the bottom.
 Picture averaged(const std::vector<std::uint8_t>& large, int width, int height) {
   Picture picture{width, height,
                   std::vector<std::uint8_t>(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height))};
@@ -86,7 +86,7 @@ void set_look(mjModel& model, int shadow_pixels) {
   model.vis.quality.offsamples = 0;
   model.vis.quality.numslices = 24;
   model.vis.quality.numstacks = 14;
-  // soft light from the camera fills the shadows of the sun
+  // soft light from the camera fills the sun's shadows
   for (int c = 0; c < 3; ++c) {
     model.vis.headlight.ambient[c] = 0.28f;
     model.vis.headlight.diffuse[c] = 0.30f;
@@ -94,8 +94,8 @@ void set_look(mjModel& model, int shadow_pixels) {
   }
 }
 
-/// Lets the shadow map cover what the camera looks at and little more, which decides how sharp shadows are; the engine
-/// would spread it over the whole world.
+/// Restricts the shadow map to the visible area, because its size determines the sharpness of shadows. The engine would
+/// spread it over the whole world.
 void aim_sun(const Framing& framing, mjvScene& scene, mjrContext& engine) {
   const double reach_m = 2.0 + framing.distance_m;
   engine.shadowClip = static_cast<float>(reach_m);
@@ -168,7 +168,8 @@ void SceneRenderer::Impl::add_robots(const View& view, const mjvOption& option, 
   if (world.robot_body < 0) return;
   if (!world.free) {
     for (const Eigen::Isometry3d& T_WB : view.robots_T_WB) {
-      engine::reach(world, T_WB, *data);  // from the pose before: a film strip's neighbours are near each other
+      engine::reach(world, T_WB, *data);  // starts from the previous pose: neighbouring poses of a film strip are
+                                          // similar
       mjv_addGeoms(&model, data.get(), &option, nullptr, mjCAT_DYNAMIC, &scene);
     }
     return;

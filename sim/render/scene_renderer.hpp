@@ -8,14 +8,14 @@
 
 namespace tumble::sim {
 
-/// Private to sim: pictures of a compiled world (OSMesa, MuJoCo's own renderer).
+/// Private to sim: renders pictures of a compiled world (OSMesa, MuJoCo's renderer).
 ///
-/// Threads: an OSMesa context is current to one thread at a time. The renderer makes its context current for each call
-/// and lets go of it after, so that it may be used from any thread but by one at a time; several renderers may live in
-/// one process. It looks up no display and needs none.
+/// Threads: an OSMesa context is current in one thread at a time. The renderer makes its context current during each
+/// call, so it may be used from any thread, but only by one at a time. Several renderers may exist in one process. No
+/// display is needed.
 class SceneRenderer {
  public:
-  /// Takes over the world; changes its colours of sky, light and shadow settings, which nothing else sees.
+  /// Takes ownership of the world and changes its colours of sky, light and shadow settings.
   SceneRenderer(engine::World world, int shadow_pixels);
   ~SceneRenderer();
   SceneRenderer(const SceneRenderer&) = delete;

@@ -11,15 +11,16 @@
 /// Private to sim: primitives as triangles.
 namespace tumble::sim {
 
-/// Triangles turn to the left seen from outside. What shares a vertex is one smooth surface; edges have two vertices at
-/// one place.
+/// Triangles are anticlockwise seen from outside. Triangles that share a vertex form one smooth surface; sharp edges
+/// have two vertices at the same position.
 struct Tessellation {
   std::vector<Eigen::Vector3f> vertices_F_m;
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// The surface of a primitive in F; round ones of `segments` pieces about their axis (even, 4 at least), inscribed: no
-/// vertex lies outside. A plane is its rectangle, half `unbounded_m` wide where it has no bound.
+/// Returns the surface of a primitive in F. Round ones have `segments` pieces about their axis (even, at least 4) and
+/// are inscribed: no vertex is outside of the shape. A plane is its rectangle; unbounded sides are half `unbounded_m`
+/// wide.
 Tessellation tessellate(const Shape& shape, int segments, double unbounded_m);
 
 }  // namespace tumble::sim

@@ -13,7 +13,7 @@ namespace tumble::sim {
 namespace {
 
 constexpr double kUnbounded_m = 60.0;
-constexpr int kGroupsSeen = 3;  ///< MuJoCo's pictures show the groups 0, 1 and 2
+constexpr int kGroupsSeen = 3;  ///< MuJoCo's pictures show groups 0, 1 and 2
 
 std::array<float, 4> colour_of(const mjModel& model, int geom) {
   const int material = model.geom_matid[geom];
@@ -21,9 +21,9 @@ std::array<float, 4> colour_of(const mjModel& model, int geom) {
   return {rgba[0], rgba[1], rgba[2], rgba[3]};
 }
 
-/// A plane is the smallest field: four nodes, a cell.
+/// A plane is the smallest field: four nodes and one cell.
 MeshPart as_field(const Tessellation& plane, MeshPart part) {
-  const auto& corners = plane.vertices_F_m;  // about the plane, to the left
+  const auto& corners = plane.vertices_F_m;  // anticlockwise around the plane
   part.vertices_m = {corners[0], corners[1], corners[3], corners[2]};
   part.rows = part.columns = 2;
   return part;
@@ -52,7 +52,7 @@ MeshPart part_of(const mjModel& model, int geom, const Eigen::Isometry3d& T_FS, 
   return part;
 }
 
-/// The geoms of one body that pictures show, in the axes that T_FW leads to.
+/// Returns the visible geoms of one body, in the axes to which T_FW leads.
 std::vector<MeshPart> body_mesh(const mjModel& model, const mjData& data, int body, const Eigen::Isometry3d& T_FW,
                                 int segments) {
   std::vector<MeshPart> parts;

@@ -9,25 +9,27 @@ namespace tumble::sim {
 namespace {
 
 constexpr std::array kPendulumParameters = {
-    Parameter{"height_m", 1.3, 0.2, 20.0, "m", "of the uppermost hinge above the ground; assumed"},
+    Parameter{"height_m", 1.3, 0.2, 20.0, "m", "height of the uppermost hinge above the ground; assumed"},
     Parameter{"segment_m", 0.25, 0.02, 2.0, "m",
-              "length of each segment, hinge to hinge; makes the periods of RepoIMU's pendulum, about 1.46 and 0.67 s"},
-    Parameter{"segment_mass_kg", 0.3, 0.01, 20.0, "kg", "of each segment; assumed, the free motion does not show it"},
-    Parameter{"hinge_damping_nm_s", 0.0, 0.0, 1.0, "N m s", "of each hinge, in proportion to its rate"},
+              "length of each segment between hinges; gives the periods of RepoIMU's pendulum, about 1.46 and 0.67 s"},
+    Parameter{"segment_mass_kg", 0.3, 0.01, 20.0, "kg",
+              "mass of each segment; assumed, because the free motion does not depend on it"},
+    Parameter{"hinge_damping_nm_s", 0.0, 0.0, 1.0, "N m s", "viscous friction of each hinge"},
     Parameter{"hinge_friction_nm", 0.0, 0.0, 1.0, "N m", "dry friction of each hinge"},
     Parameter{"play_stiffness_nm", 20.0, 0.1, 1000.0, "N m/rad",
-              "of the support against twist and against swinging along the hinges; assumed"},
-    Parameter{"play_damping_nm_s", 0.1, 0.0, 10.0, "N m s", "of the same; assumed"},
+              "stiffness of the support against twist and against swinging along the hinges; assumed"},
+    Parameter{"play_damping_nm_s", 0.1, 0.0, 10.0, "N m s", "damping of the support; assumed"},
 };
 
-constexpr double kBarHalfThickness_m = 0.02;  // of the bars with what they carry, for the moment about their length
+constexpr double kBarHalfThickness_m = 0.02;  // half thickness of a bar with its load, for the moment of inertia about
+                                              // its length
 constexpr int kSegments = 3;
 
 mjsJoint* joint(mjSpec* spec, const std::string& name) {
   return mjs_asJoint(mjs_findElement(spec, mjOBJ_JOINT, name.c_str()));
 }
 
-/// A slim bar whose origin is its middle, hung by its upper end.
+/// Shapes a slim bar whose origin is its middle, attached at its upper end.
 void shape_segment(mjSpec* spec, const Values& values, int number) {
   const std::string name = "segment_" + std::to_string(number);
   const double length_m = values.at("segment_m"), mass_kg = values.at("segment_mass_kg");
@@ -59,7 +61,7 @@ void shape_pendulum(mjSpec* spec, const Values& values, engine::World& world) {
 
 const RobotType& pendulum_robot() {
   static const RobotType kType{
-      {"pendulum", "three segments that hang on hinges, an IMU on the lowest", kPendulumParameters},
+      {"pendulum", "three segments in a row on hinges, with an IMU on the lowest", kPendulumParameters},
       "pendulum.xml",
       shape_pendulum,
       "segment_3",

@@ -23,15 +23,18 @@ constexpr std::array kRigParameters = {
               "damping ratio of a contact (MuJoCo solref[1]): below 1 it bounces"},
     Parameter{"friction", 0.7, 0.0, 2.0, "1", "sliding friction of the struts on everything"},
     Parameter{"lower_contact_ratio", 1.0, 0.25, 4.0, "1",
-              "contact time of the four lower struts over contact_time_s: tubes differ in padding and wear"},
-    Parameter{"upper_contact_ratio", 1.0, 0.25, 4.0, "1", "the same of the four upper struts"},
-    Parameter{"upright_contact_ratio", 1.0, 0.25, 4.0, "1", "the same of the four upright struts"},
-    Parameter{"com_x_m", 0.0, -0.1, 0.1, "m", "true minus nominal centre of mass, B axes; nobody tells the estimator"},
+              "contact time of the four lower struts relative to contact_time_s: tubes differ in padding and wear"},
+    Parameter{"upper_contact_ratio", 1.0, 0.25, 4.0, "1",
+              "contact time of the four upper struts relative to contact_time_s"},
+    Parameter{"upright_contact_ratio", 1.0, 0.25, 4.0, "1",
+              "contact time of the four vertical struts relative to contact_time_s"},
+    Parameter{"com_x_m", 0.0, -0.1, 0.1, "m",
+              "true minus nominal centre of mass, B axes; estimators do not receive it"},
     Parameter{"com_y_m", 0.0, -0.1, 0.1, "m", "the same along y"},
     Parameter{"com_z_m", 0.0, -0.1, 0.1, "m", "the same along z"},
 };
 
-/// Which of the contact ratios belongs to a strut, by its name in rig.xml.
+/// Returns the contact ratio that applies to a strut, by its name in rig.xml.
 const char* contact_ratio_of(std::string_view strut) {
   if (strut.starts_with("strut_lower_")) return "lower_contact_ratio";
   if (strut.starts_with("strut_upper_")) return "upper_contact_ratio";

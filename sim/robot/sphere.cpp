@@ -11,10 +11,11 @@ namespace {
 constexpr std::array kSphereParameters = {
     Parameter{"radius_m", 0.145, 0.05, 1.0, "m", "outer radius of the shell; 29 cm across as published"},
     Parameter{"shell_mass_kg", 1.6, 0.05, 50.0, "kg", "thin shell; slip_study"},
-    Parameter{"inner_mass_kg", 2.6, 0.05, 50.0, "kg", "instruments and battery, a homogeneous ball; slip_study"},
+    Parameter{"inner_mass_kg", 2.6, 0.05, 50.0, "kg",
+              "mass of instruments and battery, a homogeneous ball; slip_study"},
     Parameter{"inner_radius_m", 0.08, 0.01, 0.9, "m", "radius of that ball; assumed"},
     Parameter{"inner_x_m", 0.0, -0.03, 0.03, "m",
-              "its centre relative to the geometric centre, B axes; up to 12 mm each in slip_study"},
+              "centre of that ball relative to the geometric centre, B axes; up to 12 mm each in slip_study"},
     Parameter{"inner_y_m", 0.0, -0.03, 0.03, "m", "the same along y"},
     Parameter{"inner_z_m", 0.0, -0.03, 0.03, "m", "the same along z; negative: the heavy side is down at the start"},
     Parameter{"contact_time_s", 0.004, 0.002, 0.1, "s",
@@ -22,7 +23,7 @@ constexpr std::array kSphereParameters = {
     Parameter{"contact_damping_ratio", 1.0, 0.05, 1.5, "1", "damping ratio of a contact (MuJoCo solref[1])"},
 };
 
-/// Shell and ball about their common centre of mass: parallel axes with the reduced mass (Steiner).
+/// Inertia of shell and ball about their common centre of mass: parallel axes with the reduced mass (Steiner).
 Eigen::Matrix3d inertia(double shell_kg, double radius_m, double inner_kg, double inner_radius_m,
                         const Eigen::Vector3d& d_m) {
   const double own =
@@ -41,7 +42,7 @@ void shape_sphere(mjSpec* spec, const Values& values, engine::World& world) {
   body->mass = shell_kg + inner_kg;
   const double full[6] = {J(0, 0), J(1, 1), J(2, 2), J(0, 1), J(0, 2), J(1, 2)};
   std::copy(full, full + 6, body->fullinertia);
-  std::fill(body->inertia, body->inertia + 3, 0.0);  // the compiler accepts one of the two forms
+  std::fill(body->inertia, body->inertia + 3, 0.0);  // the compiler accepts only one of the two forms
 
   mjs_asGeom(mjs_findElement(spec, mjOBJ_GEOM, "shell"))->size[0] = radius_m;
   set_contact(body, values.at("contact_time_s"), values.at("contact_damping_ratio"));
@@ -54,7 +55,7 @@ void shape_sphere(mjSpec* spec, const Values& values, engine::World& world) {
 
 const RobotType& sphere_robot() {
   static const RobotType kType{
-      {"sphere", "sphere of 29 cm with an off-centre inside, three IMUs and a lidar", kSphereParameters},
+      {"sphere", "sphere of 29 cm with an eccentric inner mass, three IMUs and a lidar", kSphereParameters},
       "sphere.xml",
       shape_sphere};
   return kType;

@@ -14,16 +14,16 @@ constexpr double kMolarMass_kg_mol = 0.0289644, kGasConstant_j_mol_k = 8.31432;
 constexpr auto kBarometerParameters = joined(
     kSeriesParameters,
     std::array{
-        Parameter{"pressure_min_pa", 3e4, 0.0, 1e6, "Pa", "where the output stops below"},
-        Parameter{"pressure_max_pa", 1.25e5, 0.0, 1e6, "Pa", "where the output stops above"},
+        Parameter{"pressure_min_pa", 3e4, 0.0, 1e6, "Pa", "lower end of the output range"},
+        Parameter{"pressure_max_pa", 1.25e5, 0.0, 1e6, "Pa", "upper end of the output range"},
         Parameter{"pressure_noise_pa", 0.0, 0.0, 1e4, "Pa", "standard deviation of each sample's white noise; 0: off"},
         Parameter{"pressure_bias_pa", 0.0, 0.0, 1e4, "Pa", "standard deviation of the constant error; 0: off"},
-        Parameter{"pressure_quantum_pa", 0.0, 0.0, 1e4, "Pa", "step of the output; 0: off"},
-        Parameter{"ground_pressure_pa", 101325.0, 1e3, 2e5, "Pa", "of the air at the world's origin"},
-        Parameter{"air_temperature_k", 288.15, 150.0, 400.0, "K", "of the air, the same at every height"},
+        Parameter{"pressure_quantum_pa", 0.0, 0.0, 1e4, "Pa", "resolution of the output; 0: off"},
+        Parameter{"ground_pressure_pa", 101325.0, 1e3, 2e5, "Pa", "air pressure at the world's origin"},
+        Parameter{"air_temperature_k", 288.15, 150.0, 400.0, "K", "air temperature, the same at every height"},
     });
 
-/// What it does not model: wind, the pressure of the robot's own way through the air, lag of the housing.
+/// Not modelled: wind, pressure caused by the robot's own motion, lag of the housing.
 void add_barometer(const SensorContext& context, Recording& recording) {
   const Values& values = context.sensor.values;
   const auto pressure_pa = [&truth = recording.truth, &context, ground_pa = values.at("ground_pressure_pa"),
@@ -51,7 +51,7 @@ double air_pressure_pa(double ground_pressure_pa, double temperature_k, double g
 }
 
 const SensorType& barometer_sensor() {
-  static const SensorType kType{{"barometer", "pressure of the air, which falls with height", kBarometerParameters},
+  static const SensorType kType{{"barometer", "air pressure, which decreases with height", kBarometerParameters},
                                 add_barometer,
                                 check_pressure_range};
   return kType;

@@ -14,40 +14,40 @@
 
 namespace tumble::sim {
 
-/// Numbers that every sensor of a series has: how often it reads, how its readings are stamped and lost.
+/// Parameters of every series sensor: output rate, time stamps and losses.
 inline constexpr std::array kSeriesParameters = {
-    Parameter{"output_rate_hz", 50.0, 0.1, 2000.0, "Hz",
-              "samples per second; must divide the physics rate of 2000 Hz: each is the mean since the one before"},
-    Parameter{"time_offset_s", 0.0, -0.1, 0.1, "s", "stamp minus the true end of the window"},
+    Parameter{
+        "output_rate_hz", 50.0, 0.1, 2000.0, "Hz",
+        "samples per second; must divide the physics rate of 2000 Hz; each sample is the mean since the previous one"},
+    Parameter{"time_offset_s", 0.0, -0.1, 0.1, "s", "time stamp minus true end of the window"},
     Parameter{"time_jitter_s", 0.0, 0.0, 0.1, "s",
-              "standard deviation of the stamp, within 3 of them; below a sixth of the period; 0: off"},
-    Parameter{"dropout_share", 0.0, 0.0, 0.5, "1", "share of samples that never arrive; 0: off"},
+              "standard deviation of the time stamp, truncated at 3 of them; below a sixth of the period; 0: off"},
+    Parameter{"dropout_share", 0.0, 0.0, 0.5, "1", "share of lost samples; 0: off"},
     Parameter{"dropout_mean_samples", 1.0, 1.0, 1e4, "1", "mean length of a run of lost samples"},
 };
 
-/// How the readings of a quantity differ from its mean over the window; 0: off.
+/// Errors of the readings of a quantity relative to its mean over the window; 0: off.
 struct ReadingErrors {
-  double noise = 0.0;  ///< standard deviation of each reading's white noise
-  double bias = 0.0;   ///< standard deviation of an error drawn once for the recording
-  double low = -std::numeric_limits<double>::infinity();  ///< where the output stops
+  double noise = 0.0;                                     ///< standard deviation of the white noise of each reading
+  double bias = 0.0;                                      ///< standard deviation of an error drawn once per recording
+  double low = -std::numeric_limits<double>::infinity();  ///< range of the output
   double high = std::numeric_limits<double>::infinity();
-  double quantum = 0.0;  ///< step of the output
+  double quantum = 0.0;  ///< resolution of the output
 };
 
-/// A quantity that a sensor reads.
+/// A quantity that a sensor measures.
 struct Measured {
   std::string name;  ///< ends in its unit: "pressure_pa"
   std::string unit;
   ReadingErrors errors;
-  std::function<double(std::size_t k)> exact;  ///< its true value at the truth's physics sample k
+  std::function<double(std::size_t k)> exact;  ///< true value at physics sample k of the truth
 };
 
-/// Adds to a recording that holds the body's truth a series of `quantities`: the mean of each over each window, a bias,
-/// white noise, the range, the quantum, stamps and losses (imu/time_stamps.hpp) by kSeriesParameters. With every error
-/// 0 a reading is the true mean, bit for bit. A lost sample is lost from the truth too. Throws InvalidSituation when
-/// the output period is no whole number of physics steps. What it does not model: errors that follow temperature,
-/// bandwidth other than the window's, drift.
-/// `constants`: numbers of the sensor that whoever reads it is told.
+/// Adds a series of `quantities` to a recording that contains the body's truth. A reading is the mean over a window
+/// with bias, white noise, range, quantum, stamps and losses (imu/time_stamps.hpp) by kSeriesParameters. With every
+/// error 0, it is the true mean, bit for bit. A lost sample is also missing in the truth. Throws InvalidSituation if
+/// the output period is not a whole number of physics steps. Not modelled: temperature errors, bandwidth other than the
+/// window's, drift. `constants` are numbers of the sensor that readers of the recording receive.
 void simulate_series(const SensorContext& context, const std::vector<Measured>& quantities,
                      const std::vector<std::string>& constants, Recording& recording);
 

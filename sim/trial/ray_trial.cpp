@@ -16,8 +16,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kReach_m = 1e4;
-/// Surfaces whose faces lie in one another (the end of a wall within a door's reveal) are hit both: either name is
-/// right.
+/// Surfaces with coincident faces (the end of a wall within a door's reveal) are both hit: either name is correct.
 constexpr double kCoincident_m = 1e-4;
 
 /// Rays of the engine against the static part of a world.
@@ -28,7 +27,7 @@ class EngineRays {
   }
 
   struct Hit {
-    double range_m;  ///< negative when nothing is met
+    double range_m;  ///< negative without a hit
     int geom;
   };
   Hit cast(const Vector3d& origin_m, const Vector3d& direction) const {
@@ -38,7 +37,7 @@ class EngineRays {
     return {range_m, geom};
   }
 
-  /// Range of this geom alone; negative when the ray misses it.
+  /// Returns the range to this geom; negative if the ray misses it.
   double range_to(int geom, const Vector3d& origin_m, const Vector3d& direction) const {
     const mjModel* model = world_.model.get();
     const int type = model->geom_type[geom];
@@ -54,17 +53,17 @@ class EngineRays {
   engine::DataPtr data_;
 };
 
-/// A ray and where the engine says it ends.
+/// A ray and its hit according to the engine.
 struct TrialRay {
   Vector3d origin_m, direction;
   EngineRays::Hit expected;
 };
 
 Vector3d as_float(const Vector3d& v) {
-  return v.cast<float>().cast<double>();  // both sides start from the same place
+  return v.cast<float>().cast<double>();  // both sides use the same origin
 }
 
-/// A place above whatever stands at a random spot of the inner world.
+/// Returns an origin above the surface at a random position of the inner world.
 Vector3d origin_above_ground(const EngineRays& rays, double half_extent_m, Stream& stream) {
   constexpr double kAbove_m = 50.0;
   const double reach_m = 0.85 * half_extent_m;
@@ -76,7 +75,7 @@ Vector3d origin_above_ground(const EngineRays& rays, double half_extent_m, Strea
   return as_float(origin);
 }
 
-/// A place near where the robot begins: under a ceiling, where there is one.
+/// Returns an origin near the robot's start, below the ceiling if there is one.
 Vector3d origin_near_start(const Vector3d& start_W_m, Stream& stream) {
   const double z_m = stream.uniform(0.1, 1.5), y_m = stream.uniform(-1.5, 1.5), x_m = stream.uniform(-1.5, 1.5);
   return as_float(start_W_m + Vector3d(x_m, y_m, z_m));

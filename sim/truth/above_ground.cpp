@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A height field of the world, which never moves.
+/// A static height field of the world.
 struct Terrain {
   engine::Field field;
   Eigen::Isometry3d T_WF;
@@ -36,7 +36,7 @@ std::vector<Terrain> terrains(const engine::World& world) {
   return found;
 }
 
-/// An interval of time in the ground.
+/// A time interval below the ground.
 struct Spell {
   std::size_t steps = 0;
   double deepest_m = 0.0;
@@ -46,7 +46,7 @@ struct Spell {
   std::ostringstream text;
   text << "sensor '" << sensor << "' was below the ground for " << static_cast<double>(spell.steps) * period_s << " s, "
        << spell.deepest_m << " m deep (deeper than " << kDipDepth_m << " m for " << kDip_s
-       << " s at most): contacts held the robot in the ground, from " << from_s << " s";
+       << " s at most): the robot was wedged in the ground, from " << from_s << " s";
   throw SimulationFailure(text.str());
 }
 
@@ -59,7 +59,7 @@ void require_above_ground(const engine::World& world, const Truth& truth, const 
   const double period_s = static_cast<double>(truth.period_ns) * 1e-9;
   Spell spell;
   for (std::size_t k = 0; k <= truth.p_WB_m.size(); ++k) {
-    double depth_m = 0.0;  // one step beyond the end, which ends the last spell
+    double depth_m = 0.0;  // one step beyond the end terminates the last interval
     if (k < truth.p_WB_m.size()) {
       const Vector3d p_W_m = truth.p_WB_m[k] + truth.q_WB[k] * p_BX_m;
       for (const Terrain& terrain : ground) depth_m = std::max(depth_m, terrain.depth_m(p_W_m));

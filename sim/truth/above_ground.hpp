@@ -9,16 +9,17 @@
 
 namespace tumble::sim {
 
-/// A sensor may dip this far below the ground for as long as it likes, and farther for less than that time. A soft
-/// contact gives by several centimetres for some 30 ms of a hard impact; what stays in the ground longer is wedged.
+/// A sensor may be below the ground by up to this depth permanently, and deeper for less than the allowed time. A soft
+/// contact yields by several centimetres for about 30 ms of a hard impact; a longer penetration means that the robot is
+/// wedged.
 inline constexpr double kDipDepth_m = 0.01;
 inline constexpr double kDip_s = 0.05;
 
-/// Holds that a sensor stayed above the ground, as every real one does: contacts are soft, and a hard impact may drive
-/// the robot so deep into a height field that they hold it there, its lidar looking at the surface from beneath. No
-/// estimator is to be judged by that. `truth` has the poses of the body, `p_BX_m` is where the sensor sits on it. The
-/// depth is the distance from the plane of the triangle of ground above. Throws SimulationFailure with sensor, time,
-/// depth and bound. Height fields alone are asked: not planes, and no rocks, trunks or walls.
+/// Checks that a sensor stays above the ground. Contacts are soft, and a hard impact may push the robot so deep into a
+/// height field that it stays wedged, with its lidar below the surface. Such draws must not be used to judge
+/// estimators. `truth` contains the poses of the body; `p_BX_m` is the sensor's position on it. The depth is the
+/// distance below the plane of the ground triangle. Throws SimulationFailure with sensor, time, depth and bound. Only
+/// height fields are checked; planes, rocks, trunks and walls are not.
 void require_above_ground(const engine::World& world, const Truth& truth, const std::string& sensor,
                           const Eigen::Vector3d& p_BX_m);
 

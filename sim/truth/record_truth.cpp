@@ -15,7 +15,7 @@ constexpr double kSettle_s = 1.0;
 constexpr double kRestSpeed_m_s = 0.005;
 constexpr double kLeastDistance_m = 0.05;
 
-/// Lets the robot sink into its contacts under gravity and a drag that ends before the recording begins.
+/// Lets the robot settle into its contacts under gravity and a drag that ends before the recording starts.
 void settle(engine::Physics& physics, const mjModel& model, int body, Motion& motion) {
   BodyState start = motion.start();
   start.time_s = -kSettle_s;
@@ -73,7 +73,7 @@ Truth record_truth(engine::World& world, Motion& motion, double duration_s) {
   }
   if (distance_m < kLeastDistance_m)
     throw SimulationFailure("the robot never moved, until " + std::to_string(duration_s) + " s");
-  // no step ends at time 0: the robot is at rest there as in the first step
+  // no step ends at time 0: the specific force there is that of the first step, because the robot is at rest
   truth.f_B_m_s2.insert(truth.f_B_m_s2.begin(), truth.f_B_m_s2.front());
   truth.label = label_contacts(truth);
   return truth;

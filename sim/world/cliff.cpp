@@ -12,16 +12,17 @@ namespace tumble::sim {
 namespace {
 
 constexpr std::array kOwnCliffParameters = {
-    Parameter{"drop_count", 2, 1, 6, "1", "drops, one below the other"},
-    Parameter{"drop_height_m", 1.2, 0.2, 5.0, "m", "height of each drop; its face is a cell of the ground deep, 0.2 m"},
-    Parameter{"ledge_length_m", 2.0, 0.3, 8.0, "m", "level length of the ledge below a drop, rounded to whole cells"},
+    Parameter{"drop_count", 2, 1, 6, "1", "number of drops, one below the other"},
+    Parameter{"drop_height_m", 1.2, 0.2, 5.0, "m", "height of each drop; its face is one ground cell wide, 0.2 m"},
+    Parameter{"ledge_length_m", 2.0, 0.3, 8.0, "m",
+              "horizontal length of the ledge below a drop, rounded to whole cells"},
     Parameter{"ledge_slope_rad", 0.35, 0.0, 1.0, "rad", "fall of a ledge along +x"},
 };
 constexpr std::array kCliffParameters = joined(kOwnCliffParameters, hillside::kCoverParameters);
 
 void build_cliff(mjSpec* spec, const Values& values, std::uint64_t seed, engine::World& world) {
   Ground ground(hillside::kSide, hillside::kHalfExtent_m);
-  // faces between two rows of nodes: elsewhere they would be half as steep
+  // faces are between two rows of nodes; elsewhere they would have half the slope
   const double cell_m = ground.cell_m();
   const double ledge_m = cell_m * std::max(1.0, std::round(values.at("ledge_length_m") / cell_m));
   const LedgeProfile profile{hillside::kEdge_m,

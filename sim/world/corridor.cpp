@@ -13,13 +13,13 @@ namespace tumble::sim {
 namespace {
 
 constexpr std::array kOwnCorridorParameters = {
-    Parameter{"length_m", 16.0, 4.0, 60.0, "m", "of the corridor along x, its middle at the origin"},
-    Parameter{"half_width_m", 1.4, 0.6, 5.0, "m", "half distance of the walls"},
+    Parameter{"length_m", 16.0, 4.0, 60.0, "m", "length of the corridor along x, centred on the origin"},
+    Parameter{"half_width_m", 1.4, 0.6, 5.0, "m", "half distance between the walls"},
     Parameter{"wall_height_m", 2.6, 1.0, 10.0, "m", "height of walls and ceiling"},
     Parameter{"bay_shortest_m", 1.0, 0.3, 10.0, "m", "shortest bare wall between two doors, pillars or niches"},
     Parameter{"bay_longest_m", 2.4, 0.3, 10.0, "m", "longest one"},
-    Parameter{"niche_depth_m", 0.9, 0.2, 5.0, "m", "deepest niche; a door stands back a sixth of it to a half"},
-    Parameter{"beam_count", 4, 0, 50, "1", "beams across below the ceiling"},
+    Parameter{"niche_depth_m", 0.9, 0.2, 5.0, "m", "deepest niche; a door is recessed by a sixth to a half of it"},
+    Parameter{"beam_count", 4, 0, 50, "1", "number of beams below the ceiling"},
 };
 constexpr std::array kCorridorParameters = joined(kGroundParameters, kOwnCorridorParameters);
 
@@ -28,7 +28,7 @@ constexpr Colour kWall = {0.85f, 0.84f, 0.8f, 1.0f}, kDoor = {0.45f, 0.3f, 0.2f,
                  kFrame = {0.3f, 0.34f, 0.4f, 1.0f}, kPillar = {0.6f, 0.62f, 0.66f, 1.0f},
                  kLocker = {0.35f, 0.5f, 0.55f, 1.0f};
 
-/// One long wall, built from its back end to its front end. `side` is +1 for the left one.
+/// One long wall, built from its back end to its front end. `side` is +1 for the left wall.
 class Side {
  public:
   Side(mjSpec* spec, engine::World& world, const Values& values, int side, Stream& stream)
@@ -62,7 +62,7 @@ class Side {
   }
 
  private:
-  /// A box against or beyond the line of the wall: from `near_m` to `far_m` beyond the wall's face.
+  /// Adds a box at the wall, from `near_m` to `far_m` beyond the wall's face.
   void add(const char* what, double from_m, double to_m, double near_m, double far_m, double top_m,
            const Colour& colour) {
     const double half_m = values_.at("half_width_m");
@@ -79,7 +79,7 @@ class Side {
     at_m_ = to_m;
   }
 
-  /// A door between its posts, or a niche; a locker stands in some of the niches.
+  /// Adds a door between its posts, or a niche; some niches contain a locker.
   void add_recess(double width_m, double depth_m, const Colour& colour, bool door) {
     const double to_m = at_m_ + width_m, top_m = values_.at("wall_height_m");
     add(door ? "door_" : "niche_", at_m_, to_m, depth_m, depth_m + 2 * kHalfWall_m, top_m, colour);
@@ -154,7 +154,7 @@ void build_corridor(mjSpec* spec, const Values& values, std::uint64_t seed, engi
 
 const WorldType& corridor_world() {
   static const WorldType kType{
-      {"corridor", "corridor along x with doors, niches, pillars and beams; closed at both ends", kCorridorParameters},
+      {"corridor", "corridor along x with doors, niches, pillars and beams, closed at both ends", kCorridorParameters},
       build_corridor};
   return kType;
 }

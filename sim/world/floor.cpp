@@ -32,13 +32,13 @@ constexpr std::array kOwnFloorParameters = {
     Parameter{"patch_3_yaw_rad", 0.0, -3.2, 3.2, "rad", "as patch 1"},
     Parameter{"patch_3_friction", 0.05, 0, 2, "1", "as patch 1"},
     Parameter{"obstacle_1_kind", 0.0, 0.0, 3.0, "1",
-              "0: none; 1: bar, rounded above; 2: board; 3: step up to a podium"},
-    Parameter{"obstacle_1_x_m", 0.0, -30, 30, "m", "middle of the obstacle; of a podium: its edge"},
+              "0: none; 1: bar with a round top; 2: board; 3: step up to a podium"},
+    Parameter{"obstacle_1_x_m", 0.0, -30, 30, "m", "middle of the obstacle; for a podium its edge"},
     Parameter{"obstacle_1_y_m", 0.0, -30, 30, "m", "middle of the obstacle"},
-    Parameter{"obstacle_1_yaw_rad", 0.0, -3.2, 3.2, "rad", "turn about z; 0: it lies across the x axis"},
+    Parameter{"obstacle_1_yaw_rad", 0.0, -3.2, 3.2, "rad", "rotation about z; 0: across the x axis"},
     Parameter{"obstacle_1_height_m", 0.015, 0.001, 0.08, "m", "height above the floor"},
     Parameter{"obstacle_1_depth_m", 0.1, 0.02, 10.0, "m",
-              "extent across its edge, of board and podium; a bar is a cylinder of 5 cm radius sunk into the floor"},
+              "width across its edge, for board and podium; a bar is a cylinder of 5 cm radius sunk into the floor"},
     Parameter{"obstacle_2_kind", 0.0, 0.0, 3.0, "1", "as obstacle 1"},
     Parameter{"obstacle_2_x_m", 0.0, -30, 30, "m", "as obstacle 1"},
     Parameter{"obstacle_2_y_m", 0.0, -30, 30, "m", "as obstacle 1"},
@@ -68,12 +68,12 @@ void add_patches(mjSpec* spec, engine::World& world, const Values& values) {
   }
 }
 
-/// A cylinder that lies across the way, its highest line `height_m` above the floor.
+/// Adds a horizontal cylinder across the path, whose top is `height_m` above the floor.
 mjsGeom* add_bar(mjSpec* spec, engine::World& world, const std::string& name, const Eigen::Vector2d& at_m,
                  double yaw_rad, double height_m, const Colour& colour) {
   mjsGeom* geom = add_surface(spec, world, name, mjGEOM_CYLINDER, {at_m.x(), at_m.y(), height_m - kBarRadius_m},
                               {kBarRadius_m, kObstacleHalfWidth_m, 0.0}, 0.0, colour);
-  // z axis of the cylinder to -y, then the yaw: q = q_z(yaw) * q_x(90 deg)
+  // rotates the cylinder's z axis to -y, then by the yaw: q = q_z(yaw) * q_x(90 deg)
   const double half = std::sqrt(0.5), c = std::cos(yaw_rad / 2) * half, s = std::sin(yaw_rad / 2) * half;
   const double q[4] = {c, c, s, s};
   std::copy(q, q + 4, geom->quat);
@@ -91,7 +91,7 @@ void add_obstacles(mjSpec* spec, engine::World& world, const Values& values) {
     const Eigen::Vector2d ahead(std::cos(yaw_rad), std::sin(yaw_rad));
     Eigen::Vector2d at(value("x_m"), value("y_m"));
     if (kind == 3) at += half_depth_m * ahead;
-    // buried as deep as it is high: its lower face must not meet the floor's
+    // buried by its own height, so that its lower face does not coincide with the floor
     mjsGeom* geom = kind == 1 ? add_bar(spec, world, name, at, yaw_rad, height_m, kWood)
                               : add_surface(spec, world, name, mjGEOM_BOX, {at.x(), at.y(), 0.0},
                                             {half_depth_m, kObstacleHalfWidth_m, height_m}, yaw_rad, kWood);
@@ -101,7 +101,7 @@ void add_obstacles(mjSpec* spec, engine::World& world, const Values& values) {
 
 void build_floor(mjSpec* spec, const Values& values, std::uint64_t seed, engine::World& world) {
   Stream stream(seed, "terrain");
-  Stream uneven(seed, "terrain.unevenness");  // a stream of its own: the furniture of a seed stays where it is
+  Stream uneven(seed, "terrain.unevenness");  // a separate stream, so that the furniture of a seed does not change
   const double half_m = values.at("room_half_m");
   add_ground(spec, world, values, half_m, half_m, nullptr, {0.62f, 0.6f, 0.57f, 1.0f}, uneven);
   add_room(spec, world, values, stream);

@@ -9,7 +9,7 @@
 
 namespace tumble::sim {
 
-/// Numbers of the ground that a sphere rolls on, for every world that has one.
+/// Parameters of the ground on which a sphere rolls, for every world with such ground.
 inline constexpr std::array kGroundParameters = {
     Parameter{"friction", 0.6, 0.0, 2.0, "1", "sliding friction of the floor outside of the patches"},
     Parameter{"spin_friction_m", 0.0005, 0.0, 0.1, "m",
@@ -21,16 +21,17 @@ inline constexpr std::array kGroundParameters = {
     Parameter{"soft_damping_ratio", 1.0, 0.05, 1.5, "1", "damping ratio of that contact (MuJoCo solref[1])"},
     Parameter{"roughness_m", 0.0, 0.0, 0.03, "m", "root mean square of the ground's unevenness; 0: a perfect plane"},
     Parameter{"roughness_shortest_m", 0.15, 0.1, 5.0, "m", "shortest wavelength of the unevenness"},
-    Parameter{"roughness_longest_m", 1.0, 0.1, 10.0, "m", "longest one; the height goes with the wavelength"},
+    Parameter{"roughness_longest_m", 1.0, 0.1, 10.0, "m",
+              "longest wavelength of the unevenness; the height is proportional to the wavelength"},
 };
 
-/// Friction and softness of the ground for `geom`. Of two frictions MuJoCo takes the larger one, and a sphere has none;
-/// hard ground leaves the softness to the robot, soft ground decides it alone.
+/// Sets friction and softness of the ground for `geom`. MuJoCo uses the larger of two frictions, and a sphere has none.
+/// On hard ground the robot determines the softness; soft ground determines it alone.
 void set_ground_contact(mjsGeom* geom, const Values& values);
 
-/// Adds the surface "floor" over |x| <= half_x_m, |y| <= half_y_m: a plane at height 0, or a height field (nodes 5 cm
-/// apart) when it is rough or has a `profile_m` (height over x, y; may be empty). The unevenness never rises above the
-/// profile, so that nothing starts inside of it. Returns false when it is a plane.
+/// Adds the surface "floor" over |x| <= half_x_m, |y| <= half_y_m. It is a plane at height 0, or a height field (nodes
+/// 5 cm apart) if it is rough or has a `profile_m` (height over x, y; may be empty). The unevenness never rises above
+/// the profile, so that nothing starts inside the ground. Returns false for a plane.
 bool add_ground(mjSpec* spec, engine::World& world, const Values& values, double half_x_m, double half_y_m,
                 const std::function<double(double, double)>& profile_m, const Colour& colour, Stream& stream);
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::array kOwnHillParameters = {
     Parameter{"slope_rad", 0.6, 0.05, 1.2, "rad", "steepness of the slope between top and run-out"},
-    Parameter{"drop_m", 4.0, 0.2, 12.0, "m", "height of the slope: gentler ones are longer"},
+    Parameter{"drop_m", 4.0, 0.2, 12.0, "m", "height of the slope; gentler slopes are longer"},
 };
 constexpr std::array kHillParameters = joined(kOwnHillParameters, hillside::kCoverParameters);
 

@@ -8,46 +8,47 @@
 #include "sim/parameters.hpp"
 #include "sim/world/terrain/ground.hpp"
 
-/// What the outdoor worlds of the rig share: a square of 40 by 40 m whose top is level for x < kEdge_m, relief, rocks,
-/// trunks and blocks on it.
+/// Common parts of the rig's outdoor worlds: a square of 40 by 40 m whose top is level for x < kEdge_m, with relief,
+/// rocks, trunks and blocks.
 namespace tumble::sim::hillside {
 
 inline constexpr double kHalfExtent_m = 20.0;
-/// Nodes along a side: cells of 20 cm. In cells of 10 cm a strut that an impact drives in by some centimetres is pushed
+/// Nodes per side: cells of 20 cm. In cells of 10 cm, a strut that an impact drives in by some centimetres is pushed
 /// out sideways and stays wedged for seconds.
 inline constexpr int kSide = 201;
 inline constexpr double kEdge_m = -8.0;    ///< x of the upper edge
-inline constexpr double kSetBack_m = 0.8;  ///< the robot starts this far behind the edge
+inline constexpr double kSetBack_m = 0.8;  ///< distance of the robot's start behind the edge
 inline constexpr double kStart_x_m = kEdge_m - kSetBack_m;
 
-/// Parameters of relief and cover, to stand after a world's own.
+/// Parameters of relief and cover, which follow a world's own parameters.
 inline constexpr std::array kCoverParameters = {
     Parameter{"relief_m", 0.12, 0.0, 1.0, "m", "root mean square of the relief; 0: none"},
     Parameter{"relief_shortest_m", 2.5, 0.5, 20.0, "m", "shortest wavelength of the relief"},
     Parameter{"relief_longest_m", 9.0, 0.5, 40.0, "m", "longest wavelength of the relief"},
-    Parameter{"relief_exponent", 3.0, 0.0, 6.0, "1", "the relief's power per wave number falls off with this power"},
-    Parameter{"relief_ruled", 0, 0, 1, "1", "1: the relief depends on x alone, every contour line is straight"},
+    Parameter{"relief_exponent", 3.0, 0.0, 6.0, "1",
+              "exponent with which the relief's power per wave number decreases"},
+    Parameter{"relief_ruled", 0, 0, 1, "1", "1: the relief depends only on x, so that contour lines are straight"},
     Parameter{"bump_height_m", 0.2, 0.0, 0.6, "m", "largest bump or hollow, 0.5 to 1.6 m wide; 0: none"},
-    Parameter{"bump_count", 500, 0, 5000, "1", "bumps and hollows on the 1600 m^2"},
-    Parameter{"rock_count", 40, 0, 400, "1", "rocks, half buried ellipsoids"},
-    Parameter{"rock_size_m", 0.3, 0.05, 1.5, "m", "largest half axis of a rock; the others are drawn below it"},
+    Parameter{"bump_count", 500, 0, 5000, "1", "number of bumps and hollows on the 1600 m^2"},
+    Parameter{"rock_count", 40, 0, 400, "1", "number of rocks, which are half-buried ellipsoids"},
+    Parameter{"rock_size_m", 0.3, 0.05, 1.5, "m", "largest half axis of a rock; sizes are drawn below it"},
     Parameter{"rock_half_width_m", 18.0, 1.0, 18.0, "m", "rocks lie within this distance of the fall line"},
-    Parameter{"trunk_count", 40, 0, 300, "1", "tree trunks, upright cylinders"},
+    Parameter{"trunk_count", 40, 0, 300, "1", "number of tree trunks, which are vertical cylinders"},
     Parameter{"trunk_radius_m", 0.15, 0.03, 0.6, "m", "largest radius of a trunk"},
     Parameter{"trunk_half_width_m", 18.0, 2.0, 18.0, "m", "trunks stand within this distance of the fall line"},
-    Parameter{"clear_half_width_m", 2.5, 0.0, 15.0, "m", "no trunk stands within this distance of the fall line"},
+    Parameter{"clear_half_width_m", 2.5, 0.0, 15.0, "m", "minimum distance of trunks from the fall line"},
     Parameter{"buildings", 1, 0, 1, "1", "1: a building below and a wall beside the slope, out of reach"},
 };
 
-/// Share of the relief that is in force at a place, within [0, 1].
+/// Share of the relief that applies at a position, within [0, 1].
 using Share = std::function<double(double x_m, double y_m)>;
 
-/// Adds relief and bumps (streams "terrain.relief" and "terrain.bumps"). They fade about the start, so that the robot
-/// can rest there, and where `share` says so.
+/// Adds relief and bumps (streams "terrain.relief" and "terrain.bumps"). They fade around the start, so that the robot
+/// can rest there, and according to `share`.
 void roughen(Ground& ground, const Values& values, std::uint64_t seed, const Share& share);
 
-/// Adds the ground, rocks, trunks and blocks to the world, and says where it begins and ends (streams "terrain.rocks"
-/// and "terrain.trunks"). `rocks_from_x_m`, `rocks_to_x_m`: where rocks lie along the fall line.
+/// Adds the ground, rocks, trunks and blocks to the world, and sets its start and extent (streams "terrain.rocks" and
+/// "terrain.trunks"). Rocks are between `rocks_from_x_m` and `rocks_to_x_m` along the fall line.
 void cover(mjSpec* spec, engine::World& world, const Ground& ground, const Values& values, std::uint64_t seed,
            double rocks_from_x_m, double rocks_to_x_m);
 

@@ -13,17 +13,17 @@ namespace tumble::sim {
 namespace {
 
 constexpr std::array kOwnRampParameters = {
-    Parameter{"slope_rad", 0.12, 0.01, 0.5, "rad", "of the ramp up along +x"},
+    Parameter{"slope_rad", 0.12, 0.01, 0.5, "rad", "slope of the ramp up along +x"},
     Parameter{"ramp_x_m", -1.0, -20.0, 20.0, "m", "foot of the ramp"},
-    Parameter{"ramp_length_m", 1.5, 0.3, 20.0, "m", "level length of the ramp"},
-    Parameter{"plateau_m", 1.0, 0.1, 20.0, "m", "length of the level above it"},
-    Parameter{"slope_down_rad", 0.12, 0.01, 1.2, "rad", "of the ramp down on the far side"},
+    Parameter{"ramp_length_m", 1.5, 0.3, 20.0, "m", "horizontal length of the ramp"},
+    Parameter{"plateau_m", 1.0, 0.1, 20.0, "m", "length of the plateau above it"},
+    Parameter{"slope_down_rad", 0.12, 0.01, 1.2, "rad", "slope of the ramp down on the far side"},
 };
 constexpr std::array kRampParameters = joined(joined(kGroundParameters, kRoomParameters), kOwnRampParameters);
 constexpr double kHalfWidth_m = 1.5;
 constexpr double kHalfThickness_m = 0.15;
 
-/// A slab whose upper face goes from (from_x, from_z) to (to_x, to_z) in the plane y = 0.
+/// Adds a slab whose upper face extends from (from_x, from_z) to (to_x, to_z) in the plane y = 0.
 void add_slab(mjSpec* spec, engine::World& world, const Values& values, const std::string& name,
               const Eigen::Vector2d& from_m, const Eigen::Vector2d& to_m) {
   const Eigen::Vector2d along = (to_m - from_m).normalized();
@@ -31,7 +31,7 @@ void add_slab(mjSpec* spec, engine::World& world, const Values& values, const st
   mjsGeom* geom =
       add_surface(spec, world, name, mjGEOM_BOX, {middle.x(), 0.0, middle.y()},
                   {0.5 * (to_m - from_m).norm(), kHalfWidth_m, kHalfThickness_m}, 0.0, {0.7f, 0.62f, 0.5f, 1.0f});
-  const double tilt_rad = std::atan2(along.y(), along.x());  // upwards: a negative turn about y
+  const double tilt_rad = std::atan2(along.y(), along.x());  // an upward slope is a negative rotation about y
   geom->quat[0] = std::cos(tilt_rad / 2);
   geom->quat[2] = -std::sin(tilt_rad / 2);
   geom->quat[1] = geom->quat[3] = 0.0;

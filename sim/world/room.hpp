@@ -8,21 +8,21 @@
 
 namespace tumble::sim {
 
-/// Numbers of the square room around a level floor: something for the lidar to see.
+/// Parameters of the square room around a level floor, which gives the lidar features.
 inline constexpr std::array kRoomParameters = {
     Parameter{"room_half_m", 5.0, 2.5, 30.0, "m", "half width of the square room"},
     Parameter{"wall_height_m", 2.5, 0.2, 10.0, "m", "height of the four walls"},
-    Parameter{"ceiling", 0.0, 0.0, 1.0, "1", "1: the room is closed above (pictures look through it)"},
-    Parameter{"pillar_count", 6, 0, 100, "1", "upright pillars, for the lidar"},
-    Parameter{"box_count", 8, 0, 100, "1", "boxes on the floor, for the lidar"},
-    Parameter{"shelf_count", 0, 0, 100, "1", "tall cupboards along the walls, for the lidar"},
-    Parameter{"clear_radius_m", 2.4, 0.5, 20.0, "m", "neither pillar nor box comes closer to the middle than this"},
+    Parameter{"ceiling", 0.0, 0.0, 1.0, "1", "1: the room has a ceiling (transparent in pictures)"},
+    Parameter{"pillar_count", 6, 0, 100, "1", "number of vertical pillars, as features for the lidar"},
+    Parameter{"box_count", 8, 0, 100, "1", "number of boxes on the floor, as features for the lidar"},
+    Parameter{"shelf_count", 0, 0, 100, "1", "number of tall cupboards along the walls, as features for the lidar"},
+    Parameter{"clear_radius_m", 2.4, 0.5, 20.0, "m", "minimum distance of pillars and boxes from the middle"},
 };
 
-/// Walls, ceiling, pillars, boxes and cupboards; sets the world's extent. What is random comes from `stream`.
+/// Adds walls, ceiling, pillars, boxes and cupboards, and sets the world's extent. Random numbers come from `stream`.
 void add_room(mjSpec* spec, engine::World& world, const Values& values, Stream& stream);
 
-/// Adds a ceiling at `height_m` that pictures look through.
+/// Adds a ceiling at `height_m` that is transparent in pictures.
 void add_ceiling(mjSpec* spec, engine::World& world, double half_x_m, double half_y_m, double height_m);
 
 /// Group of geoms that a lidar sees and pictures do not show.

@@ -14,17 +14,18 @@ namespace tumble::sim {
 namespace {
 
 constexpr std::array kOwnStairsParameters = {
-    Parameter{"step_count", 18, 1, 80, "1", "steps of the flight"},
+    Parameter{"step_count", 18, 1, 80, "1", "number of steps"},
     Parameter{"step_rise_m", 0.17, 0.05, 0.5, "m", "height of a step"},
     Parameter{"step_tread_m", 0.29, 0.15, 1.0, "m", "depth of a step"},
-    Parameter{"flight_half_width_m", 2.5, 0.8, 8.0, "m", "half width of the flight; a cheek wall stands at each side"},
+    Parameter{"flight_half_width_m", 2.5, 0.8, 8.0, "m",
+              "half width of the flight, which has a cheek wall on each side"},
     Parameter{"cheek_height_m", 0.4, 0.05, 2.0, "m", "height of the cheek walls above the edges of the steps"},
 };
 constexpr std::array kStairsParameters = joined(kOwnStairsParameters, hillside::kCoverParameters);
 
 constexpr Colour kStone = {0.66f, 0.64f, 0.6f, 1.0f};
 
-/// Walls beside the flight, stepped as it is, in pieces of four steps.
+/// Adds stepped walls along the flight, in pieces of four steps.
 void add_cheeks(mjSpec* spec, engine::World& world, const Flight& flight, double height_m) {
   constexpr int kPiece = 4;
   constexpr double kHalfThickness_m = 0.1, kDepth_m = 3.0;
@@ -45,7 +46,7 @@ void add_cheeks(mjSpec* spec, engine::World& world, const Flight& flight, double
 void build_stairs(mjSpec* spec, const Values& values, std::uint64_t seed, engine::World& world) {
   const Flight flight{hillside::kEdge_m, static_cast<int>(values.at("step_count")), values.at("step_rise_m"),
                       values.at("step_tread_m"), values.at("flight_half_width_m")};
-  // the ground follows the slope of the flight beside it, and lies a hand under the treads beneath it
+  // the ground follows the slope of the flight at its sides, and stays below the treads under the flight
   const SlopeProfile slope{flight.edge_x_m, flight.slope_rad(), flight.drop_m(), 0.05};
   const auto beside = [&](double, double y_m) {
     return fade(std::abs(y_m), flight.half_width_m + 0.3, flight.half_width_m + 1.5);

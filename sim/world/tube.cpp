@@ -16,21 +16,22 @@ namespace tumble::sim {
 namespace {
 
 constexpr std::array kOwnTubeParameters = {
-    Parameter{"length_m", 16.0, 4.0, 60.0, "m", "of the tube along x, its middle at the origin"},
+    Parameter{"length_m", 16.0, 4.0, 60.0, "m", "length of the tube along x, centred on the origin"},
     Parameter{"half_width_m", 1.9, 0.8, 10.0, "m", "half width at the ground"},
-    Parameter{"height_m", 2.2, 1.0, 10.0, "m", "from the ground to the crown"},
-    Parameter{"gutter_m", 0.1, 0.0, 1.0, "m", "by how much the ground rises from the middle to the walls"},
-    Parameter{"wall_roughness_m", 0.08, 0.0, 0.5, "m", "root mean square of the walls' unevenness, 0.3 to 3 m long"},
+    Parameter{"height_m", 2.2, 1.0, 10.0, "m", "height from the ground to the crown"},
+    Parameter{"gutter_m", 0.1, 0.0, 1.0, "m", "rise of the ground from the middle to the walls"},
+    Parameter{"wall_roughness_m", 0.08, 0.0, 0.5, "m",
+              "root mean square of the walls' unevenness, with wavelengths of 0.3 to 3 m"},
     Parameter{"bend_m", 0.3, 0.0, 3.0, "m", "amplitude with which the tube winds from side to side"},
     Parameter{"bend_length_m", 9.0, 2.0, 60.0, "m", "wavelength of the winding"},
-    Parameter{"rock_count", 24, 0, 200, "1", "rocks on the ground, out of the way"},
-    Parameter{"clear_half_width_m", 0.7, 0.2, 5.0, "m", "no rock comes closer to the x axis than this"},
+    Parameter{"rock_count", 24, 0, 200, "1", "number of rocks on the ground, away from the path"},
+    Parameter{"clear_half_width_m", 0.7, 0.2, 5.0, "m", "minimum distance of rocks from the x axis"},
 };
 constexpr std::array kTubeParameters = joined(kGroundParameters, kOwnTubeParameters);
 constexpr Colour kRock = {0.42f, 0.36f, 0.33f, 1.0f};
-constexpr double kOver_m = 0.5;  // the ground reaches beyond the walls: no gap between the two
+constexpr double kOver_m = 0.5;  // the ground extends beyond the walls, so that there is no gap
 
-/// Where the middle of the tube lies.
+/// Position of the tube's middle.
 double middle_m(const Values& values, double x_m) {
   return values.at("bend_m") * std::sin(2.0 * std::numbers::pi * x_m / values.at("bend_length_m"));
 }
@@ -40,19 +41,19 @@ double ground_m(const Values& values, double x_m, double y_m) {
   return values.at("gutter_m") * u * u;
 }
 
-/// Half of the shell: rings along x, from the foot of one wall to the crown. Nothing touches it (a mesh would be
-/// touched as its convex hull); the ground and the ends hold the robot.
+/// Adds half of the shell: rings along x, from the foot of one wall to the crown. It has no contact, because the engine
+/// would use the convex hull of the mesh; the ground and the ends hold the robot.
 void add_shell(mjSpec* spec, engine::World& world, const Values& values, int side, const Relief& rough) {
   constexpr double kRing_m = 0.1;
   constexpr int kSteps = 28;
-  constexpr double kBelow_rad = 0.25;  // the wall goes on below the ground
+  constexpr double kBelow_rad = 0.25;  // the wall continues below the ground
   const int rings = static_cast<int>(std::ceil(values.at("length_m") / kRing_m));
   std::vector<float> vertices;
   for (int ring = 0; ring <= rings; ++ring) {
     const double x_m = values.at("length_m") * (static_cast<double>(ring) / rings - 0.5);
     for (int step = 0; step <= kSteps; ++step) {
       const double angle = -kBelow_rad + (std::numbers::pi / 2 + kBelow_rad) * step / kSteps;
-      // arc length stands for the second coordinate of the unevenness; both halves meet at the crown, where it is 0
+      // arc length is the second coordinate of the unevenness; both halves meet at the crown, where it is 0
       const double arc_m = side * (std::numbers::pi / 2 - angle) * values.at("half_width_m");
       const double scale = 1.0 + rough.height_m(x_m, arc_m) / values.at("half_width_m");
       vertices.push_back(static_cast<float>(x_m));
@@ -66,7 +67,7 @@ void add_shell(mjSpec* spec, engine::World& world, const Values& values, int sid
   for (int ring = 0; ring < rings; ++ring) {
     for (int step = 0; step < kSteps; ++step) {
       const int here = ring * (kSteps + 1) + step, next = here + kSteps + 1;
-      // pictures show the side of a face from which its corners turn to the left: the inner one
+      // pictures show the side of a face whose corners are anticlockwise: the inner side
       const int first = side > 0 ? next : here + 1, second = side > 0 ? here + 1 : next;
       for (const int corner : {here, first, next + 1, here, next + 1, second}) faces.push_back(corner);
     }
@@ -74,12 +75,12 @@ void add_shell(mjSpec* spec, engine::World& world, const Values& values, int sid
   const std::string name = side > 0 ? "shell_left" : "shell_right";
   mjsMesh* mesh = mjs_addMesh(spec, nullptr);
   mjs_setName(mesh->element, name.c_str());
-  mesh->inertia = mjMESH_INERTIA_SHELL;  // it is open: it has no volume
+  mesh->inertia = mjMESH_INERTIA_SHELL;  // an open mesh has no volume
   mjs_setFloat(mesh->uservert, vertices.data(), static_cast<int>(vertices.size()));
   mjs_setInt(mesh->userface, faces.data(), static_cast<int>(faces.size()));
   mjsGeom* geom = add_surface(spec, world, name, mjGEOM_MESH, {0, 0, 0}, {0, 0, 0}, 0.0, kRock);
   mjs_setString(geom->meshname, name.c_str());
-  geom->contype = 2;  // a lidar sees what could be touched; the robot is asked for 1
+  geom->contype = 2;  // the lidar sees geoms that could be touched; the robot's contact bit is 1
   geom->conaffinity = 0;
   if (side < 0) geom->group = kUnseenInPictures;  // pictures look from the right
 }
@@ -87,7 +88,7 @@ void add_shell(mjSpec* spec, engine::World& world, const Values& values, int sid
 void add_ends(mjSpec* spec, engine::World& world, const Values& values, double half_y_m) {
   const double half_height_m = 0.75 * values.at("height_m"), x_m = values.at("length_m") / 2;
   for (const int sign : {1, -1}) {
-    // closes the tube; a little askew, as debris is
+    // closes the tube; slightly rotated, as debris would be
     add_surface(spec, world, sign > 0 ? "end_front" : "end_back", mjGEOM_BOX, {sign * (x_m + 0.05), 0, half_height_m},
                 {0.2, half_y_m, half_height_m}, 0.1, kRock);
   }

@@ -9,11 +9,11 @@
 
 namespace tumble::sim {
 
-/// A kind of world: its parameters and what it adds to a model that is being composed.
+/// A kind of world: its parameters, and its additions to a model that is being composed.
 struct WorldType {
   ComponentType component;
-  /// Adds static geoms to `spec` and fills `world` but for model and ids. `values` are resolved. What is random comes
-  /// from streams of `seed` that are named "terrain" or "terrain.*".
+  /// Adds static geoms to `spec` and fills `world` except model and ids. `values` are resolved. Random numbers come
+  /// from streams of `seed` named "terrain" or "terrain.*".
   void (*build)(mjSpec* spec, const Values& values, std::uint64_t seed, engine::World& world);
 };
 
@@ -32,9 +32,9 @@ const WorldType& corridor_world();
 /// Lava tube, rough inside.
 const WorldType& tube_world();
 
-/// All kinds, in the order of registration: a new one is a file and a line in world_type.cpp.
+/// All kinds in the order of registration. A new kind is a file and a line in world_type.cpp.
 std::span<const WorldType* const> all_world_types();
-/// Throws InvalidSituation, naming the nearest known type.
+/// Throws InvalidSituation for an unknown name, with the nearest known type.
 const WorldType& find_world_type(std::string_view name);
 
 }  // namespace tumble::sim

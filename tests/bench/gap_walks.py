@@ -7,7 +7,7 @@
 While the body turns (from the first sample beyond 2 rad/s to the last) and for gaps of 0.05 to 0.5 s: root mean square, per
 axis, of the change of velocity over the root of the gap [m/s/sqrt(s)], and over the gap [m/s^2]; of the rate in the middle
 less the mean of both ends, over half of the root of the gap, which is the walk of a Brownian bridge [rad/s/sqrt(s)]. These
-are what gap_velocity_walk_m_s_sqrt_s and gap_rate_walk_rad_s_sqrt_s stand for: docs/maths/mapping.md (R100), (R101).
+are what gap_velocity_walk_m_s_sqrt_s and gap_rate_walk_rad_s_sqrt_s stand for: docs/maths/mapping.md (R44), (R43).
 """
 import sys
 

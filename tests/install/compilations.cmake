@@ -18,6 +18,8 @@ function(read_compilations build folder out)
     list(FILTER sources INCLUDE REGEX "^${folder}/")
     string(JSON command GET "${json}" ${index} command)
     string(REGEX MATCHALL " -(D|O|std=|f|m)[^ ]*" flags "${command}")
+    # alone the library states what its other flags imply: estimator/cmake/EigenLayout.cmake
+    list(FILTER flags EXCLUDE REGEX "^ -DEIGEN_(MAX_ALIGN_BYTES|MALLOC_ALREADY_ALIGNED)=")
     list(FILTER flags EXCLUDE REGEX "^ -f(pch-preprocess|sanitize|no-omit-frame-pointer)")
     list(JOIN flags "" flags)
     list(TRANSFORM sources APPEND "${flags}")

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # The library as somebody else has it: estimator/ configures alone, with the very compilations of the whole tree; what
-# the build tree installs is enough for a consumer outside of it. Negative controls: the consumer must fail to configure
-# where the package is not, and a compilation with other flags is told from ours. With ALONE=ON a copy of the folder is
-# compiled and tests itself, and that is what is installed, as files, as a Debian package and from its source archive: for
-# the long suite, since it costs what a build costs.
+# the build tree installs is enough for a consumer outside of it, and so is the folder inside of a stranger's project.
+# Negative controls: the consumer must fail to configure where the package is not, a program that lays out memory
+# otherwise must not link, and a compilation with other flags is told from ours. With ALONE=ON a copy of the folder is
+# compiled and tests itself, and that is what is installed, as files, as a Debian package and from its source archive,
+# and the stranger's project is built and run: for the long suite, since it costs what a build costs.
 include(${CMAKE_CURRENT_LIST_DIR}/compilations.cmake)
 
 function(run expected)
@@ -55,7 +56,37 @@ function(consume prefix)
   if(NOT output MATCHES "at rest: 1, rate 0\\.000 rad/s")
     message(FATAL_ERROR "the consumer of the door printed: ${output}")
   endif()
+  run(passes ${CMAKE_COMMAND} --build ${WORK}/present --target alike_NDEBUG)
+  foreach(unlike EIGEN_MAX_STATIC_ALIGN_BYTES EIGEN_DONT_VECTORIZE EIGEN_MALLOC_ALREADY_ALIGNED _GLIBCXX_DEBUG)
+    run(fails ${CMAKE_COMMAND} --build ${WORK}/present --target alike_${unlike})
+    if(NOT output MATCHES "CompiledAlike<")
+      message(FATAL_ERROR "a program with ${unlike} did not link for another reason: ${output}")
+    endif()
+  endforeach()
 endfunction()
+
+# embed FOLDER: a project with the estimator's folder in it; what its program must know of the library's layout
+function(embed folder)
+  file(COPY ${SOURCE}/tests/install/embedded DESTINATION ${WORK})
+  run(passes ${CMAKE_COMMAND} -S ${WORK}/embedded -B ${WORK}/robot ${common} -DESTIMATOR=${folder}
+      -DCMAKE_EXPORT_COMPILE_COMMANDS=ON -DTUMBLE_ACCELERATE=${ACCELERATE})
+  file(STRINGS ${WORK}/robot/compile_commands.json commands REGEX "\"command\":.*(/door|/status)\\.cpp")
+  foreach(command IN LISTS commands)
+    string(REGEX MATCHALL "-DEIGEN_(MAX_ALIGN_BYTES|MALLOC_ALREADY_ALIGNED)=[0-9]+" layout "${command}")
+    list(APPEND layouts "${layout}")
+    list(LENGTH layout stated)
+    if(NOT stated EQUAL 2)
+      message(FATAL_ERROR "a program with the library's folder in it does not state its layout: ${command}")
+    endif()
+  endforeach()
+  list(LENGTH commands compilations)
+  list(REMOVE_DUPLICATES layouts)
+  list(LENGTH layouts different)
+  if(NOT compilations EQUAL 2 OR NOT different EQUAL 2)
+    message(FATAL_ERROR "the program and the library in it state other layouts: ${layouts}")
+  endif()
+endfunction()
+embed(${SOURCE}/estimator)
 
 # the folder that is given away alone bears the licence of the whole
 run(passes ${CMAKE_COMMAND} -E compare_files ${SOURCE}/LICENSE ${SOURCE}/estimator/LICENSE)
@@ -74,6 +105,8 @@ run(passes ${CMAKE_COMMAND} -S ${WORK}/copy/estimator -B ${WORK}/alone ${common}
     -DTUMBLE_PCL=ON)
 run(passes ${CMAKE_COMMAND} --build ${WORK}/alone --parallel)
 run(passes ${CMAKE_CTEST_COMMAND} --test-dir ${WORK}/alone --output-on-failure --no-tests=error)
+run(passes ${CMAKE_COMMAND} --build ${WORK}/robot --parallel)
+run(passes ${WORK}/robot/robot)
 run(passes ${CMAKE_COMMAND} --install ${WORK}/alone --prefix ${WORK}/prefix)
 consume(${WORK}/prefix -DWITH_PCL=ON)
 run(passes ${WORK}/present/pcl_consumer)

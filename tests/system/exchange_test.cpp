@@ -58,7 +58,7 @@ sensors:
   const Ended recorded = run_program({"record", scenario, "--seed", "1", "-o", recording});
   ASSERT_EQ(recorded.status, 0) << recorded.err;
   EXPECT_THAT(recorded.out, testing::ContainsRegex("height +bmp388 +75"));
-  EXPECT_THAT(recorded.err, HasSubstr("the recording ends in motion, at "));
+  EXPECT_THAT(recorded.err, HasSubstr("the robot still moves at the end of the recording, at "));
   const Ended csv = run_program({"export", recording, "--format", "csv", "-o", (folder / "csv").string()});
   ASSERT_EQ(csv.status, 0) << csv.err;
   EXPECT_EQ(line_count(read_file(folder / "csv" / "height.csv")), 76u);
@@ -179,7 +179,7 @@ TEST(Exchange, SweepsAloneAreMappedAndScored) {
   // a method that needs an IMU says so
   const Ended refused = run_program({"estimate", back, "--method", "slam/tumble", "-o", (folder / "x").string()});
   EXPECT_EQ(refused.status, 2);
-  EXPECT_THAT(refused.err, HasSubstr("it needs an IMU"));
+  EXPECT_THAT(refused.err, HasSubstr("the method needs an IMU"));
 }
 
 TEST(Exchange, BagsComeBack) {
@@ -228,8 +228,9 @@ TEST(Exchange, AnMcapIsToldByItsNameAndHoldsEstimates) {
               metric(json_of(run_program({"score", estimate, recording, "--json"})), "position_end_error_m"), 0.02);
   for (const auto& [words, complaint] :
        {std::pair<std::vector<std::string>, const char*>{{"export", recording, "-o", (folder / "x").string()},
-                                                         "--format is needed"},
-        {{"export", recording, "-o", (folder / "x.tum").string(), "--estimate", estimate}, "--estimate is for bags"},
+                                                         "--format is missing"},
+        {{"export", recording, "-o", (folder / "x.tum").string(), "--estimate", estimate},
+         "--estimate applies to bags only"},
         {{"export", recording, "-o", (folder / "x.mcap").string(), "--estimate", (folder / "none").string()},
          "none"}}) {
     const Ended refused = run_program(words);
@@ -258,7 +259,7 @@ TEST(Exchange, ATrajectoryAloneIsARecordingToScoreAgainst) {
   const Ended estimated =
       run_program({"estimate", recording, "--method", "attitude/vqf", "-o", (folder / "e").string()});
   EXPECT_EQ(estimated.status, 2);
-  EXPECT_THAT(estimated.err, HasSubstr("it needs an IMU, and the recording has none"));
+  EXPECT_THAT(estimated.err, HasSubstr("the method needs an IMU, and the recording has none"));
 }
 
 // a TUM file of somebody else's: as position and as slam, over the whole recording and over half of it
@@ -316,8 +317,8 @@ TEST(Exchange, HostileSweepsAreOneLine) {
   fs::create_directories(folder / "cut");
   std::ofstream(folder / "cut" / "1.ply") << "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\n"
                                              "property float x\nproperty float y\nproperty float z\nend_header\n";
-  for (const auto& [path, complaint] :
-       {std::pair{"empty", "holds no .ply, .pcd, .vtk or .bin file"}, {"cut", "1.ply:7: states 4000000000 points"}}) {
+  for (const auto& [path, complaint] : {std::pair{"empty", "contains no .ply, .pcd, .vtk or .bin file"},
+                                        {"cut", "1.ply:7: states 4000000000 points"}}) {
     const Ended ended = run_program({"import", (folder / path).string(), "-o", (folder / "x.h5").string()});
     EXPECT_EQ(ended.status, 2);
     EXPECT_EQ(line_count(ended.err), 1u) << ended.err;

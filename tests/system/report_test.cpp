@@ -90,7 +90,7 @@ TEST(Report, IsAFunctionOfWhatASweepHasLeft) {
   EXPECT_THAT(own_part(page), HasSubstr("tumble sweep roll --seeds 1..2 --method rate/raw --method rolling --db "))
       << "it says what makes them";
   EXPECT_THAT(own_part(page), HasSubstr("r.db --examples 3")) << "so few draws get none unless told";
-  EXPECT_THAT(ended.err, HasSubstr("No pictures of single draws"));
+  EXPECT_THAT(ended.err, HasSubstr("no pictures of single draws"));
 
   // a sweep of this build would be refused by results of another one: then that is named instead
   {
@@ -103,9 +103,9 @@ TEST(Report, IsAFunctionOfWhatASweepHasLeft) {
       return own_part(page);
     };
     const std::string foreign = page_where("build", "another build"), mixed = page_where("build", "mixed");
-    EXPECT_THAT(foreign, HasSubstr("by the build that made these results (another build)"));
+    EXPECT_THAT(foreign, HasSubstr("by the build of these results (another build)"));
     EXPECT_THAT(foreign, Not(HasSubstr("tumble sweep roll")));
-    EXPECT_THAT(mixed, HasSubstr("of several builds"));
+    EXPECT_THAT(mixed, HasSubstr("from several builds"));
     EXPECT_THAT(mixed, Not(HasSubstr("tumble sweep roll")));
     const std::string elsewhere = page_where("data", "other data");
     EXPECT_THAT(elsewhere, HasSubstr("(digest other data)"));
@@ -116,10 +116,10 @@ TEST(Report, IsAFunctionOfWhatASweepHasLeft) {
   ended = run_shortened(sweep_arguments(database, "1..2", "1"));
   ASSERT_EQ(ended.status, 0) << ended.err;
   EXPECT_EQ(json_of(ended)["outcomes"], 0);
-  EXPECT_THAT(ended.err, HasSubstr("running it again for its pictures"));
+  EXPECT_THAT(ended.err, HasSubstr("running the draw again for its pictures"));
   const std::string left = read_file(list);
   ended = run_shortened(sweep_arguments(database, "1..2", "1"));
-  EXPECT_THAT(ended.err, Not(HasSubstr("running it again"))) << "they are there already";
+  EXPECT_THAT(ended.err, Not(HasSubstr("running the draw again"))) << "they are there already";
   EXPECT_EQ(read_file(list), left);
 
   ASSERT_EQ(run_shortened(report).status, 0);
@@ -151,7 +151,7 @@ TEST(Report, ShowsDrawsThatFailedWhereItTellsOfThem) {
   const std::string text = own_part(page), seed = std::to_string(failed["seed"].get<int>());
   EXPECT_THAT(text, HasSubstr("<details id=\"draw-roll-" + seed + "\"><summary>picture</summary>"));
   EXPECT_THAT(text, HasSubstr("<a href=\"f.db.files/" + failed["replay"].get<std::string>() + "\">replay</a>"));
-  EXPECT_THAT(text, Not(HasSubstr("made of other results")));
+  EXPECT_THAT(text, Not(HasSubstr("belongs to other results")));
 }
 
 // too few draws for a typical one: what failed is shown all the same, unless nothing is wanted
@@ -202,7 +202,7 @@ TEST(Sweep, OfAnotherSuiteKeepsTheExamplesThatStandThere) {
   left["examples"][2].erase("motion");
   std::ofstream(list) << left.dump();
   const Ended ended = run_shortened(arguments);
-  EXPECT_THAT(ended.err, HasSubstr("an example that stood there is left out"));
+  EXPECT_THAT(ended.err, HasSubstr("an existing example is left out"));
   EXPECT_THAT(ended.err, HasSubstr("example 3"));
   EXPECT_EQ(json::parse(read_file(list)), both);
   EXPECT_EQ(json::parse(read_file(folder / "s.db.files" / "examples.json.damaged")), left);
@@ -220,7 +220,7 @@ TEST(Sweep, StoppedAtItsPicturesSaysSoAndLeavesNone) {
   const Ended stopped = running.wait();
   EXPECT_EQ(stopped.status, 1) << stopped.err;
   EXPECT_EQ(json_of(stopped)["draws_done"], 2);
-  EXPECT_THAT(stopped.err, HasSubstr("stopped: all draws are stored, their pictures are not made"));
+  EXPECT_THAT(stopped.err, HasSubstr("stopped: all draws are stored, but their pictures are missing"));
   EXPECT_FALSE(fs::exists(files)) << "nothing came into it";
 }
 

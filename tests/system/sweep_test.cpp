@@ -54,7 +54,7 @@ TEST(Sweep, InterruptedKeepsWhatIsDoneAndGoesOn) {
   const Ended stopped = running.wait();
   EXPECT_EQ(stopped.status, 1) << stopped.err;
   EXPECT_THAT(stopped.err, HasSubstr("stopped: "));
-  EXPECT_THAT(stopped.err, HasSubstr(" of 500 draws stored, run again to go on"));
+  EXPECT_THAT(stopped.err, HasSubstr(" of 500 draws are stored; run again to continue"));
 
   const std::int64_t kept = report_json(database)["draws"]["roll"];
   ASSERT_GE(kept, 1);
@@ -89,7 +89,7 @@ TEST(Sweep, ASignalStopsItAndTheLockIsLetGo) {
     if (number == SIGHUP) running.signal(number);
     const Ended stopped = running.wait();
     EXPECT_EQ(stopped.status, 1) << stopped.err;
-    EXPECT_THAT(stopped.err, HasSubstr(" of 500 draws stored, run again to go on"));
+    EXPECT_THAT(stopped.err, HasSubstr(" of 500 draws are stored; run again to continue"));
     EXPECT_GE(report_json(database)["draws"]["roll"], 1);
     EXPECT_FALSE(fs::exists(lock));
   }
@@ -203,14 +203,14 @@ TEST(Sweep, OfASuiteSomeScenariosAlone) {
   const Ended one = with({"--scenario", "roll"});
   EXPECT_EQ(one.status, 0) << one.err;
   EXPECT_EQ(json_of(one)["draws_total"], 1);
-  EXPECT_THAT(one.err, Not(HasSubstr("for that one alone")));
+  EXPECT_THAT(one.err, Not(HasSubstr("for that scenario only")));
   EXPECT_EQ(report_json(database)["draws"], (json{{"roll", 1}}));
   const Ended unknown = with({"--scenario", "slib"});
   EXPECT_EQ(unknown.status, 2);
   EXPECT_THAT(unknown.err, HasSubstr("unknown scenario of suite 'slip' 'slib'"));
   const Ended all = with({"--shard", "2/2"});  // which has nothing to do
   EXPECT_EQ(all.status, 0) << all.err;
-  EXPECT_THAT(all.err, HasSubstr("--scenario slip for that one alone"));
+  EXPECT_THAT(all.err, HasSubstr("use --scenario slip for that scenario only"));
 }
 
 // seeds in a row are asked for where a suite has but some of them
@@ -228,7 +228,8 @@ TEST(Sweep, NamedDrawsAreNoSeedsInARow) {
           "--until");
   refused({"triage", suite.string(), "--method", "rate/raw", "--seeds", "1..2"}, "--seeds");
   refused({"sweep", suite.string(), "--db", database, "--scenario", "roll"}, "--scenario");
-  refused({"gate", suite.string(), "--against", (folder / "g.yaml").string(), "--accept"}, "a gate has");
+  refused({"gate", suite.string(), "--against", (folder / "g.yaml").string(), "--accept"},
+          "a gate needs a range of seeds");
 }
 
 TEST(Sweep, RefusesWhatItCannotKeepOrAsk) {
@@ -246,7 +247,8 @@ TEST(Sweep, RefusesWhatItCannotKeepOrAsk) {
   refused({"--memory", "nan"}, "--memory");
   refused({"--until", "rate/raw:rate/tumble"}, "must be A:B:METRIC");
   refused({"--until", "rate/raw:rate/tumble:rate_error_clipped_median_rad_s"}, "method of the suite");
-  refused({"--until", "rate/raw:rate/raw:rate_error_clipped_median_rad_s", "--shard", "1/2"}, "a shard has no looks");
+  refused({"--until", "rate/raw:rate/raw:rate_error_clipped_median_rad_s", "--shard", "1/2"},
+          "a shard does not see all draws");
   // what is met once the database is open: one that the sweep made goes again
   refused({"--again", "ok"}, "'ok' cannot be run again");
   refused({}, "split the range into parts", "1..20000000");

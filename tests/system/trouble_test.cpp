@@ -169,7 +169,7 @@ TEST(Trouble, WhatWasLearntOfAnotherRigIsACaution) {
   std::ofstream(file) << rig;
   const Ended other = estimate("other");
   EXPECT_EQ(other.status, 0) << other.err;
-  EXPECT_THAT(other.err, HasSubstr("off that of the recording: learnt of another rig?"));
+  EXPECT_THAT(other.err, HasSubstr("from that of the recording; it may belong to another rig"));
 }
 
 TEST(Trouble, AFrameIsCheckedWithoutATrajectoryToo) {

@@ -60,9 +60,9 @@ TEST(ParseQuestion, RefusesWhatIsNone) {
   refused("position/observer:position/rolling:position_end_error_share", "method of the suite");
   refused("position/rolling:position/rolling:position_end_error_share", "is compared with itself");
   refused("position/rolling:position/autogain_fusion:position_end_error", "is unknown");
-  refused(std::string(kAsked) + ":-1", "must be a number from 0 on");
-  refused(std::string(kAsked) + ":nan", "must be a number from 0 on");
-  refused(std::string(kAsked) + ":ten", "must be a number from 0 on");
+  refused(std::string(kAsked) + ":-1", "must be a non-negative number");
+  refused(std::string(kAsked) + ":nan", "must be a non-negative number");
+  refused(std::string(kAsked) + ":ten", "must be a non-negative number");
 }
 
 class SweepUntilTest : public scenarios::testing::SmallCatalogue {

@@ -70,7 +70,7 @@ TEST(Contests, NameTheBestAndByHowMuch) {
   EXPECT_TRUE(all[0].won());
   EXPECT_NEAR(all[0].times, 10.0, 1e-9);
   EXPECT_EQ(tally_text(tally(all)), "tumble is better than the baseline in the one contest");
-  EXPECT_THAT(certainty_text(all[0], 2), HasSubstr("more than chance explains, also after correction for 2"));
+  EXPECT_THAT(certainty_text(all[0], 2), HasSubstr("more than chance explains, after correction for 2"));
 }
 
 TEST(Contests, AreLostWhereTheBaselineIsBetter) {
@@ -87,8 +87,8 @@ TEST(Contests, AreOpenWhereChanceExplainsThem) {
   ASSERT_EQ(all.size(), 1u);
   EXPECT_EQ(all[0].certainty, Certainty::open);
   EXPECT_FALSE(all[0].won() || all[0].lost());
-  EXPECT_THAT(tally_text(tally(all)), HasSubstr("No method is shown to be better"));
-  EXPECT_THAT(certainty_text(all[0], 1), HasSubstr("not told apart"));
+  EXPECT_THAT(tally_text(tally(all)), HasSubstr("No method is significantly better"));
+  EXPECT_THAT(certainty_text(all[0], 1), HasSubstr("not significant"));
 }
 
 TEST(Contests, OfFewDrawsSayThatTheIntervalAloneSpeaks) {
@@ -100,8 +100,9 @@ TEST(Contests, OfFewDrawsSayThatTheIntervalAloneSpeaks) {
   EXPECT_EQ(all[0].certainty, Certainty::interval);
   EXPECT_FALSE(all[0].won() || all[0].lost()) << "the better of two, by an interval of its own";
   EXPECT_EQ(tally(all).open, 1u);
-  EXPECT_EQ(tally_text(tally(all)), "tumble is ahead of the baseline in 1 of 1 contest, on too few draws to be sure");
-  EXPECT_THAT(certainty_text(all[0], 2), HasSubstr("too few draws"));
+  EXPECT_EQ(tally_text(tally(all)),
+            "tumble is ahead of the baseline in 1 of 1 contest, but there are too few draws for certainty");
+  EXPECT_THAT(certainty_text(all[0], 2), HasSubstr("not significant after correction"));
 }
 
 // so few that there is no interval: what they all say is said, and that they are few
@@ -110,13 +111,14 @@ TEST(Contests, OfThreeDrawsThatAllSayTheSameIsAheadAndUnsure) {
       contests_of(summary_of({method("raw", {2, 3, 4}), method("saave", {1, 1, 1})}));
   ASSERT_EQ(all.size(), 1u);
   EXPECT_EQ(all[0].certainty, Certainty::open);
-  EXPECT_EQ(tally_text(tally(all)), "saave is ahead of the baseline in 1 of 1 contest, on too few draws to be sure");
+  EXPECT_EQ(tally_text(tally(all)),
+            "saave is ahead of the baseline in 1 of 1 contest, but there are too few draws for certainty");
   const std::vector<ContestResult> worse =
       contests_of(summary_of({method("raw", {1, 1, 1}), method("saave", {2, 3, 4})}));
-  EXPECT_THAT(tally_text(tally(worse)), HasSubstr("No method is shown to be better"));
+  EXPECT_THAT(tally_text(tally(worse)), HasSubstr("No method is significantly better"));
   const std::vector<ContestResult> mixed =
       contests_of(summary_of({method("raw", {2, 3, 4}), method("saave", {1, 1, 5})}));
-  EXPECT_THAT(tally_text(tally(mixed)), HasSubstr("No method is shown to be better"));
+  EXPECT_THAT(tally_text(tally(mixed)), HasSubstr("No method is significantly better"));
 }
 
 TEST(Contests, NameTheOneThatIsAheadAndNotOneOfSeveral) {
@@ -124,9 +126,9 @@ TEST(Contests, NameTheOneThatIsAheadAndNotOneOfSeveral) {
     return contests_of(summary_of({method("raw", {2, 3, 4}), method(name, {1, 1, 1})})).front();
   };
   EXPECT_EQ(tally_text(tally({ahead("tumble"), ahead("tumble")})),
-            "tumble is ahead of the baseline in 2 of 2 contests, on too few draws to be sure");
+            "tumble is ahead of the baseline in 2 of 2 contests, but there are too few draws for certainty");
   EXPECT_EQ(tally_text(tally({ahead("tumble"), ahead("saave"), ahead("tumble")})),
-            "The best methods are ahead of the baseline in 3 of 3 contests, on too few draws to be sure");
+            "The best methods are ahead of the baseline in 3 of 3 contests, but there are too few draws for certainty");
 }
 
 TEST(Contests, SayNoShareWhereHalfOfTheBaselineFailed) {
@@ -161,7 +163,7 @@ TEST(Contests, KnowThatMoreOverlapIsBetter) {
 
 TEST(Contests, AreNoneWithoutARival) {
   EXPECT_TRUE(contests_of(summary_of({method("raw", kTwo)})).empty());
-  EXPECT_THAT(tally_text({}), HasSubstr("nothing to compare"));
+  EXPECT_THAT(tally_text({}), HasSubstr("no method to compare"));
 }
 
 PageContent content_of(std::vector<MethodSummary> methods) {
@@ -191,7 +193,7 @@ TEST(BadgeOfAReport, IsBadWhereTheCertificateFails) {
   entry.high = 1.0;
   certificate.entries = {entry};
   content.certificates = {certificate};
-  EXPECT_EQ(badge_of(content).message, "certificate fails");
+  EXPECT_EQ(badge_of(content).message, "certificate failed");
   EXPECT_EQ(badge_of(content).colour, Badge::Colour::bad);
 }
 

@@ -65,7 +65,7 @@ TEST(RatePlot, ShowsTheGyroAlsoWhereNoMethodSaysIt) {
   const Plot plot = rate_plot(run);
   ASSERT_EQ(plot.lines.size(), 3u);
   EXPECT_THAT(plot.lines[2].y, ElementsAre(10.25, 10.25, 10.25, 10.25));
-  EXPECT_EQ(plot.lines[2].name, "what the gyro says");
+  EXPECT_EQ(plot.lines[2].name, "gyro reading");
   EXPECT_EQ(plot.lines[2].colour, 1);
 }
 

@@ -151,7 +151,7 @@ TEST(Page, ShowsExamplesWithTheirPicturesAndPlots) {
 TEST(Page, LinksTheReplayOfAnExampleThatHasOne) {
   PageContent content;
   content.examples = {evil_example("hill")};
-  EXPECT_THAT(page_html(content, ""), Not(HasSubstr("Play it"))) << "it has none";
+  EXPECT_THAT(page_html(content, ""), Not(HasSubstr("Open the replay"))) << "it has none";
   content.examples[0].replay_address = "a.db.files/hill-7-replay.html";
   EXPECT_THAT(page_html(content, ""), HasSubstr("<a href=\"a.db.files/hill-7-replay.html\">"));
 }
@@ -159,10 +159,10 @@ TEST(Page, LinksTheReplayOfAnExampleThatHasOne) {
 TEST(Page, SaysWhatItsRecordingsAre) {
   PageContent content;
   content.summary = page_summary("hill");
-  EXPECT_THAT(page_html(content, ""), HasSubstr("2 draws of hill, simulated, so that the truth is known"));
+  EXPECT_THAT(page_html(content, ""), HasSubstr("2 draws of hill from simulation with known truth"));
   content.recorded = true;
-  EXPECT_THAT(page_html(content, ""), HasSubstr("the very same recordings (hill), and is judged by the truth"));
-  EXPECT_THAT(page_html(content, ""), Not(HasSubstr("simulated, so")));
+  EXPECT_THAT(page_html(content, ""), HasSubstr("the same recordings (hill) and are scored against the truth"));
+  EXPECT_THAT(page_html(content, ""), Not(HasSubstr("from simulation")));
 }
 
 TEST(Page, SaysWhatItsTasksAndMethodsAre) {
@@ -175,7 +175,7 @@ TEST(Page, SaysWhatItsTasksAndMethodsAre) {
   content.comparison = scenarios::compare(content.summary, {});
   content.methods = {{"rate/raw (baseline)", "The gyro as it is."}};
   const std::string page = page_html(content, "");
-  EXPECT_THAT(page, HasSubstr("one task on one scenario: rate, how fast it turns.</p>"));
+  EXPECT_THAT(page, HasSubstr("one task on one scenario: rate (angular velocity).</p>"));
   EXPECT_THAT(page, HasSubstr("<dt>rate/raw (baseline)</dt><dd>The gyro as it is.</dd>"));
 }
 
@@ -187,7 +187,7 @@ TEST(Page, SaysWhichOfTheTwoFailed) {
   raw.seeds.clear();
   raw.values.clear();
   content.comparison = scenarios::compare(content.summary, {});
-  EXPECT_THAT(page_html(content, ""), HasSubstr("raw failed on half of the draws or more"));
+  EXPECT_THAT(page_html(content, ""), HasSubstr("raw failed on at least half of the draws"));
   EXPECT_THAT(page_html(content, ""), Not(HasSubstr("saave failed")));
 }
 
@@ -196,7 +196,7 @@ TEST(Page, CountsMethodsThatNeedNoTruth) {
   content.summary = page_summary("hill");
   EXPECT_THAT(page_html(content, ""), HasSubstr("Compared: 2 methods"));
   content.summary.sections[0].methods[1].needs_truth = true;
-  EXPECT_THAT(page_html(content, ""), HasSubstr("Compared: 1 method that tells"));
+  EXPECT_THAT(page_html(content, ""), HasSubstr("This page compares 1 method that estimates"));
 }
 
 TEST(Page, ShowsADrawOfTheseResultsBeforeOneThatMoves) {
@@ -209,7 +209,7 @@ TEST(Page, ShowsADrawOfTheseResultsBeforeOneThatMoves) {
     return page.substr(at, page.find("</figure>", at) - at);
   };
   EXPECT_THAT(front(), HasSubstr("One hill"));
-  EXPECT_THAT(front(), HasSubstr("made of other results than these"));
+  EXPECT_THAT(front(), HasSubstr("belongs to other results than these"));
   content.examples[1].of_these_results = true;
   EXPECT_THAT(front(), HasSubstr("One roll"));
   EXPECT_THAT(front(), Not(HasSubstr("other results")));
@@ -272,8 +272,8 @@ TEST(Page, DrawsAScoreOverTheRangeOfWhatBreaksIt) {
 TEST(Page, SaysHowManyDrawsMoreTellWhatBreaksAMethod) {
   EXPECT_EQ(draws_needed_text({{"hill", 24}, {"roll", 500}}), "");
   EXPECT_EQ(draws_needed_text({{"hill", 5}, {"roll", 500}, {"slip", 23}}),
-            "It takes 12 draws of a scenario to say what breaks a method, and 24 for a picture of the score over a "
-            "number. Still missing: of hill 7, and 19 for the picture; of slip 1 for the picture. ");
+            "A scenario needs 12 draws for the influence of its numbers, and 24 for a plot of the score over a number. "
+            "Missing draws: hill 7, and 19 for the plot; slip 1 for the plot. ");
 }
 
 TEST(Page, MovesByItselfAndStandsStillForWhoeverAsks) {

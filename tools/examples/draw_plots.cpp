@@ -15,7 +15,7 @@ using scenarios::Kind;
 
 constexpr std::size_t kPathPointsMax = 600;
 
-/// The gyro axis with most clipped samples by the estimates' own flags; -1 when none has any.
+/// Index of the gyro axis with the most samples that the estimates flag as clipped; -1 if no sample is flagged.
 int most_clipped_axis(const std::vector<RateState>& rates) {
   std::array<int, 3> count = {0, 0, 0};
   for (const RateState& rate : rates) {
@@ -50,7 +50,7 @@ PlotLine sampled_rate(const std::string& name, double width, const std::vector<T
 PlotLine estimated_rate(const scenarios::MethodInfo& info, const std::vector<RateState>& rates, int axis,
                         const Span& span) {
   PlotLine line;
-  line.name = info.baseline ? info.name + " (what the gyro says)" : info.name;
+  line.name = info.baseline ? info.name + " (gyro reading)" : info.name;
   line.width = 1.6;
   line.dotted = line.hidden = info.needs_truth;
   for (const RateState& rate : rates) {
@@ -94,7 +94,7 @@ std::vector<std::size_t> drawn_of(const std::vector<bool>& first) {
 }
 
 std::string RunPaths::left_out_text() const {
-  return left_out == 0 ? "" : " Not drawn, for want of colours: " + std::to_string(left_out) + " more.";
+  return left_out == 0 ? "" : " Not drawn, because there are too few colours: " + std::to_string(left_out) + " more.";
 }
 
 RunPaths paths_of(const scenarios::RunResult& run) {
@@ -136,14 +136,14 @@ Plot rate_plot(const scenarios::RunResult& run) {
     plot.lines.push_back(estimated_rate(run.methods[i]->info, run.estimates[i].rates, axis, span));
     plot.lines.back().colour = colour++;
   }
-  // what it is all about, also where no method of the run says it
+  // Draws the recorded gyro if the run has no baseline of kind rate, because the gyro shows the clipping.
   if (!gyro) {
-    plot.lines.push_back(sampled_rate("what the gyro says", 1.6, imu.time_ns, imu.gyro_rad_s, axis, span));
+    plot.lines.push_back(sampled_rate("gyro reading", 1.6, imu.time_ns, imu.gyro_rad_s, axis, span));
     plot.lines.back().colour = colour;
   }
   plot.caption =
       std::string("Angular velocity about the sensor's ") + "xyz"[axis] +
-      " axis, the one that clips most. Where the gyro is flat it is at its rail; drag to zoom, double-click to return.";
+      " axis, which clips most. Where the gyro is flat, it is saturated. Drag to zoom, double-click to reset.";
   plot.x_title = "time [s]";
   plot.y_title = "rate [rad/s]";
   plot.over_time = true;
@@ -163,8 +163,8 @@ Plot path_plot(const scenarios::RunResult& run, const RunPaths& paths) {
     plot.lines.push_back(path_line(paths.methods[i], static_cast<int>(i), 1.8, shown));
   }
   plot.caption =
-      "The path seen from above, at equal scales. Estimates start where the truth does." + paths.left_out_text();
-  if (cut) plot.caption += " A path that runs away from the truth ends where it leaves the picture.";
+      "The path seen from above, with equal scales. Estimates start at the true position." + paths.left_out_text();
+  if (cut) plot.caption += " A diverged path is cut at the border of the picture.";
   plot.x_title = "x [m]";
   plot.y_title = "y [m]";
   plot.equal_scales = true;

@@ -9,31 +9,31 @@
 #include "tools/examples/example.hpp"
 #include "tools/pictures/paths.hpp"
 
-/// Plots of one draw, whatever the robot.
+/// Plots of one draw that apply to every robot.
 namespace tumble::tools {
 
-/// Which of several methods are drawn, rising: all, or, where they are more than there are colours, those that come
-/// `first` and then others, each in order, as long as there is a colour of its own.
+/// Returns the indices of the methods to draw, in increasing order. If there are more methods than colours, methods
+/// marked `first` are chosen before others, each group in order, until the colours are used up.
 std::vector<std::size_t> drawn_of(const std::vector<bool>& first);
 
-/// The paths of the estimates of a run that have one and were not given the truth, which they lie on and would hide. Of
-/// more than there are colours the baseline and ours come first.
+/// The estimated paths that a run's pictures show. Methods that receive the truth are left out: their path would cover
+/// the true one. If there are more paths than colours, the baseline and our methods are chosen first.
 struct RunPaths {
-  std::vector<std::string> methods;  ///< "slam/icp"
-  std::vector<Path> paths;           ///< parallel
-  std::size_t left_out = 0;          ///< that have a path and no colour
+  std::vector<std::string> methods;  ///< for example "slam/icp"
+  std::vector<Path> paths;           ///< parallel to `methods`
+  std::size_t left_out = 0;          ///< number of methods that have a path but no colour
   std::string left_out_text() const;
 };
 RunPaths paths_of(const scenarios::RunResult& run);
 
-/// Five significant digits: more than a plot can show, and they keep the page small.
+/// Rounds to five significant digits: finer than a plot can show, and the page stays small.
 double significant(double value);
 
-/// Rate about the sensor axis that clips most, over the moving part: the truth, the gyro, and each rate method's
-/// answer. Without lines when the recording has no clipped sample.
+/// Plots the rate about the sensor axis that clips most, while the body moves: the truth, the gyro and each rate
+/// method. The plot has no lines if the recording has no clipped sample.
 Plot rate_plot(const scenarios::RunResult& run);
 
-/// The path seen from above, at equal scales: the truth and each path.
+/// Plots the truth and each path from above, with equal scales on both axes.
 Plot path_plot(const scenarios::RunResult& run, const RunPaths& paths);
 
 }  // namespace tumble::tools

@@ -7,89 +7,91 @@
 #include <utility>
 #include <vector>
 
-/// A single draw as people are shown it: pictures and plots, made by a sweep and left beside its database. What is in
-/// them is decided where they are made; whoever shows them need not know.
+/// An example is one draw with pictures and plots. A sweep creates examples and stores them next to its results
+/// database; the report displays them without further computation.
 namespace tumble::tools {
 
-/// Of the truth, or of the index-th method of a picture or plot (pictures/colours.hpp).
+/// Colour index of the truth. Other indices select the colour of a method (pictures/colours.hpp).
 inline constexpr int kTruthColour = -1;
 
-/// One line of a plot; x and y are parallel, NaN is a gap.
+/// One line of a plot. `x` and `y` are parallel; NaN marks a gap.
 struct PlotLine {
   std::string name;
   int colour = kTruthColour;
-  double width = 1.8;  ///< pixels
+  double width = 1.8;  ///< line width [pixels]
   bool dotted = false;
-  bool hidden = false;  ///< until the reader asks for it in the legend
+  bool hidden = false;  ///< hidden until the reader clicks its entry in the legend
   std::vector<double> x, y;
 };
 
 struct Plot {
-  std::string name;  ///< "path": unique within its example
+  std::string name;  ///< for example "path"; unique within the example
   std::string caption;
-  std::string x_title, y_title;                   ///< with unit
-  bool equal_scales = false;                      ///< of both axes: a path seen from above
-  bool from_zero = false;                         ///< the y axis holds 0
-  bool over_time = false;                         ///< all lines are read at one x
-  bool wide = true;                               ///< a row of its own; else two in a row
-  std::vector<std::pair<double, double>> shaded;  ///< spans of x
+  std::string x_title, y_title;                   ///< titles of the axes, with unit
+  bool equal_scales = false;                      ///< both axes have equal scales, for a path seen from above
+  bool from_zero = false;                         ///< the y axis includes 0
+  bool over_time = false;                         ///< hovering shows all lines at the same x
+  bool wide = true;                               ///< the plot has a row of its own; otherwise two plots share a row
+  std::vector<std::pair<double, double>> shaded;  ///< shaded intervals of x
   std::vector<PlotLine> lines;
 };
 
 struct ExamplePicture {
-  std::string name;  ///< "scene": unique within its example
+  std::string name;  ///< for example "scene"; unique within the example
   std::string alternative, caption;
-  std::vector<std::pair<std::string, int>> legend;  ///< name, colour
+  std::vector<std::pair<std::string, int>> legend;  ///< name and colour index
   std::vector<std::uint8_t> png;
 };
 
 struct Example {
   std::string scenario;
   std::uint64_t seed = 0;
-  std::string motion;       ///< what the draw is one of: "tumble", "roll"
-  std::string choice;       ///< why this draw: one sentence
-  bool of_failure = false;  ///< one picture and a replay, shown where the draw's failures are told
+  std::string motion;       ///< kind of motion of this draw: "tumble" or "roll"
+  std::string choice;       ///< one sentence that states why this draw was chosen
+  bool of_failure = false;  ///< the draw is shown with the failures, with one picture and a replay
   std::string recording_digest, digest_without_lidars;
-  std::string made_of;  ///< digest of the rows of the results that it shows
+  std::string made_of;  ///< digest of the rows of the results that the example shows
   std::vector<ExamplePicture> pictures;
   std::vector<Plot> plots;
-  std::vector<std::uint8_t> moving;  ///< a WebP that plays a part of it; empty: there is none
-  std::string moving_caption;        ///< "2.5 s of it at half speed"
-  std::string replay;       ///< name of the file of its replay, which stands beside the list; "": there is none
-  std::string replay_page;  ///< what is in it; not read back
+  std::vector<std::uint8_t> moving;  ///< animated WebP of a part of the draw; empty if absent
+  std::string moving_caption;        ///< for example "2.5 s of it at half speed"
+  std::string replay;                ///< file name of the replay in the folder of examples; empty if absent
+  std::string replay_page;           ///< HTML of the replay page; only written, never read back
 };
 
-/// Where the examples of a results database stand: FILE.db.files.
+/// Returns the folder for the examples of a results database: FILE.db.files.
 std::filesystem::path examples_folder(const std::filesystem::path& database);
 
-/// One example as text, its pictures by the names of their files (README.md).
+/// Returns the example as JSON. Pictures are named by their files (README.md).
 std::string to_json(const Example& example);
 
-/// Writes the pictures of an example, SCENARIO-SEED-NAME.png, what moves, SCENARIO-SEED-moving.webp, and its replay,
-/// SCENARIO-SEED-replay.html, where they wait for the list: FOLDER/.unfinished. Throws BadInput.
+/// Writes the files of an example to FOLDER/.unfinished: pictures SCENARIO-SEED-NAME.png, the animation
+/// SCENARIO-SEED-moving.webp and the replay SCENARIO-SEED-replay.html. `write_examples` moves them to FOLDER. Throws
+/// BadInput.
 void write_pictures(const std::filesystem::path& folder, const Example& example);
 
-/// Removes the pictures that no list came to name.
+/// Removes the files in FOLDER/.unfinished.
 void discard_unfinished(const std::filesystem::path& folder);
 
-/// The name of the file of an example's replay.
+/// Returns the file name of the replay of an example.
 std::string replay_file(const Example& example);
 
-/// Joins what `to_json` gave into the folder's list, then moves its unfinished pictures into place and removes the
-/// pictures that the list before had and this one has not. Throws BadInput.
+/// Joins the results of `to_json` into the list of the folder and moves the unfinished files into place. Then removes
+/// files that the previous list named and the new list does not name. Throws BadInput.
 void write_examples(const std::filesystem::path& folder, const std::vector<std::string>& examples);
 
 enum class Pictures { read, left_out };
 struct FoundExamples {
   std::vector<Example> examples;        ///< in the order of the list
-  std::vector<std::string> unreadable;  ///< of the list or of one example: path and reason
+  std::vector<std::string> unreadable;  ///< path and reason for each part of the list that cannot be read
 };
-/// None where there is no list. What cannot be read costs the others nothing: not such a list, one that is cut off (the
-/// examples before the cut are found), a picture that is missing, a name that leads out of the folder.
+/// Reads the examples of a folder; the result is empty if the folder has no list. An unreadable example does not affect
+/// the others. Reported errors: the list has the wrong format or is truncated (examples that end before the cut are
+/// returned), a picture is missing, or a name leads out of the folder.
 FoundExamples read_examples(const std::filesystem::path& folder, Pictures pictures);
 
-/// Keeps a copy of a list that cannot be read, or not whole, before another is written: examples.json.damaged. Returns
-/// its path.
+/// Copies a list that is damaged or truncated to examples.json.damaged, so that the next list does not overwrite it.
+/// Returns the path of the copy.
 std::filesystem::path set_damaged_aside(const std::filesystem::path& folder);
 
 }  // namespace tumble::tools

@@ -30,7 +30,7 @@ std::vector<double> read_numbers(const nlohmann::json& values) {
 
 }  // namespace
 
-// found by the library by the name of their argument's namespace
+// nlohmann::json finds this overload by argument-dependent lookup.
 static void to_json(nlohmann::json& out, const PlotLine& line) {
   out = {{"name", line.name},     {"colour", line.colour}, {"width", line.width}, {"dotted", line.dotted},
          {"hidden", line.hidden}, {"x", numbers(line.x)},  {"y", numbers(line.y)}};
@@ -62,7 +62,7 @@ fs::path list_file(const fs::path& folder) {
   return folder / "examples.json";
 }
 
-/// A scenario's name is one of the catalogue or of a file: letters that lead nowhere else.
+/// Replaces "/" in the scenario's name, so that the file stays in its folder.
 std::string file_of(const Example& example, const std::string& ending) {
   std::string name = example.scenario + "-" + std::to_string(example.seed) + "-" + ending;
   for (char& c : name) {
@@ -75,25 +75,25 @@ std::string picture_file(const Example& example, const ExamplePicture& picture) 
   return file_of(example, picture.name + ".png");
 }
 
-/// Of the pictures in the making.
+/// Folder for files that no list names yet.
 fs::path unfinished(const fs::path& folder) {
   return folder / ".unfinished";
 }
 
 std::vector<std::uint8_t> read_bytes(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
-  if (!file) throw BadInput(path.string() + ": cannot be read");
+  if (!file) throw BadInput(path.string() + ": cannot be read; must be a regular file");
   try {
     return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  } catch (const std::ios_base::failure& error) {  // a folder opens, and cannot be read
+  } catch (const std::ios_base::failure& error) {  // opening a folder succeeds, but reading it fails
     throw BadInput(path.string() + ": cannot be read: " + error.what());
   }
 }
 
-/// A list may come from anywhere: only files of its own folder are read, or removed.
+/// The list may come from an untrusted source, so only files in its own folder are read or removed.
 std::string file_name(const std::string& name, const char* ending, const char* what) {
   if (name.empty() || fs::path(name).filename() != name || name.starts_with('.') || !name.ends_with(ending))
-    throw BadInput("'" + name + "' is not the name of a " + what + " beside it");
+    throw BadInput("'" + name + "' is not the name of a " + what + " in the same folder");
   return name;
 }
 
@@ -101,7 +101,7 @@ std::string file_name(const json& picture) {
   return file_name(picture.at("file"), ".png", "picture");
 }
 
-/// "" of an example that has none, as those of earlier versions.
+/// Returns "" if the example has no replay, for example if an earlier version of the program wrote it.
 std::string replay_name(const json& example) {
   const std::string name = example.value("replay", "");
   return name.empty() ? name : file_name(name, ".html", "replay");
@@ -109,7 +109,7 @@ std::string replay_name(const json& example) {
 
 constexpr const char* kMovingEnding = "moving.webp";
 
-/// "" of an example that has none, as those of earlier versions.
+/// Returns "" if the example has no animation, for example if an earlier version of the program wrote it.
 std::string moving_name(const json& example) {
   if (!example.contains("moving")) return "";
   return file_name(example.at("moving").at("file"), ".webp", "moving picture");
@@ -132,7 +132,7 @@ Example read_example(const fs::path& folder, const json& from, Pictures pictures
   example.seed = from.at("seed");
   example.motion = from.at("motion");
   example.choice = from.at("choice");
-  example.of_failure = from.value("of_failure", false);  // none of an earlier version is one
+  example.of_failure = from.value("of_failure", false);  // lists written by earlier versions lack this field
   example.recording_digest = from.at("recording_digest");
   example.digest_without_lidars = from.at("digest_without_lidars");
   example.made_of = from.at("made_of");
@@ -149,7 +149,7 @@ Example read_example(const fs::path& folder, const json& from, Pictures pictures
   return example;
 }
 
-/// Null where there is none.
+/// Returns null if there is no list.
 json read_list(const fs::path& folder) {
   const fs::path path = list_file(folder);
   std::error_code error;
@@ -160,18 +160,18 @@ json read_list(const fs::path& folder) {
   return list;
 }
 
-/// Of a list that is cut off: the examples that end before the cut.
+/// Returns the examples of a truncated list that end before the cut.
 json whole_examples(const fs::path& folder) {
-  constexpr int kDepth = 2;  // the list, its array, an example
+  constexpr int kDepth = 2;  // nesting depth: list, array, example
   json whole = json::array();
   try {
     const auto keep = [&](int depth, json::parse_event_t event, json& parsed) {
       if (depth == kDepth && event == json::parse_event_t::object_end) whole.push_back(parsed);
       return true;
     };
-    // a list that is whole is refused for another reason: what is in it is not ours
+    // the JSON is complete, so the list was refused because its content is not ours
     if (!json::parse(read_bytes(list_file(folder)), keep, false).is_discarded()) return json::array();
-  } catch (const BadInput&) {  // a folder in its place
+  } catch (const BadInput&) {  // the path is a folder
   }
   return whole;
 }
@@ -187,7 +187,8 @@ std::set<std::string> files_of(const json& examples) {
   return files;
 }
 
-/// What a list has left that cannot be read, or not all of it, stays: the list is set aside and names it.
+/// Files that a list names. If the list is unreadable or truncated, its files are kept, because the copied list still
+/// names them.
 std::set<std::string> files_before(const fs::path& folder) {
   try {
     const json list = read_list(folder);
@@ -259,7 +260,7 @@ void write_examples(const fs::path& folder, const std::vector<std::string>& exam
   const std::set<std::string> now = files_of(list.at("examples"));
   for (const std::string& name : now) {
     std::error_code error;
-    if (!fs::exists(unfinished(folder) / name, error)) continue;  // it stands there already
+    if (!fs::exists(unfinished(folder) / name, error)) continue;  // the file was moved already
     fs::rename(unfinished(folder) / name, folder / name, error);
     if (error) throw BadInput((folder / name).string() + ": cannot be written: " + error.message());
   }

@@ -22,16 +22,16 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kPollMs = 200;
-/// What simulating and drawing may take beyond the methods, in units of a method's time-out.
+/// Time limit for simulation and drawing in addition to the methods, in units of one method's time limit.
 constexpr double kOtherTimeouts = 3.0;
-constexpr const char* kTypical = "The draw whose score is the median one of its scenario";
+constexpr const char* kTypical = "The draw with the median score of its scenario";
 constexpr const char* kFailed = "The draw on which most methods failed";
 constexpr const char* kAlsoFailed = "A draw on which methods failed";
 
 enum class Extent { whole, of_failure };
 
-/// One example in the making; the first has the moving picture, of which a report shows one. `text` is what its process
-/// has said so far, or what was there.
+/// An example that a process is generating. Only the first example has an animation, because a report shows only one.
+/// `text` is what the process has printed so far, or the text of an existing example.
 struct Making {
   scenarios::ExampleDraw draw;
   scenarios::Scenario scenario;
@@ -45,7 +45,7 @@ struct Making {
   bool done = false;
 };
 
-/// Of this build in the order of the registry, then those that the suite has out of files.
+/// Returns the methods of this build in the order of the registry, then the methods that the suite declares in files.
 std::vector<scenarios::MethodPointer> methods_of(const std::vector<scenarios::Outcome>& rows,
                                                  const scenarios::Suite& suite) {
   std::vector<scenarios::MethodPointer> all, found;
@@ -62,13 +62,13 @@ std::vector<scenarios::MethodPointer> methods_of(const std::vector<scenarios::Ou
   return found;
 }
 
-/// Of a draw that failed: what failed, and of the same kinds what ours made of it.
+/// Returns the rows to show for a draw with failures: the failed methods, and our methods of the same kinds.
 std::vector<scenarios::Outcome> rows_of_failure(std::vector<scenarios::Outcome> rows) {
   std::set<scenarios::Kind> kinds;
   for (const scenarios::Outcome& row : rows) {
     if (row.status != scenarios::OutcomeStatus::ok) kinds.insert(row.kind);
   }
-  // of every kind ours is called tumble (docs/design.md, "Scenarios and methods by name")
+  // our method of each kind is called `tumble` (docs/design.md, "Scenarios and methods by name")
   std::erase_if(rows, [&](const scenarios::Outcome& row) {
     return row.status == scenarios::OutcomeStatus::ok && (row.method != "tumble" || !kinds.contains(row.kind));
   });
@@ -88,7 +88,7 @@ std::vector<Making> plan(const scenarios::DataRoot& data, const scenarios::Suite
   const auto add = [&](const scenarios::ExampleDraw& draw, const char* choice, Extent extent) {
     if (std::any_of(makings.begin(), makings.end(), [&](const Making& making) { return making.draw == draw; })) return;
     std::vector<scenarios::Outcome> rows = scenarios::rows_to_show(results, draw);
-    // as the sweep had them, so that the recording has the digest of the rows
+    // simulate lidars only if the sweep did, so that the digest of the recording agrees with the rows
     const bool lidars = std::ranges::any_of(rows, [](const auto& row) { return row.kind != scenarios::Kind::rate; });
     if (extent == Extent::of_failure) rows = rows_of_failure(std::move(rows));
     const auto scenario = std::find_if(all.begin(), all.end(), [&](const auto& s) { return s.name == draw.scenario; });
@@ -113,8 +113,9 @@ std::vector<Making> plan(const scenarios::DataRoot& data, const scenarios::Suite
   return makings;
 }
 
-/// Takes over what stands there of the same rows; returns the text of what is of scenarios outside the suite, left by
-/// sweeps of others into the same database. What cannot be read is told: of the suite it is made anew.
+/// Keeps existing examples that show the same rows. Returns the text of examples of scenarios outside the suite, which
+/// other sweeps stored in the same database. Reports examples that cannot be read; those of the suite are generated
+/// again.
 std::vector<std::string> keep_known(const scenarios::DataRoot& data, const fs::path& folder,
                                     const scenarios::Suite& suite, const LeaveOptions& options,
                                     std::vector<Making>& makings) {
@@ -138,12 +139,12 @@ std::vector<std::string> keep_known(const scenarios::DataRoot& data, const fs::p
   if (!options.note) return others;
   for (const std::string& what : found.unreadable)
     options.note(
-        fmt::format("an example that stood there is left out: {}; the list as it was: {}", what, aside.string()));
+        fmt::format("an existing example is left out: {}; copy of the damaged list: {}", what, aside.string()));
   return others;
 }
 
-/// In a process of its own: what cannot be run or drawn there ends nothing else. Says the example, or why there is
-/// none.
+/// Runs in its own process, so that a crash affects only this example. Writes the example, or the reason why there is
+/// none, to `fd`.
 void make(const scenarios::DataRoot& data, const fs::path& folder, const Making& making, int fd) {
   try {
     const scenarios::RunResult run =
@@ -163,7 +164,7 @@ class Makers {
   Makers(const scenarios::DataRoot& data, const fs::path& folder, double timeout_s, const LeaveOptions& options)
       : data_(data), folder_(folder), timeout_s_(timeout_s), options_(options) {}
 
-  /// False when it was stopped.
+  /// Returns false if it was stopped.
   bool run(std::vector<Making>& makings) {
     auto next = makings.begin();
     while (true) {
@@ -186,7 +187,7 @@ class Makers {
   };
 
   void start(Making& making) {
-    say(fmt::format("{}, seed {}: running it again for its pictures", making.draw.scenario, making.draw.seed));
+    say(fmt::format("{}, seed {}: running the draw again for its pictures", making.draw.scenario, making.draw.seed));
     const double limit_s = timeout_s_ * (static_cast<double>(making.methods.size()) + kOtherTimeouts);
     try {
       scenarios::Process process([&](int fd) { make(data_, folder_, making, fd); }, true);
@@ -203,7 +204,7 @@ class Makers {
     poll(waiting.data(), waiting.size(), kPollMs);
   }
 
-  /// True when it has ended.
+  /// Returns true when the worker has ended.
   bool serve(Worker& worker) {
     const bool open = worker.process.read_available(worker.making->text);
     const bool late = open && scenarios::now_s() > worker.deadline_s;
@@ -211,7 +212,7 @@ class Makers {
     if (late) worker.process.kill();
     const scenarios::Process::End end = worker.process.wait();
     worker.making->done = !late && end.normal && worker.making->text.starts_with('{');
-    if (late) worker.making->text = "it did not end in time";
+    if (late) worker.making->text = "exceeded its time limit";
     if (!late && !end.normal) worker.making->text = "its process " + end.describe();
     if (!worker.making->done) say_failed(*worker.making);
     return true;
@@ -232,7 +233,7 @@ class Makers {
   std::list<Worker> workers_;
 };
 
-/// What is left of pictures in the making goes, and a folder that got nothing.
+/// Removes unfinished files, and the folder if it is empty.
 class Unfinished {
  public:
   explicit Unfinished(const fs::path& folder) : folder_(folder) { discard_unfinished(folder_); }

@@ -12,19 +12,20 @@
 namespace tumble::tools {
 
 struct LeaveOptions {
-  std::size_t count = 3;                       ///< typical draws, at most
-  std::size_t failures = 8;                    ///< draws on which methods failed, at most
-  int jobs = 1;                                ///< processes
-  const std::atomic<bool>* stop = nullptr;     ///< set it to end; what stood there stays
-  std::function<void(std::string_view)> note;  ///< what is being done; may be empty
+  std::size_t count = 3;                       ///< maximum number of typical draws
+  std::size_t failures = 8;                    ///< maximum number of draws with failed methods
+  int jobs = 1;                                ///< number of parallel processes
+  const std::atomic<bool>* stop = nullptr;     ///< set it to stop; existing examples are kept
+  std::function<void(std::string_view)> note;  ///< receives progress messages; may be empty
 };
 
-/// Leaves examples beside the results of a sweep (examples_folder): typical draws of the suite's scenarios
-/// (choose_examples), run again with the methods that have come to an end on them, and draws on which methods failed
-/// (choose_failures), the first of them likewise, the others with what failed and what should not have
-/// (failure_example_of); each in a process of its own. What is there of the same rows, or of scenarios
-/// outside the suite, stays as it is. A draw that cannot be shown costs a note. Does nothing for recordings. Returns
-/// false when it was stopped. Throws BadInput when the folder cannot be written.
+/// Generates examples next to the results of a sweep (see `examples_folder`), each in its own process.
+/// - Typical draws of the suite's scenarios (`choose_examples`) are run again with the methods that succeeded on them.
+/// - Of the draws on which methods failed (`choose_failures`), the first is run in the same way. The others show the
+///   failed methods and `tumble` of the same kinds (`failure_example_of`).
+/// Existing examples that show the same rows, or that belong to scenarios outside the suite, are kept. A draw that
+/// cannot be shown is reported in a note. Does nothing for recordings. Returns false if it was stopped. Throws BadInput
+/// if the folder cannot be written.
 bool leave_examples(const scenarios::DataRoot& data, const scenarios::Suite& suite,
                     const std::filesystem::path& database, const LeaveOptions& options);
 

@@ -23,7 +23,7 @@ bool is_sphere(const scenarios::RunResult& run) {
   return run.recording.sensors.sphere_radius_m > 0.0;
 }
 
-/// The map of the first method that has one among those that `wanted` names; nothing when none has.
+/// Adds the map of the first method that has a map and fulfils `wanted`; adds nothing if there is no match.
 void add_map(const scenarios::RunResult& run, const sim::Surface& surface, bool (*wanted)(const scenarios::MethodInfo&),
              std::vector<ErrorMap>& maps) {
   for (std::size_t i = 0; i < run.methods.size(); ++i) {
@@ -36,7 +36,7 @@ void add_map(const scenarios::RunResult& run, const sim::Surface& surface, bool 
   }
 }
 
-/// What the baseline makes of the map, beside what ours makes of it.
+/// Shows the map of the baseline next to the map of our method.
 void add_maps(const scenarios::RunResult& run, Example& example) {
   if (!run.surface) return;
   std::vector<ErrorMap> maps;
@@ -50,16 +50,16 @@ void add_maps(const scenarios::RunResult& run, Example& example) {
     names += fmt::format("{}{} ({:.1f} % of its points within 0.1 m)", names.empty() ? "" : ", ", map.name,
                          100.0 * map.share_within(0.1f));
   }
-  example.pictures.push_back({"maps",
-                              "maps side by side, coloured by error",
-                              "Maps, left to right: " + names +
-                                  ". Each point has the colour of its distance from the true surface, from 0 (blue) to "
-                                  "1 m and more (red).",
-                              {},
-                              sim::png_bytes(map_picture(maps, run.recording.truth, 640, 480))});
+  example.pictures.push_back(
+      {"maps",
+       "maps next to each other, coloured by error",
+       "Maps, left to right: " + names +
+           ". The colour of each point is its distance to the true surface, from 0 (blue) to 1 m and more (red).",
+       {},
+       sim::png_bytes(map_picture(maps, run.recording.truth, 640, 480))});
 }
 
-/// Of the example's moving picture: long enough to see the robot turn, and a few hundred kB.
+/// Length of the animation [s]: long enough to see the robot turn, and a few hundred kB.
 constexpr double kMoving_s = 2.0;
 
 void add_moving(const Scene& scene, Example& example) {
@@ -70,7 +70,7 @@ void add_moving(const Scene& scene, Example& example) {
   options.quality = 45.0f;
   const Span span = liveliest_span(*scene.truth, kMoving_s);
   example.moving = moving_picture(scene, span, options);
-  example.moving_caption = fmt::format("{:.1f} s of it at half speed, where it turns most",
+  example.moving_caption = fmt::format("{:.1f} s of the draw at half speed, where the robot turns fastest",
                                        1e-9 * static_cast<double>(span.end_ns - span.begin_ns));
 }
 
@@ -81,12 +81,12 @@ Scene scene_of(const scenarios::RunResult& run, const RunPaths& paths) {
 void add_path(const scenarios::RunResult& run, const RunPaths& paths, int width, int height, Example& example) {
   ExamplePicture picture{"scene",
                          "the robot along its path, with true and estimated paths",
-                         "The robot at instants equally far apart along its path." + paths.left_out_text(),
+                         "The robot at instants that are equally far apart along its path." + paths.left_out_text(),
                          {{"truth", kTruthColour}},
                          {}};
   for (std::size_t i = 0; i < paths.methods.size(); ++i)
     picture.legend.emplace_back(paths.methods[i], static_cast<int>(i));
-  // spheres that stand close together hide their path
+  // many closely spaced spheres would hide the path
   picture.png = sim::png_bytes(scene_picture(scene_of(run, paths), is_sphere(run) ? 3 : 8, width, height));
   example.pictures.push_back(std::move(picture));
 }
@@ -96,7 +96,7 @@ void add_pictures(const scenarios::RunResult& run, const RunPaths& paths, Moving
   add_path(run, paths, 1280, 640, example);
   example.pictures.push_back({"film",
                               "film strip of the same motion",
-                              "The same motion close by, left to right and down.",
+                              "Close-ups of the same motion, in rows from left to right.",
                               {},
                               sim::png_bytes(film_picture(scene, 8, 4, 400, 300))});
   if (moving == Moving::drawn) add_moving(scene, example);
@@ -107,7 +107,7 @@ void add_plot(Plot plot, Example& example) {
   if (!plot.lines.empty()) example.plots.push_back(std::move(plot));
 }
 
-/// What every example says of its draw, and its replay.
+/// Fills the fields that every example has, and generates the replay.
 Example replayed(const scenarios::RunResult& run) {
   Example example;
   example.scenario = run.scenario;

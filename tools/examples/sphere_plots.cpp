@@ -20,7 +20,7 @@ using scenarios::Kind;
 
 constexpr std::int64_t kSpeedHalf_ns = 25'000'000;
 constexpr std::size_t kPointsMax = 700;
-constexpr std::int64_t kBridge_ns = 20'000'000;  // spells closer than this are shaded as one
+constexpr std::int64_t kBridge_ns = 20'000'000;  // intervals with a smaller gap are shaded as one
 
 double five_decimals(double value) {
   return std::round(value * 1e5) / 1e5;
@@ -34,7 +34,6 @@ PlotLine line_of(const std::string& name, int colour, double width) {
   return line;
 }
 
-/// A path of the truth or of a method.
 struct ShownPath {
   std::string name;
   int colour;
@@ -42,8 +41,8 @@ struct ShownPath {
   Path path;
 };
 
-/// The truth, and of the methods of kind position that need no truth the first of each origin (MethodInfo::source):
-/// more would hide each other. Each as far as it stays near the truth.
+/// Returns the truth and, for each value of MethodInfo::source, the first position method that needs no truth. More
+/// paths would hide each other. Each path ends where it leaves the surroundings of the truth.
 std::vector<ShownPath> shown_paths(const scenarios::RunResult& run) {
   const sim::Recording& recording = run.recording;
   std::vector<ShownPath> all = {{"truth", kTruthColour, 3.5, true_path(recording.sensors, recording.truth, 4)}};
@@ -63,7 +62,7 @@ std::size_t stride_of(const Path& path) {
   return path.points_W_m.size() / kPointsMax + 1;
 }
 
-/// Spells of slip and slide of the truth [s].
+/// Returns the intervals [s] in which the truth reports slip or slide.
 std::vector<std::pair<double, double>> slip_spells(const sim::Truth& truth) {
   std::vector<std::pair<double, double>> spells;
   std::int64_t begin_ns = -1, end_ns = -1;
@@ -92,7 +91,7 @@ Plot plot_of(const char* name, const char* caption, const char* x_title, const c
   return plot;
 }
 
-/// The longest spell in which the body stands still.
+/// Returns the longest interval in which the body is stationary.
 std::optional<Span> longest_rest(const scenarios::TruthTrack& track, std::int64_t step_ns) {
   std::optional<Span> longest;
   std::optional<Span> now;
@@ -108,7 +107,7 @@ std::optional<Span> longest_rest(const scenarios::TruthTrack& track, std::int64_
   return longest;
 }
 
-/// The direction in which unit vectors vary most about their mean.
+/// Returns the direction in which unit vectors vary most about their mean.
 Eigen::Vector3d liveliest(const std::vector<std::pair<std::int64_t, Eigen::Vector3d>>& up,
                           const Eigen::Vector3d& mean) {
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
@@ -119,7 +118,7 @@ Eigen::Vector3d liveliest(const std::vector<std::pair<std::int64_t, Eigen::Vecto
   return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(2);
 }
 
-/// Tilt of attitudes within a span against their mean, along the direction in which it varies most [degrees].
+/// Adds the tilt of attitudes relative to their mean [degrees], along the direction in which the tilt varies most.
 void add_tilt(const std::vector<AttitudeState>& attitudes, const Span& span, PlotLine& line) {
   std::vector<std::pair<std::int64_t, Eigen::Vector3d>> up;
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
@@ -148,7 +147,7 @@ std::vector<AttitudeState> true_attitudes(const scenarios::TruthTrack& track, co
 }  // namespace
 
 Plot sphere_track_plot(const scenarios::RunResult& run) {
-  Plot plot = plot_of("track", "The path of the centre from above, at equal scales.", "x [m]", "y [m]");
+  Plot plot = plot_of("track", "The path of the centre from above, with equal scales.", "x [m]", "y [m]");
   plot.equal_scales = true;
   for (const ShownPath& shown : shown_paths(run)) {
     PlotLine line = line_of(shown.name, shown.colour, shown.width);
@@ -162,7 +161,8 @@ Plot sphere_track_plot(const scenarios::RunResult& run) {
 }
 
 Plot sphere_speed_plot(const scenarios::RunResult& run) {
-  Plot plot = plot_of("speed", "Speed of the centre. Shaded: the sphere slips or slides.", "time [s]", "speed [m/s]");
+  Plot plot = plot_of("speed", "Speed of the centre. The sphere slips or slides in the shaded intervals.", "time [s]",
+                      "speed [m/s]");
   plot.from_zero = plot.over_time = true;
   plot.shaded = slip_spells(run.recording.truth);
   for (const ShownPath& shown : shown_paths(run)) {
@@ -198,9 +198,8 @@ Plot sphere_height_plot(const scenarios::RunResult& run) {
 }
 
 Plot sphere_standstill_plot(const scenarios::RunResult& run) {
-  Plot plot =
-      plot_of("standstill", "Tilt at standstill, of each method against its own mean: how it trembles and drifts.",
-              "time [s]", "tilt [°]");
+  Plot plot = plot_of("standstill", "Tilt at standstill relative to the mean of each method: jitter and drift.",
+                      "time [s]", "tilt [°]");
   plot.over_time = true;
   const sim::Recording& recording = run.recording;
   if (recording.sensors.imus.empty() || recording.truth.imus.empty()) return plot;

@@ -4,19 +4,19 @@
 #include "scenarios/sweep/run_situation.hpp"
 #include "tools/examples/example.hpp"
 
-/// What the published figures of the rolling sphere show, from our draws, the truth beside each curve: of the methods
-/// of kind position that need no truth the first of each origin, and all of kind attitude.
+/// Plots that correspond to the published figures of the rolling sphere. Each plot shows the truth, the first position
+/// method of each origin that needs no truth, or all attitude methods.
 namespace tumble::tools {
 
-/// The path from above, at equal scales.
+/// Plots the path from above, with equal scales on both axes.
 Plot sphere_track_plot(const scenarios::RunResult& run);
-/// Speed of the centre over time, from differences of position over 50 ms for truth and estimates alike; spells of slip
-/// and slide of the truth are shaded.
+/// Plots the speed of the centre over time. Speeds are differences of positions over 50 ms, for truth and estimates
+/// alike. Intervals of true slip and slide are shaded.
 Plot sphere_speed_plot(const scenarios::RunResult& run);
-/// Height of the centre above where it started, over time.
+/// Plots the height of the centre relative to its start over time.
 Plot sphere_height_plot(const scenarios::RunResult& run);
-/// Tilt at standstill against its mean over the longest rest, in the direction in which it varies most: jitter and
-/// drift. Without attitude methods or a rest: without lines.
+/// Plots the tilt relative to its mean over the longest standstill, in the direction in which the tilt varies most. It
+/// shows jitter and drift. The plot has no lines without attitude methods or without a standstill.
 Plot sphere_standstill_plot(const scenarios::RunResult& run);
 
 }  // namespace tumble::tools

@@ -6,31 +6,31 @@
 #include <string>
 #include <vector>
 
-/// Text that goes into a page. Everything that comes from a file or a database passes through `escaped`.
+/// Helpers for text in HTML pages. All text that comes from a file or a database must pass through `escaped`.
 namespace tumble::tools::html {
 
-/// Replaces & < > " ' by their entities: safe in text and in quoted attributes.
+/// Replaces & < > " ' by entities. The result is safe in text and in quoted attributes.
 std::string escaped(const std::string& text);
 
-/// JSON that may stand inside a script element: "<" is written as an escape, so that no "</script>" can end it.
+/// Escapes each "<" of a JSON text, so that the text can be embedded in a script element without ending it.
 std::string script_json(const std::string& json);
 
-/// A path as the address of a file, relative or not: all but letters, digits, "/", "-", ".", "_" and "~" as %XX (RFC
-/// 3986).
+/// Returns a path as a file URL, relative or absolute. All characters but letters, digits, "/", "-", ".", "_" and "~"
+/// are percent-encoded (RFC 3986).
 std::string file_address(const std::string& path);
 
-/// A data: address that carries a PNG, or a WebP.
+/// Returns a data URL that contains a PNG or a WebP picture.
 std::string png_address(std::span<const std::uint8_t> png);
 std::string webp_address(std::span<const std::uint8_t> webp);
 
-/// Base64 (RFC 4648, with padding).
+/// Returns the Base64 encoding with padding (RFC 4648).
 std::string base64(std::span<const std::uint8_t> bytes);
 
-/// "<td class='c'>escaped</td>"
+/// Returns a table cell: "<td class='c'>escaped</td>".
 std::string cell(const std::string& text, const std::string& css_class = "");
 
-/// A table that scrolls within its own width, up to where its rows begin; to be ended by "</tbody></table></div>".
-/// Columns from `numbers_from` on are aligned to the right.
+/// Opens a table that scrolls horizontally, up to its first row. The caller closes it with "</tbody></table></div>".
+/// Columns from `numbers_from` on are right-aligned.
 std::string table_head(const std::vector<std::string>& columns, std::size_t numbers_from);
 
 }  // namespace tumble::tools::html

@@ -7,9 +7,10 @@ namespace tumble::tools {
 
 namespace {
 
-// Any two of these and the truth's lie at least 30 apart in CIELAB for normal, protan, deutan and tritan eyes, so that
-// light and dark tell apart what hue does not; none is so light or dark that it is lost on a light or a dark page.
-// Found by exchange, one colour at a time, over hues from amber to blue (palette_test.cpp holds the distances).
+// Any two of these colours and the colour of the truth differ by at least 30 in CIELAB, for normal vision and for
+// protan, deutan and tritan deficiency. Lightness therefore separates colours of similar hue. All are visible on light
+// and on dark pages. The set was optimised over hues from amber to blue by exchanging one colour at a time.
+// palette_test.cpp checks the distances.
 constexpr std::array<const char*, kMethodColours> kMethodHex = {"#ffbb22", "#8800ff", "#44ddff",
                                                                 "#bb0000", "#224499", "#bbcc77"};
 constexpr const char* kTruthHex = "#449977";

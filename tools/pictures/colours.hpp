@@ -4,23 +4,22 @@
 #include <array>
 #include <cstddef>
 
-/// The one palette of plots, pictures and replays.
+/// The palette that plots, pictures and replays share.
 namespace tumble::tools {
 
-/// A colour as "#rrggbb", the same in plots and pictures.
 struct Colour {
   const char* hex;
   std::array<float, 4> rgba() const;
 };
 
-/// So many methods have a colour of their own; further ones begin anew.
+/// Number of methods with different colours. Further methods use the same colours again.
 inline constexpr std::size_t kMethodColours = 6;
 
-/// Of the truth, and of the index-th method of a picture. They stay apart for colour-blind readers too.
+/// Colour of the truth, and of the method with the given index. Colour-blind readers can distinguish them.
 Colour truth_colour();
 Colour method_colour(std::size_t index);
-/// How often the colours were gone through before this one. What has one colour has another round, which a plot shows
-/// by dashes, symbols or filling.
+/// Returns how often all colours were used before the method with this index. A plot distinguishes methods of the same
+/// colour by dashes, symbols or filling.
 std::size_t colour_round(std::size_t index);
 
 }  // namespace tumble::tools

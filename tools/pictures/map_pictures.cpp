@@ -18,10 +18,10 @@ using Eigen::Vector3f;
 
 constexpr std::array<std::uint8_t, 3> kBackground = {24, 26, 30};
 constexpr int kScaleHeight = 14, kPictureMargin = 6;
-constexpr double kFocal = 1.7;  ///< of the picture's smaller half: an angle of view of some 60 degrees
+constexpr double kFocal = 1.7;  ///< focal length in units of half the picture's smaller side: about 60 degrees of view
 constexpr double kElevation_rad = 0.6;
 
-/// A camera that looks at the middle of the true path, across the direction of travel.
+/// Camera that looks at the middle of the true path, across the direction of travel.
 class Camera {
  public:
   Camera(const sim::Truth& truth, int width, int height) : width_(width), height_(height) {
@@ -35,12 +35,13 @@ class Camera {
                            -std::sin(kElevation_rad));
     const Vector3d right = forward.cross(Vector3d::UnitZ()).normalized();
     R_CW_.row(0) = right;
-    R_CW_.row(1) = -right.cross(forward);  // downwards in the picture
+    R_CW_.row(1) = -right.cross(forward);  // the second image axis points down
     R_CW_.row(2) = forward;
     distance_m_ = 1.25 * reach_m_;
   }
 
-  /// Column, row and depth; false for what is too far from the path, behind the camera or out of the picture.
+  /// Projects a point to column, row and depth. Returns false for points outside of the picture, behind the camera or
+  /// too far from the path.
   bool project(const Vector3f& point_W_m, int& column, int& row, double& depth_m) const {
     const Vector3d from_centre = point_W_m.cast<double>() - centre_;
     if (!(from_centre.norm() <= 1.6 * reach_m_)) return false;
@@ -66,7 +67,7 @@ void set_pixel(sim::Picture& picture, int column, int row, const std::array<std:
   std::copy(colour.begin(), colour.end(), picture.rgb.begin() + static_cast<std::ptrdiff_t>(at));
 }
 
-/// Each point a square of 2 by 2 pixels.
+/// Draws each point as a square of 2 by 2 pixels.
 void draw_map(const ErrorMap& map, const Camera& camera, int left, int width, int height, sim::Picture& picture) {
   std::vector<double> nearest_m(static_cast<std::size_t>(width) * static_cast<std::size_t>(height),
                                 std::numeric_limits<double>::infinity());
@@ -133,7 +134,7 @@ std::array<std::uint8_t, 3> error_colour(float error_m) {
 
 sim::Picture map_picture(const std::vector<ErrorMap>& maps, const sim::Truth& truth, int width, int height) {
   if (maps.empty() || truth.p_WB_m.empty() || width < 1 || height < 1) {
-    throw std::invalid_argument("map_picture: needs maps, a true path and room");
+    throw std::invalid_argument("map_picture: needs at least one map, a true path and a positive size");
   }
   sim::Picture picture;
   const auto count = static_cast<int>(maps.size());

@@ -12,10 +12,10 @@ namespace tumble::tools {
 
 namespace {
 
-/// The camera looks at where the robot is over so long a time: it follows, and does not shake with each impact.
+/// The camera looks at the mean position of the robot over this time, so that it follows without shaking at impacts.
 constexpr double kFollow_s = 0.4;
 constexpr int kFollowSamples = 9;
-/// What stands at the end of the last frame until it begins anew.
+/// Duration of the last frame before the animation restarts.
 constexpr int kPause_ms = 700;
 
 double step_ns(const MovingOptions& options) {
@@ -61,11 +61,11 @@ std::size_t frame_count(const Span& span, const MovingOptions& options) {
 
 std::vector<std::uint8_t> moving_picture(const Scene& scene, const Span& span, const MovingOptions& options) {
   if (scene.truth == nullptr || scene.truth->p_WB_m.empty())
-    throw scenarios::BadInput("a moving picture needs a recording with its truth: it shows where the robot was");
+    throw scenarios::BadInput("an animation needs a recording with truth, which gives the position of the robot");
   const scenarios::TruthTrack track(*scene.truth, scenarios::Frame::body);
   const std::vector<std::int64_t> stands =
       options.strobe > 0 ? instants_along(*scene.truth, options.strobe) : std::vector<std::int64_t>{};
-  // frames of a few hundred pixels: finer shadows are not seen, and are most of what one costs
+  // frames have a few hundred pixels: finer shadows would be invisible and most of the cost
   sim::Renderer renderer(*scene.built, 1024);
   sim::View view;
   view.width = options.width;

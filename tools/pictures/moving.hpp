@@ -9,26 +9,28 @@
 #include "tools/pictures/paths.hpp"
 #include "tools/pictures/pictures.hpp"
 
-/// A motion as a picture that moves: the camera goes with the robot, and leaves robots standing along its path.
+/// Animations of a motion: the camera follows the robot, and copies of the robot mark its path.
 namespace tumble::tools {
 
 struct MovingOptions {
   int width = 640, height = 360;
   double frames_per_s = 20.0;
-  double speed = 0.5;  ///< seconds of the motion in a second that one watches
-  int strobe = 6;      ///< robots that stand where it came by, at equal steps of the path; 0: none
+  double speed = 0.5;  ///< seconds of motion per second of playback
+  int strobe = 6;      ///< number of robots drawn along the path, equally far apart; 0 for none
   float quality = 60.0f;
-  std::function<void(std::size_t frames)> drawn;  ///< told how many frames are done after each; may be empty
+  std::function<void(std::size_t frames)> drawn;  ///< called after each frame with the number of finished frames; may
+                                                  ///< be empty
 };
 
-/// The part of the moving span, `length_s` long, in which the body turns most; the whole of it where it is shorter.
+/// Returns the interval of `length_s` in which the body rotates most. Returns the whole moving interval if that is
+/// shorter.
 Span liveliest_span(const sim::Truth& truth, double length_s);
 
-/// Frames of a moving picture of that span.
+/// Returns the number of frames of an animation of that interval.
 std::size_t frame_count(const Span& span, const MovingOptions& options);
 
-/// A WebP that plays the span for ever, a frame at each 1/frames_per_s. Needs the truth; throws scenarios::BadInput
-/// without. The same scene gives the same bytes.
+/// Renders the interval as an animated WebP that repeats, with `frames_per_s` frames per second of playback. Requires
+/// the truth; throws scenarios::BadInput otherwise. The same scene gives the same bytes.
 std::vector<std::uint8_t> moving_picture(const Scene& scene, const Span& span, const MovingOptions& options);
 
 }  // namespace tumble::tools

@@ -16,8 +16,8 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-/// The robot where a draw begins: a rig seen from down the slope, out of the lane that trunks keep off; a sphere with
-/// all of its room.
+/// Shows the robot at the start of a draw. A rig is seen from below on the slope, along the lane without trunks. A
+/// sphere is shown with its whole room.
 void show_start(const Scene& scene, sim::View& view) {
   const Isometry3d T_WB = sim::start_pose(*scene.built);
   view.robots_T_WB = {T_WB};
@@ -44,7 +44,7 @@ sim::Picture scene_picture(const Scene& scene, int robots, int width, int height
     for (const std::int64_t time_ns : instants_along(*scene.truth, robots))
       view.robots_T_WB.push_back(robot_pose(track, time_ns));
     view.azimuth_rad = azimuth_across_rad(*scene.truth);
-    // a path on level ground shows best from above
+    // a path on level ground is best seen from above
     if (is_sphere(scene)) view.elevation_rad = -0.85;
   } else {
     show_start(scene, view);
@@ -54,7 +54,7 @@ sim::Picture scene_picture(const Scene& scene, int robots, int width, int height
 
 sim::Picture film_picture(const Scene& scene, int frames, int columns, int width, int height) {
   if (scene.truth == nullptr || scene.truth->p_WB_m.empty()) {
-    throw scenarios::BadInput("a film strip needs a recording with its truth: it shows where the robot was");
+    throw scenarios::BadInput("a film strip needs a recording with truth, which gives the position of the robot");
   }
   const scenarios::TruthTrack track(*scene.truth, scenarios::Frame::body);
   sim::Renderer renderer(*scene.built);

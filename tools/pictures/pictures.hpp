@@ -13,22 +13,22 @@
 
 namespace tumble::tools {
 
-/// What pictures are made from. Only the first is needed.
+/// Input of pictures. Only the first member is required.
 struct Scene {
   const sim::BuiltSituation* built = nullptr;
-  const sim::Sensors* sensors = nullptr;  ///< with `truth`: the robot along its path and the true path
+  const sim::Sensors* sensors = nullptr;  ///< needed with `truth` to draw the robot along the true path
   const sim::Truth* truth = nullptr;
-  std::vector<Path> estimates;  ///< drawn in method_colour(0), (1), ...
+  std::vector<Path> estimates;  ///< estimate i has the colour method_colour(i)
 };
 
-/// The whole path in one picture: world, robot at `robots` instants equally far apart along it, true and estimated
-/// paths. Without truth the world and the estimates alone.
+/// Draws the whole path in one picture: the world, `robots` copies of the robot at equal distances along the path, and
+/// the true and estimated paths. Without truth, only the world and the estimates are drawn.
 sim::Picture scene_picture(const Scene& scene, int robots, int width, int height);
 
-/// `frames` close-ups at instants equally far apart along the path, in rows of `columns`. Needs the truth.
+/// Draws `frames` close-ups at equal distances along the path, in rows of `columns`. Requires the truth.
 sim::Picture film_picture(const Scene& scene, int frames, int columns, int width, int height);
 
-/// Writes a PNG; throws scenarios::BadInput with the path when it cannot.
+/// Writes a PNG file. Throws scenarios::BadInput with the path if the file cannot be written.
 void save_picture(const std::filesystem::path& path, const sim::Picture& picture);
 
 }  // namespace tumble::tools

@@ -18,7 +18,8 @@ double line_width_m(const Scene& scene) {
   return is_sphere(scene) ? 0.012 : 0.03;
 }
 
-/// Points no closer than `spacing_m`: a drawn line is a chain of bodies, and thousands of them cost time.
+/// Drops points closer than `spacing_m` to their predecessor: a drawn line is a chain of bodies, and thousands are
+/// slow.
 std::vector<Vector3d> thinned(const std::vector<Vector3d>& points, double spacing_m) {
   std::vector<Vector3d> out;
   for (const Vector3d& point : points) {
@@ -58,7 +59,7 @@ std::vector<sim::DrawnPath> drawn_paths(const Scene& scene) {
   const auto add = [&](const Path& path, Colour colour, double width) {
     if (path.points_W_m.size() > 1) paths.push_back({thinned(path.points_W_m, 1.5 * width_m), colour.rgba(), width});
   };
-  // the truth is a little thicker, so that it shows on both sides of an estimate that lies on it
+  // the true path is slightly thicker, so that it is visible behind an estimate that covers it
   const Path truth = scene.truth == nullptr ? Path() : true_path(*scene.sensors, *scene.truth, 10);
   add(truth, truth_colour(), 1.5 * width_m);
   for (std::size_t i = 0; i < scene.estimates.size(); ++i) {

@@ -10,21 +10,22 @@
 #include "sim/render/renderer.hpp"
 #include "tools/pictures/pictures.hpp"
 
-/// What stands in a scene, when, and from where it is looked at: the same for pictures that stand and that move.
+/// Viewpoints, instants and drawn paths that still pictures and animations share.
 namespace tumble::tools {
 
 bool is_sphere(const Scene& scene);
 
-/// Instants that cut the moving part of the path into parts of equal length; turning on the spot counts a little too.
+/// Returns instants that divide the moving part of the path into parts of equal length. Rotation also adds a little
+/// length.
 std::vector<std::int64_t> instants_along(const sim::Truth& truth, int count);
 
-/// The true path and those of the estimates, in their colours.
+/// Returns the true path and the estimated paths with their colours.
 std::vector<sim::DrawnPath> drawn_paths(const Scene& scene);
 
-/// Looks across the direction of travel, from the side and somewhat above, so that a slope shows as one.
+/// Returns the azimuth of a view across the direction of travel, so that slopes are visible.
 double azimuth_across_rad(const sim::Truth& truth);
 
-/// T_WB by the truth.
+/// Returns the true pose T_WB.
 Eigen::Isometry3d robot_pose(const scenarios::TruthTrack& track, std::int64_t time_ns);
 
 }  // namespace tumble::tools

@@ -19,16 +19,16 @@ struct WebpAnimation::Impl {
 
 namespace {
 
-/// A picture in libwebp's hands.
+/// RAII wrapper of libwebp's picture.
 class WebpPicture {
  public:
   explicit WebpPicture(const sim::Picture& picture) {
-    if (WebPPictureInit(&picture_) == 0) throw std::runtime_error("libwebp is of another version than its headers");
+    if (WebPPictureInit(&picture_) == 0) throw std::runtime_error("the version of libwebp differs from its headers");
     picture_.use_argb = 1;
     picture_.width = picture.width;
     picture_.height = picture.height;
     if (WebPPictureImportRGB(&picture_, picture.rgb.data(), 3 * picture.width) == 0)
-      throw std::runtime_error("no memory for a picture");
+      throw std::runtime_error("out of memory for a picture");
   }
   ~WebpPicture() { WebPPictureFree(&picture_); }
   WebpPicture(const WebpPicture&) = delete;
@@ -43,7 +43,7 @@ class WebpPicture {
 
 WebpAnimation::WebpAnimation(int width, int height, float quality) : impl_(std::make_unique<Impl>()) {
   if (width < 1 || height < 1 || width > WEBP_MAX_DIMENSION || height > WEBP_MAX_DIMENSION)
-    throw std::invalid_argument("a WebP of " + std::to_string(width) + " by " + std::to_string(height) +
+    throw std::invalid_argument("a WebP picture of " + std::to_string(width) + " by " + std::to_string(height) +
                                 " pixels, must be from 1 to " + std::to_string(WEBP_MAX_DIMENSION));
   if (!(quality >= 0.0f && quality <= 100.0f))
     throw std::invalid_argument("quality is " + std::to_string(quality) + ", must be within [0, 100]");
@@ -51,12 +51,12 @@ WebpAnimation::WebpAnimation(int width, int height, float quality) : impl_(std::
   impl_->height = height;
   WebPAnimEncoderOptions options;
   if (WebPAnimEncoderOptionsInit(&options) == 0 || WebPConfigInit(&impl_->config) == 0)
-    throw std::runtime_error("libwebp is of another version than its headers");
-  // one thread and no measure of time: the bytes follow from the pictures alone
+    throw std::runtime_error("the version of libwebp differs from its headers");
+  // one thread and no time limit, so that equal pictures give equal bytes
   impl_->config.thread_level = 0;
   impl_->config.quality = quality;
   impl_->encoder = WebPAnimEncoderNew(width, height, &options);
-  if (impl_->encoder == nullptr) throw std::runtime_error("no memory for a WebP");
+  if (impl_->encoder == nullptr) throw std::runtime_error("out of memory for a WebP file");
 }
 
 WebpAnimation::~WebpAnimation() = default;
@@ -64,8 +64,8 @@ WebpAnimation::WebpAnimation(WebpAnimation&&) noexcept = default;
 
 void WebpAnimation::add(const sim::Picture& picture, int duration_ms) {
   if (picture.width != impl_->width || picture.height != impl_->height)
-    throw std::invalid_argument("pictures of a WebP have one size");
-  if (duration_ms < 1) throw std::invalid_argument("a picture is shown for a millisecond at least");
+    throw std::invalid_argument("all pictures of a WebP file must have the same size");
+  if (duration_ms < 1) throw std::invalid_argument("the duration of a picture must be at least 1 ms");
   WebpPicture imported(picture);
   if (WebPAnimEncoderAdd(impl_->encoder, imported.get(), impl_->time_ms, &impl_->config) == 0)
     throw std::runtime_error(std::string("libwebp: ") + WebPAnimEncoderGetError(impl_->encoder));
@@ -74,7 +74,7 @@ void WebpAnimation::add(const sim::Picture& picture, int duration_ms) {
 }
 
 std::vector<std::uint8_t> WebpAnimation::bytes() {
-  if (impl_->pictures == 0) throw std::logic_error("a WebP without a picture");
+  if (impl_->pictures == 0) throw std::logic_error("a WebP file needs at least one picture");
   WebPData data;
   WebPDataInit(&data);
   const bool made = WebPAnimEncoderAdd(impl_->encoder, nullptr, impl_->time_ms, nullptr) != 0 &&

@@ -9,20 +9,20 @@
 
 namespace tumble::tools {
 
-/// Pictures one after the other, for ever, as a WebP file (libwebp, lossy). The same pictures give the same bytes.
+/// Encodes pictures as an animated WebP file that repeats (libwebp, lossy). The same pictures give the same bytes.
 class WebpAnimation {
  public:
-  /// Pixels of each picture, from 1 to 16383; `quality` from 0 (small) to 100. Throws std::invalid_argument beyond
-  /// these.
+  /// Takes the size of each picture, from 1 to 16383 pixels per side, and the `quality` from 0 (small) to 100. Throws
+  /// std::invalid_argument outside of these ranges.
   WebpAnimation(int width, int height, float quality);
   ~WebpAnimation();
   WebpAnimation(WebpAnimation&&) noexcept;
 
-  /// Shown for `duration_ms`. Throws std::invalid_argument on another size or a duration below 1, std::runtime_error
-  /// when it cannot be compressed.
+  /// Appends a picture that is shown for `duration_ms`. Throws std::invalid_argument if the size differs or the
+  /// duration is below 1 ms, and std::runtime_error if compression fails.
   void add(const sim::Picture& picture, int duration_ms);
 
-  /// The file. Throws std::logic_error without a picture; nothing is to be added after it.
+  /// Returns the file; no picture may be added afterwards. Throws std::logic_error if there is no picture.
   std::vector<std::uint8_t> bytes();
 
  private:

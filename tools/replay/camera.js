@@ -1,4 +1,4 @@
-// A camera about a point: it follows somebody or stays, and the reader turns it, comes nearer and moves it.
+// A camera around a point. It follows a robot or stays; the reader can rotate, zoom and move it.
 class Camera {
   constructor(target, distance_m, azimuth_rad) {
     this.target = target.slice();
@@ -14,7 +14,7 @@ class Camera {
     return add(this.target, times([flat * Math.cos(this.azimuth_rad), flat * Math.sin(this.azimuth_rad),
       Math.sin(this.elevation_rad)], this.distance_m));
   }
-  // After the robot, as one turns the head: at once where it has been put elsewhere, else softly.
+  // Follows the robot smoothly; jumps if the time was changed.
   follow(position, elapsed_s) {
     if (!this.follows || !position) return;
     const away = distance(this.target, position);
@@ -27,7 +27,7 @@ class Camera {
     this.elevation_rad = Math.min(1.5, Math.max(-0.2, this.elevation_rad + y_rad));
   }
   nearer(factor) { this.distance_m = Math.min(200, Math.max(0.4, this.distance_m * factor)); }
-  // By shares of the picture's height; the robot is no longer followed.
+  // Moves by shares of the picture's height, and stops following the robot.
   move(right, up) {
     this.drift_rad_s = 0;
     const back = unit(minus(this.eye(), this.target)), side = unit(cross([0, 0, 1], back)), above = cross(back, side);
@@ -35,11 +35,11 @@ class Camera {
     this.target = add(this.target, add(times(side, -right * size_m), times(above, up * size_m)));
     this.follows = false;
   }
-  // `beside`: share of the width, at the left, that is not seen.
+  // `beside`: share of the width at the left that the panel covers.
   matrices(aspect, beside) {
     const eye = this.eye();
     const view = lookingAt(eye, this.target, [0, 0, 1]);
-    // a picture that is higher than wide shows as much to the sides
+    // in a portrait picture the horizontal field of view is kept
     const height_rad = aspect < 1 ? 2 * Math.atan(Math.tan(this.height_rad / 2) / Math.max(aspect, 0.55)) : this.height_rad;
     const projection = perspective(height_rad, aspect, Math.max(0.05, this.distance_m / 60), 400);
     projection[8] = -beside;
@@ -47,7 +47,7 @@ class Camera {
   }
 }
 
-// Where the camera begins: across the path, so that a slope shows as one.
+// Initial view across the path, so that slopes are visible.
 function firstCamera(replay) {
   const moving = replay.actors.find((actor) => actor.track && actor.track.span());
   const [first, last] = moving.track.span();

@@ -1,8 +1,8 @@
-// What the reader does, and the words of the page. Every text that came with the data is set as text, never as markup.
+// Controls and texts of the page. Texts from the data are always set as text, never as markup.
 const SPEEDS = [0.05, 0.1, 0.25, 0.5, 1, 2, 4, 8];
-const KEYS = [['space', 'play or pause'], ['← →', 'a tenth of a second back or on; with shift a second'], ['Home End', 'begin, end'],
-  ['+ −', 'faster, slower'], ['F', 'follow the robot, or look at the whole'], ['1 … 9', 'truth and methods on or off'],
-  ['P', 'place the points by the next one'], ['G', 'the gyro’s norm, x, y, z'], ['drag', 'turn; with shift or the right button move'],
+const KEYS = [['space', 'play or pause'], ['← →', '0.1 s back or forward; with shift 1 s'], ['Home End', 'start, end'],
+  ['+ −', 'faster, slower'], ['F', 'follow the robot, or show the whole path'], ['1 … 9', 'show or hide truth and methods'],
+  ['P', 'place the points by the next motion'], ['G', 'gyro: norm, x, y, z'], ['drag', 'rotate; with shift or the right button move'],
   ['wheel, pinch', 'nearer, farther'], ['H', 'these keys']];
 
 const byId = (id) => document.getElementById(id);
@@ -13,14 +13,14 @@ function element(name, text, className) {
   return made;
 }
 
-// "2.1 cm", three digits at most.
+// Formats a length with at most three digits, for example "2.1 cm".
 function lengthText(m) {
   if (m < 0.0995) return `${(100 * m).toFixed(1)} cm`;
   if (m < 9.95) return `${m.toFixed(2)} m`;
   return m < 9999.5 ? `${m.toFixed(0)} m` : `${(m / 1000).toFixed(0)} km`;
 }
 
-// Truth and methods with their colours, and how far each is off now.
+// Lists truth and methods with their colours and current position errors.
 function showActors(replay, changed) {
   const list = byId('actors');
   replay.actors.forEach((actor, i) => {
@@ -45,18 +45,18 @@ function sayErrors(replay, t) {
     if (actor.truth) continue;
     if (!actor.track) { actor.off.textContent = 'rate alone'; continue; }
     const pose = actor.track.pose(t);
-    actor.off.textContent = pose && there ? `${lengthText(distance(pose.p, there.p))} off` : pose ? '' : 'nothing yet';
+    actor.off.textContent = pose && there ? `${lengthText(distance(pose.p, there.p))} off` : pose ? '' : 'no pose yet';
   }
 }
 
-// The estimate whose points lie nearest to the true surface; the truth's cloud shows the sensor alone.
+// The estimate whose points are nearest to the true surface. The truth's cloud would show only sensor noise.
 function bestPlacing(replay) {
   const estimates = replay.actors.filter((actor) => actor.track && !actor.truth);
   const off = (actor) => actor.errors ? actor.errors.reduce((sum, error) => sum + error, 0) : 0;
   return estimates.sort((a, b) => off(a) - off(b))[0] || replay.actors.find((actor) => actor.track);
 }
 
-// By whom the points are placed, and what their colours say.
+// Selects the motion that places the points, and shows the scale of their colours.
 function showPlacing(replay, chosen, changed) {
   const can = replay.actors.filter((actor) => actor.track);
   if (!replay.head.points.shown) return;
@@ -81,15 +81,15 @@ function showScale(replay, byError) {
   const ticks = byError ? ['0', '0.25', '0.5', '0.75', `≥ ${head.error_max_m} m`] : ['low', 'high'];
   byId('ticks').replaceChildren(...ticks.map((tick) => element('span', tick)));
   byId('scale-says').textContent = byError
-    ? 'Each point of the lidar has the colour of its distance from the true surface.'
-    : 'Nobody knows the true surface: each point has the colour of its height.';
+    ? 'The colour of each lidar point is its distance to the true surface.'
+    : 'The true surface is unknown. The colour of each lidar point is its height.';
 }
 
-// What this is, in one sentence.
+// Describes the page in one sentence.
 function leadOf(replay) {
   const estimates = replay.actors.filter((actor) => !actor.truth).length;
-  if (!replay.actors.some((actor) => actor.truth)) return 'Nobody knows the truth here: what the methods make of the sensors.';
-  return estimates ? 'The true motion, and beside it what each method makes of the robot’s sensors.' : 'The true motion, and what the robot’s sensors say.';
+  if (!replay.actors.some((actor) => actor.truth)) return 'This recording has no truth. The page shows the motions that the methods estimate.';
+  return estimates ? 'The page shows the true motion and the motions that the methods estimate from the sensors.' : 'The page shows the true motion and the sensor readings.';
 }
 
 function showFacts(replay) {
@@ -97,16 +97,16 @@ function showFacts(replay) {
   const count = (n) => n.toLocaleString('en');
   const say = (text) => facts.append(element('p', text));
   const truth = replay.actors.some((actor) => actor.truth);
-  say(truth ? 'A robot with its true path, and what each method makes of its sensors. Estimates begin where the truth does, in position and heading; '
-    + 'a solid body is the truth, a see-through one an estimate.' : 'A recording without truth: estimates alone, moved to the first in position and heading.');
-  if (head.points.of) say(`${count(head.points.shown)} of ${count(head.points.of)} returns of the lidar, spread evenly over sweeps and beams; the robot’s own are left out.`);
-  if (head.world.of) say(`${count(head.world.shown)} of ${count(head.world.of)} triangles of the world: the ground is whole near the path and coarser away from it.`);
+  say(truth ? 'Each estimate is aligned with the truth at its start, in position and heading. '
+    + 'The solid body is the truth; transparent bodies are estimates.' : 'The recording has no truth. All estimates are aligned with the first one, in position and heading.');
+  if (head.points.of) say(`${count(head.points.shown)} of ${count(head.points.of)} lidar returns are shown, spread evenly over sweeps and beams. Returns from the robot itself are left out.`);
+  if (head.world.of) say(`${count(head.world.shown)} of ${count(head.world.of)} triangles of the world are shown. The ground has its full resolution near the path and is coarser farther away.`);
   if (strip.of) {
-    say(`The strip: ${count(strip.shown)} of ${count(strip.of)} gyro samples${strip.shown < strip.of ? ' (of each run the fastest)' : ''} as a thin line`
-      + `${replay.actors.some((actor) => actor.truth && actor.rates) ? ', the true rate as a broad one below it' : ''}, each method’s rate in its colour. `
-      + (strip.clipping ? `Shaded: at least one axis is clipped, as ${strip.clipping} says.` : 'Nobody says where it is clipped.'));
+    say(`The strip shows ${count(strip.shown)} of ${count(strip.of)} gyro samples${strip.shown < strip.of ? ' (the fastest of each group)' : ''} as a thin line`
+      + `${replay.actors.some((actor) => actor.truth && actor.rates) ? ', the true rate as a wide line below it' : ''}, and each method’s rate in its colour. `
+      + (strip.clipping ? `Shaded intervals: at least one axis is clipped, according to ${strip.clipping}.` : 'The recording does not state where the gyro is clipped.'));
   }
-  if (strip.contacts_known) say('Along its foot: where the robot touches the world; of a sphere higher where it slips or slides.');
+  if (strip.contacts_known) say('The bars at the bottom are contacts with the world. For a sphere, slip and slide are drawn higher.');
   for (const [name, value] of head.facts) say(`${name}: ${value}`);
 }
 
@@ -116,7 +116,7 @@ function showKeys() {
   byId('keys').append(list);
 }
 
-// Drag, wheel and fingers turn, move and bring nearer.
+// Drag, wheel and touch rotate, move and zoom.
 function steerCamera(canvas, camera, changed) {
   const fingers = new Map();
   let apart = 0;
@@ -155,7 +155,7 @@ function steerCamera(canvas, camera, changed) {
   }, { passive: false });
 }
 
-// Click and drag on the strip go to that time.
+// Clicking or dragging on the strip selects a time.
 function scrubStrip(strip, goTo) {
   const to = (event) => goTo(strip.time(event.clientX - strip.canvas.getBoundingClientRect().left));
   strip.canvas.addEventListener('pointerdown', (event) => { strip.canvas.setPointerCapture(event.pointerId); to(event); });

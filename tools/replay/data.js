@@ -1,4 +1,4 @@
-// What the page carries: a head of JSON and one run of bytes. All lengths in metres from the head's origin, times in
+// Data of the page: a JSON head and one block of bytes. Positions are in metres from the head's origin, times in
 // seconds from the start of the recording.
 function readReplay() {
   const head = JSON.parse(document.getElementById('head').textContent);
@@ -21,12 +21,12 @@ function readReplay() {
   return { head, array, actors };
 }
 
-// "#rrggbb" as three numbers from 0 to 1.
+// Converts "#rrggbb" to three numbers from 0 to 1.
 function colourOf(hex) {
   return [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16) / 255);
 }
 
-// Poses of the body at equal steps; positions that are not finite are not known.
+// Poses of the body at equal steps; an unknown position is not finite.
 class Track {
   constructor(positions, attitudes, step_s) {
     this.positions = positions;
@@ -37,14 +37,14 @@ class Track {
   known(k) { return k >= 0 && k < this.count && Number.isFinite(this.positions[3 * k]); }
   position(k) { return [this.positions[3 * k], this.positions[3 * k + 1], this.positions[3 * k + 2]]; }
   attitude(k) { return [0, 1, 2, 3].map((i) => this.attitudes[4 * k + i] / 32767); }
-  // {p, q} between two samples, or null.
+  // Returns the interpolated pose {p, q}, or null if it is unknown.
   pose(t) {
     const at = t / this.step_s, k = Math.floor(at), share = at - k;
     if (!this.known(k)) return null;
     if (!this.known(k + 1)) return { p: this.position(k), q: this.attitude(k) };
     return { p: mix(this.position(k), this.position(k + 1), share), q: turnBetween(this.attitude(k), this.attitude(k + 1), share) };
   }
-  // Index of the first and of the last that is known; null when none is.
+  // Index of the first and of the last known pose; null if all are unknown.
   span() {
     let first = 0, last = this.count - 1;
     while (first < this.count && !this.known(first)) ++first;
@@ -53,7 +53,7 @@ class Track {
   }
 }
 
-// The first index of a rising list whose entry is greater than `value`.
+// Returns the first index of a sorted list whose entry is greater than `value`.
 function countUpTo(list, value) {
   let low = 0, high = list.length;
   while (low < high) {

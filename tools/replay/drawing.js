@@ -5,11 +5,11 @@ class Stage {
   constructor(canvas, replay) {
     const software = drawsInSoftware();
     const gl = canvas.getContext('webgl2', { antialias: !software, alpha: false, powerPreference: 'high-performance' });
-    if (!gl) throw new Error('this browser draws no WebGL 2, which the picture needs');
+    if (!gl) throw new Error('this browser does not support WebGL 2, which the picture needs; use another browser');
     this.gl = gl;
     this.canvas = canvas;
     this.replay = replay;
-    // a picture that stands may take its time; without a graphics card its edges are smoothed by more dots
+    // a still picture may take longer; without a graphics card, supersampling smooths its edges
     this.still = { shadows: true, sharpness: software ? 1.6 : 1, pointStep: 1 };
     this.moving = { shadows: true, sharpness: 1, pointStep: 1 };  // sharpness: against the screen's own; every so many points
     this.eased = 0;
@@ -27,7 +27,7 @@ class Stage {
     this.readTheme();
     gl.enable(gl.DEPTH_TEST);
     gl.depthFunc(gl.LEQUAL);
-    if (gl.getError() !== gl.NO_ERROR) throw new Error('WebGL refuses the data of this page');
+    if (gl.getError() !== gl.NO_ERROR) throw new Error('WebGL rejects the data of this page');
     if (software) this.easier();
   }
 
@@ -122,7 +122,7 @@ class Stage {
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
   }
 
-  // The page's own colours, light or dark.
+  // The colours of the page, light or dark.
   readTheme() {
     const style = getComputedStyle(document.documentElement);
     const value = (name) => style.getPropertyValue(name).trim();
@@ -137,18 +137,18 @@ class Stage {
     const height = Math.max(1, Math.round(this.canvas.clientHeight * ratio));
     if (this.canvas.width !== width || this.canvas.height !== height) Object.assign(this.canvas, { width, height });
     this.ratio = ratio;
-    // what the panel covers counts as the picture's rim
+    // the area below the panel counts as outside of the picture
     const panel = document.getElementById('panel');
     this.beside = this.canvas.clientWidth > 760 ? panel.offsetWidth / this.canvas.clientWidth : 0;
   }
 
-  // A slow processor draws no shadows, then a coarser picture, then every other point, then both more so.
+  // On a slow processor, reduces the quality step by step: shadows, resolution, number of points.
   easier() {
     const steps = [{ shadows: false }, { sharpness: 0.75 }, { pointStep: 2 }, { sharpness: 0.6, pointStep: 4 }];
     if (this.eased < steps.length) Object.assign(this.moving, steps[this.eased++]);
   }
 
-  // Robots that are there now, the truth's first.
+  // Robots with a known pose at this time, the truth first.
   robotsAt(t) {
     return this.replay.actors.filter((actor) => actor.track && actor.shown)
       .map((actor) => ({ actor, pose: actor.track.pose(t) }))
@@ -239,7 +239,7 @@ class Stage {
     gl.uniform4f(at.u_tint, 0, 0, 0, 0);
     gl.uniform1f(at.u_opacity, 1);
     gl.enable(gl.CULL_FACE);
-    // the ground gives way along the line of sight alone, all else more
+    // the ground is cut only along the line of sight, other objects more widely
     gl.uniform1f(at.u_cut_m, this.replay.head.robot_radius_m);
     gl.uniform1f(at.u_grid, 1);
     this.drawRanges(this.world, (range) => range.ground);
@@ -249,7 +249,7 @@ class Stage {
     gl.disable(gl.CULL_FACE);
   }
 
-  // The truth's robot, and of a recording without truth the first one's, in the robot's own colours.
+  // The robot of the truth, or else of the first estimate, in the robot's own colours.
   drawOpaqueRobots(robots) {
     const gl = this.gl, { at } = this.solid;
     gl.uniform1f(at.u_cut_m, 0);
@@ -261,7 +261,7 @@ class Stage {
     }
   }
 
-  // Estimates as they stand beside the truth, and shells one sees through.
+  // Estimates next to the truth, and transparent shells.
   drawGhosts(eye, camera, shadow, robots) {
     const gl = this.gl, { at } = this.solid;
     this.beginSolids(eye, camera, shadow);
@@ -296,8 +296,7 @@ class Stage {
     gl.blendFuncSeparate(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA, gl.ONE, gl.ONE);
     gl.depthMask(false);
     const width_m = 0.075 * this.replay.head.robot_radius_m;
-    // the truth is a little wider, so that it shows on both sides of an estimate that lies on it; what is behind
-    // something shines through
+    // the true path is slightly wider, so that it is visible behind an estimate; hidden parts are drawn faintly
     for (const [test, opacity] of [[gl.GREATER, 0.22], [gl.LEQUAL, 0.95]]) {
       gl.depthFunc(test);
       for (const actor of this.replay.actors) {
@@ -357,7 +356,7 @@ class Stage {
   }
 }
 
-// Whether the processor draws, and no graphics card: smooth edges cost it four times the dots.
+// True without a graphics card: smooth edges then cost four times the pixels.
 function drawsInSoftware() {
   const gl = document.createElement('canvas').getContext('webgl2');
   const names = gl && gl.getExtension('WEBGL_debug_renderer_info');
@@ -366,7 +365,7 @@ function drawsInSoftware() {
   return found;
 }
 
-// Neighbours of one sort are drawn at once.
+// Draws neighbours of the same kind in one call.
 function joined(ranges) {
   const out = [];
   for (const range of ranges) {
@@ -377,7 +376,7 @@ function joined(ranges) {
   return out;
 }
 
-// Between which heights nine tenths of the points lie, as an actor places them.
+// Range of heights that contains nine tenths of the points, as an actor places them.
 function heightsOf(actor, replay) {
   const positions = replay.array('points.positions'), times = replay.array('points.times'), scale = replay.head.points.scale_m, heights = [];
   for (let i = 0; i < times.length; i += Math.ceil(times.length / 4000)) {
@@ -391,7 +390,7 @@ function heightsOf(actor, replay) {
   return [at(0.05), Math.max(at(0.95), at(0.05) + 0.1)];
 }
 
-// From violet to amber, rising in lightness and seen on a light and a dark ground (after matplotlib's plasma): for heights.
+// Colours of heights: violet to amber with increasing lightness, visible on light and dark ground (after matplotlib's plasma).
 const HEIGHT_COLOURS = Array.from({ length: 64 }, (unused, i) => {
   const stops = [[84, 70, 190], [142, 50, 170], [204, 71, 120], [237, 121, 83], [247, 165, 55]];
   const at = i / 63 * (stops.length - 1), k = Math.min(Math.floor(at), stops.length - 2);

@@ -1,5 +1,5 @@
-// The paths as bands: two corners a sample, each with the direction ahead, its side and its time.
-// A path ends where it leaves `box`: one that runs away would cross the whole picture.
+// Paths as bands: two corners per sample, each with the forward direction, its side and its time.
+// A path ends where it leaves `box`; otherwise a diverged path would cross the whole picture.
 function ribbonOf(track, least_m, box) {
   const kept = [];
   for (let k = 0; k < track.count; ++k) {
@@ -16,7 +16,7 @@ function ribbonOf(track, least_m, box) {
     if (!kept[i]) continue;
     const before = kept[i - 1] || kept[i], after = kept[i + 1] || kept[i];
     const ahead = unit(minus(after.p, before.p));
-    // a gap: corners twice, which draw nothing
+    // a gap: repeated corners draw nothing
     if (!kept[i - 1] && numbers.length) numbers.push(...numbers.slice(-8)), corner(kept[i], ahead, -1);
     corner(kept[i], ahead, -1);
     corner(kept[i], ahead, 1);
@@ -24,7 +24,7 @@ function ribbonOf(track, least_m, box) {
   return new Float32Array(numbers);
 }
 
-// The first path's box, wider on every side by half of its diagonal and 1 m at least.
+// Bounding box of the first path, widened on each side by half of its diagonal and at least 1 m.
 function surroundings(replay) {
   const { low, high } = boxOf(replay.actors.find((actor) => actor.track && actor.track.span()).track);
   const margin = Math.max(1, 0.5 * distance(low, high));

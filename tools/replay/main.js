@@ -1,4 +1,4 @@
-// Puts the parts together and lets time pass.
+// Combines the parts of the page and advances the time.
 class Player {
   constructor(replay) {
     this.replay = replay;
@@ -40,7 +40,7 @@ class Player {
     requestAnimationFrame((now) => this.frame(now));
   }
 
-  // The strip and the words work without the picture.
+  // The strip and the texts work without the picture.
   trouble(error) {
     const says = byId('trouble');
     says.textContent = error.message;
@@ -73,7 +73,7 @@ class Player {
     if (matchMedia('(max-width: 640px)').matches) this.fold(false);
   }
 
-  // FILE.html#t=3.2&pause&whole begins there, for a link or a picture.
+  // FILE.html#t=3.2&pause&whole selects the start, for links and pictures.
   readAddress() {
     const wanted = new URLSearchParams(location.hash.slice(1)), t = parseFloat(wanted.get('t'));
     if (Number.isFinite(t)) this.t = Math.min(this.head.end_s, Math.max(0, t));
@@ -99,7 +99,7 @@ class Player {
       g: () => this.setAxis({ norm: 'x', x: 'y', y: 'z', z: 'norm' }[this.strip.axis]),
     };
     if (/^[1-9]$/.test(key) && this.replay.actors[key - 1]) does[key] = () => this.replay.actors[key - 1].box.click();
-    // a button has the space bar for itself
+    // a focused button uses the space bar itself
     if (!does[key] || (key === ' ' && /^(BUTTON|SUMMARY)$/.test(event.target.tagName))) return;
     event.preventDefault();
     does[key]();
@@ -119,7 +119,7 @@ class Player {
     this.moved();
     this.say();
   }
-  // For a moment pictures follow each other, then the last one may take its time.
+  // Renders several quick pictures after a change, then one of full quality.
   moved() {
     this.movedAt = performance.now();
     this.stale = true;
@@ -165,7 +165,7 @@ class Player {
     this.stale = true;
   }
 
-  // Pose of the one that the camera follows: the truth, or the first that is shown.
+  // Pose that the camera follows: the truth, or else the first visible estimate.
   followed() {
     for (const actor of this.replay.actors) {
       const pose = actor.track && (actor.shown || actor.truth) && actor.track.pose(this.t);
@@ -208,7 +208,7 @@ class Player {
     if (this.stage) {
       try {
         this.stage.draw(this.t, this.camera, this.placed, moving);
-        // software that draws a frame in the processor answers late: it gets an easier picture
+        // slow rendering without a graphics card: reduce the quality
         if (this.playing && ++this.frames < 40) this.watch();
         root.dataset.state = 'drawn';
         root.dataset.moving = String(moving);

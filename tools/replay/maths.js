@@ -8,7 +8,7 @@ const mix = (a, b, s) => [a[0] + (b[0] - a[0]) * s, a[1] + (b[1] - a[1]) * s, a[
 const unit = (a) => times(a, 1 / (Math.hypot(a[0], a[1], a[2]) || 1));
 const distance = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 
-// The shorter way round, normalised: between samples a few milliseconds apart nobody can tell it from slerp.
+// Normalised linear interpolation along the shorter arc; for samples a few milliseconds apart it is as good as slerp.
 function turnBetween(a, b, share) {
   const sign = a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3] < 0 ? -1 : 1;
   const q = a.map((value, i) => value * (1 - share) + sign * b[i] * share);

@@ -1,5 +1,5 @@
-// Triangles as the graphics processor takes them, of what the page carries: grids get their two triangles a cell,
-// corners that are shared a common normal.
+// Converts the page's data to triangles for the graphics processor: grids get two triangles per cell, and shared
+// corners a common normal.
 function meshOf(said, vertices, corners) {
   const scale = said.scale_m;
   let vertexCount = 0, cornerCount = 0;
@@ -36,7 +36,7 @@ function gridTriangles(part, first, indices, at) {
   return at;
 }
 
-// Each corner's normal is the mean of its triangles', weighted by their areas.
+// The normal of a corner is the area-weighted mean of the normals of its triangles.
 function sumNormals(positions, indices, normals) {
   for (let i = 0; i + 2 < indices.length; i += 3) {
     const [a, b, c] = [3 * indices[i], 3 * indices[i + 1], 3 * indices[i + 2]];
@@ -55,7 +55,7 @@ function sumNormals(positions, indices, normals) {
   }
 }
 
-// A level net of lines' ground where there is no world: something to stand above.
+// A level ground with grid lines, used if there is no world.
 function emptyGround(z, half) {
   const rgba = [0.42, 0.45, 0.47, 1];
   const said = { scale_m: 1, parts: [{ rows: 2, columns: 2, vertices: 4, corners: 0, rgba }] };

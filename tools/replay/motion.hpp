@@ -9,21 +9,21 @@
 #include "scenarios/methods/method.hpp"
 #include "sim/recording.hpp"
 
-/// How the body moved, by the truth or by an estimate, in one world for all.
+/// Motion of the body by the truth or by an estimate, in one common world frame.
 namespace tumble::tools {
 
-/// Poses of the body B in W at rising instants. Between two the position is interpolated linearly and the attitude by
-/// slerp; outside, and in gaps of more than half a second or four usual steps, nothing is known.
+/// Poses of the body B in W at increasing instants. Positions are interpolated linearly and attitudes by slerp. The
+/// pose is undefined outside the samples, and in gaps of more than half a second or four usual steps.
 class Motion {
  public:
   Motion() = default;
-  /// Leaves out what is not finite, not after the one before, or farther than 10 km from the first.
+  /// Drops poses that are not finite, not later than their predecessor, or farther than 10 km from the first pose.
   Motion(const std::vector<std::int64_t>& time_ns, const std::vector<Eigen::Isometry3d>& T_WB);
 
   bool empty() const { return time_ns_.empty(); }
   std::int64_t begin_ns() const { return time_ns_.front(); }
   std::int64_t end_ns() const { return time_ns_.back(); }
-  /// O(log N).
+  /// Returns the interpolated pose. O(log N).
   std::optional<Eigen::Isometry3d> at(std::int64_t time_ns) const;
 
  private:
@@ -33,14 +33,15 @@ class Motion {
   std::int64_t gap_ns_ = 0;
 };
 
-/// Of the truth, at instants `step_ns` apart; empty where it knows no position. Throws BadInput when it contradicts
-/// itself.
+/// Samples the truth at instants `step_ns` apart. The result is empty if the truth has no positions. Throws BadInput if
+/// the truth is inconsistent.
 Motion true_motion(const sim::Truth& truth, std::int64_t step_ns);
 
-/// Of an estimate, from the frame of its poses to the body by the mounting that the estimator was given. With a truth
-/// moved to it as the scores do (position and heading at the first pose that it covers); without, to `reference` in the
-/// same way where that knows the instant, and left where it is otherwise. Empty without poses, or where their frame is
-/// of a sensor that the recording does not have. `truth` may be null.
+/// Converts an estimate to poses of the body, by the mounting that the estimator received. If there is a truth, the
+/// motion is aligned with the truth as for the scores: position and heading at the first pose within the time of the
+/// truth. Otherwise it is aligned with `reference` in the same way. An estimate that shares no time with the reference
+/// is not moved. The result is empty without poses, or if their frame belongs to a sensor that the recording lacks.
+/// `truth` may be null.
 Motion estimated_motion(const scenarios::Estimate& estimate, const sim::Sensors& sensors, const sim::Truth* truth,
                         const Motion& reference);
 

@@ -23,7 +23,7 @@ constexpr int kErrorSteps = 254;
 constexpr std::uint8_t kNoError = 255;
 constexpr int kColourLevels = 64;
 
-/// Arrays one behind the other, and what the head says of each.
+/// Appends arrays to the bytes and describes each in the head.
 class Arrays {
  public:
   template <typename Number>
@@ -53,7 +53,7 @@ std::int16_t whole(double value, double scale) {
   return static_cast<std::int16_t>(std::lround(std::clamp(value / scale, -kWhole, kWhole)));
 }
 
-/// What one step stands for, so that the largest fits.
+/// Returns the quantisation step for which the largest value fits.
 double scale_for(double largest) {
   return std::max(largest, 1e-6) / kWhole;
 }
@@ -73,7 +73,7 @@ json to_json(const Vector3d& v) {
 
 json to_json(const Eigen::Isometry3d& T) {
   json out = json::array();
-  for (int k = 0; k < 16; ++k) out.push_back(T.matrix().data()[k]);  // column by column, as WebGL has it
+  for (int k = 0; k < 16; ++k) out.push_back(T.matrix().data()[k]);  // column-major, as WebGL requires
   return out;
 }
 
@@ -81,7 +81,7 @@ void append(const Vector3d& v, double scale, std::vector<std::int16_t>& out) {
   for (int axis = 0; axis < 3; ++axis) out.push_back(whole(v[axis], scale));
 }
 
-/// Where the positions of the page begin: in the middle of the first path, so that a float holds it well.
+/// Origin of the page's positions: the middle of the first path, so that float32 stays precise.
 Vector3d origin_of(const Replay& replay) {
   for (const ReplayActor& actor : replay.actors) {
     for (const Vector3d& p : actor.track.p_WB_m) {
@@ -91,7 +91,8 @@ Vector3d origin_of(const Replay& replay) {
   return Vector3d::Zero();
 }
 
-/// Parts of a world or a robot under `name`: vertices from `origin`, corners within each part.
+/// Packs the parts of a world or a robot under `name`. Vertices are relative to `origin`; corner indices count within
+/// each part.
 json pack_parts(const std::string& name, const std::vector<sim::MeshPart>& parts, const Vector3d& origin,
                 Arrays& arrays) {
   double largest = 0.0;
@@ -105,7 +106,9 @@ json pack_parts(const std::string& name, const std::vector<sim::MeshPart>& parts
   json list = json::array();
   for (const sim::MeshPart& part : parts) {
     const bool field = part.rows > 1 && part.columns > 1;
-    if (!field && part.vertices_m.size() > 65536) continue;  // none of ours: 16 bits a corner are enough
+    if (!field && part.vertices_m.size() > 65536)
+      continue;  // corner indices have 16 bits; our models have no larger
+                 // part
     for (const Vector3f& vertex : part.vertices_m) append(vertex.cast<double>() - origin, scale, vertices);
     for (const auto& triangle : part.triangles) {
       for (const std::uint32_t corner : triangle) corners.push_back(static_cast<std::uint16_t>(corner));
@@ -179,7 +182,7 @@ json pack_points(const ReplayPoints& points, Arrays& arrays) {
   return {{"shown", points.p_B_m.size()}, {"of", points.of}, {"scale_m", scale}};
 }
 
-/// The gyro and the truth decide: an estimate that is far off is cut at twice their fastest.
+/// The scale covers the gyro and the truth. Estimates are cut at twice their largest rate.
 double rate_scale(const Replay& replay) {
   double largest = 0.0;
   const auto look = [&](const std::vector<Vector3f>& rates) {
@@ -227,7 +230,7 @@ json pack_strip(const ReplayStrip& strip, double scale, Arrays& arrays) {
           {"contacts_known", strip.contacts_known}};
 }
 
-/// The colours of the errors from 0 to the largest, the same as in pictures of maps.
+/// Colours of errors from 0 to the largest, the same as in pictures of maps.
 json error_colours() {
   json out = json::array();
   for (int k = 0; k < kColourLevels; ++k) {

@@ -7,17 +7,17 @@
 
 #include "tools/replay/replay.hpp"
 
-/// A replay as bytes: what the page carries (README.md has every field).
+/// The data of a replay page as bytes (README.md describes every field).
 namespace tumble::tools {
 
 struct PackedReplay {
-  std::string head;                 ///< JSON: what there is and where in `bytes`
-  std::vector<std::uint8_t> bytes;  ///< little endian, each array at a multiple of 4
+  std::string head;                 ///< JSON: lists the arrays and their positions in `bytes`
+  std::vector<std::uint8_t> bytes;  ///< little endian; each array starts at a multiple of 4
 };
 
-/// Whole numbers times a scale: positions of the world and of points as int16 (a 32767th of the farthest), attitudes as
-/// int16 (a 32767th), rates as int16, times as uint32 microseconds, errors as uint8 (255: not known). Positions of
-/// tracks are float32 from the head's origin.
+/// Packs a replay as integers with scales: positions of the world and of points as int16 (1/32767 of the farthest),
+/// attitudes as int16 (1/32767), rates as int16, times as uint32 microseconds, errors as uint8 (255: unknown).
+/// Positions of tracks are float32, relative to the origin in the head.
 PackedReplay packed(const Replay& replay);
 
 }  // namespace tumble::tools

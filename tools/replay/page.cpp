@@ -13,7 +13,7 @@ namespace tumble::tools {
 
 namespace {
 
-/// Puts each text where page.html has its name in double braces; what comes in is not looked through again.
+/// Replaces each name in double braces in page.html by its text. Inserted texts are not searched again.
 std::string filled(std::string_view page, const std::array<std::pair<std::string_view, std::string>, 5>& texts) {
   std::string out;
   for (std::size_t at = 0; at < page.size();) {

@@ -15,14 +15,14 @@ namespace {
 
 constexpr double kGoldenRatio = 0.6180339887498949;
 constexpr float kOwn_m = 0.5f;
-constexpr std::int32_t kOwnSurface = -2;  ///< FORMAT.md, `/truth/lidars`
+constexpr std::int32_t kOwnSurface = -2;  ///< surface id of the robot's own body (FORMAT.md, `/truth/lidars`)
 
 bool is_own(const sim::LidarRecord& lidar, const sim::LidarTruth* truth, std::size_t i) {
   if (truth != nullptr) return truth->surface_id[i] == kOwnSurface;
   return lidar.position_L_m[i].norm() < kOwn_m;
 }
 
-/// The returns that are not the robot's own, with the sweep of each.
+/// Lidar returns without those of the robot's own body, each with its sweep.
 struct Return {
   std::size_t index;
   std::int64_t time_ns;

@@ -19,16 +19,19 @@ namespace {
 
 using Eigen::Isometry3d;
 
-constexpr std::int64_t kStep_ns = 2'000'000;  ///< at 25 rad/s^2 per step of 1 ms and 30 m a point is placed to 1 cm
-constexpr std::size_t kTracksShare = 2, kStripShare = 8;  ///< of the bytes at most: one half, one eighth
+constexpr std::int64_t kStep_ns = 2'000'000;  ///< interpolation displaces a point at 30 m by at most 1 cm, up to an
+                                              ///< angular acceleration of 600 rad/s^2
+constexpr std::size_t kTracksShare = 2, kStripShare = 8;  ///< shares of the bytes: at most 1/2 for tracks, 1/8 for the
+                                                          ///< strip
 constexpr std::size_t kPoseBytes = 20, kSampleBytes = 11, kRateBytes = 6, kPointBytes = 10;
-constexpr float kAround_m = 2.5f;  ///< of the path, where the ground is shown in full
+constexpr float kAround_m = 2.5f;  ///< distance from the path within which the ground has its full resolution
 
 void require_parallel(const sim::Sensors& sensors) {
   for (const sim::LidarRecord& lidar : sensors.lidars) {
     if (lidar.offset_ns.size() != lidar.position_L_m.size())
       throw scenarios::BadInput("replay: lidar '" + lidar.name + "' has " + std::to_string(lidar.position_L_m.size()) +
-                                " points and " + std::to_string(lidar.offset_ns.size()) + " times of them");
+                                " points and " + std::to_string(lidar.offset_ns.size()) +
+                                " time stamps; the numbers must be equal");
   }
 }
 
@@ -43,7 +46,7 @@ std::int64_t last_instant(const sim::Sensors& sensors, const sim::Truth* truth, 
   if (truth != nullptr && !truth->p_WB_m.empty())
     end_ns = std::max(end_ns, static_cast<std::int64_t>(truth->p_WB_m.size() - 1) * truth->period_ns);
   for (const Motion& motion : motions) {
-    if (end_ns == 0 && !motion.empty()) end_ns = motion.end_ns();  // poses alone
+    if (end_ns == 0 && !motion.empty()) end_ns = motion.end_ns();  // the recording has poses only
   }
   return end_ns;
 }
@@ -60,7 +63,7 @@ ReplayTrack sampled(const Motion& motion, std::int64_t end_ns, std::int64_t step
   return track;
 }
 
-/// Where something moves: by the truth, else by the gyro; the whole of it where nothing does.
+/// Finds the interval with motion, by the truth or else by the gyro. Without motion it is the whole recording.
 void find_motion(const ReplayInput& input, Replay& replay) {
   replay.to_ns = replay.end_ns;
   if (input.truth != nullptr && !input.truth->p_WB_m.empty() && input.truth->period_ns > 0) {
@@ -93,7 +96,7 @@ std::vector<ReplayActor> actors_of(const ReplayInput& input) {
     truth.T_BB_given = true_from_given_body(*input.sensors, *input.truth);
     actors.push_back(std::move(truth));
   }
-  // what has a path comes first, as in the pictures of the same run, in which nothing else is drawn
+  // estimates with a path come first, so that their colours agree with the pictures of the same run
   const auto with_path = static_cast<std::size_t>(std::ranges::count_if(input.estimates, has_path));
   std::size_t paths = 0, other = with_path;
   for (const ReplayEstimate& given : input.estimates) {
@@ -105,7 +108,7 @@ std::vector<ReplayActor> actors_of(const ReplayInput& input) {
   return actors;
 }
 
-/// Parallel to the actors.
+/// The result is parallel to the actors.
 std::vector<Motion> motions_of(const ReplayInput& input, std::int64_t step_ns) {
   std::vector<Motion> motions;
   if (input.truth != nullptr) motions.push_back(true_motion(*input.truth, step_ns));
@@ -115,7 +118,8 @@ std::vector<Motion> motions_of(const ReplayInput& input, std::int64_t step_ns) {
     if (reference.empty()) reference = motions.back();
   }
   if (reference.empty())
-    throw scenarios::BadInput("there is no path to show: no truth that knows positions, and no estimate with poses");
+    throw scenarios::BadInput(
+        "there is no path to show: give a recording whose truth has positions, or an estimate with poses");
   return motions;
 }
 
@@ -127,7 +131,7 @@ double radius_of(const std::vector<sim::MeshPart>& parts) {
   return radius_m;
 }
 
-/// The path of the first that knows one, with some room around.
+/// Bounding box of the first known path, with a margin.
 Eigen::AlignedBox3f surroundings(const std::vector<ReplayActor>& actors) {
   Eigen::AlignedBox3f box;
   for (const ReplayActor& actor : actors) {
@@ -168,7 +172,7 @@ void add_tracks(const std::vector<Motion>& motions, const ReplayLimits& limits, 
       std::count_if(motions.begin(), motions.end(), [](const Motion& motion) { return !motion.empty(); }));
   const std::size_t room = limits.bytes / kTracksShare / (kPoseBytes * tracks);
   const auto poses = static_cast<std::int64_t>(std::max<std::size_t>(std::min(limits.poses, room), 2));
-  // whole microseconds, as the page counts
+  // whole microseconds, the page's unit of time
   replay.pose_step_ns = std::max(kStep_ns, (replay.end_ns / (poses - 1) / 1000 + 1) * 1000);
   for (std::size_t i = 0; i < motions.size(); ++i)
     replay.actors[i].track = sampled(motions[i], replay.end_ns, replay.pose_step_ns);
@@ -210,7 +214,8 @@ Replay replay_of(const ReplayInput& input, const ReplayLimits& limits) {
   replay.title = input.title;
   replay.facts = input.facts;
   const std::vector<Motion> motions = motions_of(input, input.truth == nullptr ? 0 : input.truth->period_ns);
-  replay.end_ns = std::max<std::int64_t>(last_instant(*input.sensors, input.truth, motions), 1);  // of a single pose
+  // at least 1 ns, even if there is only one pose
+  replay.end_ns = std::max<std::int64_t>(last_instant(*input.sensors, input.truth, motions), 1);
   replay.actors = actors_of(input);
   add_rates(input, limits, replay);
   add_tracks(motions, limits, replay);

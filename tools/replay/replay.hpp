@@ -13,54 +13,56 @@
 #include "sim/recording.hpp"
 #include "sim/render/world_mesh.hpp"
 
-/// What a replay shows, as data: nothing here knows of pages or bytes.
+/// Content of a replay, independent of the page and of its binary format.
 namespace tumble::tools {
 
 struct ReplayEstimate {
-  std::string name;  ///< "slam/tumble"
+  std::string name;  ///< for example "slam/tumble"
   const scenarios::Estimate* estimate = nullptr;
 };
 
-/// What a replay is made from. Only the sensors are needed, and a motion of somebody.
+/// Input of a replay. Only the sensors and one motion (truth or estimate) are required.
 struct ReplayInput {
-  std::string title;                                       ///< "hill, seed 6"
-  std::vector<std::pair<std::string, std::string>> facts;  ///< name, value
+  std::string title;                                       ///< for example "hill, seed 6"
+  std::vector<std::pair<std::string, std::string>> facts;  ///< pairs of name and value
   const sim::Sensors* sensors = nullptr;
-  const sim::Truth* truth = nullptr;           ///< null: nobody knows; errors have no colour
-  const sim::BuiltSituation* built = nullptr;  ///< null: no world is shown, and a plain body for the robot
-  const sim::Surface* surface = nullptr;       ///< null: errors have no colour
+  const sim::Truth* truth = nullptr;           ///< null if unknown: points are then not coloured by error
+  const sim::BuiltSituation* built = nullptr;  ///< null: no world is shown, and a generic body replaces the robot
+  const sim::Surface* surface = nullptr;       ///< null: points are not coloured by error
   std::vector<ReplayEstimate> estimates;       ///< in the order of their colours
 };
 
-/// So much of what there is.
+/// How many of the available items are shown.
 struct Shown {
   std::size_t shown = 0, of = 0;
 };
 
-/// Poses of the body at `Replay::pose_step_ns` from time 0; what is not known has a position that is not finite.
+/// Poses of the body at multiples of `Replay::pose_step_ns` from time 0. Unknown poses have a position that is not
+/// finite.
 struct ReplayTrack {
   std::vector<Eigen::Vector3d> p_WB_m;
   std::vector<Eigen::Quaterniond> q_WB;
 };
 
-/// The truth, or an estimate.
 struct ReplayActor {
   std::string name;
-  std::string colour;  ///< "#rrggbb"
+  std::string colour;
   bool is_truth = false;
-  ReplayTrack track;  ///< empty: it says nothing of where the robot is
-  /// From body axes by the calibration that estimators are given, in which the points stand, to its own body axes: the
-  /// truth knows better how the lidar is mounted.
+  ReplayTrack track;  ///< empty if the actor has no positions
+  /// Transform from body axes by the given calibration, which the points use, to the actor's body axes. They differ for
+  /// the truth, which has the true mounting of the lidar.
   Eigen::Isometry3d T_BB_given = Eigen::Isometry3d::Identity();
-  std::vector<float> error_m;               ///< of each point as placed by it; NaN: not known; empty: no true surface
-  std::vector<Eigen::Vector3f> rate_rad_s;  ///< at the strip's samples, axes of the primary IMU; NaN; empty
+  std::vector<float> error_m;               ///< error of each point as placed by this actor [m]; NaN if unknown; empty
+                                            ///< without a true surface
+  std::vector<Eigen::Vector3f> rate_rad_s;  ///< at the samples of the strip, in axes of the primary IMU; NaN if
+                                            ///< unknown; may be empty
 };
 
-/// Returns of the first lidar, in the order of time.
+/// Returns of the first lidar in order of time.
 struct ReplayPoints {
-  std::vector<Eigen::Vector3f> p_B_m;  ///< in body axes by the calibration given
+  std::vector<Eigen::Vector3f> p_B_m;  ///< in body axes by the given calibration
   std::vector<std::int64_t> time_ns;
-  std::size_t of = 0;  ///< returns in the recording, the robot's own left out
+  std::size_t of = 0;  ///< number of returns in the recording, without those of the robot's own body
 };
 
 struct ContactSpan {
@@ -68,44 +70,43 @@ struct ContactSpan {
   sim::ContactLabel label = sim::ContactLabel::grip;
 };
 
-/// What the primary gyro said.
+/// Readings of the primary gyro.
 struct ReplayStrip {
   std::vector<std::int64_t> time_ns;
   std::vector<Eigen::Vector3f> gyro_rad_s;
-  std::vector<std::uint8_t> clipped_axes;  ///< bit j: axis j
-  std::string clipping;                    ///< how that is known; "" when it is not
-  std::size_t of = 0;                      ///< samples in the recording
-  std::vector<ContactSpan> contacts;       ///< but for air
+  std::vector<std::uint8_t> clipped_axes;  ///< bit j is set if axis j is clipped
+  std::string clipping;                    ///< source of the clipping flags; empty if clipping is unknown
+  std::size_t of = 0;                      ///< number of samples in the recording
+  std::vector<ContactSpan> contacts;       ///< all spans but those in the air
   bool contacts_known = false;
 };
 
 struct Replay {
   std::string title;
   std::vector<std::pair<std::string, std::string>> facts;
-  std::int64_t end_ns = 0;              ///< of the recording; it begins at 0
-  std::int64_t from_ns = 0, to_ns = 0;  ///< where something moves
+  std::int64_t end_ns = 0;              ///< end of the recording, which starts at 0
+  std::int64_t from_ns = 0, to_ns = 0;  ///< interval with motion
   std::int64_t pose_step_ns = 0;
-  std::vector<sim::MeshPart> world;  ///< in W
+  std::vector<sim::MeshPart> world;  ///< in axes of W
   Shown triangles;
-  std::vector<sim::MeshPart> robot;  ///< in B
-  double robot_radius_m = 0.0;       ///< of the ball about B's origin that holds it
-  std::vector<ReplayActor> actors;   ///< the truth first, where there is one
+  std::vector<sim::MeshPart> robot;  ///< in axes of B
+  double robot_radius_m = 0.0;       ///< radius of the ball around B's origin that contains the robot
+  std::vector<ReplayActor> actors;   ///< the truth is first if there is one
   ReplayPoints points;
   ReplayStrip strip;
 };
 
-/// How much of it goes into a replay at most.
+/// Upper limits of the size of a replay.
 struct ReplayLimits {
-  std::size_t bytes = 2'100'000;  ///< of all arrays together; the points get what the rest leaves
+  std::size_t bytes = 2'100'000;  ///< total of all arrays; the points use what the other arrays leave
   std::size_t points = 120'000;
-  std::size_t poses = 6'000;  ///< a track
+  std::size_t poses = 6'000;  ///< number of poses per track
   std::size_t strip_samples = 6'000;
-  std::size_t triangles = 60'000;  ///< of the world
+  std::size_t triangles = 60'000;  ///< number of triangles of the world
 };
 
-/// Throws BadInput where there is nothing to show (no truth and no estimate that says where the robot is) or where
-/// truth and sensors contradict each other. O(points of the recording); the errors cost some microseconds a point and
-/// actor.
+/// Builds a replay. Throws BadInput if neither the truth nor an estimate has positions, or if truth and sensors
+/// contradict each other. O(points of the recording); errors cost some microseconds per point and actor.
 Replay replay_of(const ReplayInput& input, const ReplayLimits& limits = {});
 
 }  // namespace tumble::tools

@@ -9,14 +9,15 @@
 
 namespace tumble::tools {
 
-/// Methods that a replay of a run shows at most: as many as there are colours.
+/// Maximum number of methods in a replay of a run: the number of colours.
 inline constexpr std::size_t kRunReplayMethods = kMethodColours;
 
-/// Indices of the methods of a run that its replay shows, in their order: those that ended with poses or rates and were
-/// not given the truth; first the baseline and `tumble` of each kind, then what has poses, then the others.
+/// Returns the indices, in increasing order, of the methods that the replay of a run shows. Candidates succeeded with
+/// poses or rates and did not receive the truth. The baseline and `tumble` of each kind have priority, then methods
+/// with poses.
 std::vector<std::size_t> shown_methods(const scenarios::RunResult& run);
 
-/// A draw that has been run, with its truth.
+/// Builds the replay of a draw that has been run, with its truth.
 Replay replay_of_run(const scenarios::RunResult& run);
 
 }  // namespace tumble::tools

@@ -1,5 +1,5 @@
-// What the graphics processor runs. One light, soft ambience, haze with distance, and a cut through whatever stands
-// between the eye and what it looks at.
+// Shaders: one light, soft ambient light, haze with distance, and a cut through objects between the camera and its
+// target.
 const HAZE = `
   uniform vec3 u_eye, u_haze;
   uniform float u_haze_m;
@@ -24,7 +24,7 @@ const SHADERS = {
       o_colour = vec4(mix(u_low, u_high, up), 1.0);
     }`],
 
-  // bodies, the world's and the robots'
+  // bodies of the world and of the robots
   solid: [`
     layout(location = 0) in vec3 a_position;
     layout(location = 1) in vec3 a_normal;
@@ -63,7 +63,7 @@ const SHADERS = {
     }
     void main() {
       if (u_cut_m > 0.0) {
-        // a hole through what hides the target: dithered, within half its distance about the line of sight
+        // a dithered hole through objects that hide the target, within half its distance about the line of sight
         vec3 ahead = u_target - u_eye;
         float along = dot(v_position - u_eye, ahead) / dot(ahead, ahead);
         float aside = distance(v_position - u_eye, along * ahead);
@@ -75,7 +75,7 @@ const SHADERS = {
       vec3 albedo = mix(v_colour.rgb, u_tint.rgb, u_tint.a);
       float grid = 0.0;
       if (u_grid > 0.0) {
-        // a line each metre, seen from above: slope and scale
+        // a grid line each metre shows slope and scale
         vec2 cell = abs(fract(v_position.xy / u_grid - 0.5) - 0.5) * u_grid / max(fwidth(v_position.xy), vec2(1e-5));
         grid = (1.0 - min(min(cell.x, cell.y), 1.0)) * 0.16 * smoothstep(30.0, 6.0, distance(v_position, u_eye));
         // two shades of grass
@@ -91,14 +91,14 @@ const SHADERS = {
       o_colour = vec4(hazed(colour, v_position), u_opacity * v_colour.a);
     }`],
 
-  // depths alone, as the sun sees them
+  // depths as seen from the sun, for shadows
   shadow: [`
     layout(location = 0) in vec3 a_position;
     uniform mat4 u_camera, u_body;
     void main() { gl_Position = u_camera * u_body * vec4(a_position, 1.0); }`, `
     void main() {}`],
 
-  // a path: a band that faces the eye, at least as wide as a line on the screen
+  // a path: a band that faces the camera, at least one pixel wide
   ribbon: [`
     layout(location = 0) in vec3 a_position;
     layout(location = 1) in vec3 a_ahead;
@@ -127,7 +127,7 @@ const SHADERS = {
       o_colour = vec4(u_colour * edge, u_opacity * mix(0.22, 1.0, past));
     }`],
 
-  // returns of the lidar: where the chosen motion had the sensor when each was measured
+  // lidar returns, placed by the selected motion at the time of each return
   points: [`
     layout(location = 0) in vec3 a_position;
     layout(location = 1) in uint a_time_us;
@@ -170,7 +170,7 @@ const SHADERS = {
     }`],
 };
 
-// Throws with the compiler's words.
+// Throws with the compiler's message.
 function compiled(gl, name) {
   const program = gl.createProgram();
   SHADERS[name].forEach((text, i) => {

@@ -1,4 +1,4 @@
-// The gyro over time: its lines, where it is clipped, where the robot touches, and a cursor.
+// The gyro over time: lines, clipped intervals, contacts and a cursor.
 const CONTACTS = { contact: ['--contact', 1], slip: ['--slip', 1], slide: ['--slide', 1] };
 
 class Strip {
@@ -11,7 +11,7 @@ class Strip {
     this.clipped = replay.array('strip.clipped') || new Uint8Array(0);
     this.still = document.createElement('canvas');
   }
-  // rad/s at sample k; NaN where it is not known.
+  // Rate at sample k [rad/s]; NaN if unknown.
   rate(rates, k) {
     const scale = this.replay.head.strip.scale_rad_s;
     if (rates[3 * k] === -32768) return NaN;
@@ -21,7 +21,7 @@ class Strip {
   isClipped(k) {
     return this.axis === 'norm' ? this.clipped[k] !== 0 : Boolean(this.clipped[k] >> 'xyz'.indexOf(this.axis) & 1);
   }
-  // What is said of an instant: the gyro's norm and whether any axis is clipped.
+  // State at an instant: the gyro's norm, and whether any axis is clipped.
   at(t) {
     const k = countUpTo(this.times, t * 1e6) - 1;
     if (k < 0) return null;
@@ -34,7 +34,7 @@ class Strip {
     return Math.min(1, Math.max(0, share)) * this.replay.head.end_s;
   }
 
-  // All but the cursor; again when the size, the colours or what is shown change.
+  // Draws everything but the cursor; repeated if size, colours or visible methods change.
   prepare() {
     const ratio = window.devicePixelRatio || 1;
     this.width = this.canvas.clientWidth;
@@ -167,7 +167,7 @@ function line(pen, x0, y0, x1, y1) {
   pen.stroke();
 }
 
-// 1, 2 or 5 times a power of ten, at least `least`.
+// Returns 1, 2 or 5 times a power of ten, at least `least`.
 function niceStep(least) {
   const power = 10 ** Math.floor(Math.log10(Math.max(least, 1e-9)));
   return [1, 2, 5, 10].map((m) => m * power).find((step) => step >= least * 0.999);

@@ -6,20 +6,20 @@
 
 #include "tools/replay/replay.hpp"
 
-/// The world of a replay, no finer than its page can carry.
+/// Reduces the world of a replay to the size that its page can carry.
 namespace tumble::tools {
 
-/// Triangles of a part, those of a height field's cells included.
+/// Counts the triangles of a part, including those of a height field's cells.
 std::size_t triangle_count(const sim::MeshPart& part);
 
-/// `parts` with at most `most` triangles, nearly. A height field keeps every node within the box `near` and ever fewer
-/// away from it: steps of an eighth of the distance. Of the others the largest for their distance from the box stay.
-/// Says in `triangles` how many of how many.
+/// Reduces `parts` to about `most` triangles. A height field keeps every node within the box `near`. Outside, its nodes
+/// are one eighth of the distance apart. Of the other parts, those with the largest apparent size from the box are
+/// kept. `triangles` returns how many of how many triangles are kept.
 std::vector<sim::MeshPart> thinned_world(std::vector<sim::MeshPart> parts, const Eigen::AlignedBox3f& near,
                                          std::size_t most, Shown& triangles);
 
-/// A body of about the true size for a recording that does not say which robot it was: the sphere of that radius, or a
-/// box of 0.3 m by 0.2 m by 0.1 m with a nose along x.
+/// Returns a generic body for a recording that does not state its robot: a sphere of that radius, or a box of 0.3 m by
+/// 0.2 m by 0.1 m with a nose along x.
 std::vector<sim::MeshPart> plain_body(double sphere_radius_m);
 
 }  // namespace tumble::tools

@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kHeight_px = 20, kPad_px = 7;
 
-/// Room for a text of 11 px Verdana or what stands in for it; `textLength` makes the letters fit.
+/// Width of a text in 11 px Verdana or its substitute. The SVG attribute `textLength` fits the letters to this width.
 int width_px(const std::string& text) {
   return static_cast<int>(std::lround(6.6 * static_cast<double>(character_count(text))));
 }
@@ -47,12 +47,12 @@ Badge badge_of(const PageContent& content) {
   Badge badge;
   badge.label = content.title;
   if (!sound) {
-    badge.message = "certificate fails";
+    badge.message = "certificate failed";
     badge.colour = Badge::Colour::bad;
   } else if (counts.contests == 0) {
     badge.message = "nothing to compare";
   } else {
-    badge.message = fmt::format("{} of {} better than the baseline", counts.won, counts.contests);
+    badge.message = fmt::format("better than the baseline in {} of {}", counts.won, counts.contests);
     if (counts.lost > 0) badge.message += fmt::format(", {} worse", counts.lost);
     if (counts.lost > 0) badge.colour = Badge::Colour::bad;
     if (counts.won == counts.contests) badge.colour = Badge::Colour::good;

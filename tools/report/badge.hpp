@@ -7,18 +7,18 @@
 
 namespace tumble::tools {
 
-/// What a badge says, and whether that is good.
+/// Text of a badge, and whether its verdict is good.
 struct Badge {
   enum class Colour { good, open, bad };
   std::string label, message;
   Colour colour = Colour::open;
 };
 
-/// Of a report: the suite, and how many contests the best methods win. Bad where the certificate fails or a contest is
-/// lost, good where all are won.
+/// Summarises a report as a badge: the suite and the number of contests won. It is good if all contests are won, and
+/// bad if the certificate fails or a contest is lost.
 Badge badge_of(const PageContent& content);
 
-/// As a picture for a document or a server of CI, complete in itself; its texts are data, never markup.
+/// Returns the badge as a self-contained SVG for documents or CI servers. Its texts are data, never markup.
 std::string badge_svg(const Badge& badge);
 
 }  // namespace tumble::tools

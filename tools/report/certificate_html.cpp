@@ -30,19 +30,20 @@ std::string certificate_summary(const scenarios::Certificate& certificate) {
   if (certificate.entries.empty()) return "none";
   const auto passed = std::count_if(certificate.entries.begin(), certificate.entries.end(),
                                     [](const scenarios::CertificateEntry& entry) { return entry.passes(); });
-  return fmt::format("{} of {} figures within their bounds", passed, certificate.entries.size());
+  return fmt::format("{} of {} values within their bounds", passed, certificate.entries.size());
 }
 
 std::string certificates_html(std::span<const scenarios::Certificate> certificates) {
   std::string out =
-      "<p>How far the simulation behind these scores is from physics and "
-      "from its data sheets, measured on the build that made them (<code>tumble certify</code>).</p>\n";
-  if (certificates.empty()) out += "<p class=\"warning\">These results hold no certificate.</p>\n";
+      "<p>Measured agreement of the simulation with physics and with its data sheets, for the build that computed "
+      "these scores (<code>tumble certify</code>).</p>\n";
+  if (certificates.empty()) out += "<p class=\"warning\">These results contain no certificate.</p>\n";
   for (const scenarios::Certificate& certificate : certificates) {
     out += "<details><summary>Build <code>" + escaped(certificate.build) +
            "</code>: " + escaped(certificate_summary(certificate)) + "</summary>\n" +
-           "<div class=\"scroll\"><table><thead><tr><th>figure</th><th>on</th><th class=\"number\">value</th>"
-           "<th class=\"number\">bound</th><th>unit</th><th>verdict</th><th>held to</th></tr></thead><tbody>\n";
+           "<div class=\"scroll\"><table><thead><tr><th>quantity</th><th>measured on</th><th "
+           "class=\"number\">value</th><th class=\"number\">bound</th><th>unit</th><th>verdict</th><th>source of the "
+           "bound</th></tr></thead><tbody>\n";
     for (const scenarios::CertificateEntry& entry : certificate.entries) out += row_html(entry);
     out += "</tbody></table></div></details>\n";
   }

@@ -8,10 +8,11 @@
 
 namespace tumble::tools {
 
-/// "31 of 31 figures within their bounds"; "none" without entries.
+/// Returns for example "31 of 31 figures within their bounds"; "none" without entries.
 std::string certificate_summary(const scenarios::Certificate& certificate);
 
-/// A table per certificate: what was measured, on what, value, bound, verdict, and the law that it is held to.
+/// Returns one table per certificate: what was measured and where, value, bound, verdict, and the law that defines the
+/// bound.
 std::string certificates_html(std::span<const scenarios::Certificate> certificates);
 
 }  // namespace tumble::tools

@@ -27,7 +27,7 @@ bool is_of(const MetricComparison& row, const Section& section) {
   return row.contest.scenario == section.scenario && row.contest.kind == section.kind;
 }
 
-/// The rows of a section by the first of its headline metrics that any of them has.
+/// Returns the rows of the first headline metric that any method of the section has.
 std::vector<const MetricComparison*> rows_of(const Section& section, const scenarios::Comparison& comparison) {
   std::vector<const MetricComparison*> rows;
   for (const std::string& metric : scenarios::headline_metrics(section.kind)) {
@@ -40,7 +40,7 @@ std::vector<const MetricComparison*> rows_of(const Section& section, const scena
   return rows;
 }
 
-/// The difference of a metric where more is better is above 0 when it is better; of any other below.
+/// Positive if the method is worse than the baseline, whether larger or smaller values are better.
 double badness(const MetricInfo& info, double difference) {
   return info.sense == Sense::higher ? -difference : difference;
 }
@@ -57,7 +57,7 @@ ContestResult result_of(const MetricComparison& row) {
     out.better = badness(info, row.difference.value) < 0.0;
   }
   const double scale = info.sense == Sense::two_sided ? kNaN : 100.0 / std::abs(row.against_median);
-  // half of the baseline's runs have failed: a share of that is none
+  // if half of the baseline's runs failed, its median is infinite and a percentage is undefined
   const bool known = std::isfinite(row.against_median) && row.against_median != 0.0;
   const double factor = known ? scale : kNaN;
   out.percent = std::isfinite(row.difference.value) ? row.difference.value * factor : kNaN;
@@ -68,7 +68,7 @@ ContestResult result_of(const MetricComparison& row) {
   return out;
 }
 
-/// By the median; of equals the first.
+/// Returns the row with the best median; the first of equals.
 const MetricComparison* best_of(const std::vector<const MetricComparison*>& rows) {
   const MetricComparison* best = nullptr;
   for (const MetricComparison* row : rows) {
@@ -100,7 +100,7 @@ Tally tally(const std::vector<ContestResult>& results) {
     out.won += result.won();
     out.lost += result.lost();
     out.open += !result.won() && !result.lost();
-    // of a few draws there is no interval; all of them alike say more than none
+    // few draws give no interval, but a difference in the same direction on all draws is still evidence
     const bool on_every_draw = result.certainty == Certainty::open && result.row.better == result.row.pairs;
     if (result.better && (on_every_draw || result.certainty == Certainty::interval)) {
       const std::string& method = result.row.contest.method;
@@ -120,38 +120,39 @@ Tally tally(const std::vector<ContestResult>& results) {
 }
 
 std::string tally_text(const Tally& tally) {
-  if (tally.contests == 0) return "Scores of single methods: there is nothing to compare them with";
+  if (tally.contests == 0) return "The results contain no method to compare with a baseline";
   if (tally.leader.empty() && tally.lost == tally.contests)
     return fmt::format("The baseline is better in all of {}", contests_text(tally.contests));
   if (tally.leader.empty() && tally.ahead > 0)
-    return fmt::format("{} ahead of the baseline in {} of {}, on too few draws to be sure",
+    return fmt::format("{} ahead of the baseline in {} of {}, but there are too few draws for certainty",
                        tally.ahead_by.empty() ? "The best methods are" : tally.ahead_by + " is", tally.ahead,
                        contests_text(tally.contests));
   if (tally.leader.empty())
-    return fmt::format("No method is shown to be better than the baseline in {}", contests_text(tally.contests));
+    return fmt::format("No method is significantly better than the baseline in {}", contests_text(tally.contests));
   if (tally.leader_won == tally.contests)
     return fmt::format("{} is better than the baseline in {}", tally.leader,
                        tally.contests == 1 ? "the one contest" : fmt::format("all {} contests", tally.contests));
-  std::string out = fmt::format("{} is best, and better than the baseline, in {} of {}", tally.leader, tally.leader_won,
-                                contests_text(tally.contests));
-  if (tally.won > tally.leader_won) out += fmt::format("; others in {}", tally.won - tally.leader_won);
+  std::string out = fmt::format("{} is best, and significantly better than the baseline, in {} of {}", tally.leader,
+                                tally.leader_won, contests_text(tally.contests));
+  if (tally.won > tally.leader_won) out += fmt::format("; other methods in {}", tally.won - tally.leader_won);
   return out;
 }
 
 std::string certainty_text(const ContestResult& result, std::size_t comparisons) {
   switch (result.certainty) {
     case Certainty::corrected:
-      return fmt::format("{} than chance explains, also after correction for {} comparisons",
+      return fmt::format("{} than chance explains, after correction for {} comparisons",
                          result.better ? "more" : "fewer", comparisons);
     case Certainty::interval:
-      return fmt::format("{} by its own interval; too few draws to stand among {} comparisons",
+      return fmt::format("{} by its own interval, but not significant after correction for {} comparisons",
                          result.better ? "better" : "worse", comparisons);
     case Certainty::open:
       break;
   }
   const double more = result.row.pairs_needed - static_cast<double>(result.row.pairs);
-  if (more >= 1.0 && more < 1e6) return fmt::format("not told apart; some {:.0f} more draws might", std::ceil(more));
-  return "not told apart";
+  if (more >= 1.0 && more < 1e6)
+    return fmt::format("not significant; about {:.0f} more draws could decide", std::ceil(more));
+  return "not significant";
 }
 
 }  // namespace tumble::tools

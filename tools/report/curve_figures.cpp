@@ -27,7 +27,7 @@ std::string with_unit(const std::string& name, const std::string& unit) {
   return unit.empty() ? name : name + " [" + unit + "]";
 }
 
-/// Null where there is no number, which leaves a gap.
+/// Returns null for a value that is not finite, which leaves a gap in the plot.
 json shown(double value) {
   return std::isfinite(value) ? json(five_digits(value)) : json();
 }
@@ -37,13 +37,13 @@ std::string transparent(const char* hex) {
   return fmt::format("rgba({:.0f},{:.0f},{:.0f},0.14)", 255 * colour[0], 255 * colour[1], 255 * colour[2]);
 }
 
-/// What every trace of a method has in common: one entry of the legend switches all of them.
+/// Properties that all traces of a method share: one legend entry switches all of them.
 json trace(const std::string& method, bool in_legend) {
   return {
       {"type", "scatter"}, {"name", plot_text(method)}, {"legendgroup", plot_text(method)}, {"showlegend", in_legend}};
 }
 
-/// The band between the quartiles, a polygon for each run of places where both are finite.
+/// Draws the band between the quartiles as one polygon for each range of points where both are finite.
 void add_bands(const CurveLine& line, double x_factor, double y_factor, const char* colour, json& data) {
   const auto finite = [](const CurvePoint& p) { return std::isfinite(p.quantile_25) && std::isfinite(p.quantile_75); };
   for (auto begin = line.points.begin(); begin != line.points.end();) {
@@ -130,7 +130,7 @@ json x_axis(const Curve& curve, const std::string& title) {
     axis["tickvals"].push_back(x);
     axis["ticktext"].push_back(plot_text(label));
   }
-  // where Plotly turns them by itself it leaves out the last one
+  // Plotly's automatic rotation would leave out the last label
   if (labels.size() > 4) axis["tickangle"] = -30;
   return axis;
 }
@@ -141,11 +141,11 @@ std::string caption_of(const Curve& curve) {
   const std::string axis = curve.axis + (doc.empty() ? "" : " (" + doc + ")");
   switch (curve.source) {
     case Curve::Source::set:
-      return what + curve.metric + " against " + axis + ", set to each value in every draw.";
+      return what + curve.metric + " against " + axis + ", with each value applied to every draw.";
     case Curve::Source::samples:
       return what + curve.metric + " over the clipped samples of a draw that lie in each bin of " + axis + ".";
     case Curve::Source::draws:
-      return what + curve.metric + " against " + axis + " of the draw, in bins of equally many draws.";
+      return what + curve.metric + " against " + axis + " of the draw, in bins with equal numbers of draws.";
   }
   return what;
 }
@@ -157,7 +157,7 @@ Figure curve_figure(const Curve& curve) {
   figure.id = "curve-" + curve.scenario + "-" + to_string(curve.kind) + "-" + curve.axis + "-" + curve.metric;
   figure.caption = caption_of(curve);
   const MetricStyle x_style = metric_style(curve.axis), y_style = metric_style(curve.metric);
-  // bins stand at their ranks, labelled in the unit
+  // bins are placed by rank and labelled in the metric's unit
   const double x_factor = curve.source == Curve::Source::samples ? 1.0 : x_style.factor;
   json data = json::array(), lines = json::array();
   for (std::size_t i = 0; i < curve.lines.size(); ++i) {
@@ -192,9 +192,10 @@ Figure curve_figure(const Curve& curve) {
 std::string curves_html(std::span<const Curve> curves, std::vector<Figure>& figures) {
   if (curves.empty()) return "";
   std::string out =
-      "<h3>Curves</h3>\n<p>Line: median over the draws; band: between the quartiles; dotted: the worst "
-      "5 %. A run that failed ranks as the worst of all, so a line ends where half of the runs fail. Below: the share "
-      "of runs that did not end <i>ok</i> or whose map failed, with its 95 % Clopper–Pearson interval.</p>\n";
+      "<h3>Curves</h3>\n<p>The line is the median over the draws, the band lies between the quartiles, and the dotted "
+      "line is the worst 5 %. A failed run ranks as the worst of all, so a line ends where half of the runs fail. The "
+      "lower plot is the share of failed runs (status other than <i>ok</i>, or a failed map) with its 95 % "
+      "Clopper–Pearson interval.</p>\n";
   for (auto curve = curves.begin(); curve != curves.end();) {
     const Curve& first = *curve;
     out += fmt::format("<details{}><summary>{} · {}</summary><div class=\"pair\">",

@@ -16,10 +16,11 @@ using scenarios::Curve;
 using scenarios::CurveLine;
 using scenarios::CurvePoint;
 
-/// A figure per curve: median, band between the quartiles and the worst 5 % (dotted) above, share of failures below.
+/// Returns one figure per curve: above the median, the band between the quartiles and the worst 5 % (dotted); below the
+/// share of failures.
 Figure curve_figure(const Curve& curve);
 std::string curves_html(std::span<const Curve> curves, std::vector<Figure>& figures);
-/// A row per method and place, in SI units.
+/// Returns a table with one row per method and point of the curve, in SI units.
 Table curve_table(const Curve& curve);
 nlohmann::json curves_json(std::span<const Curve> curves);
 

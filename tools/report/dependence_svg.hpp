@@ -9,11 +9,11 @@
 
 namespace tumble::tools {
 
-/// The shape of a score over a number: a step for each class from its lowest to its highest number, at the height of
-/// its centre within its interval, upwards what is larger; logarithmic where all centres are positive and span more
-/// than a decade. An infinite end lies on the frame. Each class tells itself when pointed at, in the words of `told`.
-/// An SVG of some 150 by 44 pixels in the page's colours; empty of fewer than two classes, or where no centre is
-/// finite.
+/// Draws a score as a function of a scenario number: one step per class, from its smallest to its largest number, at
+/// its median or share, with its interval. Larger values are higher. The scale is logarithmic if all centres are
+/// positive and span more than a decade. Infinite ends are drawn on the frame. Each class has a tooltip from `told`.
+/// Returns an SVG of about 150 by 44 pixels in the page's colours; empty if there are fewer than two classes or no
+/// finite centre.
 std::string dependence_svg(std::span<const scenarios::DependenceClass> classes,
                            const std::function<std::string(const scenarios::DependenceClass&)>& told);
 

@@ -48,14 +48,14 @@ std::string row_html(const FailureComparison& row) {
          finding_cell(row.finding) + "</tr>\n";
 }
 
-/// A folded table for each run of rows of one section.
+/// Writes one folded table per section.
 template <class Row>
 std::string folded_tables(const std::vector<Row>& rows, const std::vector<std::string>& columns) {
   std::string out;
   for (auto row = rows.begin(); row != rows.end();) {
     const Contest& contest = row->contest;
-    out += fmt::format("<details><summary>{} · {}, beside <code>{}</code></summary>\n", escaped(contest.scenario),
-                       to_string(contest.kind), escaped(contest.against)) +
+    out += fmt::format("<details><summary>{} · {}, compared with <code>{}</code></summary>\n",
+                       escaped(contest.scenario), to_string(contest.kind), escaped(contest.against)) +
            html::table_head(columns, 2);
     for (; row != rows.end() && one_section(row->contest, contest); ++row) out += row_html(*row);
     out += "</tbody></table></div></details>\n";
@@ -66,14 +66,12 @@ std::string folded_tables(const std::vector<Row>& rows, const std::vector<std::s
 }  // namespace
 
 std::string differences_html(const std::vector<MetricComparison>& rows) {
-  if (rows.empty()) return "<p>There is no method beside a baseline.</p>\n";
+  if (rows.empty()) return "<p>No method can be compared with a baseline.</p>\n";
   return fmt::format(
-             "<p>Every method beside the baseline of its task, draw by draw: the median of the pairs’ differences with "
-             "its "
-             "95 % bootstrap interval (BCa), on how many draws it was better and worse, and the chance of the "
-             "signed-rank "
-             "test after Holm’s correction for the {} comparisons of this page. A run that failed ranks as the "
-             "worst.</p>\n",
+             "<p>Each method is compared with the baseline of its task on the same draws. Columns: median of the "
+             "paired differences with its 95 % bootstrap interval (BCa), number of draws on which the method was "
+             "better and worse, and p-value of the signed-rank test with Holm’s correction for the {} comparisons of "
+             "this page. A failed run ranks as the worst.</p>\n",
              rows.size()) +
          folded_tables(rows, {"metric", "method", "draws", "median", "baseline", "median difference [95 %]",
                               "better : worse", "p (Holm)", "finding", "more draws"});
@@ -85,11 +83,11 @@ std::string paired_failures_html(const std::vector<FailureComparison>& rows) {
     if (row.share.value > 0.0 || row.against_share.value > 0.0) failed.push_back(row);
   }
   if (failed.empty()) return "";
-  return "<p>Shares of the draws on which a run did not end <i>ok</i>, or a verdict was against it, with 95 % "
-         "intervals "
-         "(Clopper–Pearson); where the one alone failed and where the other; McNemar’s paired test after Holm’s "
-         "correction. Pairs without a failure are left out.</p>\n" +
-         folded_tables(failed, {"failure", "method", "draws", "share [95 %]", "baseline [95 %]", "it alone",
+  return "<p>Shares of draws with a failed run (status other than <i>ok</i>) or a negative verdict, with 95 % "
+         "intervals (Clopper–Pearson). Further columns: draws on which only the method failed, draws on which only the "
+         "baseline failed, and McNemar’s paired test with Holm’s correction. Pairs without a failure are left "
+         "out.</p>\n" +
+         folded_tables(failed, {"failure", "method", "draws", "share [95 %]", "baseline [95 %]", "method alone",
                                 "baseline alone", "p (Holm)", "finding"});
 }
 

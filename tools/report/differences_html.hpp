@@ -8,10 +8,10 @@
 
 namespace tumble::tools {
 
-/// A folded table per section: every method beside the baseline, pair by pair.
+/// Returns one folded table per section: the paired difference of each method to the baseline.
 std::string differences_html(const std::vector<scenarios::MetricComparison>& rows);
 
-/// The same of failures and verdicts; sections in which nothing failed are named in one sentence.
+/// Returns the same for failures and verdicts. Sections without failures are listed in one sentence.
 std::string paired_failures_html(const std::vector<scenarios::FailureComparison>& rows);
 
 }  // namespace tumble::tools

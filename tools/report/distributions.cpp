@@ -16,11 +16,11 @@ namespace {
 
 using nlohmann::json;
 
-/// What a histogram leaves out; "" where it leaves out nothing.
+/// Describes what a histogram leaves out; empty if it shows everything.
 std::string thinned_text(std::span<const Spread> spreads) {
   const auto is_thinned = [](const Spread& spread) { return spread.of_draws && spread.values.size() > kBoxPoints; };
   if (std::none_of(spreads.begin(), spreads.end(), is_thinned)) return "";
-  return " Of a scenario with more draws " + std::to_string(kBoxPoints) + ", at equal steps of their rank.";
+  return " For scenarios with more draws, only " + std::to_string(kBoxPoints) + " are shown, at equal steps of rank.";
 }
 
 json shaded(const Spread& spread) {
@@ -37,7 +37,7 @@ json shaded(const Spread& spread) {
           {"line", {{"width", is_line ? 2 : 0}, {"color", "rgba(128,128,128,0.8)"}, {"dash", "dash"}}}};
 }
 
-/// The axes of a quantity, its published range shaded.
+/// Axes of a quantity, with its published range shaded.
 json layout_of(const Spread& spread) {
   json layout = {{"barmode", "overlay"},
                  {"xaxis", {{"title", {{"text", spread.quantity + " [" + spread.unit + "]"}}}}},
@@ -46,7 +46,7 @@ json layout_of(const Spread& spread) {
   return layout;
 }
 
-/// Of the spreads of one quantity.
+/// Caption of the histograms of one quantity.
 std::string caption_of(std::span<const Spread> spreads) {
   const Spread& spread = spreads.front();
   std::string out = "Over the draws: " + spread.quantity + ".";
@@ -62,10 +62,10 @@ std::string text(const Spread& spread, double value) {
   return number_text(value * spread.factor);
 }
 
-/// By the round of the colours.
+/// Selected by how often all colours were used (`colour_round`).
 constexpr std::array kHatchings = {"", "/", "x", "."};
 
-/// Of one quantity, a histogram per scenario.
+/// Histograms of one quantity, one per scenario.
 Figure histograms(std::span<const Spread> spreads) {
   Figure figure;
   json traces = json::array();
@@ -107,13 +107,12 @@ std::vector<Figure> distribution_figures(std::span<const Spread> spreads) {
 std::string distributions_html(std::span<const Spread> spreads, std::span<const Figure> figures) {
   if (spreads.empty()) return "";
   std::string out =
-      "<p>What the simulated motions were like, from the truth alone, "
-      "beside " +
+      "<p>Distributions of the simulated motions, computed from the truth and compared with " +
       html::escaped(scenarios::kPublishedMotion) +
-      ". In brackets the middle 90 % of the draws; of a share of draws or of all samples its 95 % interval.</p>\n"
-      "<details><summary>Table of the motions</summary>"
-      "<div class=\"scroll\"><table><thead><tr><th>quantity</th><th>scenario</th><th class=\"number\">draws</th>"
-      "<th class=\"number\">median</th><th>unit</th><th>published, for the rig</th></tr></thead><tbody>\n";
+      ". Brackets contain the middle 90 % of the draws. For a share of draws or of all samples, they contain the 95 % "
+      "interval.</p>\n<details><summary>Table of the motions</summary><div "
+      "class=\"scroll\"><table><thead><tr><th>quantity</th><th>scenario</th><th class=\"number\">draws</th><th "
+      "class=\"number\">median</th><th>unit</th><th>published, for the rig</th></tr></thead><tbody>\n";
   for (const Spread& spread : spreads) {
     out += "<tr>" + html::cell(spread.quantity) + html::cell(spread.scenario) +
            html::cell(std::to_string(spread.values.size()), "number") +

@@ -10,16 +10,16 @@
 #include "tools/report/plots.hpp"
 #include "tools/tables/table.hpp"
 
-/// What the simulated motions were like, beside the published campaign of the tumbling rig.
+/// Distributions of the simulated motions, compared with the published campaign of the tumbling rig.
 namespace tumble::tools {
 
 using scenarios::Spread;
 
-/// A histogram per quantity, one colour per scenario, the published range shaded.
+/// Returns one figure per quantity: histograms in one colour per scenario, with the published range shaded.
 std::vector<Figure> distribution_figures(std::span<const Spread> spreads);
 std::string distributions_html(std::span<const Spread> spreads, std::span<const Figure> figures);
 Table distribution_table(std::span<const Spread> spreads);
-/// In SI units.
+/// Returns the distributions in SI units.
 nlohmann::json distributions_json(std::span<const Spread> spreads);
 
 }  // namespace tumble::tools

@@ -30,11 +30,10 @@ std::string picture_html(const ExamplePicture& picture) {
 std::string play_html(const ShownExample& shown) {
   if (shown.replay_address.empty()) return "";
   return "<a href=\"" + escaped(shown.replay_address) +
-         "\">Play it</a>: the robot, its paths, the points of its lidar "
-         "and the gyro over time.";
+         "\">Open the replay</a>: the robot, its paths, its lidar points and the gyro over time.";
 }
 
-/// Wide plots in a row of their own, the others two in a row.
+/// Places wide plots in their own row and the others two per row.
 std::string plots_html(const Example& example, std::vector<Figure>& figures) {
   std::string out;
   bool in_pair = false;
@@ -49,10 +48,10 @@ std::string plots_html(const Example& example, std::vector<Figure>& figures) {
 
 std::string example_html(const ShownExample& shown, std::vector<Figure>& figures) {
   const Example& example = shown.example;
-  std::string out = "<p>" + escaped(example.choice) + ", run again by the sweep for this page";
+  std::string out = "<p>" + escaped(example.choice) + ". The sweep ran it again for this page";
   out += shown.of_these_results
              ? "; its recording has the same digest as in the results.</p>\n"
-             : ". It was made of other results than these: another build's, or run again since.</p>\n";
+             : ". It belongs to other results than these: of another build, or of an earlier run.</p>\n";
   if (!shown.replay_address.empty()) out += "<p>" + play_html(shown) + "</p>\n";
   for (const ExamplePicture& picture : example.pictures) out += picture_html(picture);
   return out + plots_html(example, figures);
@@ -74,7 +73,8 @@ std::string moving_html(const ShownExample& shown) {
   const bool has_picture = !example.pictures.empty();
   const std::string still = has_picture ? html::png_address(example.pictures.front().png) : "";
   std::string out = "<figure class=\"moving\"><picture>";
-  // the browser's own choice, without a script; where there is nothing that stands, nothing is shown in its place
+  // the browser selects still or animated picture without a script; without a still picture the animation is always
+  // shown
   if (!example.moving.empty() && has_picture) {
     out += "<source media=\"print, (prefers-reduced-motion: reduce)\" srcset=\"" + still + "\">";
   }
@@ -83,7 +83,7 @@ std::string moving_html(const ShownExample& shown) {
          fmt::format("One {} of <code>{}</code>, seed {}", escaped(example.motion), escaped(example.scenario),
                      example.seed);
   if (!example.moving.empty()) out += ", " + escaped(example.moving_caption);
-  out += shown.of_these_results ? ". " : ". It was made of other results than these. ";
+  out += shown.of_these_results ? ". " : ". It belongs to other results than these. ";
   if (has_picture) out += legend_html(example.pictures.front());
   if (!shown.replay_address.empty()) out += "<br>" + play_html(shown);
   return out + "</figcaption></figure>\n";
@@ -93,7 +93,7 @@ std::string failure_html(const ShownExample& shown) {
   const Example& example = shown.example;
   std::string out = fmt::format("<details id=\"{}\"><summary>picture</summary>\n",
                                 escaped(example_id(example.scenario, example.seed)));
-  if (!shown.of_these_results) out += "<p>It was made of other results than these.</p>\n";
+  if (!shown.of_these_results) out += "<p>The picture belongs to other results than these.</p>\n";
   for (const ExamplePicture& picture : example.pictures) out += picture_html(picture);
   return out + "</details>\n";
 }

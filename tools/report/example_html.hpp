@@ -8,20 +8,21 @@
 
 namespace tumble::tools {
 
-/// The picture of a draw that moves by itself, and stands still on paper and for readers who ask for less motion; one
-/// that stands where there is none that moves. With a link to its replay.
+/// Shows the animation of a draw with a link to its replay. On paper, and for readers who prefer reduced motion, the
+/// still picture is shown. The still picture also replaces a missing animation.
 std::string moving_html(const ShownExample& shown);
 
-/// Single draws with their pictures and plots, which are added to `figures`; the first open, the others folded.
+/// Shows single draws with pictures and plots; appends the plots to `figures`. The first example is open, the others
+/// are folded.
 std::string examples_html(const std::vector<ShownExample>& examples, std::vector<Figure>& figures);
 
-/// The picture of a draw on which methods failed, folded; examples_html leaves it out.
+/// Shows the picture of a draw with failed methods, folded. `examples_html` leaves these draws out.
 std::string failure_html(const ShownExample& shown);
 
-/// Of the element that shows a draw: what other parts of the page link to.
+/// Id of the element that shows a draw; other parts of the page link to it.
 std::string example_id(const std::string& scenario, std::uint64_t seed);
 
-/// A plot's place in the page.
+/// Placeholder element of a plot.
 std::string plot_html(const Figure& figure, bool tall = false);
 
 }  // namespace tumble::tools

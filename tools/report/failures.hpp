@@ -10,34 +10,34 @@
 #include "scenarios/summary/summary.hpp"
 #include "scenarios/sweep/results.hpp"
 
-/// Draws on which methods failed, and how to see them.
+/// Draws on which methods failed, with commands to reproduce them.
 namespace tumble::tools {
 
-/// So many stand on the page.
+/// Maximum number of failed draws on the page.
 inline constexpr std::size_t kFailedDrawsShown = 60;
 
 struct FailedRun {
   std::string method;   ///< kind/name
-  std::string status;   ///< "diverged"
+  std::string status;   ///< for example "diverged"
   std::string message;  ///< one line; may be empty
-  std::string command;  ///< runs it again (run_again.hpp)
+  std::string command;  ///< command that runs it again (run_again.hpp)
 };
 
-/// A draw with what failed on it.
+/// A draw with the methods that failed on it.
 struct FailedDraw {
   std::string scenario;
   std::uint64_t seed = 0;
   std::vector<FailedRun> runs;
-  std::string replay_command;  ///< makes a replay of what `sweep --keep` has kept of it; "": nothing is kept
+  std::string replay_command;  ///< creates a replay from data that `sweep --keep` stored; empty if nothing is stored
 };
 
 struct FailedDraws {
-  std::size_t draws = 0;          ///< in all
-  std::vector<FailedDraw> shown;  ///< those on which most methods failed, at most `kFailedDrawsShown`
+  std::size_t draws = 0;          ///< total number of failed draws
+  std::vector<FailedDraw> shown;  ///< draws with the most failed methods, at most `kFailedDrawsShown`
 };
 
-/// What failed, its messages read for the draws shown alone; `database` is where the results stand, and beside it what
-/// is kept.
+/// Finds the failed draws, and reads messages only for the draws that are shown. `database` is the path of the results;
+/// kept data is next to it.
 FailedDraws failed_draws(const scenarios::Results& results, const scenarios::Summary& summary,
                          const std::filesystem::path& database);
 

@@ -15,7 +15,7 @@ namespace {
 
 using html::escaped;
 
-/// So many failed draws stand open, the others are folded.
+/// This many failed draws are open; further ones are folded.
 constexpr std::size_t kOpenDraws = 8;
 
 const ShownExample* example_of(const PageContent& content, const FailedDraw& draw) {
@@ -25,7 +25,7 @@ const ShownExample* example_of(const PageContent& content, const FailedDraw& dra
   return shown == content.examples.end() ? nullptr : &*shown;
 }
 
-/// To what is shown of the draw among the motions, and to its replay.
+/// Links to the example of the draw and to its replay.
 std::string links_html(const ShownExample* shown) {
   if (shown == nullptr) return "";
   std::string out;
@@ -46,7 +46,7 @@ std::string draw_html(const PageContent& content, const FailedDraw& draw) {
            (run.message.empty() ? "" : ": " + escaped(run.message)) + "<pre>" + escaped(run.command) + "</pre></li>";
   }
   if (!draw.replay_command.empty() && (shown == nullptr || shown->replay_address.empty()))
-    out += "<li>kept by the sweep: to see it<pre>" + escaped(draw.replay_command) + "</pre></li>";
+    out += "<li>The sweep kept its data. Command for the replay:<pre>" + escaped(draw.replay_command) + "</pre></li>";
   return out + "</ul></li>\n";
 }
 
@@ -57,9 +57,9 @@ std::string draws_html(const PageContent& content) {
   for (std::size_t i = 0; i < failed.shown.size(); ++i)
     (i < kOpenDraws ? open : folded) += draw_html(content, failed.shown[i]);
   std::string out = fmt::format(
-      "<h3>Draws with failures</h3>\n<p>On {} draw{} a run did not end <i>ok</i>; {}those on which most methods failed "
-      "come first. The command under a run makes it again; <code>tumble run</code> with <code>-o FOLDER</code> also "
-      "leaves recording, estimates, pictures and a replay.</p>\n",
+      "<h3>Draws with failures</h3>\n<p>On {} draw{} a run did not end <i>ok</i>; {}draws with the most failed methods "
+      "come first. The command below a run repeats the run. Add <code>-o FOLDER</code> to <code>tumble run</code> for "
+      "recording, estimates, pictures and a replay.</p>\n",
       failed.draws, failed.draws == 1 ? "" : "s",
       failed.shown.size() < failed.draws ? fmt::format("{} are shown, ", failed.shown.size()) : "");
   out += "<ul class=\"failed\">" + open + "</ul>\n";

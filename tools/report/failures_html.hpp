@@ -7,8 +7,8 @@
 
 namespace tumble::tools {
 
-/// Shares of failures beside the baseline's, then the draws that failed: on which methods, how they are made again, and
-/// links to their pictures and replays where the examples have them.
+/// Shows the shares of failures next to the baseline's, then the failed draws: methods, commands to reproduce them, and
+/// links to pictures and replays where available.
 std::string failures_html(const PageContent& content);
 
 }  // namespace tumble::tools

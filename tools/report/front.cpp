@@ -21,12 +21,12 @@ using scenarios::Interval;
 using scenarios::Section;
 using scenarios::Summary;
 
-/// So many contests stand open, the others are folded.
+/// This many contests are open; further ones are folded.
 constexpr std::size_t kShownContests = 6;
-/// So many scenarios are named in the first sentence.
+/// Maximum number of scenarios that the first sentence names.
 constexpr std::size_t kNamedScenarios = 4;
 
-/// "hill, roll and slip", or their number where they are many.
+/// Returns for example "hill, roll and slip", or the count if there are many.
 std::string names_text(const std::vector<std::string>& all, const char* many) {
   if (all.size() > kNamedScenarios) return fmt::format("{} {}", all.size(), many);
   std::string names;
@@ -34,7 +34,7 @@ std::string names_text(const std::vector<std::string>& all, const char* many) {
   return names;
 }
 
-/// "8 draws each of hill, roll and slip".
+/// Returns for example "8 draws each of hill, roll and slip".
 std::string draws_text(const Summary& summary) {
   std::int64_t least = 0, most = 0;
   for (const auto& [scenario, draws] : summary.draws) {
@@ -47,22 +47,21 @@ std::string draws_text(const Summary& summary) {
                        : fmt::format("{} to {} draws each of {}", least, most, names);
 }
 
-/// What the methods were given, and what is taken for the truth.
+/// Describes the input data of the methods and the source of the truth.
 std::string data_text(const PageContent& content) {
   if (!content.recorded)
-    return draws_text(content.summary) +
-           ", simulated, so that the truth is known; each method was given the very same recordings.";
-  return "Each was given the very same recordings (" + names_text(content.summary.scenarios, "of them") +
-         "), and is judged by the truth or the reference that a recording holds.";
+    return draws_text(content.summary) + " from simulation with known truth; all methods received the same recordings.";
+  return "All methods received the same recordings (" + names_text(content.summary.scenarios, "of them") +
+         ") and are scored against the truth or the reference that each recording contains.";
 }
 
-/// What the tasks of the contests are, in words.
+/// Describes the tasks of the contests.
 std::string tasks_text(const std::vector<ContestResult>& results) {
   using scenarios::Kind;
-  const std::pair<Kind, const char*> tasks[] = {{Kind::rate, "rate, how fast it turns"},
-                                                {Kind::attitude, "attitude, how it is turned"},
-                                                {Kind::position, "position, where it goes"},
-                                                {Kind::slam, "slam, where it goes and what is around it"}};
+  const std::pair<Kind, const char*> tasks[] = {{Kind::rate, "rate (angular velocity)"},
+                                                {Kind::attitude, "attitude (orientation)"},
+                                                {Kind::position, "position (trajectory)"},
+                                                {Kind::slam, "slam (trajectory and map)"}};
   std::string out;
   for (const auto& [kind, text] : tasks) {
     const auto of_kind = [kind = kind](const ContestResult& result) { return result.row.contest.kind == kind; };
@@ -71,7 +70,7 @@ std::string tasks_text(const std::vector<ContestResult>& results) {
   return out;
 }
 
-/// Of those that need no truth.
+/// Counts the methods that need no truth.
 std::size_t method_count(const Summary& summary) {
   std::set<std::pair<scenarios::Kind, std::string>> names;
   for (const Section& section : summary.sections) {
@@ -82,7 +81,7 @@ std::size_t method_count(const Summary& summary) {
   return names.size();
 }
 
-/// The interval on an axis from -100 % to +100 %; what lies beyond ends at its border.
+/// Draws the interval on an axis from -100 % to +100 %; values beyond are clipped at the border.
 std::string bar_html(const ContestResult& result) {
   if (!std::isfinite(result.percent)) return "<span class=\"bar none\"></span>";
   const auto at = [](double percent) { return 50.0 + 0.5 * std::clamp(percent, -100.0, 100.0); };
@@ -99,18 +98,18 @@ std::string difference_text(const ContestResult& result) {
   const Interval& own = result.row.difference;
   if (!std::isfinite(own.value)) {
     const scenarios::MetricComparison& row = result.row;
-    if (!std::isfinite(row.median)) return row.contest.method + " failed on half of the draws or more";
-    if (!std::isfinite(row.against_median)) return row.contest.against + " failed on half of the draws or more";
-    return "one of the two failed on half of the draws or more";
+    if (!std::isfinite(row.median)) return row.contest.method + " failed on at least half of the draws";
+    if (!std::isfinite(row.against_median)) return row.contest.against + " failed on at least half of the draws";
+    return "one of the two failed on at least half of the draws";
   }
   const std::string value = styled_value(result.row.metric, own.value, true);
   const std::string sign = own.value > 0.0 ? "+" : "";
-  // an empty bracket tells a reader nothing
+  // an interval without any finite end is left out
   if (!std::isfinite(own.low) && !std::isfinite(own.high)) return sign + value;
   return sign + value + " " + styled_interval(result.row.metric, own);
 }
 
-/// "0.894 rad/s, 37 times as much".
+/// Returns for example "0.894 rad/s, 37 times as much".
 std::string baseline_text(const ContestResult& result) {
   const std::string value = styled_value(result.row.metric, result.row.against_median, true);
   if (!(result.times >= 1.5)) return value;
@@ -132,10 +131,10 @@ std::string contest_html(const ContestResult& result, std::size_t comparisons) {
       escaped(certainty_text(result, comparisons)));
 }
 
-/// What each method is; folded.
+/// Folded descriptions of the methods.
 std::string methods_html(const std::vector<Fact>& methods) {
   if (methods.empty()) return "";
-  std::string out = "<details class=\"methods\"><summary>What the methods are</summary><dl class=\"facts\">";
+  std::string out = "<details class=\"methods\"><summary>Descriptions of the methods</summary><dl class=\"facts\">";
   for (const auto& [name, what] : methods) out += "<dt>" + escaped(name) + "</dt><dd>" + escaped(what) + "</dd>";
   return out + "</dl></details>\n";
 }
@@ -146,9 +145,9 @@ std::string contests_html(const std::vector<ContestResult>& results, std::size_t
   for (std::size_t i = 0; i < results.size(); ++i)
     (i < kShownContests ? shown : folded) += contest_html(results[i], comparisons);
   std::string out =
-      "<section class=\"contests\" id=\"contests\"><p class=\"key\">Of each contest the best method above the "
-      "baseline: medians over the draws, then the median difference of the pairs with its 95 % interval (BCa); the bar "
-      "is the same as a share of the baseline’s median, from −100 % to +100 %.</p>\n<ul>" +
+      "<section class=\"contests\" id=\"contests\"><p class=\"key\">Each row compares the best method with the "
+      "baseline: the medians over the draws, then the median of the paired differences with its 95 % interval (BCa). "
+      "The bar shows the same interval as a percentage of the baseline’s median, from −100 % to +100 %.</p>\n<ul>" +
       shown + "</ul>\n";
   if (!folded.empty())
     out += fmt::format("<details><summary>{} more contests</summary><ul>{}</ul></details>\n",
@@ -156,8 +155,8 @@ std::string contests_html(const std::vector<ContestResult>& results, std::size_t
   return out + "</section>\n";
 }
 
-/// A typical draw before one that failed, one of these results before others, a picture that moves before one that
-/// stands.
+/// Chooses an example by priority: typical draws before failed ones, examples of these results before others,
+/// animations before still pictures.
 const ShownExample* example_to_show(const std::vector<ShownExample>& examples) {
   const ShownExample* best = nullptr;
   const auto rank = [](const ShownExample& shown) {
@@ -182,12 +181,12 @@ std::string front_html(const PageContent& content) {
     out += "<h1>" + escaped(tally_text(tally(results))) + "</h1>\n";
     const std::size_t methods = method_count(content.summary);
     out += fmt::format(
-        "<p class=\"lead\">Compared: {} from its sensors alone how a robot moved while it tumbles or rolls. {}",
-        methods == 1 ? "1 method that tells" : fmt::format("{} methods that tell", methods),
+        "<p class=\"lead\">This page compares {} the motion of a tumbling or rolling robot from its sensors. {}",
+        methods == 1 ? "1 method that estimates" : fmt::format("{} methods that estimate", methods),
         escaped(data_text(content)));
     if (!results.empty())
-      out += fmt::format(" A contest is one task on one {}: {}.", content.recorded ? "recording" : "scenario",
-                         tasks_text(results));
+      out += fmt::format(" A contest compares methods for one task on one {}: {}.",
+                         content.recorded ? "recording" : "scenario", tasks_text(results));
     out += "</p>\n";
   }
   out += "</div>\n";

@@ -7,7 +7,7 @@
 
 namespace tumble::tools {
 
-/// The first screen: what was compared, who does best by how much and how sure that is, and one moving picture.
+/// Returns the first screen: what was compared, the best methods with margin and certainty, and one animation.
 std::string front_html(const PageContent& content);
 
 }  // namespace tumble::tools

@@ -17,7 +17,7 @@ using scenarios::MotionCloud;
 using scenarios::MotionMap;
 using scenarios::PublishedExtreme;
 
-/// Beside the colours, which are fewer than scenarios may be.
+/// Symbols in addition to colours, because there may be more scenarios than colours.
 constexpr std::array kSymbols = {"circle", "square", "diamond", "triangle-up", "cross", "x", "star"};
 
 json density(const MotionMap& map) {
@@ -29,7 +29,7 @@ json density(const MotionMap& map) {
       each.push_back(five_digits(100.0 * map.share[row * MotionMap::kCells + i]));
     rows.push_back(std::move(each));
   }
-  // what lies below the first contour has the colour of half a step: none
+  // values below the first contour are transparent
   return {
       {"type", "contour"},
       {"name", "all draws"},
@@ -64,7 +64,7 @@ json points(const MotionCloud& cloud, std::size_t index) {
           {"y", std::move(y)}};
 }
 
-/// From the axes' lower ends to the extremes; a line where the rate is not stated.
+/// Outline from the lower ends of the axes to the extremes; a line if no rate is published.
 json outline(const PublishedExtreme& extreme, const MotionMap& map, bool dotted) {
   const double low_rate = map.rate_rad_s.front(), low_force = map.force_m_s2.front();
   json x = json::array({low_rate}), y = json::array({extreme.force_m_s2});
@@ -92,14 +92,14 @@ std::string caption_of(const MotionMap& map) {
     shown += cloud.points.size();
   }
   std::string out = fmt::format(
-      "Each draw by the largest rate of its body and the largest specific force that its IMU would have read without a "
-      "rail; shaded the density of "
-      "all {} draws{}. Outlines: the largest that published campaigns report",
-      draws, shown < draws ? fmt::format(", of which {} stand as points", shown) : "");
+      "Each point is one draw: the largest rate of its body and the largest specific force that an IMU without "
+      "saturation would have measured. The shaded area is the density of all {} draws{}. The outlines are the largest "
+      "values in published campaigns",
+      draws, shown < draws ? fmt::format(", of which {} are drawn as points", shown) : "");
   for (const PublishedExtreme& extreme : map.extremes) out += "; " + extreme.source;
   return out +
-         ". The two maxima of a draw need not fall on one instant; what it was like between them is not in the "
-         "results.";
+         ". The two maxima of a draw may occur at different instants; the results do not contain the values between "
+         "them.";
 }
 
 }  // namespace

@@ -6,8 +6,8 @@
 
 namespace tumble::tools {
 
-/// The density of all draws over rate and specific force, both logarithmic, their points scenario by scenario, and the
-/// published extremes as outlines. Empty without draws.
+/// Plots the density of all draws over rate and specific force (both logarithmic), the draws as points by scenario, and
+/// the published extremes as outlines. The figure is empty without draws.
 Figure motion_figure(const scenarios::MotionMap& map);
 
 }  // namespace tumble::tools

@@ -25,7 +25,7 @@ using html::escaped;
 using scenarios::Section;
 using scenarios::Summary;
 
-/// A part of the page that the list of contents names.
+/// A section of the page with an entry in the table of contents.
 struct Part {
   const char* id;
   const char* title;
@@ -42,7 +42,8 @@ std::string draws_html(const Summary& summary) {
   return out + "</tbody></table></div>\n";
 }
 
-/// Why draws were rejected: the instant at the end of a reason is left out, so that equal reasons count together.
+/// Lists the reasons why draws were rejected. The instant at the end of a reason is removed, so that equal reasons are
+/// counted together.
 std::string rejected_html(const std::vector<scenarios::RejectedDraw>& rejected) {
   std::map<std::pair<std::string, std::string>, std::vector<std::uint64_t>> reasons;
   for (const scenarios::RejectedDraw& draw : rejected) {
@@ -51,13 +52,13 @@ std::string rejected_html(const std::vector<scenarios::RejectedDraw>& rejected) 
   }
   std::string out;
   for (const auto& [key, seeds] : reasons) {
-    out += fmt::format("<li>{}: {} of <code>{}</code>, the first at seed {}</li>", escaped(key.second), seeds.size(),
+    out += fmt::format("<li>{}: {} of <code>{}</code>, first seed {}</li>", escaped(key.second), seeds.size(),
                        escaped(key.first), seeds.front());
   }
-  return out.empty() ? "" : "<p>Rejected, and why:</p><ul>" + out + "</ul>\n";
+  return out.empty() ? "" : "<p>Reasons for rejected draws:</p><ul>" + out + "</ul>\n";
 }
 
-/// Adds what it shows to the figures of the page.
+/// Appends its plots to the figures of the page.
 std::string motions_html(const PageContent& content, std::vector<Figure>& figures) {
   std::string out;
   Figure map = motion_figure(content.motion_map);
@@ -78,12 +79,11 @@ std::string motions_html(const PageContent& content, std::vector<Figure>& figure
 std::string scores_html(const Summary& summary) {
   if (summary.sections.empty()) return "";
   std::string out =
-      "<h3>Scores</h3>\n<p>Median over the draws (of a verdict the share) and, in brackets, its 95 % "
-      "interval from order statistics; an estimate that did not end <i>ok</i> ranks as "
-      "the worst of all (–: half or more of them), and is counted in the first row with its Clopper–Pearson interval. "
-      "“Better in” counts the "
-      "draws on which a method beat the baseline on the very same recording. The best method that needs no truth is "
-      "marked. Hover over a metric for its definition.</p>\n";
+      "<h3>Scores</h3>\n<p>Cells contain the median over the draws (for verdicts the share) and its 95 % interval from "
+      "order statistics in brackets. A failed estimate ranks as the worst of all; “–” means that at least half of the "
+      "estimates failed. The first row is the share of failed estimates with its Clopper–Pearson interval. “Better in” "
+      "is the number of draws on which a method beat the baseline on the same recording. The best method that needs no "
+      "truth is highlighted. Hover over a metric for its definition.</p>\n";
   for (const Section& section : summary.sections) {
     out += "<details><summary>" + escaped(section.scenario) + " · " + escaped(to_string(section.kind)) +
            "</summary>\n" + score_table_html(section) + "</details>\n";
@@ -93,7 +93,7 @@ std::string scores_html(const Summary& summary) {
 
 std::string errors_html(const PageContent& content, std::vector<Figure>& figures) {
   std::string out;
-  if (!content.errors.empty()) out += "<p>Each point is one draw, each box the quartiles of one method.</p>\n";
+  if (!content.errors.empty()) out += "<p>Each point is one draw. Each box shows the quartiles of one method.</p>\n";
   for (const Figure& figure : content.errors) out += plot_html(figure);
   figures.insert(figures.end(), content.errors.begin(), content.errors.end());
   return out + scores_html(content.summary) + curves_html(content.curves, figures);
@@ -119,7 +119,7 @@ std::string commands_html(const std::vector<Fact>& commands) {
   return out;
 }
 
-/// In the order of the page; those that say nothing are left out.
+/// Returns the sections in the order of the page, without empty ones.
 std::vector<Part> parts_of(const PageContent& content, std::vector<Figure>& figures) {
   std::vector<Part> parts;
   const auto add = [&](const char* id, const char* title, std::string html) {
@@ -130,11 +130,11 @@ std::vector<Part> parts_of(const PageContent& content, std::vector<Figure>& figu
   add("errors", "Errors", errors_html(content, figures));
   if (scored) add("differences", "Paired differences", differences_html(content.comparison.metrics));
   if (scored) add("failures", "Failures", failures_html(content));
-  add("sensitivity", "What breaks it", sensitivity_html(content.sensitivity, content.sensitivity_note));
+  add("sensitivity", "Causes of failures", sensitivity_html(content.sensitivity, content.sensitivity_note));
   add("cost", "Cost", cost_html(content, figures));
   add("certificate", "Certificate", certificates_html(content.certificates));
   add("versions", "Versions", facts_html(content.versions));
-  add("again", "Make it again", commands_html(content.commands));
+  add("again", "How to reproduce", commands_html(content.commands));
   return parts;
 }
 
@@ -154,7 +154,7 @@ std::string figures_json(const std::vector<Figure>& figures) {
   return html::script_json("[" + all + "]");
 }
 
-/// Nothing but what the page carries: scripts and styles within it, pictures as data.
+/// Allows only content that is embedded in the page: scripts, styles, and pictures as data.
 constexpr const char* kPolicy =
     "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data: blob:; style-src "
     "'unsafe-inline'; script-src 'unsafe-inline'\">";
@@ -169,9 +169,8 @@ std::string page_html(const PageContent& content, const std::string& plotly_bund
   for (const Part& part : parts)
     body += fmt::format("<section id=\"{}\"><h2>{}</h2>\n", part.id, part.title) + part.html + "</section>\n";
   body +=
-      "<footer>Angles are in degrees on this page alone; the database holds SI units and radians. Plots by Plotly.js "
-      "(MIT licence), "
-      "carried inside this page.</footer>\n</main>\n";
+      "<footer>Angles are in degrees on this page only; the database contains SI units and radians. Plotly.js (MIT "
+      "licence) is embedded in this page.</footer>\n</main>\n";
   return "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">" + std::string(kPolicy) +
          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"><title>" + escaped(content.title) +
          "</title>\n<style>\n" + kPageCss + "</style></head>\n<body>\n" + body +

@@ -18,43 +18,42 @@
 
 namespace tumble::tools {
 
-/// An example as the page shows it.
 struct ShownExample {
   Example example;
-  bool of_these_results = false;  ///< made of the rows that the database holds, its recording of their digest
-  std::string replay_address;     ///< from the page to its replay, ready for an attribute; "": there is none
+  bool of_these_results = false;  ///< the database holds the rows that the example shows, and the digest of its
+                                  ///< recording agrees
+  std::string replay_address;     ///< URL relative to the page, escaped for an attribute; may be empty
 };
 
 /// Name and value.
 using Fact = std::pair<std::string, std::string>;
 
-/// What a report page says; `page_html` adds nothing to it.
+/// Content of a report page. `page_html` adds only markup.
 struct PageContent {
   std::string title;
-  bool recorded = false;  ///< results of recordings, not of draws
+  bool recorded = false;  ///< results of recordings instead of simulated draws
   scenarios::Summary summary;
-  scenarios::Comparison comparison;    ///< with the baselines, by the headline metrics
-  std::vector<ShownExample> examples;  ///< single draws, with pictures and plots
-  scenarios::MotionMap motion_map;     ///< of all draws, as the next
+  scenarios::Comparison comparison;    ///< comparison with the baselines by the headline metrics
+  std::vector<ShownExample> examples;  ///< single draws with pictures and plots
+  scenarios::MotionMap motion_map;     ///< covers all draws, as does the next member
   std::vector<Spread> motions;
-  std::vector<Figure> errors;  ///< of all draws
+  std::vector<Figure> errors;  ///< errors of all draws
   Figure cost;
   std::vector<Curve> curves;
   FailedDraws failed;
   std::vector<scenarios::RejectedDraw> rejected;
   std::vector<scenarios::Sensitivity> sensitivity;
-  std::string sensitivity_note;  ///< of which draws it is, or why there is none
+  std::string sensitivity_note;  ///< states the draws used, or why there is no sensitivity
   std::vector<scenarios::Certificate> certificates;
-  std::vector<Fact> methods;          ///< each, and what it is
+  std::vector<Fact> methods;          ///< name and description of each method
   std::vector<Fact> versions;         ///< suite, draws, builds, data, date
-  std::vector<Fact> commands;         ///< what it does, and the command that does it again
+  std::vector<Fact> commands;         ///< purpose and command
   std::vector<std::string> warnings;  ///< what is missing, and why
 };
 
-/// One self-contained page: styles, plots, pictures and the text of the Plotly bundle inside; it asks the network
-/// nothing, which a Content Security Policy of its own forbids besides. The first screen; then motions, errors, paired
-/// differences, failures, sensitivity, cost, certificate, versions, commands, in this order. Every text is data in it,
-/// never markup.
+/// Returns one self-contained page with styles, plots, pictures and the Plotly bundle inside. The page needs no
+/// network, and its Content Security Policy forbids access. Order: first screen, motions, errors, paired differences,
+/// failures, sensitivity, cost, certificate, versions, commands. All texts are embedded as data, never as markup.
 std::string page_html(const PageContent& content, const std::string& plotly_bundle);
 
 }  // namespace tumble::tools

@@ -1,5 +1,5 @@
-// Draws the figures of the page in the page's own colours as far as they are seen, and again when the reader changes between
-// light and dark, unfolds a part, or prints.
+// Draws the visible figures in the colours of the page. Repeats it if the reader switches between light and dark, unfolds
+// a section, or prints.
 (function () {
   'use strict';
   const figures = new Map(JSON.parse(document.getElementById('figures').textContent).map((figure) => [figure.id, figure]));
@@ -19,9 +19,9 @@
     };
     const axes = { xaxis: {}, yaxis: {} };
     for (const name of Object.keys(layout)) if (/^[xy]axis/.test(name)) axes[name] = layout[name];
-    // between decades Plotly writes the digit alone ("5" for 0.05), which nobody reads as that
+    // between decades Plotly writes only the digit ("5" for 0.05), which is misleading
     const logarithmic = (name) => ({ tickformat: '~g', nticks: Math.max(3, Math.round((name[0] === 'y' ? height : width) / 90)) });
-    // along a short axis a long name is cut off: its unit stays, the name stands in the caption
+    // a long title would be cut off at a short axis: only the unit is shown, and the caption contains the name
     const shortened = (name, title) => {
       const most = name[0] === 'y' ? 20 : 44;
       const unit = narrow && title && title.text.length > most ? /\[[^\]]*\]$/.exec(title.text) : null;
@@ -32,7 +32,7 @@
     return Object.assign(base, layout, axes);
   }
 
-  // a legend of many names has room of its own, which Plotly would take from the plot
+  // a legend with many names gets extra height, which Plotly would take from the plot
   function fit(element) {
     element.style.height = '';
     const width = element.clientWidth, names = figures.get(element.id).data.filter((trace) => trace.name && trace.showlegend !== false);
@@ -54,10 +54,10 @@
 
   const plots = [...document.querySelectorAll('.plot')].filter((element) => figures.has(element.id));
   const visible = (element) => element.clientWidth > 0;
-  // what is folded is drawn anew where the watcher sees it next
+  // folded figures are drawn when they become visible
   const again = () => [...drawn].forEach((element) => visible(element) ? draw(element) : drawn.delete(element));
 
-  // a page of many figures is read from its top: each is drawn shortly before it is seen
+  // each figure is drawn shortly before it becomes visible, because a page may have many
   const watcher = new IntersectionObserver((entries) => {
     for (const entry of entries) if (entry.isIntersecting && !drawn.has(entry.target)) draw(entry.target);
   }, { rootMargin: '600px' });
@@ -66,7 +66,7 @@
   let waiting = 0;
   window.addEventListener('resize', () => { clearTimeout(waiting); waiting = setTimeout(again, 120); });
 
-  // what an address leads into is unfolded, and what is folded cannot be read on paper
+  // unfolds the target of a link, and everything for printing
   function named() {
     try { return document.getElementById(decodeURIComponent(location.hash.slice(1))); } catch { return null; }  // "#100%"
   }

@@ -67,7 +67,7 @@ bool wants_log(const json& traces) {
   return low > 0.0 && high > 10.0 * low;
 }
 
-/// A box per method over its values of one metric, scenario beside scenario.
+/// Box plots of one metric: one box per method, grouped by scenario.
 class Boxes {
  public:
   explicit Boxes(const std::string& metric) : metric_(metric), style_(scenarios::metric_style(metric)) {}
@@ -86,7 +86,8 @@ class Boxes {
     }
   }
 
-  /// Logarithmic where values are positive and span more than a decade; else `from_zero`, or from the least value.
+  /// Uses a logarithmic axis if values are positive and span more than a decade. Otherwise the axis starts at 0 if
+  /// `from_zero` is set, or else at the smallest value.
   void put_into(Figure& figure, bool from_zero) const {
     json data = json::array();
     for (const auto& [name, trace] : traces_) data.push_back(trace);
@@ -117,7 +118,7 @@ bool holds_more_than_shown(const Summary& summary, Kind kind, const std::string&
   return false;
 }
 
-/// A span of x over the whole height, behind the lines.
+/// Shades an interval of x over the whole height, behind the lines.
 json shaded(double begin, double end) {
   return {{"type", "rect"},
           {"xref", "x"},
@@ -136,7 +137,7 @@ const char* dash_of(const PlotLine& line) {
   return dash_of_round(line.colour < 0 ? 0 : colour_round(static_cast<std::size_t>(line.colour)));
 }
 
-/// NaN is a gap.
+/// NaN marks a gap.
 json coordinates(const std::vector<double>& values) {
   json out = json::array();
   for (const double value : values) out.push_back(std::isfinite(value) ? json(value) : json());
@@ -195,7 +196,8 @@ Figure box_figure(const Summary& summary, Kind kind, const std::string& metric, 
   figure.id = std::string(to_string(kind)) + "-" + metric;
   figure.caption = caption;
   if (holds_more_than_shown(summary, kind, metric))
-    figure.caption += fmt::format(" Of a box with more draws {} points, at equal steps of their rank.", kBoxPoints);
+    figure.caption +=
+        fmt::format(" For a box with more draws, {} points are drawn, at equal steps of rank.", kBoxPoints);
   Boxes boxes(metric);
   for (const Section& section : summary.sections) {
     if (section.kind == kind) boxes.add(section, "");
@@ -207,8 +209,8 @@ Figure box_figure(const Summary& summary, Kind kind, const std::string& metric, 
 Figure cost_figure(const Summary& summary) {
   Figure figure;
   figure.id = "cost";
-  figure.caption = "CPU time of one estimate. One point per draw, of a box with more than " +
-                   std::to_string(kBoxPoints) + " so many.";
+  figure.caption =
+      "CPU time of one estimate. Each draw is one point; a box has at most " + std::to_string(kBoxPoints) + " points.";
   Boxes boxes(scenarios::estimate_cost().name);
   for (const Section& section : summary.sections) boxes.add(section, std::string(to_string(section.kind)) + "/");
   boxes.put_into(figure, false);

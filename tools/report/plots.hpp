@@ -11,46 +11,46 @@
 
 namespace tumble::tools {
 
-/// A Plotly figure: what page.js hands to Plotly. Colours of text and grid are the page's, set by page.js.
+/// A Plotly figure as page.js passes it to Plotly. page.js sets the colours of text and grid.
 struct Figure {
-  std::string id;       ///< of its element, unique in the page
+  std::string id;       ///< id of its HTML element, unique within the page
   std::string caption;  ///< one or two sentences
-  std::string traces;   ///< JSON, an array; empty when there is nothing to draw
-  std::string layout;   ///< JSON, an object
+  std::string traces;   ///< JSON array; empty if there is nothing to draw
+  std::string layout;   ///< JSON object
   bool empty() const { return traces.empty(); }
 };
 
-/// What Plotly draws, of which no traces are nothing. What is no UTF-8 in a text is replaced.
+/// Sets traces and layout of a figure; without traces the figure stays empty. Invalid UTF-8 in texts is replaced.
 void set_plot(const nlohmann::json& traces, const nlohmann::json& layout, Figure& figure);
 
-/// So many draws of a box are drawn as points, however many there are.
+/// Maximum number of draws of a box that are drawn as points.
 inline constexpr std::size_t kBoxPoints = 1000;
 
-/// Five significant digits are more than a plot can show, and keep the page small.
+/// Rounds to five significant digits: finer than a plot can show, and the page stays small.
 double five_digits(double value);
 
-/// A text as Plotly shows it, which reads tags and three entities in it: & < > by their entities.
+/// Escapes & < > as entities, because Plotly interprets some tags and these entities in texts.
 std::string plot_text(const std::string& text);
 
-/// Of more than `most` (2 or more) values the smallest, the largest and those at equal steps of rank between, rising:
-/// their quantiles are nearly those of all. O(n log n).
+/// Reduces a list to `most` (at least 2) values: the smallest, the largest, and values at equal steps of rank between
+/// them, sorted. Their quantiles are close to those of all values. O(n log n).
 std::vector<double> at_most(std::vector<double> values, std::size_t most);
 
-/// Every draw as a point beside a box of quartiles: one box per method and scenario, at most `kBoxPoints` in a box.
-/// Logarithmic where values are positive and span more than a decade.
+/// Plots every draw as a point next to a box of the quartiles. There is one box per method and scenario, with at most
+/// `kBoxPoints` points. The axis is logarithmic if values are positive and span more than a decade.
 Figure box_figure(const scenarios::Summary& summary, scenarios::Kind kind, const std::string& metric,
                   const std::string& caption);
 
-/// CPU time of every method, one box per method and scenario, logarithmic.
+/// Plots the CPU time of every method, one box per method and scenario, on a logarithmic axis.
 Figure cost_figure(const scenarios::Summary& summary);
 
-/// A plot of an example.
+/// Converts a plot of an example to a figure.
 Figure figure_of(const Plot& plot, const std::string& id);
 
-/// Of a line of an example's plot, and of its name in a legend.
+/// Colour of a line in an example's plot, and of its legend entry.
 Colour colour_of(int colour);
 
-/// By the round of the colours (`colour_round`): a marker, a line, and how much of the colour fills a box.
+/// Marker, dash and fill opacity that distinguish methods of the same colour. `round` is the result of `colour_round`.
 const char* symbol_of_round(std::size_t round);
 const char* dash_of_round(std::size_t round);
 double filling_of_round(std::size_t round);

@@ -44,13 +44,13 @@ std::vector<Fact> versions(const scenarios::Results& results, const Summary& sum
   return out;
 }
 
-/// What each method of the results is.
+/// Describes each method of the results.
 std::vector<Fact> methods_told(const Summary& summary) {
   std::vector<Fact> out;
   for (const scenarios::Section& section : summary.sections) {
     for (const scenarios::MethodSummary& method : section.methods) {
       Fact fact(full_name(section.kind, method.method) + (method.method == section.baseline ? " (baseline)" : ""),
-                method.what.empty() ? "Described by a file." : method.what);
+                method.what.empty() ? "The method is described by a file." : method.what);
       if (std::ranges::find(out, fact) == out.end()) out.push_back(std::move(fact));
     }
   }
@@ -58,7 +58,7 @@ std::vector<Fact> methods_told(const Summary& summary) {
   return out;
 }
 
-/// Whether a sweep by this build, over the data that are found here, would go on with them.
+/// True if a sweep by this build, with the data found on this machine, would continue these results.
 bool are_of_here(const scenarios::Results& results, const ReportOptions& options) {
   const std::string made_by = results.note("build"), made_of = results.note("data");
   return (made_by.empty() || made_by == scenarios::build_id()) &&
@@ -77,12 +77,12 @@ std::vector<Fact> commands(const scenarios::Results& results, const ReportOption
   }
   if (!options.page.empty())
     out.emplace_back("This page", "tumble report " + database + " -o " + scenarios::shell_word(options.page.string()));
-  out.emplace_back("Paired differences, as tables (with --metric NAME of other metrics)", "tumble compare " + database);
-  out.emplace_back("What breaks a method, every number", "tumble sensitivity " + database + " --all");
+  out.emplace_back("Paired differences as tables (--metric NAME for other metrics)", "tumble compare " + database);
+  out.emplace_back("Influence of every number on each method", "tumble sensitivity " + database + " --all");
   return out;
 }
 
-/// The headline metrics of each kind but verdicts, whose share is in the table.
+/// Plots the headline metrics of each kind. Verdicts are left out, because the table shows their share.
 std::vector<Figure> errors_of_all_draws(const Summary& summary) {
   std::vector<Figure> figures;
   for (const Kind kind : {Kind::rate, Kind::attitude, Kind::position, Kind::slam}) {
@@ -96,8 +96,9 @@ std::vector<Figure> errors_of_all_draws(const Summary& summary) {
   return figures;
 }
 
-/// Whether an example is of these results: made of the rows that they hold, and its recording, simulated once more, of
-/// their digest, as it is or without its lidars, which a sweep of methods that read none leaves out.
+/// True if the example belongs to these results: the database holds its rows, and a new simulation of its recording has
+/// the same digest. The digest may be the one without lidars, because sweeps of methods that need no lidar leave them
+/// out.
 bool is_of(const scenarios::Results& results, const Example& example) {
   if (example.made_of != scenarios::digest_of_rows(results, {example.scenario, example.seed})) return false;
   const std::vector<scenarios::Outcome> rows = results.outcomes_of(example.scenario, example.seed);
@@ -107,33 +108,35 @@ bool is_of(const scenarios::Results& results, const Example& example) {
   });
 }
 
-/// Why there are no pictures, and what makes them: of a sweep, which adds to results of its own build and data alone.
+/// States why there are no pictures, and which command creates them. Only a sweep adds pictures, and only to results of
+/// its own build and data.
 std::string how_to_get_pictures(const scenarios::Results& results, const ReportOptions& options) {
   const std::string none =
-      fmt::format("No pictures of single draws: there are none in {}", examples_folder(options.database).string());
+      fmt::format("There are no pictures of single draws in {}", examples_folder(options.database).string());
   const std::string made_by = results.note("build"), made_of = results.note("data");
   if (made_by == scenarios::kMixedBuilds)
-    return fmt::format("{}. The results are of several builds, and a sweep adds to those of its own alone.", none);
+    return fmt::format(
+        "{}. The results come from several builds, and a sweep can only extend results of its own build.", none);
   if (!made_by.empty() && made_by != scenarios::build_id())
-    return fmt::format("{}. A sweep by the build that made these results ({}) makes them; this one ({}) is refused.",
-                       none, made_by, scenarios::build_id());
+    return fmt::format(
+        "{}. Only a sweep by the build of these results ({}) can create them; this build ({}) is refused.", none,
+        made_by, scenarios::build_id());
   if (!made_of.empty() && !options.data.empty() && made_of != options.data)
     return fmt::format(
-        "{}. A sweep over the models and scenarios that these results were made of (digest {}) makes them; over those "
-        "that are found here (digest {}) it is refused.",
+        "{}. Only a sweep with the models and scenarios of these results (digest {}) can create them; those found on "
+        "this machine (digest {}) are refused.",
         none, made_of, options.data);
   const std::vector<std::string> commands = scenarios::commands_of(results.note(scenarios::kCommandNote));
   const std::string suite = results.note("suite");
-  return fmt::format(
-      "{}. They are made, and nothing that the results hold is run again, by: tumble sweep {} --db {} --examples 3",
-      none,
-      !commands.empty() ? commands.front()
-      : suite.empty()   ? "SUITE"
-                        : suite,
-      scenarios::shell_word(options.database.string()));
+  return fmt::format("{}. This command creates them and repeats no stored run: tumble sweep {} --db {} --examples 3",
+                     none,
+                     !commands.empty() ? commands.front()
+                     : suite.empty()   ? "SUITE"
+                                       : suite,
+                     scenarios::shell_word(options.database.string()));
 }
 
-/// From the page to a replay beside the database, as an address.
+/// Returns the URL, relative to the page, of a replay next to the database.
 std::string replay_address(const ReportOptions& options, const Example& example) {
   if (example.replay.empty()) return "";
   const std::filesystem::path replay = examples_folder(options.database) / example.replay;
@@ -150,7 +153,7 @@ void add_examples(const scenarios::Results& results, const ReportOptions& option
     std::string replay = replay_address(options, example);
     content.examples.push_back({std::move(example), of_these, std::move(replay)});
   }
-  // what is wrong with the pictures must not cost the reader the scores
+  // errors of the pictures must not hide the scores
   for (const std::string& what : found.unreadable)
     content.warnings.push_back("Pictures of single draws that cannot be shown: " + what);
   if (!found.unreadable.empty()) return;
@@ -182,7 +185,7 @@ PageContent report_content(ReportInput input, const ReportOptions& options) {
   content.commands = commands(results, options);
   content.certificates = results.certificates();
   if (content.certificates.empty() && !content.recorded)
-    content.warnings.push_back("These results hold no certificate of their build.");
+    content.warnings.push_back("These results contain no certificate of their build.");
   for (const scenarios::Certificate& certificate : content.certificates) {
     content.versions.emplace_back("certificate", certificate_summary(certificate));
     if (!certificate.passes()) content.warnings.push_back("The certificate of build " + certificate.build + " fails.");

@@ -12,7 +12,7 @@
 
 namespace tumble::tools {
 
-/// What a page says about, read once.
+/// Input of a report page.
 struct ReportInput {
   const scenarios::Results* results = nullptr;
   const scenarios::Summary* summary = nullptr;
@@ -20,20 +20,20 @@ struct ReportInput {
   std::vector<Curve> curves;
   std::vector<Spread> motions;
   std::vector<scenarios::Sensitivity> sensitivity;
-  std::string sensitivity_note;  ///< of which draws it is, or why there is none
+  std::string sensitivity_note;  ///< states the draws used, or why there is no sensitivity
 };
 
 struct ReportOptions {
-  std::filesystem::path database;  ///< that the results were read from; its examples stand beside it
-  std::filesystem::path page;      ///< where the page will stand: its links lead to replays from there
-  std::string version;             ///< of the program
-  std::string data;                ///< digest of the models and scenarios that a sweep would find here; "" when none
-  std::string made_at;             ///< date and time, as the page shall show it
+  std::filesystem::path database;  ///< path of the results; examples are next to it
+  std::filesystem::path page;      ///< path of the page, from which links to replays are relative
+  std::string version;             ///< version of the program
+  std::string data;     ///< digest of the models and scenarios that a sweep would use on this machine; may be empty
+  std::string made_at;  ///< date and time as shown on the page
 };
 
-/// All that the page says: a function of the results and of the examples that a sweep has left beside them. Nothing is
-/// simulated or estimated here. Where there are no examples the page says which command makes them, or which build or
-/// data it needs.
+/// Computes the content of the page from the results and from the examples that a sweep left next to them. Nothing is
+/// simulated or estimated. Without examples, the page states the command that creates them, or the required build or
+/// data.
 PageContent report_content(ReportInput input, const ReportOptions& options);
 
 }  // namespace tumble::tools

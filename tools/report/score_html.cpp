@@ -24,14 +24,14 @@ using scenarios::Sense;
 std::string plain(double value) {
   if (std::isnan(value)) return "–";
   if (std::isinf(value)) return value > 0.0 ? "∞" : "−∞";
-  // no exponents between a thousandth and a million: they are for people
+  // readers get no exponents between a thousandth and a million
   if (value < 0.0) return "−" + plain(-value);
   if (value != 0.0 && (std::abs(value) < 1e-3 || std::abs(value) >= 1e6)) return fmt::format("{:.2e}", value);
   const int digits = value == 0.0 ? 0 : std::max(0, 2 - static_cast<int>(std::floor(std::log10(std::abs(value)))));
   return fmt::format("{:.{}f}", value, digits);
 }
 
-/// The best median among the methods that can be had on a real robot.
+/// Returns the method with the best median among those that a real robot can run.
 const MethodSummary* best_method(const Section& section, const std::string& metric) {
   const MethodSummary* best = nullptr;
   const MetricInfo& info = metric_info(metric);

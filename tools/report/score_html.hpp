@@ -8,14 +8,14 @@
 
 namespace tumble::tools {
 
-/// "0.42 rad/s": a metric's value in the unit of its style, three significant digits.
+/// Formats a value in the metric's display unit with three significant digits, for example "0.42 rad/s".
 std::string styled_value(const std::string& metric, double value_si, bool with_unit);
 
-/// "0.42 [0.31, 0.60]"; "[-]" for an interval that too few draws leave open.
+/// Formats an interval, for example "0.42 [0.31, 0.60]"; the bracket is "[-]" if there are too few draws.
 std::string styled_interval(const std::string& metric, const scenarios::Interval& interval);
 
-/// The table of one section: a row per metric, a column per method with median, interval and paired wins; failures
-/// first.
+/// Returns the table of one section: one row per metric, one column per method with median, interval and paired wins.
+/// The failures are in the first row.
 std::string score_table_html(const scenarios::Section& section);
 
 }  // namespace tumble::tools

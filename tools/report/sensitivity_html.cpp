@@ -26,13 +26,13 @@ std::string median_text(const Sensitivity& row, double value) {
   return styled_value(row.metric, value, true);
 }
 
-/// A bar from 0 to 1 beside the number.
+/// Draws a bar from 0 to 1 next to the number.
 std::string strength_cell(double strength) {
   return fmt::format("<td class=\"number\"><span class=\"strength\" style=\"width:{:.0f}px\"></span>{:.2f}</td>",
                      60.0 * strength, strength);
 }
 
-/// What the score is where the number lies, drawn.
+/// Draws the score as a function of the number.
 std::string dependence_cell(const Sensitivity& row, const Influence& each) {
   const bool is_share = row.metric == kFailure || scenarios::metric_info(row.metric).unit == scenarios::Unit::verdict;
   const auto told = [&](const scenarios::DependenceClass& part) {
@@ -65,10 +65,10 @@ std::string row_html(const Sensitivity& row) {
     ++shown;
   }
   if (shown > 0) return out;
-  return "<tr>" + cell(row.method) + cell(row.metric) + "<td colspan=\"6\">none is told from chance</td></tr>\n";
+  return "<tr>" + cell(row.method) + cell(row.metric) + "<td colspan=\"6\">no influence beyond chance</td></tr>\n";
 }
 
-// two classes are the least that show a way
+// two classes are the minimum for a trend
 constexpr auto kToldFrom = static_cast<std::int64_t>(scenarios::kSensitivityDrawsMin);
 constexpr auto kDrawnFrom = static_cast<std::int64_t>(2 * scenarios::kDependenceDrawsMin);
 
@@ -79,13 +79,13 @@ std::string draws_needed_text(const std::map<std::string, std::int64_t>& draws) 
   for (const auto& [scenario, count] : draws) {
     if (count >= kDrawnFrom) continue;
     out += out.empty() ? fmt::format(
-                             "It takes {} draws of a scenario to say what breaks a method, and {} for a picture "
-                             "of the score over a number. Still missing: ",
+                             "A scenario needs {} draws for the influence of its numbers, and {} for a plot of the "
+                             "score over a number. Missing draws: ",
                              kToldFrom, kDrawnFrom)
                        : "; ";
-    out += "of " + scenario + " ";
+    out += scenario + " ";
     if (count < kToldFrom) out += fmt::format("{}, and ", kToldFrom - count);
-    out += fmt::format("{} for the picture", kDrawnFrom - count);
+    out += fmt::format("{} for the plot", kDrawnFrom - count);
   }
   return out.empty() ? out : out + ". ";
 }
@@ -95,14 +95,13 @@ std::string sensitivity_html(const std::vector<Sensitivity>& rows, const std::st
   if (!note.empty()) out += "<p>" + escaped(note) + "</p>\n";
   if (rows.empty()) return out;
   out +=
-      "<p>What breaks a method: of the numbers that its draws differ in the three strongest that chance does not "
-      "explain (95 %, after Holm’s correction over all numbers of the row). The strength is the share of the variance "
-      "of the score’s ranks that the number explains, of its first-order index and its squared rank correlation the "
-      "larger. Drawn is the score over the number’s range, in classes of as many draws each: the line at the median "
-      "(or "
-      "the share that failed) within its 95 % interval, upwards the larger score; point at a class to read it. A "
-      "correlation above 0 says: the larger the number, the worse the score. Then the median score over the quarter of "
-      "the draws with the lowest and with the highest numbers.</p>\n";
+      "<p>The table shows, for each method and score, the three scenario numbers with the strongest influence that "
+      "chance does not explain (95 %, with Holm’s correction over all numbers of the row). The strength is the share "
+      "of the variance of the score’s ranks that the number explains: the larger of its first-order index and its "
+      "squared rank correlation. The plot shows the score over the number’s range in classes with equal numbers of "
+      "draws: median (or share of failures) with its 95 % interval, larger scores higher. Point at a class for its "
+      "values. A correlation above 0 means that larger numbers give worse scores. The last columns are the median "
+      "scores of the quarters of the draws with the lowest and with the highest numbers.</p>\n";
   for (auto row = rows.begin(); row != rows.end();) {
     const Sensitivity& first = *row;
     out += fmt::format("<details{}><summary>{} · {}</summary>\n", row == rows.begin() ? " open" : "",

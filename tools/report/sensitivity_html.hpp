@@ -10,12 +10,12 @@
 
 namespace tumble::tools {
 
-/// What breaks each method: of the numbers that draws differ in the three strongest that chance does not explain.
-/// `note` says of which draws, or why there is nothing.
+/// Shows what makes each method fail: the three scenario numbers with the strongest influence that chance does not
+/// explain. `note` states the draws used, or why there is no result.
 std::string sensitivity_html(const std::vector<scenarios::Sensitivity>& rows, const std::string& note);
 
-/// How many more draws each scenario needs, by those that it has: to say what breaks a method, and to draw the score
-/// over a number. Empty where all have enough.
+/// States how many more draws each scenario needs, given the number it has: for the ranking of influences, and for the
+/// plot of the score as a function of a number. Empty if all scenarios have enough.
 std::string draws_needed_text(const std::map<std::string, std::int64_t>& draws);
 
 }  // namespace tumble::tools

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The tables of README.md and docs/figures.md: runs their sweeps, compares each cell with docs/figures.yaml, writes the pages.
 
-docs/figures.yaml names the sweeps (scenarios, seeds, methods, or a command), the tables (page, rows, columns, tolerance) and, below
+docs/figures.yaml names the sweeps (scenarios, seeds, methods, or a command), the tables (page, titles, groups of rows with their columns, tolerance) and, below
 the line `values:`, the value of each cell. A cell is stale if a new run differs from its value by more than the table's tolerance.
 """
 import math
@@ -56,21 +56,23 @@ def cell(scores, scenario, column, method):
     draws = [entry for (of, _, by), entry in scores.items() if of == scenario and by == method]
     if column["statistic"] == "failures":
         return sum(status != "ok" for status, _ in draws), len(draws)
-    used = [values.get(column["metric"], math.inf if status != "ok" else None) for status, values in draws]
-    used = [math.inf if value is None or math.isnan(value) else value for value in used if value is not None]
+    used = [values.get(column["metric"]) if status == "ok" else math.inf for status, values in draws]
+    used = [value for value in used if value is not None and not math.isnan(value)]  # a draw without clipped samples has no such score
     if not used:
         return None, len(draws)
     value = {"median": statistics.median, "mean": statistics.fmean, "max": max}[column["statistic"]](used)
     return value * column.get("scale", 1.0), len(draws)
 
 
-def computed(table, scores):
-    """Row -> list of [value, draws], in the order of the columns. Rows are scenarios or methods."""
+def computed(group, scores):
+    """Row -> list of [value, draws], in the order of the columns. Rows are scenarios or methods; a column may be a text."""
     out = {}
-    for row in table["rows"]:
+    for row in group["rows"]:
         cells = []
-        for column in table["columns"]:
-            scenario, method = (row, column["method"]) if table["by"] == "scenario" else (column["scenario"], row)
+        for column in group["columns"]:
+            if "text" in column:
+                continue
+            scenario, method = (row, column["method"]) if group["by"] == "scenario" else (column["scenario"], row)
             value, draws = cell(scores, scenario, column, method)
             if value is not None:
                 value = "failed" if math.isinf(value) else float(f"{value:.4g}")
@@ -79,15 +81,15 @@ def computed(table, scores):
     return out
 
 
-def stale(name, table, expected, found):
+def stale(name, tolerance, expected, found):
     """Sentences about the cells that differ from their expected value by more than the tolerance."""
     out = []
     for row, cells in found.items():
-        for column, (value, draws), (was, was_draws) in zip(table["columns"], cells, expected.get(row, []) or [[None, 0]] * len(cells)):
+        for number, ((value, draws), (was, was_draws)) in enumerate(zip(cells, expected.get(row) or [[None, 0]] * len(cells)), 1):
             same = value == was or (isinstance(value, float) and isinstance(was, (int, float)) and
-                                    abs(value - was) <= table["tolerance"] * max(abs(was), abs(value)))
+                                    abs(value - was) <= tolerance * max(abs(was), abs(value)))
             if not same or draws != was_draws:
-                out.append(f"{name}: row '{row}', column '{column['title']}' is {value} of {draws} draws, docs/figures.yaml has {was} of {was_draws}")
+                out.append(f"{name}: row '{row}', value {number} is {value} of {draws} draws, docs/figures.yaml has {was} of {was_draws}")
     return out
 
 
@@ -102,12 +104,13 @@ def shown(value, draws, column):
 def rendered(name, described):
     """The Markdown of a table from the values of docs/figures.yaml."""
     table, values = described["tables"][name], described["values"].get(name, {})
-    titles = [table["row_title"]] + [column["title"] for column in table["columns"]]
-    lines = [table["text"].strip(), "", "| " + " | ".join(titles) + " |", "| --- |" + " ---: |" * len(table["columns"])]
-    for row, label in table["rows"].items():
-        cells = [shown(value, draws, column) for (value, draws), column in zip(values[row], table["columns"])]
-        lines.append("| " + " | ".join([label, *cells]) + " |")
-    return "\n".join(lines + ["", f"Command: `tools/reproduce figures {name}`."])
+    lines = [table["text"].strip(), "", "| " + " | ".join(table["titles"]) + " |", "| --- |" + " ---: |" * (len(table["titles"]) - 1)]
+    for group in table["groups"]:
+        for row, label in group["rows"].items():
+            known = iter(values[row])
+            cells = [column["text"] if "text" in column else shown(*next(known), column) for column in group["columns"]]
+            lines.append("| " + " | ".join([label, *cells]) + " |")
+    return "\n".join([*lines, "", f"Command: `tools/reproduce figures {name}`."])
 
 
 def block(name):
@@ -152,15 +155,16 @@ def run(names, program, folder, jobs, write, pages):
     names = names or list(described["tables"])
     complaints, scores = [], {}
     for name in names:
-        table = described["tables"][name]
-        sweep = table["sweep"]
-        if sweep not in scores:
-            command, databases = sweep_command(sweep, described["sweeps"][sweep], program, folder, jobs)
-            if subprocess.run(command, cwd=ROOT).returncode not in (0, 1):
-                raise SystemExit(f"reproduce: {' '.join(command)} failed")
-            scores[sweep] = read_scores(databases)
-        found = computed(table, scores[sweep])
-        complaints += stale(name, table, described["values"].get(name, {}), found)
+        table, found = described["tables"][name], {}
+        for group in table["groups"]:
+            sweep = group["sweep"]
+            if sweep not in scores:
+                command, databases = sweep_command(sweep, described["sweeps"][sweep], program, folder, jobs)
+                if subprocess.run(command, cwd=ROOT).returncode not in (0, 1):
+                    raise SystemExit(f"reproduce: {' '.join(command)} failed")
+                scores[sweep] = read_scores(databases)
+            found |= computed(group, scores[sweep])
+        complaints += stale(name, table["tolerance"], described["values"].get(name, {}), found)
         described["values"][name] = found
     if write:
         write_values(described)

@@ -8,10 +8,10 @@
 
 namespace tumble::tools {
 
-/// A row per entry: what, on what, value, bound, unit, verdict (the reason when there is no value).
+/// Returns one row per entry: quantity, subject, value, bound, unit, and verdict (or the reason why there is no value).
 Table certificate_table(const scenarios::Certificate& certificate);
 
-/// "<= 1e-08", "0.001 to 0.02": the accepted range of a value; nothing is said of a lower end of 0.
+/// Formats the accepted range of a value: "<= 1e-08" or "0.001 to 0.02". A lower end of 0 is not printed.
 std::string bound_text(double low, double high);
 
 }  // namespace tumble::tools

@@ -27,7 +27,8 @@ Table::Table(std::string title, std::vector<std::string> header)
     : title_(std::move(title)), header_(std::move(header)), right_from_(header_.size()) {}
 
 void Table::add_row(std::vector<std::string> cells) {
-  if (cells.size() > header_.size()) throw std::logic_error("table '" + title_ + "': a row is longer than the header");
+  if (cells.size() > header_.size())
+    throw std::logic_error("table '" + title_ + "': a row has more cells than the header");
   cells.resize(header_.size());
   rows_.push_back(std::move(cells));
 }
@@ -72,7 +73,7 @@ std::string more_draws_text(double needed, std::int64_t draws, bool open) {
 }
 
 std::size_t character_count(const std::string& text) {
-  // continuation bytes of UTF-8 begin with the bits 10
+  // continuation bytes of UTF-8 start with the bits 10
   return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
 }
 

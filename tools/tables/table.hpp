@@ -7,24 +7,24 @@
 
 namespace tumble::tools {
 
-/// A table for people: a title, a header and rows of text, in columns as wide as their widest cell (counted in
-/// characters, not in bytes). Columns are left-aligned unless named otherwise; nothing is cut.
+/// A table of text: title, header and rows. Columns are as wide as their widest cell, counted in characters. Columns
+/// are left-aligned by default, and cells are never truncated.
 class Table {
  public:
   Table(std::string title, std::vector<std::string> header);
 
-  /// Cells beyond the header are refused with std::logic_error, missing ones are empty.
+  /// Appends a row; missing cells are empty. Throws std::logic_error if there are more cells than columns.
   void add_row(std::vector<std::string> cells);
-  /// Aligns column `index` and those after it to the right: numbers.
+  /// Right-aligns the columns from `index` on, for numbers.
   void align_right_from(std::size_t index) { right_from_ = index; }
 
   bool empty() const { return rows_.empty(); }
-  /// Title, header, rule and rows, each line ended; no spaces at line ends.
+  /// Returns title, header, rule and rows; lines have no trailing spaces.
   std::string text() const;
-  /// The same for other programs' documents, cells escaped so that what they hold is text there and never markup.
-  std::string markdown() const;  ///< a table of GitHub's Markdown
-  std::string csv() const;       ///< RFC 4180; the title as a comment line, "# title"
-  std::string tex() const;       ///< a `tabular` of LaTeX with the rules of `booktabs`
+  /// The table in formats for documents. Cells are escaped, so that their content is never interpreted as markup.
+  std::string markdown() const;  ///< a GitHub Markdown table
+  std::string csv() const;       ///< RFC 4180; the title is a comment line, "# title"
+  std::string tex() const;       ///< a LaTeX `tabular` with the rules of `booktabs`
 
  private:
   std::string title_;
@@ -33,17 +33,17 @@ class Table {
   std::size_t right_from_;
 };
 
-/// A number with four significant digits; "-" for one that is not finite.
+/// Formats a number with four significant digits; "-" if it is not finite.
 std::string number_text(double value);
 
-/// The chance of a test with four decimals; "-" where there is none (NaN).
+/// Formats a p-value with four decimals; "-" for NaN.
 std::string chance_text(double chance);
 
-/// Draws that a test wants beyond those there are, where it is still open: "" where not, "no number" where none would
-/// do.
+/// Formats the number of draws that an open test needs in addition. Returns "" if the test is not open, and "no number"
+/// if no number of draws suffices.
 std::string more_draws_text(double needed, std::int64_t draws, bool open);
 
-/// Number of characters of a UTF-8 string (code points; combining marks are not accounted for).
+/// Counts the code points of a UTF-8 string; combining marks count separately.
 std::size_t character_count(const std::string& text);
 
 }  // namespace tumble::tools

@@ -37,8 +37,8 @@ std::pair<std::uint64_t, std::uint64_t> parse_seeds(const std::string& text) {
       dots == std::string::npos
           ? scenarios::read_number(text, first) && scenarios::read_number(text, last)
           : scenarios::read_number(text.substr(0, dots), first) && scenarios::read_number(text.substr(dots + 2), last);
-  if (!read) throw BadInput("--seeds is '" + text + "', must be A..B with whole numbers, as in 1..40");
-  if (last < first) throw BadInput("--seeds is '" + text + "': the first is greater than the last");
+  if (!read) throw BadInput("--seeds is '" + text + "', must be A..B with whole numbers, for example 1..40");
+  if (last < first) throw BadInput("--seeds is '" + text + "': the first seed must not exceed the last");
   return {first, last};
 }
 
@@ -48,14 +48,14 @@ Shard parse_shard(const std::string& text) {
   const bool read = bar != std::string::npos && scenarios::read_number(text.substr(0, bar), shard.index) &&
                     scenarios::read_number(text.substr(bar + 1), shard.count);
   if (!read || shard.index < 1 || shard.index > shard.count || shard.count > 1000000) {
-    throw BadInput("--shard is '" + text + "', must be i/n with 1 <= i <= n <= 1000000, as in 2/8");
+    throw BadInput("--shard is '" + text + "', must be i/n with 1 <= i <= n <= 1000000, for example 2/8");
   }
   return shard;
 }
 
 bool shard_seeds(const Shard& shard, std::uint64_t& first, std::uint64_t& last) {
   if (shard.count == 1) return true;
-  // of 2^64 seeds the number does not fit, the difference of the ends does
+  // 2^64 seeds overflow a counter, but the difference between the ends fits
   const std::uint64_t span = last - first, rest = span % shard.count + 1;
   const std::uint64_t length = span / shard.count + rest / shard.count, longer = rest % shard.count;
   const std::uint64_t before = shard.index - 1;
@@ -91,7 +91,7 @@ scenarios::MethodPointer one_method(const std::string& name, double time_limit_s
   const std::vector<scenarios::MethodPointer> found =
       scenarios::find_methods_within(std::vector<std::string>{name}, time_limit_s);
   if (found.size() == 1) return found.front();
-  std::string line = "--method " + name + " names several methods; say which:";
+  std::string line = "--method " + name + " names several methods; choose one of:";
   for (const scenarios::MethodPointer& method : found)
     line += std::string(" ") + to_string(method->info.kind) + "/" + method->info.name;
   throw BadInput(line);
@@ -110,10 +110,10 @@ std::string metric_of(const scenarios::Method& method, const std::string& name) 
 std::uint64_t seed_of(const scenarios::Scenario& scenario, const std::string& text) {
   if (!text.empty()) return parse_seed(text);
   if (scenario.named_case) return scenario.named_case->seed;
-  throw BadInput("--seed is missing: which draw of scenario '" + scenario.name + "'");
+  throw BadInput("--seed is missing: give the seed of a draw of scenario '" + scenario.name + "'");
 }
 
-// BadInput passes through CLI11 with its one line
+// CLI11 passes BadInput on unchanged.
 std::function<void(const std::string&)> a_scenario(const Session& session) {
   return [&session](const std::string& text) { scenarios::load_scenario(session.data(), text); };
 }
@@ -136,8 +136,8 @@ int available_processors() {
 void make_folder(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  if (error) throw BadInput(folder.string() + ": cannot make this folder: " + error.message());
-  if (!std::filesystem::is_directory(folder, error)) throw BadInput(folder.string() + ": is not a folder");
+  if (error) throw BadInput(folder.string() + ": cannot create this folder: " + error.message());
+  if (!std::filesystem::is_directory(folder, error)) throw BadInput(folder.string() + ": exists, but is not a folder");
 }
 
 void prepare_output(const std::filesystem::path& output, std::span<const std::filesystem::path> inputs) {

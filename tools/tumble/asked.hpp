@@ -8,16 +8,18 @@
 #include "tools/tables/table.hpp"
 #include "tools/tumble/session.hpp"
 
-/// What is asked of two methods, as words of the command line. All throw scenarios::BadInput with one clear line.
+/// Parses questions about two methods from the command line. All functions throw scenarios::BadInput with a one-line
+/// message.
 namespace tumble::tools {
 
-/// "0.05", in the metric's unit, or "10%", of the other's value; `option` begins the message.
+/// Parses a margin: "0.05" in the metric's unit, or "10%" of the other method's value. Messages start with `option`.
 scenarios::Margin parse_margin(const std::string& option, const std::string& text);
 
-/// "A:B:METRIC" or "A:B:METRIC:MARGIN", of the scenarios and seeds of a suite whose methods A and B are.
+/// Parses "A:B:METRIC" or "A:B:METRIC:MARGIN". The question covers the scenarios and seeds of a suite with methods A
+/// and B.
 scenarios::Question parse_question(const std::string& text, double risk, const scenarios::Suite& suite);
 
-/// A line a scenario.
+/// Returns one row per scenario.
 Table table_of(const std::vector<scenarios::Answer>& answers, const scenarios::Question& question);
 nlohmann::json json_of(const std::vector<scenarios::Answer>& answers, const scenarios::Question& question);
 

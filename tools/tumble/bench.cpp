@@ -42,26 +42,28 @@ struct BenchOptions {
   bool store = false;
 };
 
-/// Methods of one kind, since a suite is of one.
+/// All methods must have the same kind, because a suite has one kind.
 std::vector<scenarios::MethodPointer> methods_of(const BenchOptions& options) {
   std::vector<scenarios::MethodPointer> methods = scenarios::find_methods(options.methods);
   for (const scenarios::MethodPointer& each : methods)
     if (each->info.kind != methods.front()->info.kind)
-      throw BadInput(fmt::format("{}/{} and {}/{} are of two kinds: a bench is of one", to_string(each->info.kind),
-                                 each->info.name, to_string(methods.front()->info.kind), methods.front()->info.name));
+      throw BadInput(
+          fmt::format("{}/{} and {}/{} are methods of two kinds; all methods of a bench must have the same kind",
+                      to_string(each->info.kind), each->info.name, to_string(methods.front()->info.kind),
+                      methods.front()->info.name));
   return methods;
 }
 
 scenarios::Suite suite_of(const scenarios::DataRoot& data, const BenchOptions& options, scenarios::Kind kind) {
   scenarios::Suite suite =
       scenarios::load_suite(data, options.suite.empty() ? scenarios::bench_suite_name(kind) : options.suite);
-  if (suite.classes.empty()) throw BadInput("suite " + suite.name + " has no classes of draws (key 'draws')");
+  if (suite.classes.empty()) throw BadInput("suite " + suite.name + " has no classes of draws; add the key 'draws'");
   suite.methods = options.methods;
   return suite;
 }
 
-/// One name for what is to be run by this build: a run that was stopped goes on in it, and another method, or the same
-/// after a change, begins its own.
+/// The name depends on suite, methods and build. A stopped run therefore continues in its database, while a changed
+/// method or build starts a new database.
 fs::path database_of(const scenarios::DataRoot& data, const BenchOptions& options, const scenarios::Suite& suite,
                      const std::vector<scenarios::MethodPointer>& methods) {
   if (!options.database.empty()) return options.database;
@@ -73,20 +75,21 @@ fs::path database_of(const scenarios::DataRoot& data, const BenchOptions& option
   return fmt::format("{}_{}_{}.db", suite.name, whose, scenarios::digest_of_texts(texts).substr(0, kDigestShown));
 }
 
-/// Of the tree, and of files that were named, which are refused as a whole where they are of another suite.
+/// Reads the results stored in the source tree, and named files. A named file with results of another suite is an
+/// error.
 std::vector<BenchResult> stored_results(const scenarios::DataRoot& data, const BenchOptions& options,
                                         const scenarios::Suite& suite) {
   std::vector<BenchResult> all = scenarios::read_bench_results(scenarios::bench_results_file(data, suite.name));
   for (const fs::path& file : options.beside) {
     const std::vector<BenchResult> more = scenarios::read_bench_results(file);
-    if (more.empty()) throw BadInput(file.string() + ": holds no result of a bench");
+    if (more.empty()) throw BadInput(file.string() + ": contains no bench results");
     all.insert(all.end(), more.begin(), more.end());
   }
   for (const BenchResult& each : all) scenarios::require_of_suite(each, suite);
   return all;
 }
 
-/// As it was asked for, without the folders of whose machine it was.
+/// Returns the command with file names only, so that no path of this machine appears on the page.
 std::string command_of(const BenchOptions& options) {
   std::string words = "tumble bench";
   for (const std::string& method : options.methods) {
@@ -112,12 +115,12 @@ BenchPage page_of(const scenarios::Results& results, const scenarios::Suite& sui
       page.stored.push_back(std::move(each));
     else
       page.left_out.push_back(
-          fmt::format("{}: its recording of {} is another, of another simulation", each.method, draw));
+          fmt::format("{}: its recording of {} differs, because another build simulated it", each.method, draw));
   }
   return page;
 }
 
-/// The page, and under it a line of JSON for each method that ran; with --json these alone.
+/// Prints the page, followed by one JSON line per method that ran. With --json only the JSON lines are printed.
 void print(const Session& session, const std::vector<Table>& tables, const std::string& lines) {
   if (!session.json) session.print(tables, {});
   if (!session.json && session.format != TableFormat::text) return;
@@ -134,14 +137,15 @@ int bench(const Session& session, const BenchOptions& options) {
   if (!options.lines.empty()) prepare_file(options.lines, {});
   const fs::path database = database_of(data, options, suite, methods);
   if (database.has_parent_path()) make_folder(database.parent_path());
-  session.note(fmt::format("{}, {} draws; results in {}, where a run that is stopped goes on", suite.name,
-                           suite.draw_count(), database.string()));
+  session.note(fmt::format("{}, {} draws; results in {}; a stopped run continues there", suite.name, suite.draw_count(),
+                           database.string()));
   const scenarios::DatabaseOwner owner(database);
   const InterruptFlag interrupt;
   scenarios::SweepOptions how;
   how.jobs = options.jobs;
   how.stop = &interrupt.raised();
-  how.again = {scenarios::OutcomeStatus::killed};  // what the machine ended says nothing of a method
+  how.again = {scenarios::OutcomeStatus::killed};  // a run that the operating system killed does not characterise the
+                                                   // method
   const scenarios::SweepProgress final = sweep_with_progress(session, data, suite, owner, how);
   if (final.draws_done < final.draws_total) return say_stopped(final);
 
@@ -164,14 +168,15 @@ int bench(const Session& session, const BenchOptions& options) {
 
 Action declare_bench(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<BenchOptions>();
-  verb.add("METHOD", options->methods, "NAME.yaml or NAME.py of yours, or a name; several of one kind").required();
-  verb.add("--suite", options->suite, "another suite whose draws are named [the standard one of the kind]");
-  verb.add("--beside", options->beside, "FILE.jsonl of results that others have published, compared too")
-      .one_at_a_time();
-  verb.add("--jobs", options->jobs, "processes at a time [the processors]").whole(1, 1024).shows_default();
-  verb.add("-o,--output", options->lines, "the lines of JSON besides, FILE.jsonl");
-  verb.add("--db", options->database, "the results database [named after suite, method and its version, here]");
-  verb.add_flag("--store", options->store, "keep the lines with the results that the tree holds");
+  verb.add("METHOD", options->methods,
+           "NAME.yaml or NAME.py of an external method, or the name of a method; several must have the same kind")
+      .required();
+  verb.add("--suite", options->suite, "suite with named draws [the standard suite of the kind]");
+  verb.add("--beside", options->beside, "FILE.jsonl with published results to compare").one_at_a_time();
+  verb.add("--jobs", options->jobs, "number of parallel processes [all processors]").whole(1, 1024).shows_default();
+  verb.add("-o,--output", options->lines, "FILE.jsonl for the lines of JSON");
+  verb.add("--db", options->database, "results database [in this folder, named after suite, method and version]");
+  verb.add_flag("--store", options->store, "store the lines with the results in the source tree");
   return [&session, options] { return bench(session, *options); };
 }
 

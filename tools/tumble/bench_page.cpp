@@ -20,7 +20,7 @@ using scenarios::BenchResult;
 constexpr const char* kCost = "estimate_cpu_s";
 constexpr std::size_t kVersionShown = 40;
 
-/// All that stand on one page, those that ran first.
+/// Returns all methods on the page, those of this run first.
 struct MethodRow {
   const BenchResult* result;
   std::string label;
@@ -33,8 +33,8 @@ std::vector<MethodRow> rows_of(const BenchPage& page) {
   return rows;
 }
 
-/// What the others are paired with: the method that does nothing about the problem; where there is none on the page,
-/// the one that stands first in the registry.
+/// Returns the method that the others are paired with: the baseline, or the first in the registry if the page has no
+/// baseline.
 const BenchResult* baseline_of(const std::vector<MethodRow>& rows) {
   const BenchResult* first = nullptr;
   for (const scenarios::Method& method : scenarios::methods()) {
@@ -50,9 +50,9 @@ const BenchResult* baseline_of(const std::vector<MethodRow>& rows) {
 
 std::string cell_text(const BenchCell& cell) {
   if (cell.draws == 0) return "";
-  if (std::isinf(cell.median)) return fmt::format("lost ({} of {})", cell.lost, cell.draws);
+  if (std::isinf(cell.median)) return fmt::format("failed ({} of {})", cell.lost, cell.draws);
   const std::string median = number_text(cell.median);
-  return cell.lost == 0 ? median : fmt::format("{} (lost {} of {})", median, cell.lost, cell.draws);
+  return cell.lost == 0 ? median : fmt::format("{} (failed {} of {})", median, cell.lost, cell.draws);
 }
 
 Table metric_table(const scenarios::Suite& suite, const std::string& metric, const std::vector<MethodRow>& rows,
@@ -79,11 +79,11 @@ Table metric_table(const scenarios::Suite& suite, const std::string& metric, con
   return table;
 }
 
-/// Statuses, cost and where a result is from.
+/// Table of statuses, cost and origin of each result.
 Table origin_table(const scenarios::Suite& suite, const std::vector<MethodRow>& rows,
                    const std::vector<BenchResult>& all) {
-  Table table(fmt::format("how each came about; {} {}", suite.name, scenarios::bench_suite_digest(suite)),
-              {"method", "ok", "not ok", "CPU s a draw", "date", "version", "build"});
+  Table table(fmt::format("origin of the results; {} {}", suite.name, scenarios::bench_suite_digest(suite)),
+              {"method", "ok", "not ok", "CPU s per draw", "date", "version", "build"});
   for (const MethodRow& row : rows) {
     std::map<std::string, int> counts;
     for (const scenarios::BenchDraw& draw : row.result->draws) ++counts[to_string(draw.status)];
@@ -92,7 +92,7 @@ Table origin_table(const scenarios::Suite& suite, const std::vector<MethodRow>& 
     std::string others;
     for (const auto& [status, count] : counts)
       others += fmt::format("{}{} {}", others.empty() ? "" : ", ", count, status);
-    const std::string version = row.result->version.empty() ? "of the build" : row.result->version;
+    const std::string version = row.result->version.empty() ? "this build's" : row.result->version;
     table.add_row({row.label, std::to_string(ok), others, number_text(bench_cell(*row.result, kCost, "", all).median),
                    row.result->date, version.substr(0, kVersionShown), row.result->build});
   }
@@ -100,7 +100,7 @@ Table origin_table(const scenarios::Suite& suite, const std::vector<MethodRow>& 
 }
 
 Table failure_table(const std::vector<BenchResult>& ran, std::span<const scenarios::Outcome> outcomes) {
-  Table table("what did not go well", {"method", "draw", "class", "status", "message"});
+  Table table("failed runs", {"method", "draw", "class", "status", "message"});
   for (const BenchResult& result : ran) {
     for (const scenarios::BenchDraw& draw : result.draws) {
       if (draw.status == scenarios::OutcomeStatus::ok) continue;

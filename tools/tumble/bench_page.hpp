@@ -11,15 +11,15 @@
 
 namespace tumble::tools {
 
-/// The results that a page shows: those that were run now, and those that stood ready.
+/// Results on a page: those of this run, and stored ones.
 struct BenchPage {
   std::vector<scenarios::BenchResult> ran, stored;
-  std::vector<std::string> left_out;  ///< of the stored ones, each with the reason
+  std::vector<std::string> left_out;  ///< stored results that were left out, each with the reason
 };
 
-/// A table per metric that the suite shows, a row per result, a column per class of draws: the median, lost draws as
-/// the worst. Then how each result came about, what failed of those that ran (`outcomes` has the reasons), and what was
-/// left out.
+/// Returns one table per metric of the suite, with one row per method and one column per class of draws. Cells are
+/// medians; failed draws count as the worst. Further tables list the origin of each result, the failures of this run
+/// (reasons from `outcomes`), and the results that were left out.
 std::vector<Table> bench_tables(const scenarios::Suite& suite, const BenchPage& page,
                                 std::span<const scenarios::Outcome> outcomes);
 

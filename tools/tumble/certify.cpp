@@ -38,7 +38,7 @@ Action declare_certify(VerbOptions& verb, const Session& session) {
   auto rows = std::make_shared<std::vector<std::string>>();
   std::string known;
   for (const scenarios::CertificateRow& row : scenarios::certificate_rows()) known += " " + row.name;
-  verb.add("--row", *rows, "measure this row alone; repeat for more:" + known).one_at_a_time();
+  verb.add("--row", *rows, "measures only this row; repeat for more:" + known).one_at_a_time();
   return [&session, rows] { return certify(session, *rows); };
 }
 

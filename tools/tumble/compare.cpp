@@ -36,7 +36,7 @@ struct CompareOptions {
   double risk = 0.05, power = 0.8;
 };
 
-/// One method against the baseline, or against the one that is named last.
+/// Compares with the baseline, or with the last method if several are named.
 scenarios::ComparisonOptions read(const CompareOptions& options) {
   scenarios::ComparisonOptions out;
   out.methods = options.methods;
@@ -49,7 +49,7 @@ scenarios::ComparisonOptions read(const CompareOptions& options) {
   if (!options.margin.empty()) out.margin = parse_margin("--margin", options.margin);
   if (out.margin && !out.margin->relative && out.metrics.empty())
     throw BadInput("--margin " + options.margin +
-                   " is in the unit of a metric: name it with --metric, or give a share, as 10%");
+                   " is in the unit of a metric: name the metric with --metric, or give a percentage such as 10%");
   out.risk = options.risk;
   out.power = options.power;
   return out;
@@ -59,7 +59,7 @@ std::string title_of(const Contest& contest, const std::string& what) {
   return fmt::format("{}: {}, {}", contest.scenario, to_string(contest.kind), what);
 }
 
-/// A row's cells, each under its head.
+/// Builds the cells of a row together with their column titles.
 struct ComparisonRow {
   std::vector<std::string> heads = {}, cells = {};
 
@@ -67,7 +67,7 @@ struct ComparisonRow {
     heads.push_back(head);
     cells.push_back(std::move(cell));
   }
-  /// As tables that programs read (CSV) have an interval: two cells of numbers, empty where it has no end.
+  /// Adds the two ends of an interval as separate numeric cells for CSV; infinite ends are empty.
   void add_ends(const std::string& head, const scenarios::Interval& interval, double unit = 1.0) {
     const auto end = [&](double value) { return std::isfinite(value) ? fmt::format("{:.6g}", unit * value) : ""; };
     add(head + " low", end(interval.low));
@@ -121,7 +121,7 @@ ComparisonRow cells_of(const FailureComparison& row, bool apart) {
       out.add(head + std::string(" [95 %]"), share_text(share));
     }
   }
-  out.add("it alone", std::to_string(row.only_method));
+  out.add("method alone", std::to_string(row.only_method));
   out.add("the other alone", std::to_string(row.only_against));
   out.add("McNemar p", chance_text(row.chance));
   out.add("Holm p", chance_text(row.corrected));
@@ -130,7 +130,7 @@ ComparisonRow cells_of(const FailureComparison& row, bool apart) {
   return out;
 }
 
-/// A table for each contest; `cells(row)` of each row.
+/// Returns one table per contest; `cells(row)` builds a row.
 template <typename Comparisons, typename Cells>
 std::vector<Table> tables_of(const Comparisons& rows, const std::string& what, const Cells& cells) {
   std::vector<Table> tables;
@@ -199,7 +199,7 @@ int compare(const Session& session, const CompareOptions& options) {
   const scenarios::Results results(options.database, scenarios::Results::Mode::read_only);
   const Comparison comparison = scenarios::compare(scenarios::summarize(results), asked);
   if (comparison.failures.empty())
-    throw BadInput(options.database.string() + ": holds no draw on which two of the methods asked for have run");
+    throw BadInput(options.database.string() + ": contains no draw on which two of the named methods have run");
   const bool apart = session.format == TableFormat::csv;
   std::vector<Table> tables = tables_of(comparison.metrics, "paired with ", [&](const MetricComparison& row) {
     return cells_of(row, asked.margin.has_value(), apart);
@@ -208,10 +208,10 @@ int compare(const Session& session, const CompareOptions& options) {
                                 [&](const FailureComparison& row) { return cells_of(row, apart); }))
     tables.push_back(std::move(table));
   session.print(tables, to_json(comparison, asked.margin.has_value()));
-  session.note(fmt::format(
-      "risk {:g} of any false finding among the {} of the metrics, and again among the {} of failures (Holm); "
-      "docs/maths/statistics.md",
-      options.risk, comparison.metrics.size(), comparison.failures.size()));
+  session.note(
+      fmt::format("risk {:g} of any false finding among the {} comparisons of metrics, and again among the {} of "
+                  "failures (Holm); see docs/maths/statistics.md",
+                  options.risk, comparison.metrics.size(), comparison.failures.size()));
   return kDone;
 }
 
@@ -219,16 +219,21 @@ int compare(const Session& session, const CompareOptions& options) {
 
 Action declare_compare(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<CompareOptions>();
-  verb.add("DATABASE", options->database, "a results database, FILE.db").required();
+  verb.add("DATABASE", options->database, "results database, FILE.db").required();
   verb.add("--method", options->methods,
-           "the method to compare; of several each with the last [all that need no truth, with the baseline]")
+           "method to compare; repeat for more, each is compared with the last [all that need no truth, with the "
+           "baseline]")
       .one_at_a_time();
-  verb.add("--against", options->against, "what it is paired with [the last --method, or the baseline]");
-  verb.add("--metric", options->metrics, "a metric; repeat for more [the headline ones of the kind]").one_at_a_time();
+  verb.add("--against", options->against, "method to compare with [the last --method, or the baseline]");
+  verb.add("--metric", options->metrics, "metric; repeat for more [headline metrics of the kind]").one_at_a_time();
   verb.add("--margin", options->margin,
-           "how much worse still counts as no worse: in the metric's unit, or as 10% of the other's value");
-  verb.add("--risk", options->risk, "of any false finding of the table").within(1e-6, 0.5).shows_default();
-  verb.add("--power", options->power, "that the draws wanted are to have").within(0.5, 0.999).shows_default();
+           "largest loss that still counts as not worse: in the metric's unit, or as 10% of the other method's value");
+  verb.add("--risk", options->risk, "accepted probability of any false finding in a table")
+      .within(1e-6, 0.5)
+      .shows_default();
+  verb.add("--power", options->power, "power of the tests for which the needed draws are computed")
+      .within(0.5, 0.999)
+      .shows_default();
   return [&session, options] { return compare(session, *options); };
 }
 

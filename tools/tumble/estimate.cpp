@@ -33,22 +33,22 @@ struct EstimateOptions {
   std::filesystem::path learnt;
 };
 
-/// Why a run failed; a sensor that the recording does not have is called by its name.
+/// Returns why a run failed; sensors are named if the recording lacks them.
 std::string reason(const Status& status, const sim::Sensors& sensors) {
   const std::string field = status.field;
-  if (status.trouble == Trouble::empty && field == "imus") return "it needs an IMU, and the recording has none";
+  if (status.trouble == Trouble::empty && field == "imus") return "the method needs an IMU, and the recording has none";
   const std::string place = trouble_place(status, sensors);
   return status.message() + (place.empty() ? "" : ": " + place);
 }
 
-/// The one method of that name which can run on this recording without the truth.
+/// Returns the method of that name that can run on this recording without the truth.
 scenarios::MethodPointer choose(const std::string& name, const scenarios::Subject& subject) {
   std::vector<scenarios::MethodPointer> fitting;
   std::string refused;
   for (const scenarios::MethodPointer& method : scenarios::find_methods(name)) {
     if (method->info.needs_truth) {
-      refused =
-          "method '" + full_name(method->info) + "' needs the truth, which this verb never opens; use 'tumble run'";
+      refused = "method '" + full_name(method->info) +
+                "' needs the truth, which this verb never reads; use 'tumble run' instead";
     } else if (const std::string why = method->info.why_not(subject); !why.empty()) {
       refused = "method '" + full_name(method->info) + "': it " + why;
     } else {
@@ -57,14 +57,14 @@ scenarios::MethodPointer choose(const std::string& name, const scenarios::Subjec
   }
   if (fitting.empty()) throw BadInput(refused);
   if (fitting.size() > 1) {
-    std::string line = "--method " + name + " names several methods; say which:";
+    std::string line = "--method " + name + " names several methods; choose one of:";
     for (const scenarios::MethodPointer& method : fitting) line += " " + full_name(method->info);
     throw BadInput(line);
   }
   return fitting.front();
 }
 
-/// A command of somebody else's that gives no answer is told as such.
+/// Converts a failure of an external command to BadInput.
 scenarios::Estimate run_of(const scenarios::Method& method, const sim::Sensors& sensors) {
   try {
     return method.run(sensors, {}, {});
@@ -73,7 +73,7 @@ scenarios::Estimate run_of(const scenarios::Method& method, const sim::Sensors& 
   }
 }
 
-/// What the estimate holds, and its health.
+/// Lists the content of an estimate and its health counters.
 Table summary(const scenarios::Estimate& estimate) {
   Table table("", {"estimate", "value"});
   table.align_right_from(1);
@@ -96,7 +96,7 @@ int run_estimate(const Session& session, const EstimateOptions& options) {
   const scenarios::Method& method = *chosen;
   if (!options.learnt.empty() && !method.info.learns_rig) {
     throw BadInput("--learnt is for " + LearntFile::learning_methods() + "; '" + full_name(method.info) +
-                   "' learns nothing of the rig");
+                   "' does not calibrate the rig");
   }
   LearntFile learnt(options.learnt);
   const scenarios::Method learning = learnt.wrap(method);
@@ -119,10 +119,10 @@ int run_estimate(const Session& session, const EstimateOptions& options) {
                                    {"health", estimate.health}};
   session.print({summary(estimate)}, document);
   if (const std::string caution = learnt.caution(sensors); !caution.empty()) session.note(caution);
-  // also of one that failed: what is wrong with the sensors may be why
+  // printed also after a failure, because a sensor fault may be the cause
   for (const std::string& line : verdict_lines(estimate)) session.note(full_name(method.info) + ": " + line);
   if (estimate.status.ok()) return kDone;
-  // the estimate is left for inspection, and its trouble lies in the recording
+  // the estimate is kept for inspection; the cause is in the recording
   throw BadInput(options.recording.string() + ": " + full_name(method.info) +
                  " failed: " + reason(estimate.status, sensors));
 }
@@ -131,15 +131,16 @@ int run_estimate(const Session& session, const EstimateOptions& options) {
 
 Action declare_estimate(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<EstimateOptions>();
-  verb.add("RECORDING", options->recording, "a recording, FILE.h5").required().check(a_recording);
-  verb.add("--method", options->method, "a method, as 'saave' or 'rate/saave'").required();
+  verb.add("RECORDING", options->recording, "recording, FILE.h5").required().check(a_recording);
+  verb.add("--method", options->method, "method, for example 'saave' or 'rate/saave'").required();
   verb.add("--set", options->parameters,
-           "METHOD.PARAMETER=NUMBER, as rate/tumble_lag.lag_s=0.5; repeat for more ('tumble list methods NAME')")
+           "METHOD.PARAMETER=NUMBER, for example rate/tumble_lag.lag_s=0.5; repeat for more ('tumble list methods "
+           "NAME')")
       .one_at_a_time();
   verb.add("-o,--output", options->folder, "folder for the estimate").required();
   verb.add("--learnt", options->learnt,
-           "FILE.json: what an earlier run of 'rate/tumble' or 'rate/tumble_lag' has learnt of the rig, if it "
-           "exists; written anew");
+           "FILE.json with the calibration of the rig from an earlier run of 'rate/tumble' or 'rate/tumble_lag', if it "
+           "exists; receives the calibration of this run");
   return [&session, options] { return run_estimate(session, *options); };
 }
 

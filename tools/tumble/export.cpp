@@ -21,16 +21,16 @@ struct ExportOptions {
   std::vector<std::filesystem::path> estimates;
 };
 
-/// The one that is asked for, or that the output's ending tells.
+/// Returns the requested format, or the one that corresponds to the output's extension.
 std::string format_of(const ExportOptions& options) {
   const std::string told = options.format.empty() ? scenarios::format_of_ending(options.out) : options.format;
   if (told.empty())
     throw scenarios::BadInput(options.out.string() +
-                              ": --format is needed for an output named so (.mcap, .bag and .tum tell theirs)");
+                              ": --format is missing; only the extensions .mcap, .bag and .tum imply a format");
   return told;
 }
 
-/// Says what was written, and where.
+/// Reports what was written, and where.
 int said(const Session& session, const ExportOptions& options, const std::string& what, const std::string& name) {
   Table table("", {"recording", what, "written to"});
   table.add_row({options.recording.string(), name, options.out.string()});
@@ -40,7 +40,9 @@ int said(const Session& session, const ExportOptions& options, const std::string
 
 int export_for_peer(const Session& session, const ExportOptions& options) {
   const auto refuse = [](bool given, const char* option) {
-    if (given) throw scenarios::BadInput(std::string(option) + ": --for says what is written");
+    if (given)
+      throw scenarios::BadInput(std::string(option) +
+                                ": does not apply with --for, which determines the format and content");
   };
   refuse(!options.format.empty(), "--format");
   refuse(!options.points.empty(), "--points");
@@ -50,7 +52,8 @@ int export_for_peer(const Session& session, const ExportOptions& options) {
   for (const std::string& note :
        scenarios::export_for(options.recording, options.peer, options.out, options.with_truth))
     session.note(note);
-  session.note("manifest.json there says what lies in it; the peer is started by its 'run'");
+  session.note(
+      "manifest.json in the output folder lists its content; its key 'run' is the command that starts the estimator");
   return said(session, options, "for", options.peer);
 }
 
@@ -58,15 +61,15 @@ int export_as(const Session& session, const ExportOptions& options) {
   const std::string format = format_of(options);
   const bool bag = scenarios::is_bag_format(format);
   if (options.with_truth && !bag)
-    throw scenarios::BadInput("--with-truth is for bags; tum and kitti hold nothing else");
+    throw scenarios::BadInput("--with-truth applies to bags only; tum and kitti contain nothing but the truth");
   if (!options.estimates.empty() && !bag)
-    throw scenarios::BadInput("--estimate is for bags (mcap, rosbag1, rosbag2, rosbag2_mcap)");
+    throw scenarios::BadInput("--estimate applies to bags only (mcap, rosbag1, rosbag2, rosbag2_mcap)");
   if (!options.points.empty()) {
-    if (!bag) throw scenarios::BadInput("--points is for bags (mcap, rosbag1, rosbag2, rosbag2_mcap)");
+    if (!bag) throw scenarios::BadInput("--points applies to bags only (mcap, rosbag1, rosbag2, rosbag2_mcap)");
     require_known("kind of points", options.points, std::vector<std::string>{"livox", "pointcloud2"});
   }
   if (!options.frame.empty() && format != "tum" && format != "kitti")
-    throw scenarios::BadInput("--frame is for trajectories (kitti, tum)");
+    throw scenarios::BadInput("--frame applies to trajectories only (kitti, tum)");
   std::vector<std::filesystem::path> inputs = options.estimates;
   inputs.push_back(options.recording);
   prepare_output(options.out, inputs);
@@ -89,28 +92,30 @@ Action declare_export(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<ExportOptions>();
   std::string known;
   for (const std::string& format : scenarios::export_formats()) known += " " + format;
-  verb.add("RECORDING", options->recording, "a recording, FILE.h5").required().check(a_recording);
-  verb.add("--format", options->format, "one of:" + known + " [by the output's ending: .mcap, .bag, .tum]");
+  verb.add("RECORDING", options->recording, "recording, FILE.h5").required().check(a_recording);
+  verb.add("--format", options->format,
+           "format of the output, one of:" + known + " [from the extension of the output: .mcap, .bag, .tum]");
   std::string peers;
   for (const std::string& name : scenarios::peer_dialects()) peers += " " + name;
   verb.add("--for", options->peer,
-           "a published estimator, one of:" + peers +
-               "; a folder with the bag that it reads, its own configuration with this recording's sensors, and "
-               "manifest.json");
+           "writes a folder for a published estimator: the bag that it reads, its configuration with the sensors of "
+           "this recording, and manifest.json; one of:" +
+               peers);
   verb.add("--frame", options->frame,
-           "tum, kitti: whose true poses, body (centre of mass), centre (of a sphere's shell) or a sensor's name; "
-           "estimates of the rig are of imu [body]");
+           "frame of the true poses in tum and kitti: body (centre of mass), centre (of a sphere's shell) or a "
+           "sensor's name; estimates of the rig use imu [body]");
   verb.add("--points", options->points,
-           "of a bag: pointcloud2, or livox for the CustomMsg of Livox' drivers [pointcloud2]");
+           "type of the points in a bag: pointcloud2, or livox for the CustomMsg of Livox' drivers [pointcloud2]");
   verb.add("-o,--output", options->out,
-           "a file (kitti, tum: the true poses; mcap, rosbag1: the sensors) or a folder (csv, pcd, ply, rosbag2: "
-           "the sensors; with --for)")
+           "output: a file (kitti, tum: the true poses; mcap, rosbag1: the sensors) or a folder (csv, pcd, ply, "
+           "rosbag2: the sensors; or with --for)")
       .required();
-  verb.add_flag("--with-truth", options->with_truth,
-                "a bag also holds the true poses, under /truth and as the body's; with --for, as truth.tum beside it");
+  verb.add_flag(
+      "--with-truth", options->with_truth,
+      "adds the true poses: to a bag under /truth and as poses of the body; with --for as truth.tum in the folder");
   verb.add("--estimate", options->estimates,
-           "a bag also holds the poses of an estimate (a folder, or a TUM file of the IMU), and the returns of the "
-           "lidar where it puts them; with the truth, laid onto it at the start, each with its error_m");
+           "adds the poses of an estimate (a folder, or a TUM file of the IMU) and its lidar points to a bag; if there "
+           "is a truth, both are aligned with it at the start and each point has its error_m");
   return [&session, options] {
     return options->peer.empty() ? export_as(session, *options) : export_for_peer(session, *options);
   };

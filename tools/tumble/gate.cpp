@@ -47,19 +47,19 @@ bool is_of(const scenarios::MethodRun& run, const scenarios::MethodPointer& meth
   return run.kind == method->info.kind && run.method == method->info.name;
 }
 
-/// Methods of this build need not be given: what was accepted says which are held. Where a run is accepted, one that is
-/// given is held from then on.
+/// Without --accept, only external methods may be named: the accepted results determine which methods of this build
+/// run. With --accept, named methods are added to the gate.
 std::vector<scenarios::MethodPointer> given_methods(const GateOptions& options) {
   for (const std::string& name : options.methods) {
     if (!options.accept && !scenarios::is_method_file(name))
       throw scenarios::BadInput("--method " + name +
-                                ": must be a FILE.yaml that describes a method; of this build's, those that were "
-                                "accepted are held, and --accept takes in more");
+                                ": must be a FILE.yaml that describes a method; the accepted results determine which "
+                                "methods of this build run, and --accept adds methods");
   }
   return scenarios::find_methods(options.methods);
 }
 
-/// Only what was accepted is run; where a run is accepted, what is given for the first time too.
+/// Restricts the suite to accepted methods; with --accept, newly named methods are added.
 void keep_accepted(const scenarios::Gate& gate, const GateOptions& options,
                    const std::vector<scenarios::MethodPointer>& given, scenarios::Suite& suite) {
   std::vector<std::string> methods = options.methods, names;
@@ -73,17 +73,17 @@ void keep_accepted(const scenarios::Gate& gate, const GateOptions& options,
     add(names, run.scenario);
   }
   suite.methods = methods;
-  if (options.accept) return;  // a scenario that the suite has gained is accepted with the others
+  if (options.accept) return;  // with --accept, new scenarios of the suite are accepted with the others
   for (const scenarios::MethodPointer& method : given) {
     if (std::none_of(accepted.begin(), accepted.end(), [&](const auto& run) { return is_of(run, method); }))
       throw scenarios::BadInput(full_name(method->info) + ": the gate of suite " + suite.name +
-                                " has no accepted run of it; --accept takes it in");
+                                " has no accepted run of this method; --accept adds it");
   }
   for (const std::string& name : names) require_known("scenario of suite " + suite.name, name, suite.scenarios);
   suite.scenarios = names;
 }
 
-/// A database that was kept may hold more than the suite has.
+/// Drops results that do not belong to the suite, because a database that the user keeps may hold more.
 scenarios::GateRun of_suite(scenarios::GateRun run, const scenarios::Suite& suite) {
   const std::vector<scenarios::MethodPointer> methods = scenarios::find_methods(suite.methods);
   std::erase_if(run.methods, [&](const scenarios::MethodRun& each) {
@@ -146,7 +146,7 @@ json to_json(const std::vector<GateResult>& results, bool passes) {
   return {{"verdict", passes ? "pass" : "fail"}, {"held", std::move(rows)}};
 }
 
-/// The gate that is there, or, to be accepted for the first time, none yet.
+/// Loads the gate; the result is empty if it does not exist and --accept creates the first one.
 std::optional<scenarios::Gate> load(const scenarios::DataRoot& data, const GateOptions& options,
                                     const std::vector<scenarios::MethodPointer>& given, const std::string& suite) {
   const fs::path file = gate_file(data, options, suite);
@@ -161,26 +161,26 @@ std::optional<scenarios::Gate> load(const scenarios::DataRoot& data, const GateO
   return gate;
 }
 
-/// Writes the run as accepted, the policy as it was.
+/// Stores the run as accepted and keeps the policy.
 void write_accepted(const fs::path& file, const scenarios::Gate& gate) {
   if (file.has_parent_path()) make_folder(file.parent_path());
   scenarios::replace_file(fs::path(file).replace_extension(".csv"), scenarios::to_csv(gate.accepted));
   if (!fs::exists(file)) scenarios::replace_file(file, scenarios::to_yaml(gate));
 }
 
-/// The certificate that is known of this build goes with what is kept; it is not measured here: a gate is run often.
-/// Says how it stands.
+/// Stores the known certificate of this build next to a kept database and describes its state. It is not measured here,
+/// because gates run often.
 std::string certificate_text(const Session& session, const scenarios::DataRoot& data, const fs::path& database) {
   scenarios::Results results(database, scenarios::Results::Mode::create_or_append);
   const auto certificate = scenarios::known_certificate(results, scenarios::CertificateStore(session.cache(), data));
   return certificate ? certificate_summary(*certificate)
-                     : "not measured of this build on this machine ('tumble certify' and 'tumble sweep' do)";
+                     : "not measured for this build on this machine; run 'tumble certify' or 'tumble sweep'";
 }
 
-/// Cases say themselves what is held.
+/// Runs named cases, which define their own expectations.
 int run_case_gate(const Session& session, const scenarios::DataRoot& data, const GateOptions& options) {
   if (!options.accepted.empty() || !options.methods.empty())
-    throw scenarios::BadInput("--against, --method: a named case says itself what is held");
+    throw scenarios::BadInput("--against, --method: do not apply to a named case, which defines its own expectations");
   return hold_cases(session, data, {options.suite, options.jobs, options.database, options.accept});
 }
 
@@ -189,12 +189,12 @@ int run_gate(const Session& session, const GateOptions& options) {
   if (names_cases(data, options.suite)) return run_case_gate(session, data, options);
   scenarios::Suite suite = scenarios::load_suite(data, options.suite);
   if (!suite.recordings.empty())
-    throw scenarios::BadInput("suite '" + suite.name + "' is of recordings; a gate holds draws of scenarios");
+    throw scenarios::BadInput("suite '" + suite.name + "' contains recordings; a gate needs draws of scenarios");
   if (!suite.classes.empty())
-    throw scenarios::BadInput("suite '" + suite.name + "' names its draws; a gate holds seeds in a row");
+    throw scenarios::BadInput("suite '" + suite.name + "' names its draws; a gate needs a range of seeds");
   if (!options.accepted.empty() && options.accepted.extension() != ".yaml")
     throw scenarios::BadInput("--against " + options.accepted.string() + ": must be a FILE.yaml");
-  suite.curves.clear();  // held are the scenarios as they are
+  suite.curves.clear();  // a gate covers scenarios at their stated settings only
   const std::vector<scenarios::MethodPointer> given = given_methods(options);
   const std::optional<scenarios::Gate> known = load(data, options, given, suite.name);
   if (known)
@@ -239,18 +239,18 @@ int run_gate(const Session& session, const GateOptions& options) {
 Action declare_gate(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<GateOptions>();
   verb.add("SUITE", options->suite,
-           "a suite, a suite file, or a scenario: its fixed seeds are swept; 'regressions', or one of the named cases")
+           "suite, suite file or scenario, whose fixed seeds are run; or 'regressions', or a named case")
       .required()
       .check(a_suite_or_cases(session));
   verb.add("--against", options->accepted,
-           "the gate, FILE.yaml, with the accepted run beside it in FILE.csv [scenarios/gates/SUITE.yaml]");
+           "accepted results: FILE.yaml with FILE.csv in the same folder [scenarios/gates/SUITE.yaml]");
   verb.add("--method", options->methods,
-           "FILE.yaml: the method that it describes is held too, or accepted; with --accept also one of this build, "
-           "held from then on; repeat for more")
+           "FILE.yaml of an external method to check too; with --accept also a method of this build, which is checked "
+           "from then on; repeat for more")
       .one_at_a_time();
-  verb.add("--jobs", options->jobs, "processes at a time [the processors]").whole(1, 1024).shows_default();
-  verb.add("--db", options->database, "keep the results here, and do not run again what it holds [a temporary file]");
-  verb.add_flag("--accept", options->accept, "write this run as the accepted one instead of being held to it");
+  verb.add("--jobs", options->jobs, "number of parallel processes [all processors]").whole(1, 1024).shows_default();
+  verb.add("--db", options->database, "results database to keep; stored runs are not repeated [a temporary file]");
+  verb.add_flag("--accept", options->accept, "stores this run as the accepted results instead of checking it");
   return [&session, options] { return run_gate(session, *options); };
 }
 

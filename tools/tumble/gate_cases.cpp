@@ -21,7 +21,7 @@ namespace {
 using nlohmann::json;
 using scenarios::CaseResult;
 
-/// The case as a suite: its one draw, the methods of which it expects something.
+/// Converts a case to a suite: its single draw, and the methods for which it states expectations.
 scenarios::Suite suite_of(const scenarios::Scenario& named) {
   scenarios::Suite suite;
   suite.name = kAllCases;
@@ -32,7 +32,7 @@ scenarios::Suite suite_of(const scenarios::Scenario& named) {
   return suite;
 }
 
-/// What a case expects, each with the outcome.
+/// Each expectation of a case with its outcome.
 using Reached = std::vector<std::pair<scenarios::Expectation, scenarios::Outcome>>;
 
 Reached reached(const scenarios::Results& results, const scenarios::Scenario& named) {
@@ -51,7 +51,9 @@ Reached reached(const scenarios::Results& results, const scenarios::Scenario& na
     }
   }
   if (out.size() != named.named_case->expected.size())
-    throw scenarios::BadInput("case " + named.name + " cannot be simulated any more");
+    throw scenarios::BadInput(
+        "case " + named.name +
+        " has missing outcomes, because its draw can no longer be simulated; correct or delete its file");
   return out;
 }
 
@@ -87,13 +89,15 @@ json to_json(const std::vector<CaseResult>& results, bool passes) {
   return {{"verdict", passes ? "pass" : "fail"}, {"cases", std::move(rows)}};
 }
 
-/// Writes what was reached into the case's file; it is what is expected from now on.
+/// Writes the outcomes as new expectations to the case's file.
 void accept(const Session& session, const scenarios::DataRoot& data, scenarios::Scenario named, Reached& outcomes) {
   named.named_case->expected.clear();
   for (auto& [expected, outcome] : outcomes) {
     if (outcome.status == scenarios::OutcomeStatus::killed)
       throw scenarios::BadInput(named.name + ", " + expected.method +
-                                ": the machine ended the run, which cannot be accepted: " + outcome.message);
+                                ": the operating system killed the run, so its outcome cannot be accepted; run again "
+                                "with more free memory: " +
+                                outcome.message);
     expected = scenarios::accepted(expected, outcome);
     named.named_case->expected.push_back(expected);
   }
@@ -102,7 +106,7 @@ void accept(const Session& session, const scenarios::DataRoot& data, scenarios::
   session.note("accepted: " + file.string());
 }
 
-/// The cases named, each asked whether what it expects can be.
+/// Loads the named cases and checks that the methods and metrics of their expectations exist.
 std::vector<scenarios::Scenario> cases_of(const scenarios::DataRoot& data, const std::string& word) {
   std::vector<scenarios::Scenario> out;
   for (const std::string& name : scenarios::case_names(data)) {
@@ -110,7 +114,7 @@ std::vector<scenarios::Scenario> cases_of(const scenarios::DataRoot& data, const
     out.push_back(scenarios::load_scenario(data, name));
     scenarios::require_known(out.back());
   }
-  if (out.empty()) throw scenarios::BadInput(data.regressions().string() + ": holds no named case");
+  if (out.empty()) throw scenarios::BadInput(data.regressions().string() + ": contains no named case");
   return out;
 }
 

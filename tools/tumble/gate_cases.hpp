@@ -8,26 +8,26 @@
 #include "scenarios/data_root.hpp"
 #include "tools/tumble/session.hpp"
 
-/// The gate of the named cases, scenarios/regressions.
+/// Gate of the named cases in scenarios/regressions.
 namespace tumble::tools {
 
-/// All cases of the tree, as the gate is asked for them.
+/// Command-line word that selects all cases of the tree.
 inline constexpr const char* kAllCases = "regressions";
 
-/// Whether the word is that, or the name of a case.
+/// True for the word `kAllCases` and for the name of a case.
 bool names_cases(const scenarios::DataRoot& data, const std::string& word);
 
-/// Refuses what is neither that, nor a suite, a suite file or a scenario.
+/// Returns a check that refuses names that are neither cases, nor a suite, a suite file or a scenario.
 std::function<void(const std::string&)> a_suite_or_cases(const Session& session);
 
 struct CaseGate {
-  std::string word;  ///< `kAllCases`, or the name of one
+  std::string word;  ///< `kAllCases`, or the name of a case
   int jobs = 1;
   std::filesystem::path database;  ///< empty: a temporary file
-  bool accept = false;             ///< writes what was reached into the cases' files
+  bool accept = false;             ///< writes the outcomes to the cases' files as new expectations
 };
 
-/// Runs the cases and holds them to what they expect (scenarios/cases/hold_case.hpp); returns the exit status.
+/// Runs the cases and compares them with their expectations (scenarios/cases/hold_case.hpp). Returns the exit status.
 int hold_cases(const Session& session, const scenarios::DataRoot& data, const CaseGate& gate);
 
 }  // namespace tumble::tools

@@ -28,7 +28,7 @@ void require_own(const std::filesystem::path& estimate, const std::filesystem::p
   const std::string own = scenarios::digest(sensors, nullptr);
   if (made_from.empty() || made_from == own) return;
   throw scenarios::BadInput(estimate.string() + ": was made from another recording (its sensors have the digest " +
-                            made_from + ", those of " + recording.string() + " " + own + ")");
+                            made_from + ", but those of " + recording.string() + " have the digest " + own + ")");
 }
 
 }  // namespace tumble::tools

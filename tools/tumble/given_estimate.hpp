@@ -7,14 +7,14 @@
 #include "scenarios/methods/method.hpp"
 #include "sim/recording.hpp"
 
-/// An estimate that the command line names beside its recording.
+/// Reads an estimate that the command line names in addition to its recording.
 namespace tumble::tools {
 
-/// The frame of the poses in a TUM file: as named, else of the first IMU, of the body where there is none. Throws
-/// BadInput naming the nearest known one.
+/// Returns the frame of the poses in a TUM file: the named frame, else the first IMU, else the body if there is no IMU.
+/// Throws BadInput that suggests the nearest known frame.
 scenarios::Frame frame_of(const std::string& name, bool has_imu);
 
-/// An estimate says which sensors it was made from: throws BadInput when those are not the recording's.
+/// An estimate states the digest of its sensors. Throws BadInput if that is not the recording's digest.
 void require_own(const std::filesystem::path& estimate, const std::filesystem::path& recording,
                  const sim::Sensors& sensors);
 

@@ -19,7 +19,7 @@ namespace {
 using scenarios::BadInput;
 using scenarios::Imported;
 
-/// One format, and how its files become a recording.
+/// Imports files of one format.
 Imported import_format(const Session& session, const ImportOptions& options, const std::string& format) {
   if (format == "csv")
     return scenarios::import_imu_csv(options.path, imu_sheet(session, options), accel_unit(options),
@@ -65,7 +65,7 @@ nlohmann::json document_of(const ImportOptions& options, const std::string& form
   return document;
 }
 
-/// A row per sensor, and one for the reference.
+/// Returns one row per sensor, and one for the reference.
 Table table_of(const Imported& imported) {
   Table table("", {"what", "name", "readings", "period [ms]", "seconds", "remark"});
   const auto ms = [](std::int64_t ns) { return number_text(static_cast<double>(ns) * 1e-6); };
@@ -89,11 +89,12 @@ Table table_of(const Imported& imported) {
   return table;
 }
 
-/// What nobody stated of an IMU whose file cannot state it.
+/// Notes the assumptions about an IMU for properties that its file cannot state.
 void say_what_is_assumed(const ImportOptions& options, const std::string& format, std::vector<std::string>& notes) {
   if (options.lever_arm_m.empty() && (format == "csv" || !options.imu.empty())) {
     notes.push_back(
-        "no --lever-arm: the IMU is taken to be at the robot's centre of mass; rates beyond a rail rest on it");
+        "no --lever-arm: the IMU is assumed at the robot's centre of mass; rates beyond saturation depend on the lever "
+        "arm");
   }
 }
 
@@ -110,7 +111,7 @@ int import_from(const Session& session, const ImportOptions& options) {
   if (const std::filesystem::path file = reference_file(options, format); !file.empty()) {
     scenarios::attach_reference(imported, reference_source(options, file, !imported.sensors.lidars.empty()));
     if (options.reference.empty())
-      imported.notes.push_back("the reference is " + file.filename().string() + ", which lies beside the sweeps");
+      imported.notes.push_back("the reference is " + file.filename().string() + ", found in the folder of the sweeps");
   }
   for (std::string& note : scenarios::lidar_rotation_notes(options.path.string(), imported, gyro_unit(options)))
     imported.notes.push_back(std::move(note));
@@ -122,7 +123,7 @@ int import_from(const Session& session, const ImportOptions& options) {
   try {
     scenarios::write_recording(options.out, imported.info, imported.sensors, imported.points,
                                imported.reference ? &*imported.reference : nullptr);
-  } catch (const std::invalid_argument& error) {  // what the file holds makes no sound recording
+  } catch (const std::invalid_argument& error) {  // the content of the file is inconsistent
     throw BadInput(options.path.string() + ": " + error.what());
   }
   for (const std::string& note : imported.notes) session.note(note);

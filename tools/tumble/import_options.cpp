@@ -23,7 +23,7 @@ using scenarios::BadInput;
 const std::vector<std::string> kFormats = {"airbrakes", "broad",   "csv",     "kitti",   "mcap", "pcd", "odometry",
                                            "ply",       "repoimu", "rosbag1", "rosbag2", "tum",  "vtk"};
 
-/// A file of a bag may be read by itself.
+/// Suggests the bag's folder if the user named one of its files.
 std::string bag_hint(const std::filesystem::path& folder) {
   std::set<std::string> bags;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
@@ -31,10 +31,11 @@ std::string bag_hint(const std::filesystem::path& folder) {
     if (ending == ".bag" || ending == ".mcap" || ending == ".db3") bags.insert(entry.path().filename().string());
   }
   if (bags.empty()) return "";
-  return "; of the " + std::to_string(bags.size()) + " bags in it one at a time is read, as " + *bags.begin();
+  return "; import one of the " + std::to_string(bags.size()) + " bags in the folder at a time, for example " +
+         *bags.begin();
 }
 
-/// What the files in a folder are.
+/// Detects the format from the files in a folder.
 std::string format_of_folder(const std::filesystem::path& folder) {
   const std::map<std::string, std::string> known = {
       {".ply", "ply"}, {".pcd", "pcd"}, {".bin", "kitti"}, {".vtk", "vtk"}};
@@ -44,18 +45,18 @@ std::string format_of_folder(const std::filesystem::path& folder) {
     const auto format = known.find(entry.path().extension().string());
     if (format == known.end() || format->second == found) continue;
     if (!found.empty()) {
-      throw BadInput(folder.string() + ": holds files of format " + found + " and " + format->second +
-                     ": --format is needed");
+      throw BadInput(folder.string() + ": contains files of formats " + found + " and " + format->second +
+                     "; select one with --format");
     }
     found = format->second;
   }
   if (found.empty())
-    throw BadInput(folder.string() + ": holds no .ply, .pcd, .vtk or .bin file and no metadata.yaml of a bag" +
+    throw BadInput(folder.string() + ": contains no .ply, .pcd, .vtk or .bin file and no metadata.yaml of a bag" +
                    bag_hint(folder));
   return found;
 }
 
-/// By its first line.
+/// Detects the format from the first line.
 std::string format_of_csv(const std::filesystem::path& file) {
   if (scenarios::is_repoimu(file)) return "repoimu";
   if (scenarios::is_odometry(file)) return "odometry";
@@ -73,13 +74,13 @@ bool is_sweeps(const std::string& format) {
 void require_numbers(const std::string& option, const std::vector<double>& numbers, double bound) {
   for (const double x : numbers) {
     if (!(std::abs(x) <= bound)) {
-      // a number that is none is told as such: in tables it is a dash
+      // NaN is reported with its own message, because in tables it appears as a dash
       throw BadInput(fmt::format("{}: {:g} must be within +-{:g}", option, x, bound));
     }
   }
 }
 
-/// x y z qx qy qz qw.
+/// Converts x y z qx qy qz qw.
 Eigen::Isometry3d pose_of(const std::string& option, const std::vector<double>& numbers) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   if (numbers.empty()) return pose;
@@ -134,76 +135,82 @@ scenarios::SweepReading sweep_reading(const Session& session, const ImportOption
 }
 
 void declare_lidar(VerbOptions& verb, ImportOptions& options) {
-  verb.add("--lidar", options.lidar, "of sweeps: the lidar's data sheet [unknown]");
-  verb.add("--T-body-lidar", options.T_body_lidar,
-           "X Y Z QX QY QZ QW: pose of the lidar in the body, m [the body is the lidar]")
+  verb.add("--lidar", options.lidar, "name of the lidar's data sheet, for sweeps [unknown]");
+  verb.add("--T-body-lidar", options.T_body_lidar, "X Y Z QX QY QZ QW: pose of the lidar in the body, m [identity]")
       .words(7);
-  verb.add("--stem", options.stem, "of the files' names, before their number, when there are several");
+  verb.add("--stem", options.stem,
+           "start of the file names before their number, if the folder contains several series");
   verb.add("--times", options.times,
-           "a stamp per sweep or pose, a line each, s [STEM_times.txt or times.txt beside the sweeps, else the "
-           "files' names, else the points' times]");
+           "file with one time stamp per line for each sweep or pose, s [STEM_times.txt or times.txt in the folder of "
+           "the sweeps, else the file names, else the times of the points]");
   verb.add("--sweep-period", options.sweep_period_s,
-           "length of a sweep, s; where nothing tells their times, also their distance [median step]")
+           "duration of a sweep, s; without time stamps also the time between sweeps [median step]")
       .within(1e-4, 1000.0);
-  verb.add("--time-field", options.time_field, "that holds the points' times [t, time, timestamp, offset_time ...]");
-  verb.add("--time-unit", options.time_unit, "of that field: s, ms, us or ns [by its size]");
-  verb.add_flag("--not-skewed", options.not_skewed, "the sweeps are deskewed: their points belong to one instant");
-  verb.add("--imu", options.imu, "FILE.csv: readings of an IMU in the same clock, beside the sweeps");
+  verb.add("--bin-columns", options.bin_columns,
+           "columns of .bin files in order, for example x,y,z,intensity,ring; each is float32 or has its type after a "
+           "colon (f4 f8 u1 u2 u4 u8 i1 i2 i4 i8: x:f8); _ skips a column [x,y,z,intensity]");
+  verb.add("--time-field", options.time_field,
+           "field with the times of the points [t, time, timestamp, offset_time ...]");
+  verb.add("--time-unit", options.time_unit, "unit of that field: s, ms, us or ns [detected from the values]");
+  verb.add_flag("--not-skewed", options.not_skewed,
+                "the sweeps are already deskewed: all points belong to one instant");
+  verb.add("--imu", options.imu, "FILE.csv with IMU readings in the clock of the sweeps");
 }
 
 void declare_reference(VerbOptions& verb, ImportOptions& options) {
   verb.add("--reference", options.reference,
-           "poses that become the truth: a TUM file or a table of nav_msgs/Odometry in the clock of the sweeps, "
-           "or a KITTI file "
-           "with a pose per sweep [trajectory.csv beside VTK sweeps]");
+           "poses that serve as truth: a TUM file or a table of nav_msgs/Odometry in the clock of the sweeps, or a "
+           "KITTI file with one pose per sweep [trajectory.csv in the folder of VTK sweeps]");
   verb.add("--reference-frame", options.reference_frame,
-           "whose poses they are: lidar or body [of a file: the lidar, if there is one; of a topic: the frame that its "
-           "messages name, if it is known, else the body]");
+           "frame of the reference poses: lidar or body [file: lidar if there is one; topic: the frame named in its "
+           "messages, else body]");
   verb.add("--reference-topic", options.reference_topic,
-           "of a bag: nav_msgs/Odometry or geometry_msgs/PoseStamped, poses that become the truth [none]");
+           "topic of a bag with poses that serve as truth: nav_msgs/Odometry or geometry_msgs/PoseStamped [none]");
   verb.add_flag(
       "--align-reference", options.align_reference,
-      "of repoimu: take the reference's delay, rotation and tilt, estimated from the motion, out of it [said alone]");
-  verb.add_flag("--sort", options.sorted, "a TUM file's lines may be in any order; of equal stamps the first counts");
+      "repoimu: removes delay, rotation and tilt of the reference, as estimated from the motion [only reported]");
+  verb.add_flag("--sort", options.sorted,
+                "accepts lines of a TUM file in any order; of equal stamps the first is used");
 }
 
 }  // namespace
 
 void declare(VerbOptions& verb, ImportOptions& options) {
   verb.add("PATH", options.path,
-           "a folder of lidar sweeps (PLY, PCD, VTK, KITTI .bin); readings of an IMU: CSV with the columns of a "
-           "sensor_msgs/Imu, a trial of BROAD (HDF5) or a recording of RepoIMU (CSV) with its optical reference, "
-           "a flight log "
-           "of AirbrakesV2 (CSV); a bag (ROS 1 file, ROS 2 folder, MCAP file); "
-           "or poses (TUM, KITTI, a table of nav_msgs/Odometry)")
+           "file or folder to import: lidar sweeps (PLY, PCD, VTK, KITTI .bin); IMU readings (CSV with the columns of "
+           "sensor_msgs/Imu, BROAD HDF5 or RepoIMU CSV with optical reference, AirbrakesV2 flight log); a bag (ROS 1 "
+           "file, ROS 2 folder, MCAP file); or poses (TUM, KITTI, a table of nav_msgs/Odometry)")
       .required();
   verb.add("--format", options.format,
-           "airbrakes, broad, csv, kitti, mcap, odometry, pcd, ply, repoimu, rosbag1, rosbag2, tum or vtk [by "
-           "the path's ending "
-           "or content]");
+           "airbrakes, broad, csv, kitti, mcap, odometry, pcd, ply, repoimu, rosbag1, rosbag2, tum or vtk [from "
+           "extension or content]");
   verb.add("--device", options.device,
-           "the IMU's data sheet, for ranges and noise: see 'tumble list sensors' [unknown]");
-  verb.add("--accel-unit", options.accel_unit,
-           "of a CSV or bag: m/s^2 or g [m/s^2; of a bag g where the readings are at rest]");
-  verb.add("--gyro-unit", options.gyro_unit, "of a CSV or bag: rad/s or deg/s [rad/s]");
-  verb.add("--lever-arm", options.lever_arm_m, "X Y Z: from the robot's centre of mass to the IMU, m [0 0 0]").words(3);
-  verb.add("--robot", options.robot, "rig, sphere or pendulum, for methods that ask [unknown]");
-  verb.add("--radius", options.radius_m, "of the sphere, m, for methods of position [unknown]").within(1e-3, 10.0);
-  verb.add("--imu-topic", options.imu_topics, "of a bag: sensor_msgs/Imu; the first is the primary one [all]");
-  verb.add("--lidar-topic", options.lidar_topics, "of a bag: sensor_msgs/PointCloud2 [all]");
+           "name of the IMU's data sheet, for ranges and noise; see 'tumble list sensors' [unknown]");
+  verb.add(
+      "--accel-unit", options.accel_unit,
+      "unit of the accelerometer in a CSV or bag: m/s^2 or g [m/s^2; for a bag g if the readings at rest indicate it]");
+  verb.add("--gyro-unit", options.gyro_unit, "unit of the gyro in a CSV or bag: rad/s or deg/s [rad/s]");
+  verb.add("--lever-arm", options.lever_arm_m, "X Y Z: vector from the robot's centre of mass to the IMU, m [0 0 0]")
+      .words(3);
+  verb.add("--robot", options.robot, "type of robot: rig, sphere or pendulum; some methods need it [unknown]");
+  verb.add("--radius", options.radius_m, "radius of the sphere, m; position methods need it [unknown]")
+      .within(1e-3, 10.0);
+  verb.add("--imu-topic", options.imu_topics,
+           "IMU topic of a bag (sensor_msgs/Imu); the first is the primary IMU [all]");
+  verb.add("--lidar-topic", options.lidar_topics, "lidar topic of a bag (sensor_msgs/PointCloud2) [all]");
   verb.add("--stamps", options.stamps,
-           "of a bag: header, the messages' own; or record, when the bag took them, for headers without usable stamps; "
-           "a sweep then starts a period before [header]");
+           "time stamps of a bag: 'header' from the messages; 'record' from the bag, if headers have no usable stamps; "
+           "with 'record' a sweep starts one period earlier [header]");
   declare_lidar(verb, options);
   declare_reference(verb, options);
-  verb.add("-o,--output", options.out, "the recording, FILE.h5").required();
+  verb.add("-o,--output", options.out, "recording to write, FILE.h5").required();
 }
 
 std::string format_of(const ImportOptions& options) {
   if (!options.format.empty()) require_known("format", options.format, kFormats);
   std::error_code error;
   const bool folder = std::filesystem::is_directory(options.path, error);
-  // TUM's poses are read once, from wherever they come
+  // a pipe can be read only once, so it is not opened here
   if (!folder && options.format != "tum" && std::filesystem::exists(options.path, error))
     scenarios::require_regular_file(options.path);
   if (!options.format.empty()) return options.format;
@@ -216,7 +223,8 @@ std::string format_of(const ImportOptions& options) {
   if (ending == ".hdf5" || ending == ".h5") return "broad";
   if (ending == ".tum" || ending == ".txt" || ending == ".kitti") return scenarios::pose_format(options.path);
   throw BadInput(options.path.string() +
-                 ": --format is needed for a file named so (broad, csv, kitti, mcap, rosbag1, rosbag2 or tum)");
+                 ": cannot detect the format from this file name; give --format (broad, csv, kitti, mcap, rosbag1, "
+                 "rosbag2 or tum)");
 }
 
 void require_fitting(const ImportOptions& options, const std::string& format) {
@@ -227,36 +235,38 @@ void require_fitting(const ImportOptions& options, const std::string& format) {
     if (given) throw BadInput(option + ": " + why);
   };
   refuse(!options.accel_unit.empty() && !csv && !bag, "--accel-unit",
-         "is of the readings of an IMU in a CSV file or bag");
+         "applies only to IMU readings in a CSV file or bag");
   refuse(!options.gyro_unit.empty() && !csv && !bag, "--gyro-unit",
-         "is of the readings of an IMU in a CSV file or bag");
-  refuse(!options.stamps.empty() && !bag, "--stamps", "is for a bag");
-  refuse(options.align_reference && format != "repoimu", "--align-reference", "is for a recording of RepoIMU");
+         "applies only to IMU readings in a CSV file or bag");
+  refuse(!options.stamps.empty() && !bag, "--stamps", "applies only to a bag");
+  refuse(options.align_reference && format != "repoimu", "--align-reference", "applies only to a RepoIMU recording");
   refuse(!options.reference.empty() && log, "--reference",
-         format == "repoimu" ? "a recording of RepoIMU has its own" : "is not for a flight log");
+         format == "repoimu" ? "a RepoIMU recording contains its own reference" : "does not apply to a flight log");
   refuse(!options.lever_arm_m.empty() && !csv && !bag, "--lever-arm",
          format == "broad" || log ? "the body of such a recording is the IMU itself"
-                                  : "is of an IMU in a CSV file or bag");
+                                  : "applies only to an IMU in a CSV file or bag");
   refuse(!options.device.empty() && !csv && !bag && !log && format != "broad", "--device",
-         "is of an IMU; of a lidar it is --lidar");
-  refuse(!options.imu.empty() && !sweeps, "--imu", "is for a folder of sweeps");
-  refuse(!options.stem.empty() && !sweeps, "--stem", "is for a folder of sweeps");
+         "applies only to an IMU; use --lidar for a lidar");
+  refuse(!options.imu.empty() && !sweeps, "--imu", "applies only to a folder of sweeps");
+  refuse(!options.stem.empty() && !sweeps, "--stem", "applies only to a folder of sweeps");
+  refuse(!options.bin_columns.empty() && (!sweeps || format != "kitti"), "--bin-columns",
+         "applies only to a folder of .bin sweeps");
   const bool lidar = !options.lidar.empty() || !options.T_body_lidar.empty() || !options.time_field.empty() ||
                      !options.time_unit.empty() || options.not_skewed;
   refuse(lidar && !sweeps && !bag, "--lidar --T-body-lidar --time-field --time-unit --not-skewed",
-         "are for a folder of sweeps or a bag");
+         "apply only to a folder of sweeps or a bag");
   refuse(!options.times.empty() && !sweeps && format != "kitti", "--times",
-         "is for a folder of sweeps or poses of KITTI");
+         "applies only to a folder of sweeps or poses of KITTI");
   refuse(options.sweep_period_s > 0.0 && !sweeps && !bag && format != "kitti", "--sweep-period",
-         "is for sweeps or poses of KITTI");
+         "applies only to sweeps or poses of KITTI");
   refuse(!options.reference.empty() && !sweeps && !bag && format != "csv", "--reference",
-         "is for sweeps, a bag or readings of an IMU");
+         "applies only to sweeps, a bag or IMU readings");
   const bool topics = !options.imu_topics.empty() || !options.lidar_topics.empty() || !options.reference_topic.empty();
-  refuse(topics && !bag, "--imu-topic --lidar-topic --reference-topic", "are for a bag");
+  refuse(topics && !bag, "--imu-topic --lidar-topic --reference-topic", "apply only to a bag");
   refuse(!options.reference.empty() && !options.reference_topic.empty(), "--reference",
-         "and --reference-topic exclude each other");
+         "and --reference-topic exclude each other; give only one");
   refuse(options.radius_m != 0.0 && options.robot != "sphere", "--radius",
-         "is the sphere's: --robot sphere is missing");
+         "applies only to a sphere; add --robot sphere");
   if (!options.robot.empty())
     require_known("robot", options.robot, std::vector<std::string>{"rig", "sphere", "pendulum"});
   if (!options.reference_frame.empty())
@@ -307,6 +317,7 @@ scenarios::SweepSource sweep_source(const Session& session, const ImportOptions&
   source.stem = options.stem;
   source.times = options.times;
   source.steady_ns = period_ns(options.sweep_period_s);
+  source.bin_columns = options.bin_columns;
   source.reading = sweep_reading(session, options);
   return source;
 }

@@ -7,14 +7,14 @@ namespace tumble::tools {
 
 namespace {
 
-// a signal handler reaches nothing but static storage
+// a signal handler may only access static storage
 std::atomic<bool> raised_by_signal{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler must not lock");
 
-// what the signals did before
+// previous signal handlers
 struct sigaction interrupt_before = {}, terminate_before = {}, hang_up_before = {};
 
-/// The second one has its usual effect, but for a terminal's.
+/// A second signal has its previous effect, except for SIGHUP.
 extern "C" void raise_flag(int number) {
   raised_by_signal.store(true);
   if (number != SIGHUP) sigaction(number, number == SIGINT ? &interrupt_before : &terminate_before, nullptr);

@@ -6,12 +6,12 @@
 
 #include "scenarios/statistics/statistics.hpp"
 
-/// An interval as people and as programs read it.
+/// Formats intervals for people (text) and for programs (JSON).
 namespace tumble::tools {
 
-/// Of the ends alone; "[-]" where neither is known.
+/// Formats the two ends; "[-]" if neither is known.
 std::string interval_text(const scenarios::Interval& interval);
-/// Null where it is not finite, which JSON cannot say.
+/// Returns null for values that are not finite, which JSON cannot represent.
 nlohmann::json finite(double value);
 nlohmann::json interval_json(const scenarios::Interval& interval);
 

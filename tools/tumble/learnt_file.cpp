@@ -23,15 +23,15 @@ void LearntFile::require_place() const {
 }
 
 std::string LearntFile::caution(const sim::Sensors& sensors) const {
-  constexpr double kLeverArmOff_m = 0.1;  // of a mounting that is measured at all
+  constexpr double kLeverArmOff_m = 0.1;  // larger than the error of any measured mounting
   if (!learning_.given || sensors.imus.empty()) return "";
   const Eigen::Vector3d stated = scenarios::bridge::lever_arm_I_m(sensors.imus.front());
-  if (stated.isZero(0.0)) return "";  // nobody stated it
+  if (stated.isZero(0.0)) return "";  // the recording does not state a lever arm
   const double off_m = (learning_.given->calibration.constants.lever_arm_m - stated).norm();
   if (off_m <= kLeverArmOff_m) return "";
   return fmt::format(
-      "caution: {} holds a lever arm that is {:.2g} m off that of the recording: learnt of another rig? Rates beyond a "
-      "rail rest on it",
+      "caution: {} contains a lever arm that differs by {:.2g} m from that of the recording; it may belong to another "
+      "rig. Rates beyond saturation depend on the lever arm",
       path_.string(), off_m);
 }
 
@@ -50,9 +50,9 @@ scenarios::Method LearntFile::wrap(const scenarios::Method& method) {
 void LearntFile::keep(const Session& session) const {
   if (path_.empty()) return;
   if (learning_.found() != nullptr) return scenarios::write_learnt_rig(path_, *learning_.found());
-  session.note(path_.string() + (std::filesystem::exists(path_) ? ": stays as it is" : ": not written") +
-               ": nothing was learnt of the rig, which was held to what was known before: no free flight or contact "
-               "told more of it and no tilted rail is sure, what was known is not of this rig, or the run failed");
+  session.note(path_.string() + (std::filesystem::exists(path_) ? ": is unchanged" : ": not written") +
+               ": the run produced no calibration of the rig. Possible reasons: too little free flight or contact and "
+               "no identified saturation limit, a file of another rig, or a failed run");
 }
 
 }  // namespace tumble::tools

@@ -10,30 +10,32 @@
 
 namespace tumble::tools {
 
-/// The option --learnt: a file that holds what earlier runs have learnt of the rig, and afterwards what this run has.
+/// Option --learnt: a file with the calibration of the rig from earlier runs. After the run it holds the calibration of
+/// this run.
 class LearntFile {
  public:
-  /// An empty path: no option, nothing is read or kept. A file that is not there is none yet. Throws BadInput on one
-  /// that cannot be read.
+  /// An empty path means that the option is not used. A missing file holds no calibration yet. Throws BadInput if the
+  /// file cannot be read.
   explicit LearntFile(std::filesystem::path path);
 
-  /// Throws BadInput where the file could not be written: before a run has cost anything, and once its folder is there,
-  /// in which the file may be. Leaves nothing.
+  /// Throws BadInput if the file cannot be written, and leaves no file behind. It is called before the run, after its
+  /// folder was created.
   void require_place() const;
 
-  /// Whether what the file held is of another rig than the recording says its IMU is on: a caution, or "". Rates beyond
-  /// a rail rest on the lever arm, and what was learnt is believed to millimetres.
+  /// Compares the lever arm in the file with the recording's; returns a warning if it belongs to another rig, else "".
+  /// A rate beyond saturation depends on the lever arm, and a calibrated arm is accepted with an accuracy of
+  /// millimetres.
   std::string caution(const sim::Sensors& sensors) const;
 
-  /// Full names of the methods that learn of the rig, for the user.
+  /// Returns the full names of the methods that calibrate the rig.
   static std::string learning_methods();
 
-  /// `method` as one that starts from the file; itself where it learns nothing and without a file. It refers to this
-  /// object.
+  /// Returns `method` with the calibration of the file as its start. Returns `method` unchanged if it does not
+  /// calibrate or there is no file. The result refers to this object.
   scenarios::Method wrap(const scenarios::Method& method);
 
-  /// Writes what was learnt. Where nothing was, the file stays as it is, and a note says so and why. Throws BadInput
-  /// when it cannot write.
+  /// Writes the calibration. If the run produced none, the file is unchanged and a note states the reason. Throws
+  /// BadInput if writing fails.
   void keep(const Session& session) const;
 
  private:

@@ -19,7 +19,7 @@ namespace {
 
 using nlohmann::json;
 
-/// What a listing gives: tables for people and the same as JSON.
+/// A listing as tables for people and as JSON.
 struct Listing {
   std::vector<Table> tables;
   json document = json::array();
@@ -35,7 +35,7 @@ std::string bounds_of_parameter(const sim::Parameter& p) {
   return "[" + number_text(p.low) + ", " + number_text(p.high) + "]";
 }
 
-/// "uniform 0.35 .. 0.78", as the scenario file means it.
+/// Formats a distribution, for example "uniform 0.35 .. 0.78".
 std::string distribution_text(const scenarios::Distribution& d) {
   using Shape = scenarios::Distribution::Shape;
   const auto number = [&](std::size_t i) {
@@ -59,7 +59,7 @@ std::string distribution_text(const scenarios::Distribution& d) {
   return text;
 }
 
-/// The registry entry called `type`; its parameters say unit, default and bound of a scenario's numbers.
+/// Returns the parameters of the registered component `type`, with unit, default and bounds.
 std::span<const sim::Parameter> parameters_of(std::span<const sim::ComponentType> registry, const std::string& type) {
   for (const sim::ComponentType& entry : registry) {
     if (entry.name == type) return entry.parameters;
@@ -67,7 +67,7 @@ std::span<const sim::Parameter> parameters_of(std::span<const sim::ComponentType
   return {};
 }
 
-/// One table row and one JSON object per number of a part; what the scenario leaves out stands at its default.
+/// Adds one table row and one JSON object per parameter; omitted parameters are listed with their defaults.
 void add_part(Table& table, json& rows, const std::string& place, std::span<const sim::Parameter> known,
               const std::map<std::string, scenarios::Distribution>& given) {
   for (const sim::Parameter& p : known) {
@@ -82,7 +82,6 @@ void add_part(Table& table, json& rows, const std::string& place, std::span<cons
   }
 }
 
-/// Numbers of one scenario.
 void add_scenario_numbers(const scenarios::Scenario& s, Listing& out, json& entry) {
   Table table(s.name + ": numbers", {"number", "in this scenario", "default", "bound", "unit", "meaning"});
   json rows = json::array();
@@ -96,7 +95,7 @@ void add_scenario_numbers(const scenarios::Scenario& s, Listing& out, json& entr
   entry["numbers"] = std::move(rows);
 }
 
-/// Named cases, apart from the catalogue: what they were, and what is expected on them.
+/// Lists the named cases separately from the catalogue, with origin and expectations.
 void add_cases(const scenarios::DataRoot& data, Listing& out) {
   Table table("named cases", {"case", "of", "seed", "duration_s", "expected", "meaning"});
   for (const std::string& name : scenarios::case_names(data)) {
@@ -127,7 +126,7 @@ Listing list_scenarios(const scenarios::DataRoot& data, const std::string& only)
   Listing out;
   std::vector<std::string> names = scenarios::scenario_names(data);
   const std::vector<std::string> cases = scenarios::case_names(data);
-  if (!only.empty()) {  // of a case all numbers, as of a scenario
+  if (!only.empty()) {  // all numbers of one case, as for a scenario
     names.insert(names.end(), cases.begin(), cases.end());
     require_known("scenario", only, names);
   }
@@ -187,12 +186,12 @@ Listing list_methods(const std::string& only) {
   }
   out.tables.push_back(std::move(table));
   if (!parameters.empty()) out.tables.push_back(std::move(parameters));
-  // of all methods at once they would be thousands of lines
+  // the numbers of all methods would fill thousands of lines
   if (!only.empty() && !further.empty()) out.tables.push_back(std::move(further));
   return out;
 }
 
-/// Kinds of sensors: each with its meaning, or all numbers of one.
+/// Lists the kinds of sensors, or all numbers of one kind.
 void add_sensor_kinds(const std::string& only, Listing& out) {
   Table kinds("kinds", {"kind", "meaning"});
   for (const sim::ComponentType& kind : sim::sensor_types()) {
@@ -254,7 +253,7 @@ Listing list_suites(const scenarios::DataRoot& data, const std::string& only) {
   Listing out;
   const std::vector<std::string> names = scenarios::suite_names(data);
   if (!only.empty()) require_known("suite", only, names);
-  Table table("", {"suite", "scenarios", "seeds", "methods", "varies", "time-out of a method", "meaning"});
+  Table table("", {"suite", "scenarios", "seeds", "methods", "varies", "time limit per method", "meaning"});
   const std::size_t all = scenarios::methods().size();
   const auto joined = [](const std::vector<std::string>& words) {
     std::string text;
@@ -304,7 +303,7 @@ const char* place_text(scenarios::Place place) {
 
 Listing list_metrics(const std::string& only) {
   Listing out;
-  Table table("", {"metric", "kind", "unit", "sense", "shown first, held", "meaning"});
+  Table table("", {"metric", "kind", "unit", "sense", "headline or gate", "meaning"});
   std::vector<std::string> names;
   for (const scenarios::Metric& metric : scenarios::metrics()) names.push_back(metric.info.name);
   if (!only.empty()) require_known("metric", only, names);
@@ -341,7 +340,7 @@ Action declare_list(VerbOptions& verb, const Session& session) {
   auto what = std::make_shared<std::string>();
   auto only = std::make_shared<std::string>();
   verb.add("WHAT", *what, "scenarios, methods, metrics, sensors or suites").required();
-  verb.add("NAME", *only, "one of them, with all of its numbers");
+  verb.add("NAME", *only, "name of one of them, to list all its parameters");
   return [&session, what, only] {
     const Listing out = listing(session, *what, *only);
     session.print(out.tables, out.document);

@@ -6,9 +6,9 @@
 #include "tools/tumble/program.hpp"
 
 int main(int argc, char** argv) {
-  // a file-size limit shall fail the write, with its one clear line, and not end the program by a signal
+  // a write beyond the file-size limit then fails with an error message instead of ending the program
   std::signal(SIGXFSZ, SIG_IGN);
-  // an interrupted verb leaves nothing that is half done
+  // removes unfinished files when a verb is interrupted
   tumble::scenarios::remove_unfinished_on_signals();
   return tumble::tools::run_program(argc, argv);
 }

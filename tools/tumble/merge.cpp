@@ -23,7 +23,7 @@ int merge(const Session& session, const MergeOptions& options) {
   const scenarios::DatabaseOwner owner(options.out);
   const scenarios::MergeCounts counts = scenarios::merge_results(owner, options.in, options.mixed);
   const std::size_t kept = options.mixed ? 0 : scenarios::merge_kept(owner, options.in);
-  Table table("", {"database", "databases joined", "rows added", "replaced worse ones", "held already",
+  Table table("", {"database", "databases merged", "rows added", "replaced worse rows", "already present",
                    "draws rejected", "draws kept"});
   table.align_right_from(1);
   table.add_row({options.out.string(), std::to_string(options.in.size()), std::to_string(counts.added),
@@ -43,9 +43,9 @@ int merge(const Session& session, const MergeOptions& options) {
 
 Action declare_merge(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<MergeOptions>();
-  verb.add("OUT", options->out, "the database to make, or to add to").required();
-  verb.add("IN", options->in, "databases to join").required();
-  verb.add_flag("--mixed-builds", options->mixed, "join rows of different builds");
+  verb.add("OUT", options->out, "database to create or to extend").required();
+  verb.add("IN", options->in, "databases to merge").required();
+  verb.add_flag("--mixed-builds", options->mixed, "merges results of different builds");
   return [&session, options] { return merge(session, *options); };
 }
 

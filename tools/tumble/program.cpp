@@ -27,7 +27,7 @@ namespace {
 
 using scenarios::BadInput;
 
-/// An unknown verb is met before CLI11 would call it an argument too many.
+/// Checks the verb first, because CLI11 would report an unknown verb as a superfluous argument.
 void check_verb(int argc, const char* const* argv) {
   std::vector<std::string> known;
   for (const Verb& verb : verbs()) known.emplace_back(verb.name);
@@ -37,7 +37,7 @@ void check_verb(int argc, const char* const* argv) {
   }
 }
 
-/// `help` and `help VERB`, as other programs have them.
+/// Supports `help` and `help VERB`, as other programs do.
 std::vector<const char*> without_help(int argc, const char* const* argv) {
   std::vector<const char*> words(argv, argv + argc);
   if (words.size() < 2 || std::string_view(words[1]) != "help") return words;
@@ -49,13 +49,13 @@ std::vector<const char*> without_help(int argc, const char* const* argv) {
   return words;
 }
 
-/// The verb being parsed, or the program itself.
+/// Returns the verb that is parsed, or the program itself.
 const CLI::App& parsed(const CLI::App& app) {
   const auto subcommands = app.get_subcommands();
   return subcommands.empty() ? app : *subcommands.front();
 }
 
-/// What the user can do about a command line that CLI11 refused, on one line.
+/// Returns a one-line hint for a command line that CLI11 refused.
 std::string usage_line(const CLI::App& app, const CLI::ParseError& error) {
   const CLI::App& verb = parsed(app);
   const std::string place = &verb == &app ? "" : verb.get_name() + ": ";
@@ -63,13 +63,13 @@ std::string usage_line(const CLI::App& app, const CLI::ParseError& error) {
     const std::vector<std::string> extras = app.remaining(true);
     const auto option =
         std::find_if(extras.begin(), extras.end(), [](const std::string& e) { return e.rfind('-', 0) == 0; });
-    if (option == extras.end()) return place + "'" + extras.front() + "' is one argument too many";
+    if (option == extras.end()) return place + "'" + extras.front() + "' is a superfluous argument";
     std::vector<std::string> known;
     for (const CLI::Option* each : verb.get_options()) {
       for (const std::string& name : each->get_lnames()) known.push_back("--" + name);
     }
     const std::string near = sim::nearest_name(*option, known);
-    if (near == *option) return place + "'" + near + "' goes behind the verb: tumble " + verb.get_name() + " " + near;
+    if (near == *option) return place + "'" + near + "' must follow the verb: tumble " + verb.get_name() + " " + near;
     return place + "unknown option '" + *option + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?");
   }
   std::string reason = error.what();
@@ -79,7 +79,7 @@ std::string usage_line(const CLI::App& app, const CLI::ParseError& error) {
 }
 
 int say(const char* prefix, const std::string& line, int status) {
-  // what a file has in place of a word may be megabytes
+  // messages are shortened, because a corrupt file may contain megabytes in place of a word
   constexpr std::size_t kBegin = 1500, kEnd = 300;
   std::string shown =
       line.size() <= kBegin + kEnd ? line : line.substr(0, kBegin) + " ... " + line.substr(line.size() - kEnd);
@@ -89,19 +89,15 @@ int say(const char* prefix, const std::string& line, int status) {
   return status;
 }
 
-/// For who types `tumble` and nothing else.
+/// Shown when `tumble` is called without arguments.
 int show_the_way() {
   std::string text =
-      "tumble: a physics-simulated test harness and an estimator for robots that tumble and roll\n\n"
-      "first\n"
-      "  tumble run hill                a rig tumbles down a hill: ours beside the baseline, scores, pictures\n"
-      "  tumble run slip                a sphere rolls and slips\n"
-      "  tumble list scenarios          what can be simulated; also: methods, sensors, suites\n\n"
-      "your own recording\n"
-      "  tumble import FILE -o r.h5     a bag, a table of IMU readings, a folder of sweeps, a trajectory\n"
-      "  tumble estimate r.h5 --method rate/tumble -o DIR\n"
-      "  tumble score YOURS.tum r.h5    somebody else's trajectory against the truth of a recording\n\n"
-      "verbs (tumble VERB --help)\n";
+      "tumble: a physics-simulated test harness and an estimator for robots that tumble and roll\n\nfirst steps\n  "
+      "tumble run hill                a rig tumbles down a hill: our methods and baselines, scores, pictures\n  tumble "
+      "run slip                a sphere rolls and slips\n  tumble list scenarios          lists the scenarios; also: "
+      "methods, sensors, suites\n\nyour own recording\n  tumble import FILE -o r.h5     imports a bag, IMU readings, "
+      "lidar sweeps or a trajectory\n  tumble estimate r.h5 --method rate/tumble -o DIR\n  tumble score YOURS.tum r.h5 "
+      "   scores an external trajectory against the truth of a recording\n\nverbs (tumble VERB --help)\n";
   for (const Verb& verb : verbs()) text += fmt::format("  {:<11}  {}\n", verb.name, verb.doc);
   std::fputs(text.c_str(), stdout);
   return kDone;
@@ -116,11 +112,11 @@ void add_table_format(CLI::App& options, Session& session) {
     require_known("format of tables", name, known);
     session.format = names.at(name);
   };
-  options.add_option_function<std::string>("--format", choose, "tables as text, md, csv or tex [text]")
+  options.add_option_function<std::string>("--format", choose, "format of tables: text, md, csv or tex [text]")
       ->type_name("TEXT");
 }
 
-/// Reads the command line and does the verb.
+/// Parses the command line and runs the verb.
 int dispatch(int argc, const char* const* argv) {
   if (argc == 1) return show_the_way();
   CLI::App app("Physics-simulated test harness and estimator for robots that tumble and roll", "tumble");
@@ -131,17 +127,17 @@ int dispatch(int argc, const char* const* argv) {
   Action chosen;
   for (const Verb& verb : verbs()) {
     CLI::App* options = app.add_subcommand(verb.name, verb.doc);
-    options->add_flag("--json", session.json, "tables as JSON on standard output");
-    options->add_flag("--quiet", session.quiet, "no notes and no progress on standard error");
+    options->add_flag("--json", session.json, "prints tables as JSON on standard output");
+    options->add_flag("--quiet", session.quiet, "prints no notes and no progress on standard error");
     VerbOptions declared(*options);
     options->callback([action = verb.declare(declared, session), &chosen] { chosen = action; });
-    // of some verbs it is the format of a recording
+    // for some verbs --format is the format of a recording
     if (options->get_option_no_throw("--format") == nullptr) add_table_format(*options, session);
   }
   check_verb(argc, argv);
   try {
     app.parse(argc, argv);
-  } catch (const CLI::Success& done) {  // --help, --version
+  } catch (const CLI::Success& done) {  // CLI11 reports --help and --version in this way
     return app.exit(done);
   } catch (const CLI::ParseError& error) {
     throw BadInput(usage_line(app, error));
@@ -162,12 +158,12 @@ int run_program(int argc, const char* const* argv) {
   } catch (const std::filesystem::filesystem_error& error) {
     return say("", error.what(), kBadInput);
   } catch (const std::system_error& error) {
-    // the machine's trouble, not the program's: no process, pipe or thread is left to have
+    // a lack of processes, pipes or threads is not a defect of the program
     return say("", error.what(), kBadInput);
   } catch (const sim::SimulationFailure& error) {
     return say("the draw is rejected: ", error.what(), kCheckFailed);
   } catch (const std::bad_alloc&) {
-    return say("", "no memory is left", kBadInput);
+    return say("", "out of memory", kBadInput);
   } catch (const std::exception& error) {
     return say("defect: ", error.what(), kDefect);
   } catch (...) {

@@ -3,8 +3,8 @@
 
 namespace tumble::tools {
 
-/// The program: reads the command line, does the verb, and turns every exception into one line on standard error and
-/// its exit status (session.hpp).
+/// Runs the program: parses the command line, runs the verb, and converts every exception to one line on standard error
+/// and an exit status (session.hpp).
 int run_program(int argc, const char* const* argv);
 
 }  // namespace tumble::tools

@@ -19,7 +19,7 @@ struct RecordOptions {
   std::filesystem::path file;
 };
 
-/// One row per sensor.
+/// Returns one row per sensor.
 Table contents(const sim::Sensors& sensors) {
   Table table("", {"sensor", "device", "samples", "points"});
   table.align_right_from(2);
@@ -58,14 +58,14 @@ int record(const Session& session, const RecordOptions& options) {
 
 Action declare_record(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<RecordOptions>();
-  verb.add("SCENARIO", options->scenario, "a scenario of the catalogue, or a scenario file")
+  verb.add("SCENARIO", options->scenario, "scenario of the catalogue, or a scenario file")
       .required()
       .check(a_scenario(session));
-  verb.add("--seed", options->seed, "which draw of it [of a named case its own]");
-  verb.add("--threads", options->threads, "threads for the lidar; the result does not depend on them")
+  verb.add("--seed", options->seed, "seed of the draw [for a named case: its own]");
+  verb.add("--threads", options->threads, "number of threads for the lidar; the result does not depend on it")
       .whole(1, 1024)
       .shows_default();
-  verb.add("-o,--output", options->file, "the recording, FILE.h5").required();
+  verb.add("-o,--output", options->file, "recording to write, FILE.h5").required();
   return [&session, options] { return record(session, *options); };
 }
 

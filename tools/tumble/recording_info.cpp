@@ -41,14 +41,15 @@ std::string end_in_motion(const sim::Truth& truth) {
   const double duration_s =
       1e-9 * static_cast<double>(truth.period_ns) * static_cast<double>(truth.v_WB_m_s.size() - 1);
   return fmt::format(
-      "the recording ends in motion, at {:.1f} m/s and {:.1f} rad/s after {:g} s: duration_s cuts it off", speed_m_s,
-      rate_rad_s, duration_s);
+      "the robot still moves at the end of the recording, at {:.1f} m/s and {:.1f} rad/s after {:g} s; increase "
+      "duration_s to record until rest",
+      speed_m_s, rate_rad_s, duration_s);
 }
 
 sim::BuiltSituation built_from(const scenarios::RecordingInfo& info, const std::string& place,
                                const scenarios::DataRoot& data) {
   sim::Situation situation = scenarios::situation_from_yaml(info.situation_yaml, place);
-  // the world and the robot are all that is asked for: what this build does not know of the rest is no reason to refuse
+  // only world and robot are needed; unknown names in other parts must not be refused
   const sim::Situation bare;
   situation.sensors.clear();
   situation.duration_s = bare.duration_s;

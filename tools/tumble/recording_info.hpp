@@ -10,19 +10,19 @@
 
 namespace tumble::tools {
 
-/// The versions of program and engine, for recordings.
+/// Returns the versions of program and engine that recordings state.
 scenarios::RecordingInfo recording_versions();
 
-/// What the program writes about a recording that it has simulated.
+/// Returns the information that the program stores with a recording it has simulated.
 scenarios::RecordingInfo recording_info(const sim::ResolvedSituation& situation, const std::string& digest);
 
-/// What there is to say of a motion that goes on where the recording ends, as of a scenario whose `duration_s` is too
-/// short; empty of one that ends at rest (0.05 m/s, 0.25 rad/s).
+/// Returns a note if the body still moves at the end of the recording (faster than 0.05 m/s or 0.25 rad/s), because the
+/// scenario's `duration_s` may be too short. Empty if the body is at rest.
 std::string end_in_motion(const sim::Truth& truth);
 
-/// The world that a simulated recording was made in, built from what it states; `place` begins the messages. The
-/// sensors are left out: they are not simulated again, so that numbers of theirs which this build does not know do no
-/// harm. Throws BadInput, sim::InvalidSituation.
+/// Builds the world in which a recording was simulated, from the numbers that the recording states. Messages start with
+/// `place`. Sensors are left out, so that sensor parameters unknown to this build do no harm. Throws BadInput,
+/// sim::InvalidSituation.
 sim::BuiltSituation built_from(const scenarios::RecordingInfo& info, const std::string& place,
                                const scenarios::DataRoot& data);
 

@@ -39,7 +39,7 @@ struct RenderOptions {
   int width = 1280, height = 720;
 };
 
-/// All that a scene points to.
+/// Owner of all data that a scene refers to.
 struct RenderContent {
   std::optional<sim::BuiltSituation> built;
   sim::Sensors sensors;
@@ -48,18 +48,19 @@ struct RenderContent {
 };
 
 bool is_recording(const std::string& what) {
-  // whoever names a file means the file, also when it is not there
+  // a name with a recording's extension means a file, even if the file does not exist
   return std::filesystem::exists(what) ? !what.ends_with(".yaml") : what.ends_with(".h5") || what.ends_with(".hdf5");
 }
 
-/// World, sensors and truth of a recording.
+/// Loads world, sensors and truth of a recording.
 void load_situation(const scenarios::DataRoot& data, const RenderOptions& options, RenderContent& content) {
   const scenarios::RecordingInfo info = scenarios::read_info(options.what);
-  if (info.situation_yaml.empty()) throw BadInput(options.what + ": holds no situation, so there is no world to draw");
+  if (info.situation_yaml.empty())
+    throw BadInput(options.what + ": contains no situation, so there is no world to draw");
   content.built = built_from(info, options.what, data);
   content.sensors = scenarios::read_sensors(options.what);
-  // the truth places the robot and the estimates in a picture for people; no estimate is made here
-  if (!info.has_truth) throw BadInput(options.what + ": holds no truth, so there is no path to draw");
+  // the truth positions the robot and the estimates in the picture; no estimate is computed here
+  if (!info.has_truth) throw BadInput(options.what + ": contains no truth, so there is no path to draw");
   content.truth = scenarios::read_truth(options.what);
 }
 
@@ -73,22 +74,22 @@ void load_recording(const scenarios::DataRoot& data, const RenderOptions& option
     require_own(folder, options.what, content.sensors);
     const scenarios::Estimate estimate = scenarios::read_estimate(folder, kind, method, scenarios::Frame::imu);
     Path path = estimated_path(estimate, content.sensors, content.truth);
-    if (path.empty()) throw BadInput(folder.string() + ": holds no poses to draw");
+    if (path.empty()) throw BadInput(folder.string() + ": contains no poses to draw");
     content.scene.estimates.push_back(std::move(path));
   }
 }
 
 void load_draw(const scenarios::DataRoot& data, const RenderOptions& options, RenderContent& content) {
   const scenarios::Scenario scenario = scenarios::load_scenario(data, options.what);
-  if (!options.estimates.empty()) throw BadInput("estimates are drawn into a recording, not into a scenario");
-  if (options.film > 0) throw BadInput("--film shows the path of a recording; '" + options.what + "' is a scenario");
+  if (!options.estimates.empty()) throw BadInput("estimates can be drawn into a recording, but not into a scenario");
+  if (options.film > 0) throw BadInput("--film needs a recording; '" + options.what + "' is a scenario");
   content.built.emplace(scenarios::draw(data, scenario, seed_of(scenario, options.seed)), data.models());
 }
 
-/// Maps of the estimates side by side, coloured by error.
+/// Draws the maps of the estimates next to each other, coloured by error.
 int render_maps(const Session& session, const RenderOptions& options, const scenarios::DataRoot& data) {
   if (!is_recording(options.what) || options.estimates.empty()) {
-    throw BadInput("--map shows the maps of estimates of a recording: FILE.h5 ESTIMATE...");
+    throw BadInput("--map needs a recording and at least one estimate: FILE.h5 ESTIMATE...");
   }
   RenderContent content;
   load_situation(data, options, content);
@@ -104,7 +105,7 @@ int render_maps(const Session& session, const RenderOptions& options, const scen
     const scenarios::Estimate estimate = scenarios::read_estimate(folder, kind, method, scenarios::Frame::imu);
     maps.push_back(map_by_error(full_name(kind, method), estimate, content.truth, surface));
     const ErrorMap& map = maps.back();
-    if (map.points_W_m.empty()) throw BadInput(folder.string() + ": holds no map to draw");
+    if (map.points_W_m.empty()) throw BadInput(folder.string() + ": contains no map to draw");
     const double fine = map.share_within(0.1f), coarse = map.share_within(0.25f);
     table.add_row({map.name, std::to_string(map.points_W_m.size()), fmt::format("{:.1f} %", 100.0 * fine),
                    fmt::format("{:.1f} %", 100.0 * coarse)});
@@ -116,10 +117,10 @@ int render_maps(const Session& session, const RenderOptions& options, const scen
   return kDone;
 }
 
-/// Frames of a video: minutes of rendering, and of watching.
+/// Maximum number of video frames: more would take minutes to render and to watch.
 constexpr std::size_t kFramesMax = 3000;
 
-/// A line every so often, of what takes minutes.
+/// Interval of progress lines for long renderings.
 constexpr double kSayEvery_s = 10.0;
 
 std::vector<std::uint8_t> video_of(const Session& session, const RenderOptions& options, const Scene& scene) {
@@ -132,9 +133,8 @@ std::vector<std::uint8_t> video_of(const Session& session, const RenderOptions& 
   const Span span = moving_span(*scene.truth, 0.3);
   const std::size_t frames = frame_count(span, moving);
   if (frames > kFramesMax)
-    throw BadInput(
-        fmt::format("the video would have {} frames, must be at most {}: take a higher --speed or a lower --fps",
-                    frames, kFramesMax));
+    throw BadInput(fmt::format("the video would have {} frames, must be at most {}; increase --speed or decrease --fps",
+                               frames, kFramesMax));
   const double began_s = scenarios::now_s();
   double said_s = began_s;
   moving.drawn = [&](std::size_t done) {
@@ -148,11 +148,10 @@ std::vector<std::uint8_t> video_of(const Session& session, const RenderOptions& 
 }
 
 void require_video(const RenderOptions& options) {
-  if (!is_recording(options.what))
-    throw BadInput("--video shows the path of a recording; '" + options.what + "' is a scenario");
-  if (options.film > 0 || options.map) throw BadInput("--video, --film and --map are three pictures: ask for one");
+  if (!is_recording(options.what)) throw BadInput("--video needs a recording; '" + options.what + "' is a scenario");
+  if (options.film > 0 || options.map) throw BadInput("--video, --film and --map exclude each other; give only one");
   if (options.output.extension() != ".webp")
-    throw BadInput("--video writes a WebP: " + options.output.string() + " must end in .webp");
+    throw BadInput("--video writes a WebP file: " + options.output.string() + " must end in .webp");
 }
 
 void write_picture(const Session& session, const RenderOptions& options, const Scene& scene) {
@@ -173,7 +172,7 @@ int render(const Session& session, const RenderOptions& options) {
   inputs.emplace_back(options.what);
   prepare_file(options.output, inputs);
   if (is_recording(options.what) && !options.seed.empty()) {
-    throw BadInput("--seed is for a scenario; '" + options.what + "' is a recording, of one draw");
+    throw BadInput("--seed applies to a scenario; '" + options.what + "' is a recording of one draw");
   }
   if (options.map) return render_maps(session, options, data);
   RenderContent content;
@@ -200,28 +199,26 @@ int render(const Session& session, const RenderOptions& options) {
 
 Action declare_render(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<RenderOptions>();
-  verb.add("WHAT", options->what, "a recording, FILE.h5, or a scenario (with --seed)")
+  verb.add("WHAT", options->what, "recording, FILE.h5, or scenario (with --seed)")
       .required()
       .check([&session](const std::string& text) {
         if (is_recording(text)) return a_recording(text);
         scenarios::load_scenario(session.data(), text);
       });
-  verb.add("ESTIMATE", options->estimates, "folders of estimates whose paths are drawn");
-  verb.add("--seed", options->seed, "which draw of the scenario [of a named case its own]");
-  verb.add("-o,--output", options->output, "the picture, FILE.png, or with --video FILE.webp").required();
-  verb.add("--film", options->film, "a film strip of so many frames").whole(1, 64);
+  verb.add("ESTIMATE", options->estimates, "folders of estimates to draw");
+  verb.add("--seed", options->seed, "seed of the draw [for a named case: its own]");
+  verb.add("-o,--output", options->output, "picture to write, FILE.png; with --video FILE.webp").required();
+  verb.add("--film", options->film, "draws a film strip with this number of frames").whole(1, 64);
   verb.add_flag("--map", options->map,
-                "the estimates' maps side by side, coloured by error from 0 (blue) to 1 m (red)");
+                "draws the maps of the estimates next to each other, coloured by error from 0 (blue) to 1 m (red)");
   verb.add_flag("--video", options->video,
-                "the motion as a WebP that plays: the camera follows, robots stand along the path");
-  verb.add("--fps", options->fps, "frames of a video in a second").within(1.0, 60.0).shows_default();
-  verb.add("--speed", options->speed, "of a video: seconds of the motion in one that is watched")
-      .within(0.01, 10.0)
-      .shows_default();
-  verb.add("--columns", options->columns, "frames in a row of the film strip").whole(1, 64).shows_default();
-  verb.add("--robots", options->robots, "how often the robot is drawn along its path").whole(1, 64).shows_default();
-  verb.add("--width", options->width, "of a picture or frame, pixels").whole(64, 4096).shows_default();
-  verb.add("--height", options->height, "of a picture or frame, pixels").whole(64, 4096).shows_default();
+                "writes an animated WebP: the camera follows the robot, and copies of the robot mark its path");
+  verb.add("--fps", options->fps, "frames per second of a video").within(1.0, 60.0).shows_default();
+  verb.add("--speed", options->speed, "seconds of motion per second of video").within(0.01, 10.0).shows_default();
+  verb.add("--columns", options->columns, "frames per row of the film strip").whole(1, 64).shows_default();
+  verb.add("--robots", options->robots, "number of robots drawn along the path").whole(1, 64).shows_default();
+  verb.add("--width", options->width, "width of a picture or frame, pixels").whole(64, 4096).shows_default();
+  verb.add("--height", options->height, "height of a picture or frame, pixels").whole(64, 4096).shows_default();
   return [&session, options] { return render(session, *options); };
 }
 

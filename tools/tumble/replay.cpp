@@ -29,7 +29,7 @@ struct ReplayOptions {
   std::size_t points = ReplayLimits{}.points;
 };
 
-/// All that a replay points to.
+/// Owner of all data that a replay refers to.
 struct ReplayContent {
   sim::Sensors sensors;
   std::optional<sim::Truth> truth;
@@ -38,7 +38,7 @@ struct ReplayContent {
   std::list<scenarios::Estimate> estimates;
 };
 
-/// The truth is opened for people's eyes; no estimate is made here.
+/// Loads the recording with its truth, for display only; no estimate is computed here.
 void load_recording(const Session& session, const ReplayOptions& options, const scenarios::RecordingInfo& info,
                     ReplayContent& content) {
   content.sensors = scenarios::read_sensors(options.recording);
@@ -56,7 +56,7 @@ void load_estimates(const Session& session, const ReplayOptions& options, Replay
     require_own(path, options.recording, content.sensors);
     scenarios::Estimate estimate = scenarios::read_estimate(path, kind, method, frame);
     if (estimate.poses.empty() && estimate.rates.empty()) {
-      session.note(path.string() + ": left out, it has neither poses nor rates");
+      session.note(path.string() + ": left out, because it contains neither poses nor rates");
       continue;
     }
     content.estimates.push_back(std::move(estimate));
@@ -111,14 +111,12 @@ int make_replay(const Session& session, const ReplayOptions& options) {
 
 Action declare_replay(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<ReplayOptions>();
-  verb.add("RECORDING", options->recording, "the recording, FILE.h5, with or without truth")
-      .required()
-      .check(a_recording);
+  verb.add("RECORDING", options->recording, "recording, FILE.h5, with or without truth").required().check(a_recording);
   verb.add("ESTIMATE", options->estimates, "folders of estimates, or TUM files (t x y z qx qy qz qw)");
-  verb.add("-o,--output", options->page, "the page, FILE.html").required();
+  verb.add("-o,--output", options->page, "page to write, FILE.html").required();
   verb.add("--frame", options->frame,
-           "whose poses a TUM file holds: imu, lidar, body or centre [imu; body where the recording has none]");
-  verb.add("--points", options->points, "of the lidar, at most; the page's 3 MB may leave fewer")
+           "frame of the poses in a TUM file: imu, lidar, body or centre [imu; body if the recording has no IMU]");
+  verb.add("--points", options->points, "maximum number of lidar points; the page's limit of 3 MB may leave fewer")
       .whole(0, 200000)
       .shows_default();
   return [&session, options] { return make_replay(session, *options); };

@@ -47,7 +47,7 @@ std::string wins_text(const Wins& wins) {
   return wins.pairs == 0 ? "" : fmt::format("{} of {}", wins.count, wins.pairs);
 }
 
-/// A row per method and metric: the headline metrics, or all of them.
+/// Returns one row per method and metric: the headline metrics, or all metrics.
 Table score_table(const Section& section, bool all) {
   Table table(
       fmt::format("{}: {} (paired with {})", section.scenario, to_string(section.kind), section.baseline),
@@ -79,7 +79,7 @@ Table draws_table(const Summary& summary) {
   return table;
 }
 
-/// Everything that the page's tables hold, in SI units.
+/// Returns the content of the page's tables in SI units.
 json to_json(const Summary& summary) {
   json rows = json::array();
   for (const Section& section : summary.sections) {
@@ -113,7 +113,7 @@ std::string read_text(const std::filesystem::path& path) {
   return text;
 }
 
-/// Digest of the data that a sweep would take; a report needs none.
+/// Returns the digest of the data that a sweep would use; empty if absent, because a report works without them.
 std::string data_found(const Session& session) {
   try {
     return scenarios::data_digest(session.data());
@@ -122,11 +122,11 @@ std::string data_found(const Session& session) {
   }
 }
 
-/// Draws of a scenario that a page tells what breaks a method from.
+/// Maximum number of draws per scenario that the sensitivity section of a page uses.
 constexpr std::size_t kSensitivityDraws = 2000;
 
-/// What breaks each method, by one score and by failures, over at most so many draws: what a table of all metrics and
-/// all draws costs is for `tumble sensitivity`.
+/// Adds the sensitivity of each method for one score and for failures, with a limited number of draws. The complete
+/// table takes long and belongs to `tumble sensitivity`.
 void add_sensitivity(const Session& session, const std::string& data_found, ReportInput& input) {
   const Summary some = scenarios::at_most_draws(*input.summary, kSensitivityDraws);
   NumbersByScenario numbers;
@@ -136,9 +136,8 @@ void add_sensitivity(const Session& session, const std::string& data_found, Repo
   } else {
     numbers = numbers_of_motions(input.draws, some);
     input.sensitivity_note =
-        "What the draws were cannot be told here: the results were made of other models and scenarios. Instead, "
-        "against "
-        "what the motions were like. ";
+        "The page lists the influence of the motions instead of the drawn numbers, because these results come from "
+        "other models and scenarios. ";
   }
   scenarios::SensitivityOptions options;
   for (const Section& section : input.summary->sections) {
@@ -151,11 +150,11 @@ void add_sensitivity(const Session& session, const std::string& data_found, Repo
   const std::string needed = draws_needed_text(input.summary->draws);
   input.sensitivity_note += needed;
   if (input.sensitivity.empty() && needed.empty())
-    input.sensitivity_note += "No number is known in which the draws of a scenario differ. ";
+    input.sensitivity_note += "The draws of a scenario differ in no known number. ";
   for (const auto& [scenario, draws] : input.summary->draws) {
     if (draws <= static_cast<std::int64_t>(kSensitivityDraws)) continue;
-    input.sensitivity_note +=
-        fmt::format("Of a scenario with more draws {}, at equal steps of their seeds.", kSensitivityDraws);
+    input.sensitivity_note += fmt::format(
+        "For scenarios with more draws, only {} are used, at equal steps of their seeds.", kSensitivityDraws);
     break;
   }
 }
@@ -186,13 +185,13 @@ int report(const Session& session, const ReportVerbOptions& options) {
     if (!output.empty()) prepare_file(output, std::vector<std::filesystem::path>{options.database});
   }
   if (!options.badge.empty() && options.badge == options.page)
-    throw scenarios::BadInput("--badge and --output are one file, " + options.page.string());
+    throw scenarios::BadInput("--badge and --output name the same file, " + options.page.string());
   const scenarios::Results results(options.database, scenarios::Results::Mode::read_only);
   const std::vector<scenarios::DrawValues> draws = results.draws();
   Summary summary;
   std::vector<Curve> curves = scenarios::find_curves(results, draws, summary);
   if (summary.scenarios.empty() && curves.empty())
-    throw scenarios::BadInput(options.database.string() + ": holds no outcomes to report");
+    throw scenarios::BadInput(options.database.string() + ": contains no outcomes to report");
   std::vector<Table> tables;
   for (const Section& section : summary.sections) {
     Table table = score_table(section, options.all);
@@ -211,7 +210,7 @@ int report(const Session& session, const ReportVerbOptions& options) {
   for (const scenarios::Certificate& certificate : results.certificates()) {
     document["certificates"].push_back(json::parse(to_json(certificate)));
   }
-  // the page first: that nobody reads standard output costs nobody the page
+  // write the page first: it must not depend on a reader of standard output
   if (!options.page.empty() || !options.badge.empty())
     write_page(session, options, {&results, &summary, draws, std::move(curves), std::move(motions), {}, {}});
   session.print(tables, document);
@@ -222,11 +221,10 @@ int report(const Session& session, const ReportVerbOptions& options) {
 
 Action declare_report(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<ReportVerbOptions>();
-  verb.add("DATABASE", options->database, "a results database, FILE.db").required();
-  verb.add("-o,--output", options->page, "the page, FILE.html [tables alone]");
-  verb.add("--badge", options->badge, "a badge, FILE.svg: the suite and how many contests are won");
-  verb.add_flag("--all", options->all,
-                "all metrics in the printed tables, not the headline ones alone, and the curves over bins");
+  verb.add("DATABASE", options->database, "results database, FILE.db").required();
+  verb.add("-o,--output", options->page, "page to write, FILE.html [prints only tables]");
+  verb.add("--badge", options->badge, "badge to write, FILE.svg: the suite and the number of contests won");
+  verb.add_flag("--all", options->all, "prints all metrics and the curves over bins, not only the headline metrics");
   return [&session, options] { return report(session, *options); };
 }
 

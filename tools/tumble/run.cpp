@@ -31,7 +31,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct RunOptions {
-  std::string scenario, seed;  ///< an empty seed: 1, or a named case's own
+  std::string scenario, seed;  ///< an empty seed means 1, or the seed of a named case
   std::vector<std::string> methods, parameters;
   std::string vary;
   int threads = 1;
@@ -39,20 +39,20 @@ struct RunOptions {
   fs::path learnt;
 };
 
-/// A scenario and nothing else: somebody looks what this is.
+/// True if only a scenario is given: a first try of the program.
 bool is_bare(const RunOptions& options) {
   return options.seed.empty() && options.methods.empty() && options.folder.empty() && options.learnt.empty() &&
          options.parameters.empty() && options.vary.empty();
 }
 
-/// The scenario's name, or the first of NAME_2, NAME_3, ... that is not there.
+/// Returns the scenario's name, or the first of NAME_2, NAME_3, ... that does not exist.
 fs::path free_folder(const std::string& name) {
   fs::path folder = name;
   for (int k = 2; fs::exists(fs::symlink_status(folder)); ++k) folder = fmt::format("{}_{}", name, k);
   return folder;
 }
 
-/// The first method of a kind that is so and needs no truth; null where there is none.
+/// Returns the first method of a kind that needs no truth and fulfils the condition; null if there is no match.
 template <class Is>
 const scenarios::MethodInfo* first_of(scenarios::Kind kind, Is is) {
   for (const scenarios::Method& method : scenarios::methods()) {
@@ -61,13 +61,13 @@ const scenarios::MethodInfo* first_of(scenarios::Kind kind, Is is) {
   return nullptr;
 }
 
-/// What the others of a kind are held against: the one that is registered as baseline, else the first.
+/// Returns the method that is registered as the baseline of a kind, else the first method of the kind.
 const scenarios::MethodInfo* baseline_of(scenarios::Kind kind) {
   const scenarios::MethodInfo* const baseline = first_of(kind, [](const auto& info) { return info.baseline; });
   return baseline != nullptr ? baseline : first_of(kind, [](const auto&) { return true; });
 }
 
-/// Ours beside the baseline, of every kind that has both for this scenario.
+/// Selects the baseline and our method for each kind that has both for this scenario.
 RunOptions first_run(RunOptions options, const scenarios::Scenario& scenario) {
   using scenarios::Kind;
   const scenarios::Subject subject = scenarios::subject_of(scenario);
@@ -85,7 +85,7 @@ RunOptions first_run(RunOptions options, const scenarios::Scenario& scenario) {
 
 void say_what_next(const Session& session, const RunOptions& options, const scenarios::RunResult& result) {
   const std::string folder = options.folder.string();
-  session.note("left in " + folder +
+  session.note("results written to " + folder +
                "/: recording.h5, situation.yaml, estimates/, snapshots/scene.png and film.png, replay.html");
   session.note("next:");
   const auto say = [&](const std::string& command, const char* what) {
@@ -94,15 +94,15 @@ void say_what_next(const Session& session, const RunOptions& options, const scen
   if (std::any_of(result.methods.begin(), result.methods.end(),
                   [](const auto& method) { return method->info.kind == scenarios::Kind::slam; })) {
     say(fmt::format("tumble render {0}/recording.h5 {0}/estimates/slam-* --map -o {0}/maps.png", folder),
-        "the maps, coloured by error");
+        "maps, coloured by error");
   }
-  say(fmt::format("tumble run {} --seed 2 -o {}_seed_2", options.scenario, folder), "another draw, every method");
-  say(fmt::format("tumble sweep {} --seeds 1..8 --db {}.db", options.scenario, folder), "eight draws of it");
-  say(fmt::format("tumble report {0}.db -o {0}.html", folder), "the tables and one page of them");
-  say("tumble list methods", "what else there is");
+  say(fmt::format("tumble run {} --seed 2 -o {}_seed_2", options.scenario, folder), "another draw with every method");
+  say(fmt::format("tumble sweep {} --seeds 1..8 --db {}.db", options.scenario, folder), "eight draws");
+  say(fmt::format("tumble report {0}.db -o {0}.html", folder), "tables and one page with them");
+  say("tumble list methods", "all methods");
 }
 
-/// Recording, situation and every estimate, under the names that the other verbs read.
+/// Writes the recording, the situation and every estimate under the names that other verbs expect.
 void leave_files(const fs::path& folder, const scenarios::RunResult& result) {
   const scenarios::RecordingInfo info = recording_info(result.built->situation(), result.recording_digest);
   scenarios::write_recording(folder / "recording.h5", info, result.recording.sensors, &result.recording.truth);
@@ -116,7 +116,7 @@ void leave_files(const fs::path& folder, const scenarios::RunResult& result) {
   }
 }
 
-/// The whole way and a film strip, with every path that an estimate has, and the page that plays it.
+/// Writes pictures of the path and a film strip with all estimated paths, and the replay page.
 void leave_pictures(const fs::path& folder, const scenarios::RunResult& result) {
   Scene scene{&result.built.value(), &result.recording.sensors, &result.recording.truth, {}};
   for (const scenarios::Estimate& estimate : result.estimates) {
@@ -136,7 +136,7 @@ std::vector<scenarios::MethodPointer> pointers(const std::vector<scenarios::Meth
   return out;
 }
 
-/// The point of a curve that is asked for, or none.
+/// Returns the requested point of a curve; empty by default.
 scenarios::Setting setting_of(const scenarios::DataRoot& data, const RunOptions& options, std::uint64_t seed) {
   if (options.vary.empty()) return {};
   const scenarios::Setting setting = scenarios::setting_from(options.vary);
@@ -147,7 +147,7 @@ scenarios::Setting setting_of(const scenarios::DataRoot& data, const RunOptions&
   return setting;
 }
 
-/// Which methods failed, and what those that did not say against themselves.
+/// Reports the methods that failed, and the health warnings of the others.
 void say_troubles(const Session& session, const scenarios::RunResult& result) {
   for (std::size_t i = 0; i < result.outcomes.size(); ++i) {
     const scenarios::Outcome& outcome = result.outcomes[i];
@@ -164,13 +164,13 @@ std::uint64_t asked_seed(const RunOptions& options, const scenarios::Scenario& s
   return any_draw ? 1 : seed_of(scenario, options.seed);
 }
 
-/// Those that are asked for, of which some start from what was learnt.
+/// Returns the requested methods; methods that calibrate start from the file of --learnt.
 std::vector<scenarios::Method> asked_methods(const RunOptions& options, const scenarios::Scenario& scenario,
                                              LearntFile& learnt) {
   const auto selected = select_methods(options.methods);
   if (!options.learnt.empty() &&
       std::none_of(selected.begin(), selected.end(), [](const auto& method) { return method->info.learns_rig; })) {
-    throw scenarios::BadInput("--learnt is for " + LearntFile::learning_methods() + ", of which none is to run");
+    throw scenarios::BadInput("--learnt is for " + LearntFile::learning_methods() + ", but no such method runs");
   }
   if (!options.methods.empty() && scenarios::applicable(selected, scenarios::subject_of(scenario)).empty())
     scenarios::require_applies(*selected.front(), scenario);
@@ -229,25 +229,29 @@ int run(const Session& session, const RunOptions& given) {
 
 Action declare_run(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<RunOptions>();
-  verb.add("SCENARIO", options->scenario, "a scenario of the catalogue, or a scenario file")
+  verb.add("SCENARIO", options->scenario, "scenario of the catalogue, or a scenario file")
       .required()
       .check(a_scenario(session));
-  verb.add("--seed", options->seed, "which draw of it [1, of a named case its own]");
-  verb.add("--method", options->methods, "a method, as 'saave' or 'rate/saave'; repeat for more [all that apply]")
-      .one_at_a_time();  // the word after a method is not another one
+  verb.add("--seed", options->seed, "seed of the draw [1; for a named case: its own]");
+  verb.add("--method", options->methods,
+           "method, for example 'saave' or 'rate/saave'; repeat for more [all that apply]")
+      .one_at_a_time();  // each --method takes exactly one word
   verb.add("--set", options->parameters,
-           "METHOD.PARAMETER=NUMBER, as rate/tumble_lag.lag_s=0.5; repeat for more ('tumble list methods NAME')")
+           "METHOD.PARAMETER=NUMBER, for example rate/tumble_lag.lag_s=0.5; repeat for more ('tumble list methods "
+           "NAME')")
       .one_at_a_time();
   verb.add("--vary", options->vary,
-           "KEY=NUMBER, a point of a suite's curve: world.rock_count=10, given.lever_arm_error_m=0.03");
-  verb.add("--threads", options->threads, "threads for the lidar; the result does not depend on them")
+           "KEY=NUMBER, a point of a suite's curve, for example world.rock_count=10 or given.lever_arm_error_m=0.03");
+  verb.add("--threads", options->threads, "number of threads for the lidar; the result does not depend on it")
       .whole(1, 1024)
       .shows_default();
-  verb.add("-o,--output", options->folder, "folder for recording, estimates, pictures and replay [none are left]");
+  verb.add("-o,--output", options->folder, "folder for recording, estimates, pictures and replay [nothing is written]");
   verb.add("--learnt", options->learnt,
-           "FILE.json: what 'rate/tumble' and 'rate/tumble_lag' start from, if it exists; written anew with what "
-           "the run has learnt of the rig");
-  verb.footer("The scenario alone runs ours beside the baseline and leaves everything in a folder named after it.");
+           "FILE.json with the calibration of the rig from which 'rate/tumble' and 'rate/tumble_lag' start, if it "
+           "exists; receives the calibration of this run");
+  verb.footer(
+      "With a scenario only, the program runs our methods and the baselines and writes everything to a folder with the "
+      "scenario's name.");
   return [&session, options] { return run(session, *options); };
 }
 

@@ -33,15 +33,16 @@ struct ScoreOptions {
   std::string frame, kind;
 };
 
-/// Somebody else's poses may bear the stamps of the recording's source: they are moved to the recording's own clock
-/// when its origin is nearer to them than its zero.
+/// Converts external poses with time stamps of the recording's source to the recording's clock. The conversion applies
+/// if the clock's origin is nearer to the stamps than zero is.
 void move_to_clock(std::int64_t origin_ns, scenarios::Estimate& estimate) {
   const std::int64_t first = estimate.poses.empty() ? 0 : estimate.poses.front().time_ns;
   if (std::abs(first - origin_ns) >= std::abs(first)) return;
   for (PoseState& pose : estimate.poses) pose.time_ns -= origin_ns;
 }
 
-/// The other verbs name the recording first, so that either order is taken: no estimate bears a recording's ending.
+/// Accepts estimate and recording in either order, because other verbs take the recording first. The extensions of
+/// recordings identify it.
 void order(ScoreOptions& options) {
   const auto is_recording = [](const std::filesystem::path& file) {
     return file.extension() == ".h5" || file.extension() == ".hdf5";
@@ -49,32 +50,33 @@ void order(ScoreOptions& options) {
   if (is_recording(options.estimate) && !is_recording(options.recording)) options.estimate.swap(options.recording);
 }
 
-/// What was seen and what is claimed must share some time, and the truth must know something.
+/// Checks that the truth has poses and that the estimate overlaps with the truth in time.
 void require_common_time(const ScoreOptions& options, const scenarios::Estimate& estimate, const sim::Truth& truth) {
   const bool known = std::any_of(truth.p_WB_m.begin(), truth.p_WB_m.end(), [](const auto& p) { return p.allFinite(); });
-  if (!known) throw scenarios::BadInput(options.recording.string() + ": its truth holds no known place");
+  if (!known) throw scenarios::BadInput(options.recording.string() + ": its truth contains no known position");
   if (estimate.poses.empty()) return;
   const double end_s = 1e-9 * static_cast<double>(truth.period_ns) * static_cast<double>(truth.p_WB_m.size() - 1);
   const double first_s = 1e-9 * static_cast<double>(estimate.poses.front().time_ns);
   const double last_s = 1e-9 * static_cast<double>(estimate.poses.back().time_ns);
   if (first_s <= end_s && last_s >= 0.0) return;
-  throw scenarios::BadInput(
-      fmt::format("{}: poses from {:.3f} s to {:.3f} s, but the truth of {} goes from 0 to {:.3f} s: another clock?",
-                  options.estimate.string(), first_s, last_s, options.recording.string(), end_s));
+  throw scenarios::BadInput(fmt::format(
+      "{}: the poses cover {:.3f} s to {:.3f} s, but the truth of {} covers 0 to {:.3f} s; the clocks may differ",
+      options.estimate.string(), first_s, last_s, options.recording.string(), end_s));
 }
 
-constexpr double kHoleShare = 0.2;  // of the recording; a longer one is a divergence (scenarios::verdict)
-// below these nothing is compared but the pose at which the two are aligned, or hardly more
+constexpr double kHoleShare = 0.2;  // share of the recording; a longer gap counts as a divergence (scenarios::verdict)
+// below these limits, hardly more than the alignment pose would be compared
 constexpr std::size_t kComparedMin = 2;
 constexpr double kSpannedShareMin = 0.01;
 
-/// How a trajectory of somebody else stands to the truth, beside its scores.
+/// Temporal coverage and alignment of an external trajectory relative to the truth.
 struct Standing {
-  double first_s = 0, last_s = 0, end_s = 0;  ///< of its poses that the truth knows; of the truth
-  std::size_t compared = 0, poses = 0;        ///< poses that the truth knows, of how many
-  double covered_s = 0;                       ///< without what is longer than a fifth of the truth and has no pose
+  double first_s = 0, last_s = 0, end_s = 0;  ///< first and last pose within the time of the truth; end of the truth
+  std::size_t compared = 0, poses = 0;        ///< number of poses within the time of the truth, and of all poses
+  double covered_s = 0;                       ///< covered time, without gaps longer than a fifth of the truth
   scenarios::Alignment alignment;
-  double spanned() const { return end_s > 0.0 ? (last_s - first_s) / end_s : 1.0; }  ///< share, holes included
+  /// share of the truth's time between first and last pose, gaps included
+  double spanned() const { return end_s > 0.0 ? (last_s - first_s) / end_s : 1.0; }
   double share() const { return end_s > 0.0 ? covered_s / end_s : 1.0; }
 };
 
@@ -96,8 +98,9 @@ Standing standing_of(const scenarios::Estimate& estimate, const sim::Truth& trut
   return out;
 }
 
-/// Of times in ms, us or ns that are read as seconds the first few fall into the recording, far apart, and would be
-/// scored. A long one of which the recording is a part has poses that are nearer to each other, or another length.
+/// Detects time stamps in ms, us or ns that were read as seconds. Then only the first few poses, far apart, would
+/// overlap with the recording and be scored. A longer trajectory that contains the recording has denser poses or
+/// another length.
 void require_seconds(const ScoreOptions& options, const scenarios::Estimate& estimate, const Standing& standing) {
   constexpr double kNear = 1.5, kLeastStep_s = 0.1;
   if (estimate.poses.size() < 2 || !(standing.end_s > 0.0)) return;
@@ -107,19 +110,19 @@ void require_seconds(const ScoreOptions& options, const scenarios::Estimate& est
   for (const auto& [unit, of_second] : {std::pair("ms", 1e3), std::pair("us", 1e6), std::pair("ns", 1e9)}) {
     if (factor > kNear * of_second || kNear * factor < of_second) continue;
     throw scenarios::BadInput(
-        fmt::format("{}: {} of its {} poses lie within {}, which is of {:.3f} s; they go on for {:.3f} s, {:.0f} times "
-                    "as long: another unit of time, {}? must be seconds",
+        fmt::format("{}: only {} of its {} poses are within the time of {}, {:.3f} s, but its poses cover {:.3f} s, "
+                    "{:.0f} times as long. The time unit may be {}; must be seconds",
                     options.estimate.string(), standing.compared, standing.poses, options.recording.string(),
                     standing.end_s, length_s, factor, unit));
   }
 }
 
-/// A trajectory that shares next to nothing with the recording has no score: all of its errors would be zero.
+/// Refuses a trajectory with nearly no overlap, because all its errors would be zero.
 void require_compared(const ScoreOptions& options, const Standing& standing) {
   if (standing.compared >= kComparedMin && standing.spanned() >= kSpannedShareMin) return;
   throw scenarios::BadInput(
-      fmt::format("{}: {} of its {} poses lie within {}, and cover {:.1f} % of its {:.3f} s; must be at least {} poses "
-                  "and {:.0f} %: another unit of time, or another clock?",
+      fmt::format("{}: only {} of its {} poses are within the time of {}. They cover {:.1f} % of its {:.3f} s; must be "
+                  "at least {} poses and {:.0f} %. The time unit or the clock may differ",
                   options.estimate.string(), standing.compared, standing.poses, options.recording.string(),
                   100.0 * standing.spanned(), standing.end_s, kComparedMin, 100.0 * kSpannedShareMin));
 }
@@ -127,8 +130,8 @@ void require_compared(const ScoreOptions& options, const Standing& standing) {
 std::string alignment_text(const Standing& standing) {
   const Eigen::Vector3d& t = standing.alignment.translation_m;
   return fmt::format(
-      "position and yaw at the first pose that the truth knows, {:.3f} s: yaw {:.6g} rad, ({:.6g}, {:.6g}, "
-      "{:.6g}) m; scale and tilt are not aligned",
+      "position and yaw at the first common pose, {:.3f} s: yaw {:.6g} rad, ({:.6g}, {:.6g}, {:.6g}) m; scale and tilt "
+      "are not aligned",
       standing.first_s, standing.alignment.yaw_rad, t.x(), t.y(), t.z());
 }
 
@@ -138,8 +141,8 @@ std::string cover_text(const Standing& standing) {
                      standing.poses);
 }
 
-/// A trajectory of somebody else is judged over what it answers, and how much that is is said: "partial" for one that
-/// holds there, but leaves more than a fifth of the recording in one piece without a pose.
+/// Judges an external trajectory over the part that it covers, and reports the coverage. "partial" means: no divergence
+/// in the covered part, but a gap of more than a fifth of the recording.
 std::string judge_trajectory(const Session& session, const Standing& standing, const scenarios::ScoredEstimate& scored,
                              scenarios::Outcome& outcome) {
   std::string status = to_string(outcome.status);
@@ -168,13 +171,14 @@ nlohmann::json to_json(const Standing& standing) {
             {"translation_m", {t.x(), t.y(), t.z()}}}}};
 }
 
-/// Below the scores: over how much of the recording they hold.
+/// Adds the coverage below the scores.
 void add_cover(const Standing& standing, Table& table) {
   table.add_row({"covered_share", number_text(standing.share())});
   table.add_row({"poses_compared", fmt::format("{} of {}", standing.compared, standing.poses)});
 }
 
-/// Of a TUM file: as named, else position of a rolling sphere and of what has no lidar, else slam.
+/// Returns the kind of a TUM file: the named kind, else `position` for a rolling sphere or a recording without lidar,
+/// else `slam`.
 scenarios::Kind kind_of(const std::string& name, const sim::Sensors& sensors) {
   if (name.empty()) {
     return sensors.lidars.empty() || sensors.sphere_radius_m > 0.0 ? scenarios::Kind::position : scenarios::Kind::slam;
@@ -184,7 +188,7 @@ scenarios::Kind kind_of(const std::string& name, const sim::Sensors& sensors) {
   return name == "slam" ? scenarios::Kind::slam : scenarios::Kind::position;
 }
 
-/// What is to be scored.
+/// The estimate to be scored.
 struct Claim {
   scenarios::RecordingInfo info;
   sim::Sensors sensors;
@@ -192,10 +196,10 @@ struct Claim {
   scenarios::Estimate estimate;
   scenarios::Kind kind = scenarios::Kind::position;
   std::string method;
-  bool foreign = false;  ///< a trajectory of somebody else, which says nothing of itself
+  bool foreign = false;  ///< an external trajectory without information about its method
 };
 
-/// What the estimate itself does not say.
+/// Adds the information that an external estimate does not contain.
 void complete_foreign(const Session& session, const ScoreOptions& options, Claim& claim) {
   claim.kind = kind_of(options.kind, claim.sensors);
   move_to_clock(claim.info.origin_ns, claim.estimate);
@@ -207,10 +211,10 @@ Claim read_claim(const Session& session, const ScoreOptions& options) {
   Claim claim;
   claim.info = scenarios::read_info(options.recording);
   if (!claim.info.has_truth)
-    throw scenarios::BadInput(options.recording.string() + ": holds no truth to score against");
+    throw scenarios::BadInput(options.recording.string() + ": contains no truth to score against");
   claim.sensors = scenarios::read_sensors(options.recording);
   if (!scenarios::states_digest(options.recording))
-    session.note(options.recording.string() + ": states no digest of its data, so that damage would not show");
+    session.note(options.recording.string() + ": contains no digest of its data, so damage cannot be detected");
   claim.truth = scenarios::read_truth(options.recording);
   claim.estimate = scenarios::read_estimate(options.estimate, claim.kind, claim.method,
                                             frame_of(options.frame, !claim.truth.imus.empty()));
@@ -218,16 +222,17 @@ Claim read_claim(const Session& session, const ScoreOptions& options) {
   claim.foreign = !std::filesystem::is_directory(options.estimate);
   if (!claim.foreign && scenarios::estimated_sensors(options.estimate).empty())
     session.note("caution: " + options.estimate.string() +
-                 " does not say which recording it was made from, so that one of another would not show");
+                 " does not state its recording, so an estimate of another recording cannot be detected");
   if (!claim.foreign && !options.kind.empty())
-    throw scenarios::BadInput("--kind is for a TUM file; " + options.estimate.string() + " says what it is");
+    throw scenarios::BadInput("--kind applies to a TUM file only; " + options.estimate.string() +
+                              " already states its kind");
   if (claim.foreign) complete_foreign(session, options, claim);
   if (claim.kind == scenarios::Kind::position || claim.kind == scenarios::Kind::slam)
     require_common_time(options, claim.estimate, claim.truth);
   return claim;
 }
 
-/// The true one, which matters to maps alone, and building it takes a while: null where there is none to score.
+/// Builds the true surface, which only maps need. Returns null if there is no map, because building takes long.
 std::unique_ptr<const sim::Surface> surface_of(const Session& session, const ScoreOptions& options,
                                                const Claim& claim) {
   if (claim.kind != scenarios::Kind::slam || claim.foreign || claim.info.situation_yaml.empty()) return nullptr;
@@ -284,12 +289,12 @@ int score_estimate(const Session& session, const ScoreOptions& options) {
 Action declare_score(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<ScoreOptions>();
   verb.add("ESTIMATE", options->estimate, "folder of an estimate, or a TUM file (t x y z qx qy qz qw)").required();
-  verb.add("RECORDING", options->recording, "the recording with its truth, FILE.h5; may stand first").required();
+  verb.add("RECORDING", options->recording, "recording with truth, FILE.h5; may also be the first argument").required();
   verb.add("--frame", options->frame,
-           "whose poses a TUM file holds: imu, lidar, body or centre [imu; body where the recording has none]");
+           "frame of the poses in a TUM file: imu, lidar, body or centre [imu; body if the recording has no IMU]");
   verb.add("--kind", options->kind,
-           "what a TUM file is scored as: position or slam, which adds the rotation at the end [slam where the "
-           "recording has a lidar and no rolling sphere]");
+           "kind of a TUM file: position or slam, which also scores the rotation at the end [slam if the recording has "
+           "a lidar and no rolling sphere]");
   return [&session, options] {
     order(*options);
     return score_estimate(session, *options);

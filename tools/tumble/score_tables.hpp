@@ -11,18 +11,18 @@
 
 namespace tumble::tools {
 
-/// One table per kind: a row per metric, a column per method, the status first. Metrics in the order in which they
-/// come. `status`: what is said in the place of the outcomes' own, where it is more.
+/// Returns one table per kind: one row per metric in the order of first occurrence, one column per method, the status
+/// first. `status` replaces the outcomes' own status if it has more detail.
 std::vector<Table> score_tables(const std::string& title, std::span<const scenarios::Outcome> outcomes,
                                 const std::string& status = "");
 
-/// The outcomes' numbers as rows (scenario, seed, kind, method, status, metric, value), as in the results database.
+/// Returns the scores as rows (scenario, seed, kind, method, status, metric, value), as in the results database.
 nlohmann::json score_rows(std::span<const scenarios::Outcome> outcomes);
 
-/// Every outcome without its numbers: kind, method, status, message, digest.
+/// Returns kind, method, status, message and digest of every outcome.
 nlohmann::json outcome_rows(std::span<const scenarios::Outcome> outcomes);
 
-/// `ok` when every outcome is; else the first other status.
+/// Returns `ok` if every outcome is ok; else the first other status.
 std::string overall_status(std::span<const scenarios::Outcome> outcomes);
 
 }  // namespace tumble::tools

@@ -31,14 +31,14 @@ struct SensitivityVerbOptions {
   bool motion = false, all = false, dependence = false;
 };
 
-/// What the numbers of a draw are follows from the models and scenarios that it was made of.
+/// Refuses a database made with other models or scenarios, because the numbers of its draws would differ.
 void require_same_data(const scenarios::Results& results, const scenarios::DataRoot& data,
                        const std::filesystem::path& database) {
   const std::string made_of = results.note("data"), found = scenarios::data_digest(data);
   if (made_of != found)
-    throw BadInput(database.string() + ": made of models and scenarios with digest '" + made_of +
-                   "', those here have " + found +
-                   ": what its draws were cannot be told; --motion asks for what their motions were alone");
+    throw BadInput(database.string() + ": was made with models and scenarios of digest '" + made_of +
+                   "', but this installation has digest " + found +
+                   ", so the drawn numbers are unknown; use --motion for the influence of the motions");
 }
 
 std::map<std::string, scenarios::NumbersOfDraws> numbers_of(const Session& session,
@@ -51,7 +51,7 @@ std::map<std::string, scenarios::NumbersOfDraws> numbers_of(const Session& sessi
   return numbers_of_catalogue(session, data, summary);
 }
 
-/// The strongest, and of these the ones that chance does not explain; all where asked for.
+/// Returns the strongest influences that chance does not explain, or all on request.
 std::vector<Influence> shown(const Sensitivity& row, bool all) {
   std::vector<Influence> out;
   for (const Influence& each : row.influences) {
@@ -66,7 +66,7 @@ std::vector<Table> tables_of(const std::vector<Sensitivity>& rows, bool all) {
   for (const Sensitivity& row : rows) {
     if (open == nullptr || open->scenario != row.scenario || open->kind != row.kind) {
       tables.emplace_back(
-          fmt::format("{}: {}, what breaks it", row.scenario, to_string(row.kind)),
+          fmt::format("{}: {}, influence of the numbers", row.scenario, to_string(row.kind)),
           std::vector<std::string>{"method", "metric", "draws", "number", "first order", "rank correlation", "95 %",
                                    "Holm p", "median, lowest quarter", "highest"});
       tables.back().align_right_from(4);
@@ -74,7 +74,7 @@ std::vector<Table> tables_of(const std::vector<Sensitivity>& rows, bool all) {
     }
     const std::vector<Influence> strongest = shown(row, all);
     if (strongest.empty())
-      tables.back().add_row({row.method, row.metric, std::to_string(row.draws), "(none is told from chance)"});
+      tables.back().add_row({row.method, row.metric, std::to_string(row.draws), "(no influence beyond chance)"});
     bool first = true;
     for (const Influence& each : strongest) {
       tables.back().add_row({first ? row.method : "", first ? row.metric : "", first ? std::to_string(row.draws) : "",
@@ -88,9 +88,9 @@ std::vector<Table> tables_of(const std::vector<Sensitivity>& rows, bool all) {
   return tables;
 }
 
-/// Of each influence that is shown a line per class of its number.
+/// Returns one row per class of the number, for each influence that is shown.
 Table dependence_table(const std::vector<Sensitivity>& rows, bool all) {
-  Table table("partial dependence: median, or share that failed, where the number lies",
+  Table table("partial dependence: median, or share of failures, by class of the number",
               {"scenario", "method", "metric", "number", "from", "to", "draws", "score", "95 %"});
   table.align_right_from(4);
   for (const Sensitivity& row : rows) {
@@ -156,13 +156,12 @@ int sensitivity(const Session& session, const SensitivityVerbOptions& options) {
   const std::vector<Sensitivity> rows = scenarios::sensitivities(
       summary, numbers_of(session, options, results, summary), {options.methods, options.metrics});
   if (rows.empty())
-    throw BadInput(options.database.string() + ": holds nothing to judge: it takes " +
-                   std::to_string(scenarios::kSensitivityDrawsMin) +
-                   " draws of a scenario with a number that is drawn");
+    throw BadInput(options.database.string() + ": contains too few draws: a scenario needs at least " +
+                   std::to_string(scenarios::kSensitivityDrawsMin) + " draws and a number that varies");
   std::vector<Table> tables = tables_of(rows, options.all);
   if (options.dependence) tables.push_back(dependence_table(rows, options.all));
   session.print(tables, {{"sensitivity", to_json(rows)}});
-  session.note("correlation above 0: the larger the number, the worse the score; docs/maths/statistics.md");
+  session.note("a correlation above 0 means that larger numbers give worse scores; see docs/maths/statistics.md");
   return kDone;
 }
 
@@ -170,13 +169,14 @@ int sensitivity(const Session& session, const SensitivityVerbOptions& options) {
 
 Action declare_sensitivity(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<SensitivityVerbOptions>();
-  verb.add("DATABASE", options->database, "a results database, FILE.db").required();
-  verb.add("--method", options->methods, "a method; repeat for more [all that need no truth]").one_at_a_time();
-  verb.add("--metric", options->metrics, "a metric; repeat for more [the headline ones of the kind]").one_at_a_time();
-  verb.add_flag("--motion", options->motion, "against what the motions were like, not against what was drawn");
-  verb.add_flag("--all", options->all, "every number, not the three strongest that chance does not explain");
+  verb.add("DATABASE", options->database, "results database, FILE.db").required();
+  verb.add("--method", options->methods, "method; repeat for more [all that need no truth]").one_at_a_time();
+  verb.add("--metric", options->metrics, "metric; repeat for more [headline metrics of the kind]").one_at_a_time();
+  verb.add_flag("--motion", options->motion, "uses measures of the motions instead of the drawn numbers");
+  verb.add_flag("--all", options->all,
+                "lists every number instead of the three strongest that chance does not explain");
   verb.add_flag("--dependence", options->dependence,
-                "also the score over classes of each number that is shown, with intervals");
+                "also lists the score by class of each listed number, with intervals");
   return [&session, options] { return sensitivity(session, *options); };
 }
 

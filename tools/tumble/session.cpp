@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Folders that may hold the project's files, best first.
+/// Candidate folders for the project's files, in order of priority.
 std::vector<fs::path> candidate_roots() {
   std::vector<fs::path> roots;
   if (const char* given = std::getenv("TUMBLE_DATA"); given != nullptr && *given != '\0') roots.emplace_back(given);
@@ -49,13 +49,12 @@ scenarios::DataRoot Session::data() const {
   for (const fs::path& root : candidate_roots()) {
     const scenarios::DataRoot data{root};
     if (fs::is_directory(data.models(), error)) return data;
-    // a folder that the user has named is taken at its word: falling back would run other models than the ones asked
-    // for
+    // if the user names a folder, no other folder is tried: it might hold other models
     if (given != nullptr && *given != '\0')
-      throw scenarios::BadInput("TUMBLE_DATA: no folder " + data.models().string());
+      throw scenarios::BadInput("TUMBLE_DATA: there is no folder " + data.models().string());
   }
   throw scenarios::BadInput(
-      "the models are not found; set TUMBLE_DATA to the folder that holds models/ and scenarios/");
+      "the models are not found; set TUMBLE_DATA to the folder that contains models/ and scenarios/");
 }
 
 fs::path Session::plotly() const {
@@ -65,7 +64,7 @@ fs::path Session::plotly() const {
     if (fs::is_regular_file(bundle, error)) return bundle;
   }
   throw scenarios::BadInput(
-      "plotly.min.js is not found, and the report needs it; run tools/setup, then configure and build again");
+      "plotly.min.js is not found, but the report needs it; run tools/setup, then configure and build again");
 }
 
 fs::path Session::program() const {

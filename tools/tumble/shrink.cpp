@@ -36,7 +36,8 @@ struct ShrinkVerbOptions {
   std::filesystem::path file;
 };
 
-/// The bound of the method's kind, where it applies to the robot: what even it cannot do is no case.
+/// Returns the oracle of the method's kind if it applies to the robot. A draw on which even the oracle fails is not a
+/// useful case.
 scenarios::MethodPointer control_of(const ShrinkVerbOptions& options, const scenarios::Method& method,
                                     const scenarios::Scenario& scenario, double time_limit_s) {
   if (options.control == "none") return nullptr;
@@ -56,7 +57,7 @@ std::string amount_text(const std::optional<double>& value) {
 }
 
 Table lines_table(const Shrunk& shrunk, const std::string& metric) {
-  Table table("", {"of the draw", "fate", "from", "to", "without it: status", metric});
+  Table table("", {"part of the draw", "fate", "from", "to", "without it: status", metric});
   for (const ShrinkLine& line : shrunk.lines) {
     table.add_row({line.what, to_string(line.fate), amount_text(line.from), amount_text(line.to),
                    line.without ? to_string(line.without->status) : "",
@@ -96,7 +97,7 @@ json to_json(const Shrunk& shrunk, const std::string& metric, const ShrinkVerbOp
           {"controlled", shrunk.controlled}, {"lines", std::move(lines)}, {"case", options.file.string()}};
 }
 
-/// The words that shrink the same draw once more.
+/// Returns the command that shrinks the same draw again.
 std::string command_of(const ShrinkVerbOptions& options, std::uint64_t seed) {
   using scenarios::shell_word;
   std::string words = "tumble shrink " + shell_word(options.scenario) + " --seed " + std::to_string(seed) +
@@ -107,7 +108,7 @@ std::string command_of(const ShrinkVerbOptions& options, std::uint64_t seed) {
   return words + fmt::format(" --budget {} -o ", options.budget) + shell_word(options.file.filename().string());
 }
 
-/// The case is called as its file, which has to be a name.
+/// The case is named after its file, so the file's name must be a valid name.
 std::string name_of(const std::filesystem::path& file) {
   const std::string name = file.stem().string();
   const auto allowed = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; };
@@ -115,27 +116,30 @@ std::string name_of(const std::filesystem::path& file) {
                     std::all_of(name.begin(), name.end(), allowed);
   if (good) return name;
   throw BadInput("-o " + file.string() +
-                 ": must be NAME.yaml, NAME a lower-case letter followed by letters, digits and underscores");
+                 ": must be NAME.yaml; NAME must start with a lower-case letter, followed by lower-case letters, "
+                 "digits and underscores");
 }
 
-/// A case stands wherever a scenario or a suite may.
+/// A case can be named wherever a scenario or a suite can, so their names must differ.
 void require_own_name(const scenarios::DataRoot& data, const std::string& name) {
   for (const std::vector<std::string>& known : {scenarios::scenario_names(data), scenarios::suite_names(data)}) {
     if (std::find(known.begin(), known.end(), name) != known.end())
-      throw BadInput("-o " + name + ".yaml: a scenario or a suite is called so already; name it otherwise");
+      throw BadInput("-o " + name + ".yaml: a scenario or a suite already has this name; choose another name");
   }
 }
 
 void require_whole(const ShrinkVerbOptions& options) {
   if (options.metric.empty() != !options.worse_than)
-    throw BadInput("--metric and --worse-than go together: which number, and from where on a run fails");
+    throw BadInput(
+        "--metric and --worse-than must be given together: the metric, and the value beyond which a run fails");
   if (options.worse_than && !std::isfinite(*options.worse_than)) throw BadInput("--worse-than is not a finite number");
 }
 
 std::string control_text(const Shrunk& shrunk, const scenarios::ShrinkOptions& options) {
-  if (!options.control) return "no control";
+  if (!options.control) return "no control method";
   const std::string& name = options.control->info.name;
-  return shrunk.controlled ? name + " does not fail on it" : name + " fails on the draw too, and controls nothing";
+  return shrunk.controlled ? name + " does not fail on it"
+                           : name + " also fails on the draw, so the control is not effective";
 }
 
 int run_shrink(const Session& session, const ShrinkVerbOptions& options) {
@@ -154,8 +158,8 @@ int run_shrink(const Session& session, const ShrinkVerbOptions& options) {
   shrinking.control = control_of(options, *method, scenario, time_limit_s);
   shrinking.budget = options.budget;
   shrinking.on_trial = [&](const scenarios::ShrinkTrial& trial) {
-    session.note(fmt::format("{:>3} of {} at most: {}: {}, {} {}{}", trial.run, options.budget, trial.what,
-                             trial.kept ? "fails" : "does not", to_string(trial.outcome.status),
+    session.note(fmt::format("{:>3} of at most {}: {}: {}, {} {}{}", trial.run, options.budget, trial.what,
+                             trial.kept ? "fails" : "does not fail", to_string(trial.outcome.status),
                              number_text(value_of(trial.outcome.scores, metric)),
                              trial.outcome.message.empty() ? "" : " (" + trial.outcome.message + ")"));
   };
@@ -168,8 +172,8 @@ int run_shrink(const Session& session, const ShrinkVerbOptions& options) {
   scenarios::replace_file(options.file, scenarios::to_yaml(made));
   session.print({lines_table(shrunk, metric), outcomes_table(shrunk, metric)}, to_json(shrunk, metric, options));
   session.note(fmt::format(
-      "{}: {} runs, {}; {}; the case: {}", shrunk.failure, shrunk.runs,
-      shrunk.complete ? "nothing single can be taken away any more" : "the budget is spent, more might go (--budget)",
+      "{}: {} runs, {}; {}; case file: {}", shrunk.failure, shrunk.runs,
+      shrunk.complete ? "nothing more can be removed" : "the budget is used up; a larger --budget may remove more",
       control_text(shrunk, shrinking), options.file.string()));
   return kDone;
 }
@@ -178,17 +182,20 @@ int run_shrink(const Session& session, const ShrinkVerbOptions& options) {
 
 Action declare_shrink(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<ShrinkVerbOptions>();
-  verb.add("SCENARIO", options->scenario, "a scenario, a named case, or a scenario file")
+  verb.add("SCENARIO", options->scenario, "scenario, named case, or scenario file")
       .required()
       .check(a_scenario(session));
-  verb.add("--seed", options->seed, "the draw that fails [of a named case its own]");
-  verb.add("--method", options->method, "the method that fails on it").required();
-  verb.add("--metric", options->metric, "what makes a run fail, with --worse-than [status and verdicts alone]");
-  verb.add("--worse-than", options->worse_than, "a run fails where the metric is worse than this, SI");
+  verb.add("--seed", options->seed, "seed of the failing draw [for a named case: its own]");
+  verb.add("--method", options->method, "method that fails on the draw").required();
+  verb.add("--metric", options->metric,
+           "metric that decides about failure, with --worse-than [only status and verdicts]");
+  verb.add("--worse-than", options->worse_than, "limit of the metric in SI units; a run fails beyond it");
   verb.add("--control", options->control,
-           "a method that must not fail on what is kept, or 'none' [the oracle of the method's kind]");
-  verb.add("--budget", options->budget, "draws simulated at most").whole(1, 100000).shows_default();
-  verb.add("-o,--output", options->file, "NAME.yaml: the case; in scenarios/regressions the gate holds it").required();
+           "control method that must succeed on the smaller draw, or 'none' [the oracle of the method's kind]");
+  verb.add("--budget", options->budget, "maximum number of simulated draws").whole(1, 100000).shows_default();
+  verb.add("-o,--output", options->file,
+           "case file to write, NAME.yaml; the gate checks the cases in scenarios/regressions")
+      .required();
   return [&session, options] { return run_shrink(session, *options); };
 }
 

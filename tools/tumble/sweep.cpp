@@ -26,7 +26,7 @@ namespace tumble::tools {
 
 namespace {
 
-/// Unless told: each example costs a draw run once more and its pictures.
+/// Defaults: each example costs one more run of a draw, and its pictures.
 constexpr std::uint64_t kExamplesMax = 3, kDrawsPerExample = 8, kFailuresMax = 8, kDrawsPerFailure = 4;
 
 struct SweepVerbOptions {
@@ -34,7 +34,7 @@ struct SweepVerbOptions {
   std::string seeds, shard;
   std::vector<std::string> scenarios, methods, again;
   int jobs = available_processors();
-  std::optional<std::size_t> examples, failures;  ///< as many as the sweep can bear, where it is not told
+  std::optional<std::size_t> examples, failures;  ///< if not stated, depends on the size of the sweep
   std::filesystem::path database, recordings;
   double memory_mib = scenarios::kWorkerMemoryMib;
   std::string keep = "none";
@@ -42,45 +42,46 @@ struct SweepVerbOptions {
   double risk = 0.05;
 };
 
-/// Of the suite's scenarios those that are named, in the suite's order.
+/// Keeps only the named scenarios, in the order of the suite.
 void take_scenarios(const std::vector<std::string>& named, scenarios::Suite& suite) {
   if (named.empty()) return;
   if (!suite.recordings.empty() || !suite.classes.empty())
-    throw scenarios::BadInput("--scenario: suite '" + suite.name + "' names its " +
+    throw scenarios::BadInput("--scenario: does not apply, because suite '" + suite.name + "' names its " +
                               (suite.recordings.empty() ? "draws" : "recordings"));
   for (const std::string& name : named) require_known("scenario of suite '" + suite.name + "'", name, suite.scenarios);
   std::erase_if(suite.scenarios, [&](const std::string& name) { return std::ranges::count(named, name) == 0; });
 }
 
-/// Whoever means a scenario and names a suite of the same name waits for others.
+/// Prints the content of the suite, because a scenario and a suite may have the same name.
 void say_what_it_holds(const Session& session, const SweepVerbOptions& options, const scenarios::Suite& suite) {
   if (!options.scenarios.empty() || suite.scenarios.size() < 2) return;
   if (std::ranges::count(suite.scenarios, options.suite) == 0) return;
-  session.note(fmt::format("suite '{0}': {1}; --scenario {0} for that one alone", options.suite,
+  session.note(fmt::format("suite '{0}' contains: {1}; use --scenario {0} for that scenario only", options.suite,
                            fmt::join(suite.scenarios, " ")));
 }
 
-/// The suite with what the command line changes of it. Returns false when this shard has no seed.
+/// Builds the suite with the changes from the command line. Returns false if this shard has no seed.
 bool select(const scenarios::DataRoot& data, const SweepVerbOptions& options, scenarios::Suite& suite) {
   suite = scenarios::load_suite(data, options.suite);
   take_scenarios(options.scenarios, suite);
   const bool recorded = !suite.recordings.empty();
   if (recorded && (!options.seeds.empty() || !options.shard.empty()))
-    throw scenarios::BadInput("--seeds, --shard: a suite of recordings has no seeds");
+    throw scenarios::BadInput("--seeds, --shard: do not apply, because a suite of recordings has no seeds");
   if (!suite.classes.empty() && !options.seeds.empty())
-    throw scenarios::BadInput("--seeds: suite '" + suite.name + "' names its draws");
+    throw scenarios::BadInput("--seeds: does not apply, because suite '" + suite.name + "' names its draws");
   if (!options.seeds.empty()) std::tie(suite.first_seed, suite.last_seed) = parse_seeds(options.seeds);
   if (!recorded && !options.recordings.empty())
-    throw scenarios::BadInput("--data: suite '" + suite.name + "' has no recordings");
+    throw scenarios::BadInput("--data: does not apply, because suite '" + suite.name + "' has no recordings");
   if (!options.recordings.empty()) suite.recordings_folder = options.recordings;
   if (!options.methods.empty()) {
-    for (const std::string& name : options.methods) scenarios::find_methods(name);  // refuses an unknown one now
+    // refuses an unknown name before the sweep starts
+    for (const std::string& name : options.methods) scenarios::find_methods(name);
     suite.methods = options.methods;
   }
   return options.shard.empty() || shard_seeds(parse_shard(options.shard), suite.first_seed, suite.last_seed);
 }
 
-/// The certificate of this build goes with its results; measured at most once per build and machine.
+/// Stores the certificate of this build with the results; it is measured at most once per build and machine.
 void certify(const Session& session, const scenarios::DataRoot& data, const std::filesystem::path& database,
              const std::atomic<bool>& stop) {
   scenarios::Results results(database, scenarios::Results::Mode::create_or_append);
@@ -88,17 +89,18 @@ void certify(const Session& session, const scenarios::DataRoot& data, const std:
   scenarios::CertifyOptions options;
   options.stop = &stop;
   options.on_row = [&](const scenarios::CertificateRow&, double) {
-    if (!announced) session.note("measuring the certificate of this build, once: about half a minute");
+    if (!announced)
+      session.note("measuring the certificate of this build; this happens once and takes about half a minute");
     announced = true;
   };
   const scenarios::Certificate certificate = scenarios::certify_results(
       results, scenarios::CertificateStore(session.cache(), data), {data, session.program()}, options);
   if (!stop.load() && !certificate.passes()) {
-    session.note("the certificate of this build has rows that fail: see 'tumble certify'");
+    session.note("the certificate of this build has failing rows; see 'tumble certify'");
   }
 }
 
-/// The words that ask for the same sweep once more, but for its database.
+/// Returns the command for the same sweep, without its database.
 std::string command_of(const SweepVerbOptions& options) {
   using scenarios::shell_word;
   std::string words = shell_word(options.suite);
@@ -109,22 +111,21 @@ std::string command_of(const SweepVerbOptions& options) {
   return words;
 }
 
-/// Behind those of the sweeps before into the same database.
+/// Appends to the commands of earlier sweeps in the same database.
 void note_command(scenarios::Results results, const SweepVerbOptions& options) {
   const std::string known = results.note(scenarios::kCommandNote);
   results.set_note(scenarios::kCommandNote, scenarios::with_commands(known, command_of(options)));
 }
 
-/// Of a whole suite alone: what is typical of a part of its seeds need not be so of all. What is wrong with the
-/// pictures costs the sweep a line, not its table and its status. Returns false when it was
-/// stopped.
+/// Generates examples only if the complete suite was swept, because draws that are typical of a shard may not be
+/// typical of the suite. Errors in pictures are reported but do not change the table and the exit status. Returns false
+/// if it was stopped.
 bool leave_examples(const Session& session, const scenarios::DataRoot& data, const scenarios::Suite& suite,
                     const SweepVerbOptions& options, std::uint64_t draws, const std::atomic<bool>& stop) {
   if (!options.shard.empty()) return true;
   LeaveOptions leave;
   leave.count = options.examples.value_or(std::min(kExamplesMax, draws / kDrawsPerExample));
-  // who wants no pictures wants none of failures either; who sweeps too few draws for a typical one, of those that
-  // failed
+  // `--examples 0` also disables pictures of failures; a sweep that is too small for typical draws still shows failures
   const bool wants_none = options.examples && *options.examples == 0;
   leave.failures =
       options.failures.value_or(wants_none ? 0 : std::clamp(draws / kDrawsPerFailure, std::uint64_t{1}, kFailuresMax));
@@ -153,7 +154,7 @@ nlohmann::json to_json(const scenarios::SweepProgress& p, const std::string& dat
 }
 
 Table to_table(const scenarios::SweepProgress& p, const std::string& database) {
-  Table table("", {"database", "draws done", "draws in all", "outcomes", "not ok", "draws rejected", "peak MiB"});
+  Table table("", {"database", "draws done", "draws total", "outcomes", "not ok", "draws rejected", "peak MiB"});
   table.align_right_from(1);
   table.add_row({database, std::to_string(p.draws_done), std::to_string(p.draws_total), std::to_string(p.outcomes),
                  std::to_string(p.not_ok()), std::to_string(p.rejected), fmt::format("{:.0f}", p.peak_mib)});
@@ -182,7 +183,7 @@ scenarios::SweepOptions sweep_options(const SweepVerbOptions& options, const std
   return out;
 }
 
-/// A database that a refused sweep has made goes again, unless draws are stored in it.
+/// Removes a database that a refused sweep created, unless it holds draws.
 class NewDatabase {
  public:
   explicit NewDatabase(const std::filesystem::path& path) : path_(path), is_new_(!exists_at(path)) {}
@@ -200,7 +201,7 @@ class NewDatabase {
     std::error_code ignored;
     return std::filesystem::exists(std::filesystem::symlink_status(path, ignored));
   }
-  /// What cannot be read is not removed, but where the disk had no room for the first byte.
+  /// An unreadable database is kept, unless it is empty because the disk was full.
   bool holds_rows() const {
     try {
       const scenarios::Results results(path_, scenarios::Results::Mode::read_only);
@@ -215,15 +216,18 @@ class NewDatabase {
   bool is_new_, kept_ = false;
 };
 
-/// Recorded in the results before anything runs. An empty word asks nothing.
+/// Stores the question in the results before anything runs; an empty text asks nothing.
 std::optional<scenarios::Question> ask(const SweepVerbOptions& options, const scenarios::DataRoot& data,
                                        const scenarios::Suite& suite) {
   if (options.until.empty()) return std::nullopt;
-  if (!options.shard.empty()) throw scenarios::BadInput("--until: a shard has no looks at all of the draws");
+  if (!options.shard.empty())
+    throw scenarios::BadInput("--until: does not apply with --shard, because a shard does not see all draws");
   if (!suite.recordings.empty() || !suite.curves.empty())
-    throw scenarios::BadInput("--until: suite '" + suite.name + "' is of recordings, or has curves; ask it of draws");
+    throw scenarios::BadInput("--until: does not apply, because suite '" + suite.name +
+                              "' contains recordings or curves");
   if (!suite.classes.empty())
-    throw scenarios::BadInput("--until: suite '" + suite.name + "' names its draws; ask it of seeds in a row");
+    throw scenarios::BadInput("--until: does not apply, because suite '" + suite.name +
+                              "' names its draws and has no range of seeds");
   const scenarios::Question question = parse_question(options.until, options.risk, suite);
   scenarios::Results results = scenarios::open_results(data, suite, options.database);
   scenarios::claim(results, question, options.database);
@@ -233,12 +237,12 @@ std::optional<scenarios::Question> ask(const SweepVerbOptions& options, const sc
 void say_what_is_kept(const Session& session, const SweepVerbOptions& options,
                       const scenarios::SweepProgress& progress) {
   if (options.keep == "none") return;
-  session.note(fmt::format("{} of {} draws to keep stand in {}.files/kept/SCENARIO/SEED", progress.kept,
+  session.note(fmt::format("{} of {} selected draws are stored in {}.files/kept/SCENARIO/SEED", progress.kept,
                            progress.to_keep, options.database.string()));
   if (progress.kept < progress.to_keep)
-    std::fprintf(stderr, "tumble: %llu draws could not be kept: %s\n",
+    std::fprintf(stderr, "tumble: %llu selected draws could not be stored: %s\n",
                  static_cast<unsigned long long>(progress.to_keep - progress.kept),
-                 progress.not_kept.empty() ? "stopped before" : progress.not_kept.c_str());
+                 progress.not_kept.empty() ? "stopped early" : progress.not_kept.c_str());
 }
 
 int run_sweep(const Session& session, const SweepVerbOptions& options) {
@@ -252,11 +256,11 @@ int run_sweep(const Session& session, const SweepVerbOptions& options) {
   const scenarios::DatabaseOwner owner(options.database);
   NewDatabase made(options.database);
   if (!any) {
-    // an empty database, so that all shards can be merged, with what they keep
+    // creates an empty database, so that all shards can be merged
     scenarios::Results results = scenarios::open_results(data, suite, options.database);
     if (options.keep != "none") results.set_note(scenarios::kKeepNote, options.keep);
     made.keep();
-    session.note("shard " + options.shard + " has no seeds: nothing to do");
+    session.note("shard " + options.shard + " has no seeds, so there is nothing to do");
     session.print({to_table({}, options.database.string())}, to_json({}, options.database.string()));
     return kDone;
   }
@@ -265,7 +269,7 @@ int run_sweep(const Session& session, const SweepVerbOptions& options) {
   scenarios::require_sound(suite, how);
   const std::optional<scenarios::Question> question = ask(options, data, suite);
   note_command(scenarios::open_results(data, suite, options.database), options);
-  // it speaks of simulations
+  // the certificate applies only to simulations
   if (suite.recordings.empty()) certify(session, data, options.database, interrupt.raised());
   AskedSweep swept;
   if (question) {
@@ -290,7 +294,8 @@ int run_sweep(const Session& session, const SweepVerbOptions& options) {
   say_what_is_kept(session, options, final);
   if (!complete) return say_stopped(final);
   if (shown) return kDone;
-  std::fputs("tumble: stopped: all draws are stored, their pictures are not made, run again to make them\n", stderr);
+  std::fputs("tumble: stopped: all draws are stored, but their pictures are missing; run again to create them\n",
+             stderr);
   return kCheckFailed;
 }
 
@@ -298,43 +303,43 @@ int run_sweep(const Session& session, const SweepVerbOptions& options) {
 
 Action declare_sweep(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<SweepVerbOptions>();
-  verb.add("SUITE", options->suite, "a suite, a suite file, or a scenario").required().check(a_suite(session));
-  verb.add("--scenario", options->scenarios, "of the suite's scenarios this one; repeat for more [all of them]")
-      .one_at_a_time();
-  verb.add("--seeds", options->seeds, "A..B, both included [the suite's]")
-      .filled();  // an empty word would mean all of them
-  verb.add("--method", options->methods, "a method; repeat for more [the suite's]")
-      .one_at_a_time();  // the word after a method is not another one
-  verb.add("--jobs", options->jobs, "processes at a time [the processors]").whole(1, 1024).shows_default();
-  verb.add("--shard", options->shard, "i/n: the i-th of n parts of the seeds").filled();
-  verb.add("--again", options->again, "run rows of these statuses once more: crashed,timeout,killed")
+  verb.add("SUITE", options->suite, "suite, suite file, or scenario").required().check(a_suite(session));
+  verb.add("--scenario", options->scenarios, "scenario of the suite to run; repeat for more [all]").one_at_a_time();
+  verb.add("--seeds", options->seeds, "range of seeds A..B, both included [the suite's]")
+      .filled();  // an empty word would select all
+  verb.add("--method", options->methods, "method; repeat for more [the suite's]")
+      .one_at_a_time();  // each option takes exactly one word
+  verb.add("--jobs", options->jobs, "number of parallel processes [all processors]").whole(1, 1024).shows_default();
+  verb.add("--shard", options->shard, "i/n: runs the i-th of n parts of the seeds").filled();
+  verb.add("--again", options->again, "repeats runs with these statuses, for example crashed,timeout,killed")
       .separated_by(',')
       .one_at_a_time();
   verb.add("--examples", options->examples,
-           "typical draws run again at the end, their pictures, plots and replays left in FILE.db.files for 'report'; "
-           "not of a shard [one for each 8 draws of the sweep, 3 at most]")
+           "number of typical draws that are run again at the end for pictures, plots and replays in FILE.db.files for "
+           "'report'; not for shards [one per 8 draws, at most 3]")
       .whole(0, 64);
   verb.add("--failures", options->failures,
-           "draws that failed, those on which most methods did, run again likewise: a picture and a replay [one for "
-           "each 4 draws of the sweep, 8 at most; none with --examples 0]")
+           "number of draws with most failed methods that are run again for a picture and a replay [one per 4 draws, "
+           "at most 8; none with --examples 0]")
       .whole(0, 64);
-  verb.add("--memory", options->memory_mib,
-           "MiB of data that a worker, and each method that it runs, may hold; one that needs more is 'killed'")
+  verb.add(
+          "--memory", options->memory_mib,
+          "limit in MiB for the data of a worker and of each method that it runs; beyond the limit the run is 'killed'")
       .within(64.0, 1e7)
       .shows_default();
   verb.add("--keep", options->keep,
-           "draws whose recording and estimates are left in FILE.db.files/kept: none, failed, worst:N of each "
-           "scenario and method, all")
+           "draws whose recording and estimates are stored in FILE.db.files/kept: none, failed, worst:N of each "
+           "scenario and method, or all")
       .shows_default();
   verb.add("--until", options->until,
-           "A:B:METRIC[:MARGIN]: stop when it is answered whether method A is better than B, by more than the "
-           "margin (in the metric's unit, or as 10% of B's value); looked at 20 times")
+           "A:B:METRIC[:MARGIN]: stops when the draws show whether method A is better than B by more than the margin "
+           "(in the metric's unit, or as 10% of B's value); evaluated 20 times")
       .filled();
-  verb.add("--risk", options->risk, "of any answer to --until where neither is better")
+  verb.add("--risk", options->risk, "accepted probability of an answer to --until although neither method is better")
       .within(1e-6, 0.5)
       .shows_default();
   verb.add("--data", options->recordings, "folder of a suite's recordings [the suite file's]");
-  verb.add("--db", options->database, "the results database; what it holds already is not run again").required();
+  verb.add("--db", options->database, "results database; stored runs are not repeated").required();
   return [&session, options] { return run_sweep(session, *options); };
 }
 

@@ -21,7 +21,7 @@ ProgressDisplay display() {
   return {to_standard_error, isatty(STDERR_FILENO) == 1};
 }
 
-/// What was done before and what has been done since, of `draws` in all.
+/// Adds the progress before this step and the progress of this step, for a total of `draws`.
 scenarios::SweepProgress sum(const scenarios::SweepProgress& before, const scenarios::SweepProgress& since,
                              std::uint64_t draws) {
   scenarios::SweepProgress all = since;
@@ -33,7 +33,7 @@ scenarios::SweepProgress sum(const scenarios::SweepProgress& before, const scena
   all.elapsed_s += before.elapsed_s;
   all.peak_mib = std::max(all.peak_mib, before.peak_mib);
   if (all.not_kept.empty()) all.not_kept = before.not_kept;
-  // at the pace of the draws so far, were all of them asked for
+  // estimates the remaining time from the mean time per draw, as if all draws were run
   if (all.draws_done > 0)
     all.left_s = all.elapsed_s / static_cast<double>(all.draws_done) * static_cast<double>(draws - all.draws_done);
   return all;
@@ -57,7 +57,7 @@ AskedSweep sweep_until(const Session& session, const scenarios::DataRoot& data, 
   ProgressDisplay shown = display();
   AskedSweep out;
   scenarios::Suite part = suite;
-  // the worst of all are known at the end
+  // the worst draws are determined after the last step
   scenarios::SweepOptions own = options;
   if (options.keep.which == scenarios::Keep::Which::worst) own.keep = {};
   const auto draws_of = [&](std::uint64_t seeds) { return seeds * suite.scenarios.size(); };
@@ -87,7 +87,7 @@ AskedSweep sweep_until(const Session& session, const scenarios::DataRoot& data, 
 }
 
 int say_stopped(const scenarios::SweepProgress& progress) {
-  std::fprintf(stderr, "tumble: stopped: %llu of %llu draws stored, run again to go on\n",
+  std::fprintf(stderr, "tumble: stopped: %llu of %llu draws are stored; run again to continue\n",
                static_cast<unsigned long long>(progress.draws_done),
                static_cast<unsigned long long>(progress.draws_total));
   return kCheckFailed;

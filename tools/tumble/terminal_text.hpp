@@ -6,8 +6,8 @@
 
 namespace tumble::tools {
 
-/// A text as it may reach a terminal: bytes that are no UTF-8 and control characters (C0 but for line ends, DEL, C1)
-/// become '?'. What a file calls itself, or a path, must not move a cursor.
+/// Makes a text safe for a terminal: invalid UTF-8 and control characters (C0 except line ends, DEL, C1) become '?'.
+/// Names in files and paths must not move the cursor.
 std::string terminal_text(std::string_view text);
 
 }  // namespace tumble::tools

@@ -34,14 +34,14 @@ struct TriageVerbOptions {
   std::filesystem::path database;
 };
 
-/// "cures" when the run failed as it was and does not with this input true.
+/// "cures" if the original run failed and the run with this true input does not.
 std::string verdict(const TriageRow& row, const TriageRow& base) {
   if (!base.fails) return "";
   return row.fails ? "" : "cures";
 }
 
 Table table_of(const std::vector<TriageRow>& rows, const std::string& metric) {
-  Table table("", {"replaced by its truth", "status", metric, "of the first", "verdict", "what"});
+  Table table("", {"replaced by its truth", "status", metric, "ratio to the first", "verdict", "what"});
   const TriageRow& base = rows.front();
   const double before = value_of(base.outcome.scores, metric);
   for (const TriageRow& row : rows) {
@@ -71,12 +71,13 @@ json to_json(const std::vector<TriageRow>& rows, const std::string& metric) {
 
 std::string conclusion(const std::vector<TriageRow>& rows) {
   if (!rows.front().fails)
-    return "the run does not fail (see --metric and --limit); the values say what each input is worth";
+    return "the run does not fail (see --metric and --limit); compare the values for the influence of each input";
   std::string cures;
   for (const TriageRow& row : rows) {
     if (&row != &rows.front() && !row.fails) cures += (cures.empty() ? "" : ", ") + row.input;
   }
-  return cures.empty() ? "no input cures the failure: it lies in the method or in the scenario" : "cured by: " + cures;
+  return cures.empty() ? "no single input cures the failure: the cause is in the method or in the scenario"
+                       : "cured by: " + cures;
 }
 
 scenarios::Failure failure_of(const TriageVerbOptions& options, const std::string& metric) {
@@ -95,7 +96,7 @@ int run_triage_of_draw(const Session& session, const TriageVerbOptions& options)
   scenarios::TriageOptions triage_options;
   triage_options.failure = failure_of(options, metric);
   triage_options.on_run = [&](const std::string& input) {
-    session.note(input == "none" ? "as it is" : "true: " + input);
+    session.note(input == "none" ? "original run" : "true: " + input);
   };
   const std::vector<TriageRow> rows = scenarios::triage(data, scenario, seed, method, triage_options);
   session.print({table_of(rows, metric)}, to_json(rows, metric));
@@ -103,24 +104,24 @@ int run_triage_of_draw(const Session& session, const TriageVerbOptions& options)
   return kDone;
 }
 
-/// Refuses a name that is neither a suite's nor a scenario's, before anything else is missing. What a file is of is
-/// seen when all options are known.
+/// Refuses a name that is neither a suite's nor a scenario's, before CLI11 reports missing options. The content of a
+/// file is checked when all options are known.
 std::function<void(const std::string&)> known_name(const Session& session) {
   return [&session](const std::string& text) {
     if (!text.ends_with(".yaml")) scenarios::load_suite(session.data(), text);
   };
 }
 
-/// A seed, or a named case, is one draw; what else stands there is a suite.
+/// True if a seed or a named case is given; otherwise the name is a suite.
 bool is_one_draw(const Session& session, const TriageVerbOptions& options) {
   const bool named = !options.what.ends_with(".yaml") && names_cases(session.data(), options.what);
   const bool one = !options.seed.empty() || (named && options.seeds.empty());
   if (one && (!options.seeds.empty() || !options.database.empty()))
-    throw BadInput("--seeds, --db: are for a suite; one draw is asked for");
+    throw BadInput("--seeds, --db: apply to a suite only, but a single draw is requested");
   return one;
 }
 
-/// What one draw of a suite is asked with.
+/// Returns the options for the command that triages one draw of the suite.
 std::string words_of(const TriageVerbOptions& options) {
   std::string words = " --method " + scenarios::shell_word(options.method);
   if (!options.metric.empty()) words += " --metric " + scenarios::shell_word(options.metric);
@@ -139,7 +140,7 @@ int run_triage(const Session& session, const TriageVerbOptions& options) {
   asked.options.memory_mib = options.memory_mib;
   asked.suite = scenarios::load_suite(session.data(), options.what);
   if (!asked.suite.classes.empty() && !options.seeds.empty())
-    throw BadInput("--seeds: suite '" + asked.suite.name + "' names its draws");
+    throw BadInput("--seeds: does not apply, because suite '" + asked.suite.name + "' names its draws");
   if (!options.seeds.empty()) std::tie(asked.suite.first_seed, asked.suite.last_seed) = parse_seeds(options.seeds);
   asked.database = options.database;
   return run_suite_triage(session, std::move(asked));
@@ -150,21 +151,25 @@ int run_triage(const Session& session, const TriageVerbOptions& options) {
 Action declare_triage(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<TriageVerbOptions>();
   verb.add("SCENARIO", options->what,
-           "with --seed a scenario, a named case or a scenario file; without it a suite, a suite file or a scenario")
+           "with --seed: a scenario, named case or scenario file; without: a suite, suite file or scenario")
       .required()
       .check(known_name(session));
-  verb.add("--seed", options->seed, "one draw [all of the suite's; of a named case its own]");
-  verb.add("--seeds", options->seeds, "A..B, both included, of a suite [the suite's]");
-  verb.add("--db", options->database, "results: of the suite's draws only those on which the method failed there");
-  verb.add("--jobs", options->jobs, "processes at a time, of a suite [the processors]").whole(1, 1024).shows_default();
+  verb.add("--seed", options->seed, "seed of a single draw [all draws of the suite; for a named case: its own]");
+  verb.add("--seeds", options->seeds, "range of seeds A..B of a suite, both included [the suite's]");
+  verb.add("--db", options->database, "results database: only draws of the suite on which the method failed there");
+  verb.add("--jobs", options->jobs, "number of parallel processes, for a suite [all processors]")
+      .whole(1, 1024)
+      .shows_default();
   verb.add("--memory", options->memory_mib,
-           "MiB of data that a draw's process, and each of its runs, may hold, of a suite; one that needs more is a "
-           "draw without an answer")
+           "limit in MiB for the data of the process of a draw and of each of its runs, for a suite; a draw beyond the "
+           "limit has no result")
       .within(64.0, 1e7)
       .shows_default();
-  verb.add("--method", options->method, "the method that fails").required();
-  verb.add("--metric", options->metric, "what is shown, and with --limit what fails [the first of the method's kind]");
-  verb.add("--limit", options->limit, "a run fails beyond this value, SI [on status and map_failed alone]");
+  verb.add("--method", options->method, "method that fails").required();
+  verb.add("--metric", options->metric,
+           "metric to list; with --limit it also decides about failure [the first metric of the method's kind]");
+  verb.add("--limit", options->limit,
+           "limit of the metric in SI units; a run fails beyond it [only status and map_failed decide]");
   return [&session, options] { return run_triage(session, *options); };
 }
 

@@ -95,10 +95,10 @@ json to_json(const std::vector<InputWorth>& worths, const std::vector<DrawTriage
           {"draws", std::move(all)}};
 }
 
-/// Of all draws together, what cures most; all inputs at once are a bound, no answer.
+/// Names the input that cures most draws. All inputs together are only a bound and are not considered.
 std::string conclusion(const std::vector<InputWorth>& worths) {
   if (worths.empty()) return "no draw could be run";
-  const std::string& whole = worths.back().scenario;  // of all, where there are several scenarios
+  const std::string& whole = worths.back().scenario;  // the summary over all scenarios, if there are several
   const auto is_single = [&](const InputWorth& worth) { return worth.scenario == whole && worth.input != "all"; };
   const auto first = std::find_if(worths.begin(), worths.end(), is_single);
   if (first == worths.end()) return "no input could be replaced";
@@ -107,8 +107,8 @@ std::string conclusion(const std::vector<InputWorth>& worths) {
     return fmt::format("{} matters most: it cures {} of {} failures", name, first->cured, first->failed);
   const std::string failures =
       first->failed == 0 ? "no run failed (see --metric and --limit); " : "no single input cures a failure; ";
-  if (first->better <= first->worse) return failures + "none makes most draws better";
-  return failures + fmt::format("{} makes {} of {} draws better", name, first->better, first->better + first->worse);
+  if (first->better <= first->worse) return failures + "no input improves most draws";
+  return failures + fmt::format("{} improves {} of {} draws", name, first->better, first->better + first->worse);
 }
 
 std::vector<DrawName> chosen_draws(const Session& session, const SuiteTriage& asked) {
@@ -122,14 +122,14 @@ std::vector<DrawName> chosen_draws(const Session& session, const SuiteTriage& as
   std::erase_if(draws, [&](const DrawName& draw) { return !failed.contains(draw); });
   if (draws.empty())
     throw BadInput(asked.database.string() + ": " + full_name(asked.method->info) +
-                   " failed on none of these draws there");
+                   " failed on none of the selected draws in this database");
   return draws;
 }
 
 std::string line_of(const DrawTriage& draw) {
   const std::string name = fmt::format("{} {}: ", draw.draw.scenario, draw.draw.seed);
   if (draw.rows.empty()) return name + draw.trouble;
-  if (!draw.trouble.empty()) return name + "not all inputs: " + draw.trouble;
+  if (!draw.trouble.empty()) return name + "incomplete: " + draw.trouble;
   if (!draw.rows.front().fails) return name + "does not fail";
   std::string cures;
   for (const scenarios::TriageRow& row : draw.rows) {
@@ -148,7 +148,8 @@ std::string first_trouble(const std::vector<DrawTriage>& draws) {
 
 int run_suite_triage(const Session& session, SuiteTriage asked) {
   if (!asked.suite.recordings.empty())
-    throw BadInput("suite '" + asked.suite.name + "' is of recordings, whose inputs have no truth to be replaced by");
+    throw BadInput("suite '" + asked.suite.name +
+                   "' contains recordings, whose inputs cannot be replaced by their truth");
   const std::vector<DrawName> draws = chosen_draws(session, asked);
   const InterruptFlag interrupt;
   std::size_t done = 0, failed = 0;
@@ -156,7 +157,7 @@ int run_suite_triage(const Session& session, SuiteTriage asked) {
   asked.options.on_draw = [&](const DrawTriage& draw) {
     ++done;
     failed += !draw.rows.empty() && draw.rows.front().fails ? 1 : 0;
-    session.note(fmt::format("{} of {} draws, {} failing: {}", done, draws.size(), failed, line_of(draw)));
+    session.note(fmt::format("{} of {} draws, {} failed: {}", done, draws.size(), failed, line_of(draw)));
   };
   const std::vector<DrawTriage> triaged = scenarios::triage_draws(session.data(), draws, *asked.method, asked.options);
   const std::vector<InputWorth> worths = scenarios::worth_of_inputs(triaged, asked.metric);
@@ -165,10 +166,11 @@ int run_suite_triage(const Session& session, SuiteTriage asked) {
   const auto troubled =
       std::count_if(triaged.begin(), triaged.end(), [](const DrawTriage& draw) { return !draw.trouble.empty(); });
   if (troubled > 0)
-    std::fprintf(stderr, "tumble: %td of %zu draws have no answer, or not all of it; the first: %s\n", troubled,
+    std::fprintf(stderr, "tumble: %td of %zu draws have no result or an incomplete one; the first: %s\n", troubled,
                  triaged.size(), first_trouble(triaged).c_str());
   if (triaged.size() == draws.size()) return kDone;
-  std::fprintf(stderr, "tumble: stopped: %zu of %zu draws, the table is of these\n", triaged.size(), draws.size());
+  std::fprintf(stderr, "tumble: stopped: %zu of %zu draws; the table covers only these\n", triaged.size(),
+               draws.size());
   return kCheckFailed;
 }
 

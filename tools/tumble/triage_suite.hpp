@@ -7,19 +7,19 @@
 #include "scenarios/sweep/suite_triage.hpp"
 #include "tools/tumble/session.hpp"
 
-/// Triage over a suite, as the verb has it.
+/// Triage over all draws of a suite.
 namespace tumble::tools {
 
 struct SuiteTriage {
   scenarios::Suite suite;
   scenarios::MethodPointer method;
-  std::string metric;  ///< of the method's kind: what inputs are compared by
-  std::string words;   ///< that ask for the method and for what fails, of one draw's command
+  std::string metric;  ///< metric of the method's kind by which inputs are compared
+  std::string words;   ///< options that select the method and the criterion of failure in the command for one draw
   scenarios::SuiteTriageOptions options;
-  std::filesystem::path database;  ///< not empty: only the draws on which the method failed there
+  std::filesystem::path database;  ///< if not empty: only draws on which the method failed in this database
 };
 
-/// Runs it, prints what each input is worth, and says which matters most; returns the exit status.
+/// Runs the triage, prints the effect of each input and names the most important one. Returns the exit status.
 int run_suite_triage(const Session& session, SuiteTriage asked);
 
 }  // namespace tumble::tools

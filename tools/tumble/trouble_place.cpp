@@ -31,7 +31,7 @@ std::string place_of_gap(const sim::Sensors& sensors) {
   return place;
 }
 
-/// Whether a reading has that trouble by itself or after the one before.
+/// True if a reading has this error, alone or relative to its predecessor.
 bool has_trouble(Trouble trouble, const sim::ImuRecord& imu, std::size_t k) {
   if (trouble == Trouble::time_order) return k > 0 && imu.time_ns[k] <= imu.time_ns[k - 1];
   ImuSample sample;

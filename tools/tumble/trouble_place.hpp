@@ -8,9 +8,8 @@
 
 namespace tumble::tools {
 
-/// Where in a recording the trouble lies for which a method refused it: between which times the longest gap is, or
-/// which reading of which IMU is the first that is no number, beyond its bound or out of order; "" where readings are
-/// not to blame. O(N).
+/// Locates the reason why a method refused a recording: the longest gap, or the first reading of an IMU that is not
+/// finite, out of bounds or out of order. Empty if no reading is the cause. O(N).
 std::string trouble_place(const Status& status, const sim::Sensors& sensors);
 
 }  // namespace tumble::tools

@@ -9,32 +9,32 @@ class App;
 class Option;
 }  // namespace CLI
 
-/// What a verb declares of its command line. CLI11 reads it; its headers cost each source that includes them seconds,
-/// so that they stand in verb_options.cpp and program.cpp alone.
+/// Declares the options of a verb. Only verb_options.cpp and program.cpp include CLI11, because its headers add seconds
+/// of compile time to every source.
 namespace tumble::tools {
 
-/// One option or argument, just declared: what else holds of it.
+/// Further properties of an option or argument that was just declared.
 class VerbOption {
  public:
   explicit VerbOption(CLI::Option& option) : option_(&option) {}
 
-  /// Has to be given.
+  /// Makes the option mandatory.
   VerbOption required();
-  /// A number from `low` to `high`; what is no number is not within.
+  /// Accepts numbers from `low` to `high`; refuses NaN.
   VerbOption within(double low, double high);
-  /// A whole number from `low` to `high`.
+  /// Accepts whole numbers from `low` to `high`.
   VerbOption whole(int low, int high);
-  /// Looked at before CLI11 looks for what is missing: `refuse` throws BadInput with its one line.
+  /// Adds a check that runs before CLI11 reports missing options. `refuse` throws BadInput with a one-line message.
   VerbOption check(std::function<void(const std::string&)> refuse);
-  /// An empty word is refused.
+  /// Refuses an empty word.
   VerbOption filled();
-  /// So many words follow it.
+  /// Takes exactly `count` words.
   VerbOption words(int count);
-  /// One word follows it each time that it is named; the next is not another one of it.
+  /// Takes one word each time it is given; the next word belongs to another option.
   VerbOption one_at_a_time();
-  /// One word holds several, with this between them.
+  /// Splits one word into several at `separator`.
   VerbOption separated_by(char separator);
-  /// `--help` shows what the target held when it was declared.
+  /// Shows the current value of the target as the default in `--help`.
   VerbOption shows_default();
 
  private:
@@ -46,12 +46,12 @@ class VerbOptions {
  public:
   explicit VerbOptions(CLI::App& app) : app_(&app) {}
 
-  /// `names` as "--seed", "-o,--output", or "SCENARIO" for an argument by its place. `Value` is one of those at the end
-  /// of verb_options.cpp; the target outlives the reading.
+  /// Declares an option ("--seed", "-o,--output") or a positional argument ("SCENARIO"). `Value` is one of the types
+  /// instantiated in verb_options.cpp. The target must exist while the command line is parsed.
   template <class Value>
   VerbOption add(const std::string& names, Value& target, const std::string& doc);
   void add_flag(const std::string& name, bool& target, const std::string& doc);
-  /// The last line of `--help`.
+  /// Sets the last line of `--help`.
   void footer(const std::string& line);
 
  private:

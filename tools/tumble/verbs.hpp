@@ -9,20 +9,20 @@
 
 namespace tumble::tools {
 
-/// What a verb does once its options are read; returns the exit status.
+/// Runs a verb after its options were parsed; returns the exit status.
 using Action = std::function<int()>;
 
-/// One verb of the program: declares its options on `verb` and returns its action. The session outlives the action.
+/// A verb of the program. It declares its options on `verb` and returns its action. The session outlives the action.
 struct Verb {
   const char* name;
   const char* doc;
   Action (*declare)(VerbOptions& verb, const Session& session);
 };
 
-/// All verbs, in the order of the data.
+/// Returns all verbs, in the order of the data flow.
 std::span<const Verb> verbs();
 
-// One file each.
+// Each verb is declared in its own file.
 Action declare_list(VerbOptions& verb, const Session& session);
 Action declare_run(VerbOptions& verb, const Session& session);
 Action declare_record(VerbOptions& verb, const Session& session);

@@ -7,40 +7,43 @@ namespace tumble::tools {
 
 namespace {
 
-/// Null: said by the line of another.
+/// Returns null for findings that the line of another finding covers.
 const char* meaning(scenarios::Doubt::About about) {
   using About = scenarios::Doubt::About;
   switch (about) {
     case About::readings:
-      return "the IMU's readings contradict each other or gravity; the estimate is not to be trusted";
+      return "the IMU's readings contradict each other or gravity; do not use the estimate";
     case About::flights:
-      return "in flight the force is not what the turning makes: axes that are flipped or swapped, or a gyro of "
-             "another scale";
+      return "the specific force in flight does not fit the rotation; axes may be flipped or swapped, or the gyro may "
+             "have a wrong scale";
     case About::stamps:
-      return "stamps are rounded to this, more coarsely than the IMU beats; import evens them out";
+      return "time stamps are rounded to this value, which is coarser than the IMU's period; import again to smooth "
+             "them";
     case About::rate_unit:
-      return "the gyro's readings look as if they were of another unit";
+      return "the gyro's readings seem to have another unit";
     case About::force_unit:
-      return "the accelerometer's readings look as if they were of another unit";
+      return "the accelerometer's readings seem to have another unit";
     case About::attitude:
-      return "for so many seconds which way is up is not known, as after a gap of the IMU; the covariance says so";
+      return "the vertical is unknown for this many seconds, for example after a gap of the IMU; the covariance "
+             "includes this uncertainty";
     case About::place:
-      return "where it is on its map is not known; the estimate is not to be trusted";
+      return "the position on the map is unknown; do not use the estimate";
     case About::lidar_scale:
-      return "the lidar's ranges are of another scale than the motion that the IMU felt";
+      return "the scale of the lidar's ranges contradicts the motion measured by the IMU";
     case About::beyond_range:
-      return "readings that the device cannot have measured are left out";
+      return "readings beyond the range of the device are left out";
     case About::digest:
-      return "the recording states no digest of its data, so that damage would not show";
+      return "the recording contains no digest of its data, so damage cannot be detected";
     case About::learnt_rig:
-      return "deviations between the lever arm or inertia that --learnt brought and what this run tells by itself: "
-             "learnt of another rig? Rates beyond a rail rest on it; the file stays as it is";
+      return "deviations between the lever arm or inertia in the --learnt file and the values estimated in this run; "
+             "the file may belong to another rig. Rates beyond saturation depend on these values; the file is "
+             "unchanged";
     case About::unit_frozen:
-      return "repeats one reading from then on";
+      return "repeats one reading from this time on";
     case About::unit_disagrees:
-      return "is off from the others from then on, and left out";
+      return "disagrees with the other IMUs from this time on and is left out";
     case About::unit_silent:
-      return "without readings from then on, for half a second at least";
+      return "delivers no readings from this time on, for at least half a second";
     case About::rates:
       break;
   }

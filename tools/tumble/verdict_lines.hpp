@@ -8,9 +8,9 @@
 
 namespace tumble::tools {
 
-/// What an estimate says against itself (scenarios::Doubt): inputs that cannot be what they claim, units
-/// of which a part of the readings is not in use, a place that is not known. One line each, which names the row of the
-/// health with its value; none where all is well.
+/// Returns the health warnings of an estimate (scenarios::Doubt): contradictory inputs, IMUs that are partly unused, or
+/// an unknown position on the map. Each warning is one line with the name and the value of its health counter. Empty
+/// without warnings.
 std::vector<std::string> verdict_lines(const scenarios::Estimate& estimate);
 
 }  // namespace tumble::tools

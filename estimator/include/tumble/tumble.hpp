@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The door of the library, all that most robots need: TumblingOdometry (IMU samples and lidar sweeps of a body that
-/// tumbles), RollingOdometry (one or several IMUs of a sphere that rolls), and sheets of sensors. Link with
-/// tumble::odometry. The methods that they are made of have headers of their own beside this one, by what they
-/// estimate.
+/// Public API of the library for most robots. TumblingOdometry is for IMU and lidar of a tumbling body, RollingOdometry
+/// for one to four IMUs of a rolling sphere. Data sheets of sensors are included. Link with tumble::odometry. The
+/// underlying methods have separate headers, in one folder per estimated quantity.
 #include "tumble/odometry/imu_sheet.hpp"          // IWYU pragma: export
 #include "tumble/odometry/lidar_sheet.hpp"        // IWYU pragma: export
 #include "tumble/odometry/rolling_odometry.hpp"   // IWYU pragma: export

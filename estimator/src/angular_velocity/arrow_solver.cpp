@@ -3,39 +3,39 @@
 
 namespace tumble::arrow {
 
-// rate_smoother.md (R29)
+// rate_smoother.md (R27)
 bool eliminate(Block& block, Block* next, Corner& corner) {
   return System::eliminate(block, next, corner);
 }
 
-// rate_smoother.md (R30)
+// rate_smoother.md (R28)
 bool solve_corner(const Corner& corner, BorderVector& step, BorderMatrix& covariance) {
   return System::solve_corner(corner, step, covariance);
 }
 
-// rate_smoother.md (R31)
+// rate_smoother.md (R29)
 StateVector back_substitute(const Block& block, const StateVector* next_step, const BorderVector& border_step) {
   return System::back_substitute(block, next_step, border_step);
 }
 
-// rate_smoother.md (R32), (R33)
+// rate_smoother.md (R33), (R34)
 Conditional back_conditional(const Block& block, const Conditional* next) {
   return System::back_conditional(block, next);
 }
 
-// rate_smoother.md (R34)
+// rate_smoother.md (R35)
 Marginal marginal(const Conditional& conditional, const BorderMatrix& border_covariance) {
   return System::marginal(conditional, border_covariance);
 }
 
-// As the gradients in rate_smoother.md (R29), for each column of (R36).
+// Same as the gradients in rate_smoother.md (R27), for each column of (R37).
 void eliminate_errors(const Block& block, ErrorMatrix& errors, ErrorMatrix* next, BorderErrors& border) {
   errors = (block.diagonal.lazyProduct(errors)).eval();
   border.noalias() -= block.border.transpose().lazyProduct(errors);
   if (next != nullptr) next->noalias() -= block.coupling.transpose().lazyProduct(errors);
 }
 
-// rate_smoother.md (R36)
+// rate_smoother.md (R37)
 ErrorMatrix back_substitute_errors(const Block& block, const ErrorMatrix& errors, const ErrorMatrix* next_moved,
                                    const BorderErrors& border_moved) {
   ErrorMatrix right = errors - block.border.lazyProduct(border_moved);
@@ -43,7 +43,7 @@ ErrorMatrix back_substitute_errors(const Block& block, const ErrorMatrix& errors
   return block.diagonal.transpose().lazyProduct(right);
 }
 
-// The rates' part of rate_smoother.md (R34).
+// The rates' part of rate_smoother.md (R35).
 Eigen::Matrix3d rate_covariance(const Conditional& conditional, const BorderMatrix& border_covariance) {
   const Eigen::Matrix<double, 3, kBorder> rows = conditional.by_border.topRows<3>();
   const Eigen::Matrix<double, 3, kBorder> cross = rows.lazyProduct(border_covariance);

@@ -18,14 +18,13 @@ Vector3d nothing() {
   return Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
 }
 
-// Value between two readings and its deviation.
 struct Between {
   Vector3d value, sigma;
 };
 
 Between between(const Vector3d& value, const Vector3d& change, const ImuNeighbours& near, double noise, double error,
                 const AuxiliaryImu& auxiliary_imu) {
-  // the chord misses a curve by up to a share (1 - share) of the change, and the clocks differ
+  // interpolation error of up to share (1 - share) of the change, and clock error
   const double crooked = near.share * (1.0 - near.share) + auxiliary_imu.clock_error_s / near.length_s;
   const double scaled = auxiliary_imu.share_error * value.norm();
   return {value, (Vector3d::Constant(noise * noise + error * error + scaled * scaled) + (crooked * change).cwiseAbs2())
@@ -48,7 +47,7 @@ bool AuxiliaryReading::same(const AuxiliaryReading& other) const {
 
 Status align(const AuxiliaryImu& auxiliary_imu, std::span<const ImuSample> samples, std::span<const Clipping> clippings,
              std::span<const ImuSample> primary, double gap_max_s, std::vector<AuxiliaryReading>& out) {
-  // where it is silent for long it says nothing, and that is no trouble
+  // gaps are not an error here; the readings are empty
   const Status status = check_samples(samples, std::numeric_limits<double>::infinity());
   if (!status.ok()) return status;
   if (clippings.size() != samples.size()) {
@@ -70,7 +69,7 @@ Status align(const AuxiliaryImu& auxiliary_imu, std::span<const ImuSample> sampl
         between(here.specific_force_m_s2, b.specific_force_m_s2 - a.specific_force_m_s2, near,
                 auxiliary_imu.accel_noise_density * root_rate, auxiliary_imu.accel_error_m_s2, auxiliary_imu);
     const Clipping &c = clippings[near.before], &d = clippings[near.after];
-    // a reading on which the other has no part says nothing of it
+    // a reading with zero weight is not used
     const bool left = near.share<1.0, right = near.share> 0.0;
     const unsigned gyro = (left ? c.gyro | c.missing_gyro : 0u) | (right ? d.gyro | d.missing_gyro : 0u);
     const unsigned accel = (left ? c.accel : 0u) | (right ? d.accel : 0u);

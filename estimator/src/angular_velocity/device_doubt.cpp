@@ -13,11 +13,11 @@ namespace {
 using Matrix = SensorErrors::Matrix;
 using Vector = SensorErrors::Vector;
 
-// Of whether there are any errors ten times as much is believed as of where they lie: with all of it half the devices
-// that are as on their sheet are taken for others, by a rig that is not known yet.
+// Weight of the evidence for the existence of errors, ten times that for their values. With full weight and an
+// uncertain calibration, half of the devices that match their data sheet would be classified as uncalibrated.
 constexpr double kDoubtBelievedOfOdds = 0.3;
 
-// I + share U L U, L's lower and upper triangle alike
+// I + share U L U, L symmetrised
 void set_system(const SensorErrorEvidence& evidence, const Vector& deviation, double share, Matrix& system) {
   for (int j = 0; j < SensorErrors::kSize; ++j) {
     for (int i = 0; i < SensorErrors::kSize; ++i) {
@@ -27,7 +27,7 @@ void set_system(const SensorErrorEvidence& evidence, const Vector& deviation, do
   }
 }
 
-// rate_stream.md (R103); no number where the evidence is indefinite
+// rate_stream.md (R102); NaN if the evidence is indefinite
 double log_odds(const SensorErrorEvidence& evidence, const Vector& deviation, Matrix& system) {
   set_system(evidence, deviation, kDoubtBelievedOfOdds, system);
   const Eigen::LLT<Eigen::Ref<Matrix>> factor(system);
@@ -36,12 +36,12 @@ double log_odds(const SensorErrorEvidence& evidence, const Vector& deviation, Ma
   return 0.5 * z.dot(factor.solve(z)) - system.diagonal().array().log().sum();
 }
 
-// rate_stream.md (R103): cov_i + m_i m_i' of one device; false where the evidence is indefinite
+// rate_stream.md (R102): cov_i + m_i m_i' of one device; false if the evidence is indefinite
 bool about_corrected(const SensorErrorEvidence& evidence, const Vector& deviation, DeviceDoubt::Work& work) {
   constexpr int kRest = SensorErrors::kSize - SensorErrors::kFelt;
   constexpr double kBelieved = DeviceDoubt::kBelieved;
   set_system(evidence, deviation, kBelieved, work.system);
-  // scale and misalignment stay what they are held for: what the model of flight misses looks like them
+  // scale and misalignment are not corrected, because errors of the flight model look like them
   Vector mean = Vector::Zero();
   const Eigen::Matrix<double, kRest, kRest> rest = work.system.bottomRightCorner<kRest, kRest>();
   mean.tail<kRest>() = rest.llt().solve(kBelieved * deviation.cwiseProduct(evidence.gradient).tail<kRest>());
@@ -49,7 +49,7 @@ bool about_corrected(const SensorErrorEvidence& evidence, const Vector& deviatio
   const Eigen::LLT<Eigen::Ref<Matrix>> factor(work.system);
   if (factor.info() != Eigen::Success) return false;
   for (int j = 0; j < SensorErrors::kSize;
-       ++j) {  // column by column: of all at once Eigen would have blocks on the stack
+       ++j) {  // column by column, because Eigen would use the stack for all at once
     const Vector column = factor.solve(deviation[j] * Vector::Unit(j));
     work.about_corrected.col(j) = deviation.cwiseProduct(column) + mean[j] * mean;
   }

@@ -11,29 +11,32 @@ namespace tumble {
 
 namespace {
 
-// A slope is told when its deviation is below the first; it is nil below the second.
+// kTold: a slope with a smaller standard deviation is known. kNil: a slope of smaller magnitude, up to its uncertainty,
+// is zero.
 constexpr double kTold = 2e-3, kNil = 3e-3;
-// Rails of the two signs that are further apart than this share are no device's own, whose digits end alike.
+// Maximum relative difference between the levels of the two signs if the device clips its digital output, where both
+// are equal.
 constexpr double kLopsidedShare = 1e-4;
-// What is left of a tilt where rails are upright; the least deviation of a slope (misalignment left by the device).
+// Remaining tilt if the device clips its output; minimum standard deviation of a slope (residual misalignment).
 constexpr double kUprightSigma = 1e-5, kSlopeSigmaMin = 3e-4;
-// Samples beside a clipped one that may have met the rail: largest depth, as a share of the step before.
+// Maximum distance from the level, as a fraction of the step before, of a sample that was saturated for a part of its
+// window.
 constexpr double kEdgeOfStep = 0.5;
 
-// The sign of the rail that element j is at.
+// Returns the sign of the level at which element j is saturated.
 int side(const ImuSample& sample, Triad triad, std::size_t j) {
   return reading_of(sample, triad)[static_cast<Eigen::Index>(j)] < 0.0 ? -1 : 1;
 }
 
-// Whether element j of a sample is at its rail, by its plane, rails.md (R55), or by the device.
+// Returns whether element j of a sample is saturated, by its plane, rails.md (R55), or by the device's flag.
 bool at_rail(const ImuSample& sample, Triad triad, const RailPlane& rail, std::size_t j) {
   const Eigen::Vector3d& reading = reading_of(sample, triad);
   return (sample.device_clip_flags >> (first_channel(triad) + j) & 1u) != 0 || rail.holds(reading, -1) ||
          rail.holds(reading, 1);
 }
 
-// Whether a sample, beside the clipped one at the other side of it than `outside`, met the rail in a part of its
-// window; depths are those of rails.md (R54).
+// Returns whether a sample between a clipped one and `outside` was saturated for a part of its window; the distances
+// are those of rails.md (R54).
 bool meets(const RailPlane& rail, Triad triad, const ImuSample& now, const ImuSample* outside, int sign) {
   const double depth = rail.short_of(reading_of(now, triad), sign);
   if (depth > kBesideRail * rail.distance_rad_s) return false;
@@ -42,13 +45,13 @@ bool meets(const RailPlane& rail, Triad triad, const ImuSample& now, const ImuSa
   return depth < kEdgeOfStep * (before - depth);
 }
 
-// Whether the rails of the two signs differ: those of an element whose offset the device takes off behind it.
+// Returns whether the levels of the two signs differ, because the device subtracts the element's offset after clipping.
 bool lopsided(const RailPlane& rail) {
   return rail.seen(-1) && rail.seen(1) &&
          std::abs(rail.offset_rad_s) > kLopsidedShare * rail.distance_rad_s + 4.0 * std::sqrt(rail.covariance(3, 3));
 }
 
-// With the stated range of the upright rails where the search has none of its own, and without any.
+// Two finders: one with the stated range, by default that of the upright rails, and one without.
 std::array<RailPlaneFinder, 2> stated_and_not(RailPlaneFinder::Params params, const std::optional<double>& stated) {
   RailPlaneFinder::Params unstated = params;
   unstated.stated_rad_s = std::nullopt;
@@ -77,7 +80,7 @@ bool are_upright(std::span<const Eigen::Vector3d> readings, const RailPlanes& pl
     const double plateau = rails.channels[first_channel(triad) + j].rail;
     if (rail && lopsided(*rail)) return false;
     if (rail && plateau > 0.0) {
-      // most of the samples at the rail read the same: no tilted plane does that
+      // on a tilted plane, most clipped samples would not be equal
       const auto equal = std::count_if(readings.begin(), readings.end(), [&](const Eigen::Vector3d& y) {
         return std::abs(std::abs(y[static_cast<Eigen::Index>(j)]) - plateau) <= kEqualShare * plateau;
       });
@@ -153,7 +156,7 @@ void mark_subsample_saturation(const RailPlanes& planes, const RailDetector& rai
   }
 }
 
-// With the covariance of rails.md (R59).
+// Uses the covariance of rails.md (R59).
 std::optional<ToldSlopes> told_slopes(const RailPlanes& planes, bool upright, int element,
                                       const Eigen::Matrix2d& before) {
   if (upright) {

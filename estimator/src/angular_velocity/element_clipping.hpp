@@ -14,7 +14,7 @@
 
 namespace tumble {
 
-/// Place of a triad in arrays, and of its first channel in those of RailDetector and among ClipFlag bits.
+/// Index of a triad in arrays, and of its first channel in RailDetector and ClipFlag bits.
 inline std::size_t index_of(Triad triad) {
   return triad == Triad::gyro ? 0 : 1;
 }
@@ -22,43 +22,42 @@ inline std::size_t first_channel(Triad triad) {
   return 3 * index_of(triad);
 }
 
-/// The searches for planes of gyro and accelerometer: with the stated range of the upright rails, and without any.
+/// Plane finders of gyro and accelerometer: with the stated range of the upright rails, and without any.
 std::array<std::array<RailPlaneFinder, 2>, 2> plane_finders(const ClippingFinder::Params& params);
 
-/// A stated range that the readings contradict tells the planes nothing.
+/// Returns whether readings contradict the stated range. The planes then ignore it.
 bool stated_range_contradicted(const RailDetector& upright_rails, const RailDetector::State& state, Triad triad);
 
-/// Whether the rails found, and the plateaus of equal readings, show a device that clips what it delivers: rails
-/// upright, nothing hidden on the axes beside. Two slopes known to be nil tell, a plateau counting for one; one that is
-/// not nil tells the contrary.
+/// Returns whether planes and plateaus of equal readings indicate a device that clips its output, so that other axes
+/// are unaffected. Two slopes known to be zero are sufficient; a plateau counts as one. A single non-zero slope is
+/// sufficient for the contrary.
 bool are_upright(std::span<const Eigen::Vector3d> readings, const RailPlanes& planes, const RailDetector::State& rails,
                  Triad triad);
 
-/// The planes of elements on whose axis no plateau of equal readings was seen.
+/// Returns the planes of elements on whose axis no plateau of equal readings was found.
 RailPlanes without_plateaus(const RailPlanes& planes, const RailDetector::State& rails, Triad triad);
 
-/// Brings the planes of a triad into what was classified with upright rails: an element with a plane clips where its
-/// plane says so or the device does. A sample that met a rail in a part of its window, beside one that is clipped,
-/// belongs to it: it lies short of the plane by less than half of what the neighbour outside still lacked. `before`,
-/// `after`: null where there is none.
+/// Adds the planes of a triad to a classification by equal readings. An element with a plane clips according to its
+/// plane or the device's flag. A neighbour of a clipped sample also counts if it was saturated for a part of its
+/// window. The criterion is a distance from the plane of less than half of that of the next neighbour. `before` and
+/// `after` may be null.
 Clipping clip_by_planes(const RailPlanes& planes, Triad triad, const Clipping& by_upright_rails,
                         const ImuSample* before, const ImuSample& now, const ImuSample* after);
 
-/// Finds such axes as mark_subsample_saturation() does, with the rail of each element where its plane is known.
+/// Same as mark_subsample_saturation() of RateObservation, with the level of each element whose plane is known.
 void mark_subsample_saturation(const RailPlanes& planes, const RailDetector& rails, const RailDetector::State& state,
                                double noise_rad_s, const ImuSample* before, RateObservation& now,
                                const ImuSample* after);
 
-/// What rails tell of the slopes of an element, in the order of RigConstants::elements.
+/// Information of saturation planes about the slopes of an element, in the order of RigConstants::elements.
 struct ToldSlopes {
   Eigen::Vector2d slopes;
   Eigen::Matrix2d covariance;
 };
-/// Nothing where that is no more than was known: `before`.
 std::optional<ToldSlopes> told_slopes(const RailPlanes& planes, bool upright, int element,
                                       const Eigen::Matrix2d& before);
 
-/// What was known of the rig with what the planes tell of RigConstants::elements.
+/// Returns the prior calibration, updated by the planes' information about RigConstants::elements.
 RigCalibration with_planes(const RateModel& before, const RailPlanes& planes, bool upright);
 
 }  // namespace tumble

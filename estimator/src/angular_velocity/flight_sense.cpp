@@ -13,12 +13,12 @@ namespace tumble {
 
 namespace {
 
-// Forces in a hand look like flight by twice the rate for 0.05 s at a time, flights of a gyro that reads half last.
+// Minimum duration of flight for a half-scale gyro. Hand-held motion can look like flight at twice the rate for 0.05 s;
+// real flights last longer.
 constexpr double kHalvedRun_s = 0.08;
-constexpr double kAcross = 0.05;    // of the lever arm squared, that lies across an axis whose rate it is to tell
-constexpr double kBelowRail = 0.1;  // by which a rate that the force tells may fall short of the rail
+constexpr double kAcross = 0.05;    // of the lever arm squared: minimum across an axis for recovering its rate
+constexpr double kBelowRail = 0.1;  // tolerance by which a recovered rate may be below the saturation level
 
-/// Which reading of a triad is its x, y, z, and times what.
 struct Axes {
   std::array<int, 3> axis;
   std::array<double, 3> factor;
@@ -33,7 +33,7 @@ constexpr Axes kAsRead{{0, 1, 2}, {1, 1, 1}}, kXFlipped{{0, 1, 2}, {-1, 1, 1}}, 
     kYZSwapped{{0, 2, 1}, {1, 1, 1}}, kZXSwapped{{2, 1, 0}, {1, 1, 1}}, kTwice{{0, 1, 2}, {2, 2, 2}},
     kHalf{{0, 1, 2}, {0.5, 0.5, 0.5}};
 
-/// What a sensor of another sense would have to be read as.
+/// How readings have to be converted under an alternative.
 struct Sense {
   Axes force, rate;
   const char* told;
@@ -59,8 +59,8 @@ constexpr std::array<Sense, FlightSense::kSenses> kSensors = {{
     {kAsRead, kTwice, "seconds of flight as a gyro reads it that reads half the rate"},
 }};
 
-/// imu_merge.md (I29). A reading as a sensor of this sense would have given it; `known` where the rate of an axis at
-/// its rail follows of |w x t|^2 = -f t, and lies beyond the rail.
+/// imu_merge.md (I32). Converts a reading to that of the alternative sensor. `known` if the rate of a saturated axis
+/// follows from |w x t|^2 = -f t and is beyond the level.
 FlightSense::Reading as_read(const FlightSense::Reading& reading, const Sense& sense, const Eigen::Vector3d& t) {
   FlightSense::Reading out = reading;
   out.rate_rad_s = sense.rate.of(reading.rate_rad_s);
@@ -83,7 +83,7 @@ FlightSense::Reading as_read(const FlightSense::Reading& reading, const Sense& s
   return out;
 }
 
-/// imu_merge.md (I28). Whether the middle one of three readings is flight as a sensor of this sense reads it.
+/// imu_merge.md (I31). Returns whether the middle one of three readings is flight under an alternative.
 bool flies(const Sense& sense, const std::array<FlightSense::Reading, 3>& readings, const FlightSense::Params& params) {
   const Eigen::Vector3d& t = params.lever_arm_m;
   const FlightSense::Reading first = as_read(readings[0], sense, t), middle = as_read(readings[1], sense, t),
@@ -96,7 +96,7 @@ bool flies(const Sense& sense, const std::array<FlightSense::Reading, 3>& readin
   return size >= params.force_min_m_s2 && (middle.force_m_s2 - expected).norm() <= params.share * size;
 }
 
-/// Of a body that is perhaps held only the clearest are.
+/// Returns whether an alternative is tested; for a body that may be hand-held, only the clearest ones are.
 bool is_asked(std::size_t sense, FlightSense::Body body) {
   constexpr std::size_t kSound = 0, kFlippedForce = 1;
   return body == FlightSense::Body::thrown || sense == kSound || sense == kFlippedForce ||
@@ -141,7 +141,7 @@ FlightSense::Reading FlightSense::reading_of(const ImuSample& mean, double rate_
   return out;
 }
 
-/// Judges the reading before `now`, whose angular acceleration those beside it tell.
+/// Classifies the reading before `now`, whose angular acceleration follows from its neighbours.
 void FlightSense::take(const Reading& now, State& state) const {
   const auto [first, middle] = state.before;
   state.before = {middle, now};

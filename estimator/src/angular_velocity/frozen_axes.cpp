@@ -8,24 +8,24 @@ namespace tumble {
 
 namespace {
 
-constexpr double kLonger = 10.0;       // than any hold before
-constexpr double kRailShare = 0.9;     // of the stated range, from which on a reading may stand at its rail
-constexpr double kExtremeShare = 0.5;  // and from which on where it is the highest or lowest of the axis
-constexpr double kQuanta = 50.0;       // of the axis, by which another moves: a part of 2 % in this axis is one quantum
-constexpr double kRotating_rad_s = 0.3;  // by which another axis of a gyro changes, for the body to move
-constexpr double kPushed_m_s2 = 1.0;     // and of an accelerometer
+constexpr double kLonger = 10.0;         // ratio to the longest earlier repetition
+constexpr double kRailShare = 0.9;       // fraction of the stated range above which a reading may be saturated
+constexpr double kExtremeShare = 0.5;    // same for a reading that is an extreme of the axis
+constexpr double kQuanta = 50.0;         // change of another axis in quanta; cross-axis sensitivity of 2 % gives one
+constexpr double kRotating_rad_s = 0.3;  // change of another gyro axis that indicates motion
+constexpr double kPushed_m_s2 = 1.0;     // same for an accelerometer
 constexpr double kChanging =
-    0.2;  // of the samples of a hold, in which another axis changes: read at a fifth of their rate
-// A body that rests: no other axis turns, and forces stay where they were.
+    0.2;  // minimum fraction of samples in which another axis changes, for a log five times faster than the sensor
+// A body at rest: no other axis rotates, and forces do not change.
 constexpr double kStill_rad_s = 0.2, kStill_m_s2 = 0.5;
-// What a sound axis reads of one at most: its bias, gravity.
+// Largest reading of a sound axis at rest: bias, gravity.
 constexpr double kRestMost_rad_s = 1.0, kRestMost_m_s2 = 15.0;
 
 constexpr bool is_gyro(std::size_t channel) {
   return channel < 3;
 }
 
-/// Of the same triad: the k-th of the two others.
+/// Returns the k-th of the two other channels of the same triad.
 constexpr std::size_t other(std::size_t channel, std::size_t k) {
   return channel / 3 * 3 + (channel + 1 + k) % 3;
 }
@@ -47,7 +47,7 @@ void begin_hold(std::size_t channel, const std::array<double, 6>& now, TimeNs ti
   }
 }
 
-/// Whether all axes but `channel` read what a body at rest makes them read, as in `before`.
+/// Returns whether all axes but `channel` have readings of a body at rest, as in `before`.
 bool others_rest(std::size_t channel, const std::array<double, 6>& now, const std::array<double, 6>& before) {
   for (std::size_t k = 0; k < now.size(); ++k) {
     if (k == channel) continue;
@@ -111,7 +111,7 @@ void FrozenAxes::hold(std::size_t channel, const std::array<double, 6>& now, dou
     }
   }
   const double most = is_gyro(channel) ? kRestMost_rad_s : kRestMost_m_s2;
-  // nothing turns for so long beyond a rail and about the very axis; how often the others are read tells nothing there
+  // no motion keeps a saturated rate exactly about one axis for so long; the update rate of the others is irrelevant
   const bool at_its_rail = at_rail(channel, axis);
   const bool of_no_motion =
       axis.still_s >= params_.rail_still_s || (axis.held_s >= params_.rail_held_s && others_move(channel, 0.0, axis));
@@ -127,12 +127,12 @@ bool FrozenAxes::at_rail(std::size_t channel, const Axis& axis) const {
   const double stated = is_gyro(channel) ? params_.gyro_range_rad_s : params_.accel_range_m_s2;
   const double size = std::abs(axis.reading);
   if (stated > 0.0 && size >= kRailShare * stated) return true;
-  // a flag says that the device met its rail, not that what it repeats is that rail
+  // a flag shows that the device saturated, but not that the repeated value is the level
   if (axis.flagged && size >= kExtremeShare * stated) return true;
   return size >= kExtremeShare * stated && (axis.reading == axis.lowest || axis.reading == axis.highest);
 }
 
-/// By far more than a quantum of this axis, and with that share of the samples at least.
+/// Returns whether the other axes change by far more than a quantum of this axis, in at least this fraction of samples.
 bool FrozenAxes::others_move(std::size_t channel, double changing_share, const Axis& axis) const {
   const double least = std::max(is_gyro(channel) ? kRotating_rad_s : kPushed_m_s2, kQuanta * axis.quantum);
   for (std::size_t k = 0; k < 2; ++k) {

@@ -4,7 +4,6 @@
 #include "../common/imu_members.hpp"
 #include "tumble/angular_velocity/detail/frozen_axes.hpp"
 
-/// Members of what is known of frozen axes: state_visitor.hpp.
 namespace tumble {
 
 template <StateOf<FrozenAxes::Axis> Self, class Visitor>

@@ -12,11 +12,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Deviation of the time at which a reading was taken, in samples: of a stream anywhere within the sample before it is
-// said, 1/sqrt(12); of a recording, whose clock is found, a share of that.
+// Standard deviation of the time of a reading, in samples. In a stream it is anywhere within the sample before,
+// 1/sqrt(12). In a recording, the clock is known, and it is a fraction of this.
 constexpr double kTaken = 0.29, kTakenByClock = 0.1;
 
-// A reading and the stamp of the sample whose own window would have the same middle.
+// A reading and the stamp of a sample whose window would have the same middle.
 struct OwnReading {
   double time_s = 0.0;
   Vector3d rate_rad_s = Vector3d::Zero();
@@ -27,7 +27,7 @@ Vector3d slope(const OwnReading& a, const OwnReading& b) {
   return (b.rate_rad_s - a.rate_rad_s) / (b.time_s - a.time_s);
 }
 
-// Between a and b, with z before and c after them where those are read.
+// Interpolates between a and b, using z before and c after them if usable.
 std::optional<HeldRate> between(const OwnReading& z, const OwnReading& a, const OwnReading& b, const OwnReading& c,
                                 double time_s, double moment_s) {
   const double span_s = b.time_s - a.time_s, u = (time_s - a.time_s) / span_s, v = 1.0 - u;
@@ -38,19 +38,18 @@ std::optional<HeldRate> between(const OwnReading& z, const OwnReading& a, const 
   HeldRate out;
   out.rate_rad_s = v * v * (1.0 + 2.0 * u) * a.rate_rad_s + u * u * (3.0 - 2.0 * u) * b.rate_rad_s +
                    span_s * u * v * (v * slope_a - u * slope_b);
-  // open are the moment of either reading and what the mean over a window hides of the rate's bend
+  // uncertain: the time of either reading, and the curvature that the mean over a window removes
   const Vector3d moment = moment_s * chord, bend = span_s / 24.0 * (slope_b - slope_a);
   out.variance_rad2_s2 = moment.cwiseAbs2() + bend.cwiseAbs2();
   return out;
 }
 
-// The first sample from i on that says a reading of its own; the window's size where there is none.
+// Returns the first sample from i on with a new reading, or the window's size.
 std::size_t new_reading(std::span<const RateStreamKnot> window, std::size_t i) {
   while (i < window.size() && window[i].repeats) ++i;
   return i;
 }
 
-// Whether the clock of a triad is known.
 bool in_time(const std::optional<HeldReadings>& held, double sample_s) {
   return held && held->steady() && held->period_s <= sample_hold::kSlowest * sample_s;
 }

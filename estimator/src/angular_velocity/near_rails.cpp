@@ -10,12 +10,13 @@ namespace tumble {
 
 namespace {
 
-// A gyro's own filter rounds the edges of a rail: so near to it (a share of the rail) the steps within so many readings
-// count, not those beside alone. The wand's readings stood up to 2 % short while its rate was beyond.
+// Number of neighbouring readings whose steps count, for readings close to a saturation level. Reason: a gyro's filter
+// rounds the edges of a plateau. One hand-held wand's readings were up to 2 % below the level while its rate was
+// beyond.
 constexpr std::size_t kReach = 2;
 constexpr double kRoundShare = 0.03;
 
-// Each reading once, in order of time.
+// distinct readings in time order
 using Rates = std::span<const Eigen::Vector3d>;
 
 double largest_step(Rates readings, std::size_t at, std::size_t reach, Eigen::Index axis) {
@@ -58,7 +59,6 @@ std::uint8_t may_meet_rails(const ImuSample* before, const ImuSample& now, const
 std::vector<std::uint8_t> may_meet_rails(std::span<const ImuSample> samples, const RailPlanes& planes) {
   std::vector<std::uint8_t> out(samples.size(), 0);
   if (!planes.any()) return out;
-  // each reading once
   std::vector<Eigen::Vector3d> readings;
   std::vector<std::size_t> of_sample(samples.size());
   for (std::size_t k = 0; k < samples.size(); ++k) {

@@ -10,14 +10,13 @@
 
 namespace tumble {
 
-/// Bit j of each sample: the reading of the gyro's element j is free, but its window may have met the rail in a part of
-/// its length, so that nobody can say it was measured. Such a reading lies short of the rail by less than its larger
-/// step to the readings beside it or, within 3 % of the rail, by less than the largest within two of it: rails.md
-/// (R76). Nothing for sides of an element whose rail was not seen, hence nothing at all where nothing clips. Readings
-/// that are said twice count once. O(N).
+/// Finds readings that may have been saturated for a part of their window. Bit j of each sample: the reading of gyro
+/// element j is free, but not certainly measured. The reading is below the level by less than its larger step to its
+/// neighbours. Within 3 % of the level, the largest step within two readings counts: rails.md (R76). Sides without an
+/// observed level are excluded, so nothing is returned without clipping. Repeated readings count once. O(N).
 std::vector<std::uint8_t> may_meet_rails(std::span<const ImuSample> samples, const RailPlanes& planes);
 
-/// Of one reading, by the steps to those beside it alone, null where there is none: as a stream has them. O(1).
+/// Same for one reading, from the steps to its neighbours (null at the ends), for a stream. O(1).
 std::uint8_t may_meet_rails(const ImuSample* before, const ImuSample& now, const ImuSample* after,
                             const RailPlanes& planes);
 

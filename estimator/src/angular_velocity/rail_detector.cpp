@@ -44,7 +44,7 @@ void RailDetector::observe(const ImuSample& sample, State& state) const {
       if (magnitude < channel.peak && plateau(c, channel, change)) channel.rail = std::abs(channel.run_first);
     }
     channel.peak = std::max(channel.peak, magnitude);
-    // a larger reading proves that the plateau was none
+    // a larger reading contradicts the plateau
     if (channel.rail > 0.0 && channel.peak > channel.rail * (1.0 + params_.disagreement_share)) channel.rail = 0.0;
     if (!continues) {
       channel.entry = channel.run_length > 0 ? change : 0.0;
@@ -99,7 +99,7 @@ Clipping RailDetector::classify(const ImuSample& sample, State& state) const {
     if (const std::optional<double> level = rail(state, c)) {
       const double share = channel.clipped ? params_.leave_share : params_.enter_share;
       clipped = clipped || std::abs(value) >= *level * (1.0 - share);
-      // from one rail to the other within a sample: an overflow, not a motion
+      // from one level to the opposite within a sample: an overflow, not a motion
       flipped = c < 3 && channel.clipped && value * channel.last < 0.0 && std::abs(value) >= 0.9 * *level;
     }
     if (flipped) {

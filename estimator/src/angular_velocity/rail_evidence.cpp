@@ -16,36 +16,36 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// Share of the segments of a motion that keep their rate to the noise (spins, turntables): no segment proves more by
-// its length than that it is one of them.
+// Prior fraction of segments with a constant rate (spins, turntables). This fraction limits the evidence of a segment,
+// however long.
 constexpr double kConstantShare = 0.05;
-// A round top must bend by so many deviations within a segment before flatness speaks against it.
+// Minimum expected curvature of a rounded maximum within a segment, in standard deviations, for flatness to be
+// evidence.
 constexpr double kBend = 3.0;
-// Levels that a constant rate may have near the largest, as a share of it.
+// Range of levels of constant rates, as a fraction of the largest.
 constexpr double kLevelShare = 0.2;
-// Readings of a window from which noise is told: residuals of a parabola; quantile of the windows taken for noise.
+// Window length for the noise estimate, from residuals of a parabola; quantile of the windows that is used.
 constexpr std::size_t kNoiseWindow = 9;
 constexpr double kNoiseQuantile = 0.2;
-// What the smoothness of the other axes at the end of a segment may tell at most.
+// Maximum evidence from the smoothness of the other axes at the end of a segment.
 constexpr double kKinkAlone = 2.5;
-// The other axes must move by so many deviations about an end for their smoothness to tell anything.
+// Minimum motion of the other axes about an end, in standard deviations, for this evidence.
 constexpr double kMoving = 10.0;
-// Log likelihood from which a segment counts that is thinner than noise, whatever its ends look like.
+// Log likelihood above which a segment with less scatter than noise counts, whatever its ends look like.
 constexpr double kThinAlone = 8.0;
-// Of the scatter of a segment: samples that its level, its slope and its two ends (windows that met the rail in a part
-// only) take.
+// Degrees of freedom of a segment's scatter that are lost to its level, its slope and its two partly saturated ends.
 constexpr std::size_t kThinTaken = 4;
-// A reading within so many deviations of the noise of a facet is at it; no more than this share of the level.
+// A reading within this many standard deviations of a facet is on it, up to this fraction of the level.
 constexpr double kAtRail = 4.0, kAtRailShareMax = 0.006;
-// What each sample beyond the facet speaks against it; share of the samples that may stray.
+// Evidence of each sample beyond the facet against it; fraction of samples that may be beyond.
 constexpr double kBeyond = 5.0, kStray = 0.02;
 
-// Third differences of a window: noise of a reading from their root mean square, rails.md (R56).
+// Noise of a reading from the root mean square of third differences, rails.md (R56).
 double window_noise(std::span<const Vector3d> window, int axis) {
   double squares = 0.0;
   const std::size_t count = window.size() - 3;
   for (std::size_t i = 0; i < count; ++i) {
-    // third difference of white noise has variance 20
+    // the third difference of white noise has variance 20
     const double d = window[i + 3][axis] - 3.0 * window[i + 2][axis] + 3.0 * window[i + 1][axis] - window[i][axis];
     squares += d * d;
   }
@@ -53,19 +53,19 @@ double window_noise(std::span<const Vector3d> window, int axis) {
 }
 
 struct Segment {
-  std::size_t first, last;  // of rates
+  std::size_t first, last;
   std::size_t size() const { return last - first + 1; }
 };
 
-// The run of neighbours that begins with inlier `at`, which moves to the first one after it.
+// Returns the run of neighbours that starts with inlier `at`; moves `at` to the first one after the run.
 Segment next_segment(std::span<const std::size_t> inliers, std::size_t& at) {
   Segment out{inliers[at], inliers[at]};
   for (++at; at < inliers.size() && inliers[at] == out.last + 1; ++at) ++out.last;
   return out;
 }
 
-// How much less the inside of a segment scatters about a straight line than readings of a rate do, as a log likelihood
-// ratio, rails.md (R65): noise belongs to a rate, what clips behind it has none. Nothing where digits hide the noise.
+// Log likelihood ratio for a scatter of the segment's inside about a straight line that is below the noise, rails.md
+// (R65). Sensor noise is part of a rate, but not of a level that clips after it. Zero if quantisation hides the noise.
 double thinness(const DistinctReadings& readings, const RailFacet& facet, const Segment& s) {
   if (s.size() <= kThinTaken) return 0.0;
   const std::size_t first = s.first + 1, count = s.size() - 2;
@@ -86,21 +86,21 @@ double thinness(const DistinctReadings& readings, const RailFacet& facet, const 
   const double least = std::max(digit, kEqualShare * facet.level);
   const double noise = std::hypot(readings.noise[facet.axis], digit);
   const double scatter = std::max(least, std::sqrt(squares / free));
-  // Gaussian likelihoods of the scatter at its own deviation and at that of the noise
+  // Gaussian likelihoods of the scatter with its own and with the noise's standard deviation
   return scatter < noise ? free * (std::log(noise / scatter) - 0.5 * (1.0 - std::pow(scatter / noise, 2))) : 0.0;
 }
 
-// A segment between what its neighbours let a round top bend by, and what it bends.
+// Curvature of a segment, and the curvature of a rounded maximum between its neighbours.
 struct SegmentShape {
   double bend = 0.0, flat = 0.0;
   bool bends() const { return bend >= kBend * flat; }
 };
 
-// Nothing of a single reading, or where both ends of the recording are too near.
+// Empty for a single reading, and close to both ends of the recording.
 std::optional<SegmentShape> shape_of(const DistinctReadings& readings, const RailFacet& facet, const Segment& s) {
   const std::vector<Vector3d>& rates = readings.rates;
   const auto value = [&](std::size_t k) { return facet.sign * facet.row.dot(rates[k]); };
-  // depth of the second neighbour outside of either end
+  // distance of the second neighbour outside of either end from the level
   double depth = std::numeric_limits<double>::max();
   if (s.first >= 2) depth = std::min(depth, facet.level - value(s.first - 2));
   if (s.last + 2 < rates.size()) depth = std::min(depth, facet.level - value(s.last + 2));
@@ -110,13 +110,13 @@ std::optional<SegmentShape> shape_of(const DistinctReadings& readings, const Rai
     low = std::min(low, value(k));
     high = std::max(high, value(k));
   }
-  // a parabola through both neighbours bends by this within the segment: rails.md (R61)
+  // curvature within the segment of a parabola through both neighbours: rails.md (R61)
   const double n = static_cast<double>(s.size()), inside = (n - 1.0) / (n + 3.0);
   return SegmentShape{depth * inside * inside, std::max(high - low, 2.0 * facet.deviation)};
 }
 
-// The kink at one end of a segment, rails.md (R64): second differences about it of the rail's own axis and of those
-// beside it, which an impact would bend too.
+// Evidence of a kink at one end of a segment, rails.md (R64): second differences of the clipped axis and of the others,
+// on which an impact would also cause a kink.
 double kink_evidence(const DistinctReadings& readings, const RailFacet& facet, const Segment& s, bool after) {
   const std::vector<Vector3d>& rates = readings.rates;
   if (s.size() < 3 || (after ? s.last + 3 >= rates.size() : s.first < 3)) return 0.0;
@@ -132,7 +132,6 @@ double kink_evidence(const DistinctReadings& readings, const RailFacet& facet, c
   return std::clamp(-std::log(5.0 * ratio), -0.5, kKinkAlone);
 }
 
-// What a segment tells of the facet's slopes and level.
 Eigen::Matrix3d information_of(const DistinctReadings& readings, const RailFacet& facet, const Segment& s) {
   Vector3d mean = Vector3d::Zero();
   for (std::size_t k = s.first; k <= s.last; ++k) mean += readings.rates[k] / static_cast<double>(s.size());
@@ -153,7 +152,7 @@ DistinctReadings distinct_readings(std::span<const Vector3d> readings, std::vect
     out.peak = out.peak.cwiseMax(y.cwiseAbs());
     for (int j = 0; j < 3 && !out.rates.empty(); ++j) {
       const double change = std::abs(y[j] - out.rates.back()[j]);
-      // the last bits of a sum of floating-point numbers are no digit
+      // rounding errors of floating-point sums are not a quantum
       if (change > 1e-9 * (1.0 + std::abs(y[j]))) out.digit[j] = std::min(out.digit[j], change);
     }
     out.rates.push_back(y);
@@ -187,7 +186,7 @@ double segment_evidence(const DistinctReadings& readings, const Eigen::Matrix2d&
     const Segment s = next_segment(inliers, at);
     const std::optional<SegmentShape> shape = shape_of(readings, facet, s);
     if (!shape) continue;
-    // thinner than the gyro's noise: no reading of a rate is
+    // scatter below the gyro's noise cannot come from a rate
     const double thin = thinness(readings, facet, s);
     if (!shape->bends() && thin < kThinAlone) continue;
     ++facet.segments;
@@ -199,15 +198,15 @@ double segment_evidence(const DistinctReadings& readings, const Eigen::Matrix2d&
     for (const bool after : {false, true}) odds += kink_evidence(readings, facet, s, after);
     H += information_of(readings, facet, s);
   }
-  // nothing lies beyond a rail
+  // no reading is beyond a saturation level
   const auto beyond = std::count_if(inliers.begin(), inliers.end(), [&](std::size_t k) {
     return facet.sign * facet.row.dot(readings.rates[k]) > facet.level + facet.tolerance;
   });
   odds -= kBeyond * std::max(0.0, static_cast<double>(beyond) - kStray * static_cast<double>(inliers.size()));
   if (facet.segments == 0) return -std::numeric_limits<double>::infinity();
-  // nor is a reading told from the rail that is nearer to it than noise, from a facet that is off by as much elsewhere
+  // readings closer to the level than noise, or than the facet's error elsewhere, are not distinguishable from it
   facet.tolerance = std::max(facet.tolerance, std::min(kAtRail * noise, kAtRailShareMax * facet.level));
-  // what choosing the level and the slopes freely was worth, prior over posterior volume: rails.md (R66)
+  // Occam factor for the free choice of level and slopes, prior over posterior volume: rails.md (R66)
   const Eigen::Matrix3d told = H.inverse();
   const double of_slopes =
       0.5 * std::log(std::max(1.0, 1.0 / (told.topLeftCorner<2, 2>().determinant() * slope_information.determinant())));

@@ -7,15 +7,14 @@
 
 namespace tumble {
 
-/// The readings of a gyro without those that only repeat the one before (sample and hold), and what they tell of the
-/// gyro itself.
+/// The readings of a gyro without repetitions (sample and hold), and properties of the gyro derived from them.
 struct DistinctReadings {
   std::vector<Eigen::Vector3d>& rates;
-  Eigen::Vector3d noise = Eigen::Vector3d::Zero();  ///< of a reading, from where the motion is gentlest [rad/s]
+  Eigen::Vector3d noise = Eigen::Vector3d::Zero();  ///< of a reading, from the slowest motion [rad/s]
   Eigen::Vector3d digit = Eigen::Vector3d::Zero();  ///< smallest change between two readings [rad/s]
   Eigen::Vector3d peak = Eigen::Vector3d::Zero();   ///< largest magnitude of each axis [rad/s]
 };
-/// Of readings in order of time; kept in `rates`. `noises`: scratch space.
+/// Computes these from readings in time order; stores the distinct ones in `rates`. `noises`: buffer.
 DistinctReadings distinct_readings(std::span<const Eigen::Vector3d> readings, std::vector<Eigen::Vector3d>& rates,
                                    std::vector<double>& noises);
 
@@ -25,12 +24,12 @@ struct RailFacet {
   Eigen::Vector3d row = Eigen::Vector3d::Zero();
   double level = 0.0;
   double deviation = 0.0, tolerance = 0.0;
-  int segments = 0;  ///< runs of inliers that no round top explains
+  int segments = 0;  ///< runs of inliers that no rounded maximum explains
 };
 
-/// Log likelihood ratio of the facet's samples: at a rail, against tops of a motion or constant rates. Counts the
-/// segments of `facet`. `slope_information`: of what was known of the slopes before. `inliers`: the readings at the
-/// facet, of DistinctReadings::rates, rising.
+/// Returns the log likelihood ratio of the facet's samples: saturation against maxima of a motion or constant rates.
+/// Counts the segments of `facet`. `slope_information`: prior of the slopes. `inliers`: ascending indices of the
+/// facet's readings in DistinctReadings::rates.
 double segment_evidence(const DistinctReadings& readings, const Eigen::Matrix2d& slope_information,
                         std::span<const std::size_t> inliers, RailFacet& facet);
 

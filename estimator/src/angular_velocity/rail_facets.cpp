@@ -16,10 +16,11 @@ using Workspace = RailPlaneFinder::Workspace;
 
 constexpr double kGridStep = 0.01;  // of the slopes
 constexpr int kRefinements = 10;
-// Half a slab: deviations of the samples, and the least and the most share of the level.
+// Half width of a slab: standard deviations of the samples, with a minimum and a maximum fraction of the level.
 constexpr double kSlabDeviations = 4.0, kSlabShareMin = 2e-4, kSlabShareMax = 0.006;
 
-// Samples that may lie in the slab below the largest value for any slope up to `steepest`; returns their least value.
+// Collects the samples that may be in the slab below the largest value for any slope up to `steepest`. Returns their
+// smallest value.
 double candidates(const DistinctReadings& readings, int axis, int sign, double steepest, double slab,
                   std::vector<std::size_t>& out) {
   double sure = -std::numeric_limits<double>::max();
@@ -33,7 +34,6 @@ double candidates(const DistinctReadings& readings, int axis, int sign, double s
   return sure - slab;
 }
 
-// The samples by which the facet is fitted.
 void collect(const DistinctReadings& readings, double from, Side& side, Workspace& workspace) {
   workspace.inliers.clear();
   side.gate.row = side.facet.row;
@@ -43,8 +43,8 @@ void collect(const DistinctReadings& readings, double from, Side& side, Workspac
   }
 }
 
-// Least squares of slopes and level over the inliers, with the prior of the slopes; deviation of the samples. Robust
-// (Cauchy), since windows that met the rail in a part only lie short of the plane: rails.md (R58).
+// Fits slopes and level to the inliers by least squares, with the prior of the slopes; computes the samples' standard
+// deviation. Robust (Cauchy), because partly saturated windows are below the plane: rails.md (R58).
 void fit(const DistinctReadings& readings, const FacetPrior& prior, double deviation, RailFacet& facet,
          Workspace& workspace) {
   const int axis = facet.axis;

@@ -27,17 +27,17 @@ using rails::Gate;
 using rails::others;
 using rails::Side;
 
-// Deviations with which the robust fit starts, as shares of the slab: a thin rail with a few samples short of it, a
-// thick one.
+// Initial standard deviations of the robust fit, as fractions of the slab. The small one suits a thin plane with a few
+// samples below it, the large one a thick plane.
 constexpr double kStarts[] = {0.5, 0.02};
-// Elements of one device differ by this share without remark: another axis does not read more than that beyond a rail.
+// Usual difference between elements of one device: another axis does not read more than this beyond a level.
 constexpr double kSiblingShare = 0.04;
-// Log odds of a level: near that of another element, of a stated range, of the other sign; and what cannot be.
+// Log odds of a level: near that of another element, of a stated range, of the other sign; and impossible.
 constexpr double kNearSibling = 5.0, kNearStated = 3.0, kOtherSignAgrees = 5.0, kImpossible = -100.0;
-// What a rail at that of an earlier run is worth, how far the two may lie apart as a share of the level, and the least
-// that one elsewhere is worth: the device may be another.
+// Log odds of a level near that of an earlier run; maximum distance of the two as a fraction of the level; minimum log
+// odds of other levels, since the device may be another one.
 constexpr double kNearKnown = 6.0, kKnownShare = 0.003, kFarFromKnown = -3.0;
-// What the slopes may change from run to run.
+// Change of slopes between runs.
 constexpr double kKnownSlopeSigma = 2e-3;
 
 double log_normal_ratio(double value, double sigma) {
@@ -45,7 +45,7 @@ double log_normal_ratio(double value, double sigma) {
   return std::max(kImpossible, -0.5 * z * z);
 }
 
-// What is believed of a level before its samples are counted: rails.md (R67).
+// Prior log odds of a level: rails.md (R67).
 double level_log_odds(const RailPlaneFinder::Params& params, const DistinctReadings& readings, const RailPlanes& known,
                       const Side& side) {
   const double level = side.facet.level;
@@ -73,7 +73,7 @@ double level_log_odds(const RailPlaneFinder::Params& params, const DistinctReadi
   return odds;
 }
 
-// One element, rails.md (R53), of what its two signs show; either may be missing.
+// Combines the two signs of one element, rails.md (R53); either may be missing.
 RailPlane joined(const RailPlaneFinder::Params& params, const DistinctReadings& readings, const Side* minus,
                  const Side* plus) {
   Eigen::Matrix4d H = Eigen::Matrix4d::Zero();
@@ -105,7 +105,7 @@ RailPlane joined(const RailPlaneFinder::Params& params, const DistinctReadings& 
     out.tolerance_rad_s = std::max(out.tolerance_rad_s, side->facet.tolerance);
     out.log_odds = std::max(out.log_odds, side->log_odds);
   }
-  // two elements that clip together leave a slope untold: badly conditioned
+  // badly conditioned if two elements that always clip together leave a slope undetermined
   const Eigen::LDLT<Eigen::Matrix4d> factor(H);
   out.covariance = factor.solve(Eigen::Matrix4d::Identity());
   const Eigen::Vector4d x = factor.solve(g);
@@ -118,20 +118,18 @@ RailPlane joined(const RailPlaneFinder::Params& params, const DistinctReadings& 
   return out;
 }
 
-// The two signs of an element, as far as they are believed: minus, plus.
 using Pair = std::array<std::optional<Side>, 2>;
 
 RailPlane joined(const RailPlaneFinder::Params& params, const DistinctReadings& readings, const Pair& pair) {
   return joined(params, readings, pair[0] ? &*pair[0] : nullptr, pair[1] ? &*pair[1] : nullptr);
 }
 
-// The search for sides in the readings of one triad.
 struct SideSearch {
   const RailPlaneFinder::Params& params;
   const DistinctReadings& readings;
   RailPlaneFinder::Workspace& workspace;
 
-  // the best facet about what is known of the slopes, by the log odds of rails.md (R60)
+  // best facet near the known slopes, by the log odds of rails.md (R60)
   Side about(int axis, int sign, const RailPlanes& known, const FacetPrior& prior, double range) const {
     Side side{axis, sign, {}, {}};
     const auto extreme = rails::find_extreme(params, readings, axis, sign, prior, range, workspace);
@@ -149,7 +147,7 @@ struct SideSearch {
     return side;
   }
 
-  // one sign of an element: about its row where that is known, else about none, or that of an earlier run
+  // one sign of an element: near its row if known, otherwise near zero slopes or those of an earlier run
   Side look(int axis, int sign, const RailPlanes& known) const {
     const auto element = static_cast<std::size_t>(axis);
     if (const auto& rail = known.element[element]) {
@@ -162,7 +160,7 @@ struct SideSearch {
     const Side side = about(axis, sign, known, {Vector2d::Zero(), unknown}, params.slope_max);
     const auto& earlier = params.known.element[element];
     if (!earlier) return side;
-    // the device of the earlier run, or another
+    // the device of the earlier run, or another one
     const Matrix2d changed =
         earlier->covariance.topLeftCorner<2, 2>() + kKnownSlopeSigma * kKnownSlopeSigma * Matrix2d::Identity();
     const double range = std::min(params.slope_max, 3.0 * std::sqrt(changed.trace()));
@@ -170,8 +168,8 @@ struct SideSearch {
     return same.log_odds > side.log_odds ? same : side;
   }
 
-  // Looks for side `i` of an element beside what is `found`; whether `pair` holds it now. `kept`: it was believed when
-  // the rails were looked for last.
+  // Searches for side `i` of an element, given the planes in `found`. Returns whether `pair` contains it. `kept`: it
+  // was accepted in the last search.
   bool add(int axis, std::size_t i, bool kept, const RailPlanes& found, Pair& pair) const {
     const int sign = i == 0 ? -1 : 1;
     const Side side = look(axis, sign, found);
@@ -181,13 +179,13 @@ struct SideSearch {
     }
     const auto& rail = found.element[static_cast<std::size_t>(axis)];
     if (rail || !(side.log_odds > -std::numeric_limits<double>::infinity())) return false;
-    // both signs of one row may be believed together where neither is alone
+    // both signs of one row may be accepted together where neither is alone
     Pair alone;
     alone[i] = side;
     RailPlanes supposed = found;
     supposed.element[static_cast<std::size_t>(axis)] = joined(params, readings, alone);
     const Side other = look(axis, -sign, supposed);
-    // the odds before count once: rails.md (R68)
+    // the prior odds count once: rails.md (R68)
     if (side.log_odds + other.log_odds - params.log_odds_before < params.log_odds_min) return false;
     pair[i] = side;
     pair[1 - i] = other;
@@ -225,7 +223,7 @@ RailPlanes RailPlaneFinder::find(std::span<const Vector3d> readings_rad_s, const
     return with_known(found, readings.rates);
   const SideSearch search{params_, readings, workspace};
   std::array<Pair, 3> sides;
-  // what is found of one element or sign tells of the others, so again until nothing is added
+  // each accepted element or sign changes the odds of the others, so repeat until nothing is added
   for (bool added = true; added;) {
     added = false;
     for (int axis = 0; axis < 3; ++axis) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rails that are known: which readings are at them, and what an earlier run adds to those found.
+// Known saturation planes: classification of readings, and planes from an earlier run.
 #include <cmath>
 
 #include "tumble/angular_velocity/rail_planes.hpp"
@@ -10,15 +10,15 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Readings beyond a plane, by so many times its tolerance, that contradict it.
+// Multiple of the tolerance beyond which readings contradict a plane.
 constexpr double kBeyondTolerance = 4.0;
 constexpr int kContradicting = 2;
-// Rails of two runs of one device lie within this share of each other.
+// Maximum difference between levels of one device in two runs, as a fraction.
 constexpr double kSameShare = 0.003;
 
 }  // namespace
 
-// What an earlier run knew of elements, and of signs, that these readings did not meet.
+// Adds elements and signs from an earlier run that were not observed in these readings.
 RailPlanes RailPlaneFinder::with_known(const RailPlanes& found, std::span<const Vector3d> readings_rad_s) const {
   RailPlanes out = found;
   for (std::size_t j = 0; j < 3; ++j) {
@@ -27,7 +27,7 @@ RailPlanes RailPlaneFinder::with_known(const RailPlanes& found, std::span<const 
     if (!earlier) continue;
     if (!rail && !earlier->contradicted_by(readings_rad_s)) rail = earlier;
     for (const int sign : {-1, 1}) {
-      // near enough to be the same device
+      // close enough to be the same device
       if (!rail || rail->seen(sign) || !earlier->seen(sign)) continue;
       const double apart = std::abs(rail->distance_rad_s - earlier->distance_rad_s);
       const std::size_t i = sign > 0 ? 1 : 0;

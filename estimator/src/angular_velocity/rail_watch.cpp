@@ -15,15 +15,15 @@ namespace {
 
 using Eigen::Vector3d;
 
-// A reading this near the largest of its axis may be at a rail; which of them are kept; readings beside one that its
-// segment is judged by.
+// Fraction of an axis's largest reading above which a reading may be saturated; above which it is stored; number of
+// neighbours stored for judging a segment.
 constexpr double kNearShare = 0.9, kKeepShare = 0.85;
 constexpr std::size_t kBeside = 4;
-// Readings kept whatever they are: the latest, and the first, which tell the noise.
+// Number of latest and of first readings that are always stored; the first ones determine the noise.
 constexpr std::size_t kLatest = 48;
-// A new search after this share more of readings near the extremes, two at least.
+// A new search after this fraction of additional readings near the extremes, at least two.
 constexpr std::size_t kMore = 8;
-// A reading this far below the lowest rail that is looked for is not near one; of an accelerometer gravity is.
+// Readings below this fraction of the lowest possible level are not near one; gravity is excluded for an accelerometer.
 constexpr double kLowShare[] = {0.5, 0.9};
 
 std::array<std::optional<double>, 6> rails_of(const RailDetector& upright_rails, const RailDetector::State& state) {
@@ -59,7 +59,7 @@ bool RailWatch::is_near(const Vector3d& reading, Triad triad, const Memory& memo
   return false;
 }
 
-// Where there is no room the dull readings go, and where that makes too little the oldest but for the first.
+// Without room, drops readings far from the extremes, and if necessary the oldest except for the first ones.
 void RailWatch::remember(const Vector3d& reading, Triad triad, Memory& memory) const {
   std::vector<Vector3d>& readings = memory.readings;
   if (readings.size() == readings_max_) {

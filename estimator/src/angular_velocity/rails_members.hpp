@@ -9,7 +9,6 @@
 #include "tumble/angular_velocity/detail/rail_watch.hpp"
 #include "tumble/angular_velocity/rest_detector.hpp"
 
-/// Members of what is known of rails and rest: state_visitor.hpp.
 namespace tumble {
 
 template <StateOf<RestDetector::State> Self, class Visitor>

@@ -12,16 +12,16 @@ namespace tumble {
 
 namespace {
 
-// Other first thresholds of contact, as multiples of the given one, and the share of clipped samples in flight below
-// which they are tried.
+// Alternative first contact thresholds, as multiples of the parameter, and the fraction of clipped samples in flight
+// below which they are tried.
 constexpr double kOtherStarts[] = {16.0, 0.25};
 constexpr double kFlightShareExpected = 0.5;
 
-// A step that moves nothing by more than this many of its own deviations is the last, however many rad/s that is of a
-// rate that is hardly known: rate_smoother.md (R45).
+// Convergence: the last step changes no combination of unknowns by more than this many standard deviations:
+// rate_smoother.md (R30). A nearly unknown rate may still change by much.
 constexpr double kStepDeviations = 0.1;
 
-// rate_smoother.md (R22) to (R25); the jump is the smaller of (R23).
+// rate_smoother.md (R16) to (R19); the jump is the smaller one of (R17).
 void weigh_all(const RateModel& model, std::span<const RateObservation> observations, const RigConstants& rig,
                const RigConstants::Matrix& rig_covariance, double widen, std::span<RateEstimate> estimates) {
   double before = std::numeric_limits<double>::max();
@@ -31,7 +31,7 @@ void weigh_all(const RateModel& model, std::span<const RateObservation> observat
       const double dt_s = seconds(observations[k + 1].sample.time_ns - observations[k].sample.time_ns);
       after = model.jump(estimates[k].knot, estimates[k + 1].knot, dt_s);
     }
-    // where the gyro reads all axes nothing is unknown that would excuse a residual
+    // if the gyro measures all axes, no unknown could explain a residual
     const int clipped = observations[k].unseen();
     model.weigh(observations[k], rig, rig_covariance, clipped != 0 ? widen : 1.0, std::min(before, after),
                 estimates[k]);
@@ -39,14 +39,14 @@ void weigh_all(const RateModel& model, std::span<const RateObservation> observat
   }
 }
 
-// Gauss-Newton from the first guess; false when a system is not positive definite.
+// Gauss-Newton from the first guess; returns false if a system is not positive definite.
 bool descend(const RateSmoother::Params& params, const RateModel& model, std::span<const RateObservation> observations,
              double widen, RateSolution& solution, RateReport& health) {
   solution.estimates = first_guess(observations, params.model, model, params.gap_max_s);
   solution.rig = model.prior_constants();
   solution.rig_covariance = model.prior_covariance();
   std::vector<RateEstimate>& estimates = solution.estimates;
-  int soft = 0;  // iterations with soft bounds
+  int soft = 0;
   health.iterations = 0;
   health.converged = false;
   while (health.iterations < params.expert.descent.iterations_max) {
@@ -81,8 +81,8 @@ bool descend(const RateSmoother::Params& params, const RateModel& model, std::sp
   return true;
 }
 
-// How much of what the gyro does not see is explained as free flight: the part of the robust cost that differs between
-// the minima in which a run may end, rate_smoother.md (R43). `share`: of these samples, those that count as flight.
+// Measures how well free flight explains what the gyro does not measure, by the part of the robust cost that differs
+// between local minima, rate_smoother.md (R31). `share`: fraction of these samples that count as flight.
 double explained(std::span<const RateObservation> observations, std::span<const RateEstimate> estimates,
                  double& share) {
   double sum = 0.0, unseen = 0.0, flight = 0.0;
@@ -98,7 +98,7 @@ double explained(std::span<const RateObservation> observations, std::span<const 
 
 }  // namespace
 
-// The system of rate_smoother.md (R28), eliminated from the first sample on.
+// Eliminates the system of rate_smoother.md (R26) from the first sample on.
 bool RateIteration::factorise(const RateModel& model, std::span<const RateEstimate> estimates,
                               const RigConstants& rig) {
   corner_ = {};
@@ -117,7 +117,7 @@ bool RateIteration::factorise(const RateModel& model, std::span<const RateEstima
   return arrow::solve_corner(corner_, rig_step_, rig_covariance_);
 }
 
-// g' H^-1 g, block by block: rate_smoother.md (R45). Blocks hold L^-1 g once they are eliminated.
+// g' H^-1 g, block by block: rate_smoother.md (R30). Blocks contain L^-1 g after elimination.
 double RateIteration::decrement() const {
   double sum = rig_step_.dot(corner_.gradient);
   for (const arrow::Block& block : blocks_) sum += block.gradient.squaredNorm();
@@ -142,7 +142,7 @@ double RateIteration::apply(const RateModel& model, double step_max, std::span<R
   return largest;
 }
 
-// rate_smoother.md (R36), (R37), (R37a)
+// rate_smoother.md (R37), (R38), (R39)
 RateIteration::Moved RateIteration::moved_by_errors(const RateModel& model, std::span<const RateEstimate> estimates,
                                                     const RigConstants& rig) const {
   Moved out;
@@ -153,7 +153,7 @@ RateIteration::Moved RateIteration::moved_by_errors(const RateModel& model, std:
     model.add_errors(observations_[k], estimates[k], rig, errors, border, out.evidence);
     const bool last = k + 1 == blocks_.size();
     arrow::eliminate_errors(blocks_[k], errors, last ? nullptr : &out.of_sample[k + 1], border);
-    // what the sample explains of the errors by itself
+    // the part of the errors that the sample explains itself
     out.evidence.information.noalias() -= errors.transpose() * errors;
     out.evidence.gradient.noalias() += errors.transpose() * blocks_[k].gradient;
   }

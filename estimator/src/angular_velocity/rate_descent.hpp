@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The descent of RateSmoother: Gauss-Newton over a recording whose readings are given.
+// Gauss-Newton descent of RateSmoother over a recording.
 #pragma once
 
 #include <span>
@@ -10,18 +10,17 @@
 
 namespace tumble {
 
-/// The linear system of one iteration and its solution.
 class RateIteration {
  public:
   explicit RateIteration(std::span<const RateObservation> observations)
       : observations_(observations), blocks_(observations.size()) {}
 
-  /// False when it is not positive definite.
+  /// Returns false if the system is not positive definite.
   bool factorise(const RateModel& model, std::span<const RateEstimate> estimates, const RigConstants& rig);
-  /// Adds the step, cut to step_max; returns the largest change of a rate.
+  /// Adds the step, limited to step_max; returns the largest change of a rate.
   double apply(const RateModel& model, double step_max, std::span<RateEstimate> estimates, RigConstants& rig) const;
 
-  /// Of the last factorisation, from the last sample to the first: use(k, conditional).
+  /// Calls use(k, conditional) for the last factorisation, from the last sample to the first.
   template <typename Use>
   void for_each_conditional(Use use) const {
     arrow::Conditional conditional;
@@ -31,8 +30,8 @@ class RateIteration {
     }
   }
 
-  /// Of the last factorisation, how far all unknowns move with each of the device's errors, and what the readings say
-  /// of those once all else follows them. `estimates` and `rig`: those of the factorisation, before apply().
+  /// Derivative of all unknowns by the sensor errors, and evidence of the readings about the errors after all unknowns
+  /// are optimised. Of the last factorisation, with its `estimates` and `rig`, before apply().
   struct Moved {
     std::vector<arrow::ErrorMatrix> of_sample;
     arrow::BorderErrors of_rig;
@@ -41,8 +40,8 @@ class RateIteration {
   Moved moved_by_errors(const RateModel& model, std::span<const RateEstimate> estimates, const RigConstants& rig) const;
 
   const RigConstants::Matrix& rig_covariance() const { return rig_covariance_; }
-  /// Of the last factorisation: twice the decrease of the cost that the step promises, and the square of the most
-  /// deviations by which it moves any combination of the unknowns.
+  /// For the last factorisation, returns twice the predicted decrease of the cost. This number is also the square of
+  /// the largest change of any combination of unknowns in standard deviations.
   double decrement() const;
 
  private:
@@ -53,7 +52,6 @@ class RateIteration {
   RigConstants::Matrix rig_covariance_;
 };
 
-/// Where a descent ends.
 struct RateSolution {
   std::vector<RateEstimate> estimates;
   RigConstants rig;
@@ -61,9 +59,9 @@ struct RateSolution {
   RateIteration iteration;
 };
 
-/// The descent, again from wider and narrower thresholds of contact where most clipped samples pass for contact: with
-/// a lever arm that is far off the first may end in a minimum in which nothing is flight. False when a system is not
-/// positive definite. Fills what `health` says of iterations, restarts, convergence and the Mahalanobis distance.
+/// Runs the descent. If most clipped samples are classified as contact, repeats it with larger and smaller contact
+/// thresholds. Reason: with a wrong lever arm, the first may end in a minimum without flight. Returns false if a system
+/// is not positive definite. Sets iterations, restarts, convergence and Mahalanobis distance in `health`.
 bool solve(const RateSmoother::Params& params, const RateModel& model, std::span<const RateObservation> observations,
            RateSolution& solution, RateReport& health);
 

@@ -14,7 +14,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-// S_i v for each matrix of RigConstants::inertia_basis, as columns; written out, because it is asked for each sample.
+// Returns S_i v for each matrix of RigConstants::inertia_basis, as columns; explicit, because it is called for each
+// sample.
 Eigen::Matrix<double, 3, 5> basis_times(const Vector3d& v) {
   constexpr double kHalf = 0.5 * std::numbers::sqrt2, kSixth = std::numbers::inv_sqrt3 * kHalf;
   Eigen::Matrix<double, 3, 5> out;
@@ -24,13 +25,12 @@ Eigen::Matrix<double, 3, 5> basis_times(const Vector3d& v) {
   return out;
 }
 
-// Angular jerk of torque-free rotation about which a knot is taken to turn.
 struct Jerk {
   Matrix3d J, J_inv;
   Vector3d Jw, Ja, value;
 };
 
-// The derivative of J alpha + w x J w = 0 by time: J j = -(alpha x J w + w x J alpha), rate_smoother.md (R15).
+// The time derivative of J alpha + w x J w = 0: J j = -(alpha x J w + w x J alpha), rate_smoother.md (R11).
 Jerk jerk_of(const RateKnot& knot, const RigConstants& rig) {
   const Vector3d &w = knot.rate_rad_s, &alpha = knot.acceleration_rad_s2;
   Jerk out;
@@ -42,7 +42,7 @@ Jerk jerk_of(const RateKnot& knot, const RigConstants& rig) {
   return out;
 }
 
-// What it changes by; apart, because who asks for the jerk alone asks several times a sample.
+// Derivatives of the jerk; separate, because most calls need only the jerk.
 struct JerkDerivatives {
   Matrix3d by_rate, by_acceleration;
   Eigen::Matrix<double, 3, 5> by_inertia;
@@ -60,7 +60,7 @@ JerkDerivatives derivatives_of(const Jerk& jerk, const RateKnot& knot) {
   return out;
 }
 
-// The knot `delay_s` before, as far as Euler's equation without torque takes it back: rate_smoother.md (R16).
+// Propagates the knot back by `delay_s` with Euler's equation without torque: rate_smoother.md (R12).
 RateKnot earlier_by(double delay_s, const RateKnot& knot, const Jerk& jerk) {
   const double half = 0.5 * delay_s * delay_s;
   return {knot.rate_rad_s - delay_s * knot.acceleration_rad_s2 + half * jerk.value,
@@ -69,7 +69,7 @@ RateKnot earlier_by(double delay_s, const RateKnot& knot, const Jerk& jerk) {
 
 }  // namespace
 
-// rate_smoother.md (R5), at an earlier knot (R6)
+// rate_smoother.md (R6), at an earlier knot (R7)
 RateFactor gyro_factor(const RateKnot& knot, const RigConstants& rig, const Vector3d& reading_rad_s) {
   RateFactor f;
   f.residual = knot.rate_rad_s + rig.gyro_bias_rad_s - reading_rad_s;
@@ -79,7 +79,7 @@ RateFactor gyro_factor(const RateKnot& knot, const RigConstants& rig, const Vect
   return f;
 }
 
-// rate_smoother.md (R7), by rails.md (R52)
+// rate_smoother.md (R8), by rails.md (R52)
 RateFactor element_factor(const RateKnot& knot, const RigConstants& rig, const Vector3d& reading_rad_s) {
   const Vector3d off = knot.rate_rad_s + rig.gyro_bias_rad_s - reading_rad_s;
   RateFactor f;
@@ -96,12 +96,12 @@ RateFactor element_factor(const RateKnot& knot, const RigConstants& rig, const V
   return f;
 }
 
-// rate_smoother.md (R13)
+// rate_smoother.md (R10)
 RateFactor flight_factor(const RateKnot& knot, const RigConstants& rig, const Vector3d& reading_m_s2) {
   const Vector3d &w = knot.rate_rad_s, &alpha = knot.acceleration_rad_s2, &t = rig.lever_arm_m;
   RateFactor f;
   f.residual = alpha.cross(t) + w.cross(w.cross(t)) + rig.accel_bias_m_s2 - reading_m_s2;
-  // rate_smoother.md (R14): w x (w x t) = w (w.t) - t (w.w)
+  // rate_smoother.md (R10): w x (w x t) = w (w.t) - t (w.w)
   f.by_knot << w * t.transpose() + w.dot(t) * Matrix3d::Identity() - 2.0 * t * w.transpose(), -so3::hat(t);
   f.by_rig.setZero();
   f.by_rig.middleCols<3>(0) = so3::hat(alpha) + w * w.transpose() - w.squaredNorm() * Matrix3d::Identity();
@@ -109,7 +109,7 @@ RateFactor flight_factor(const RateKnot& knot, const RigConstants& rig, const Ve
   return f;
 }
 
-// rate_smoother.md (R16)
+// rate_smoother.md (R12)
 RateFactor late_flight_factor(const RateKnot& knot, const RigConstants& rig, const Vector3d& reading_m_s2,
                               double delay_s, Vector3d* by_delay) {
   const Jerk jerk = jerk_of(knot, rig);
@@ -128,7 +128,7 @@ RateFactor late_flight_factor(const RateKnot& knot, const RigConstants& rig, con
   return f;
 }
 
-// rate_smoother.md (R16), by the rig alone
+// rate_smoother.md (R12), derivatives by the calibration only
 RateFactor late_flight_by_rig(const RateKnot& knot, const RigConstants& rig, const Vector3d& reading_m_s2,
                               double delay_s) {
   RateFactor f = flight_factor(earlier_by(delay_s, knot, jerk_of(knot, rig)), rig, reading_m_s2);
@@ -136,7 +136,7 @@ RateFactor late_flight_by_rig(const RateKnot& knot, const RigConstants& rig, con
   return f;
 }
 
-// rate_smoother.md (R17)
+// rate_smoother.md (R13)
 Vector3d flight_curvature(const RateKnot& knot, const RigConstants& rig) {
   const Vector3d &w = knot.rate_rad_s, &alpha = knot.acceleration_rad_s2, &t = rig.lever_arm_m;
   const Jerk jerk = jerk_of(knot, rig);
@@ -145,7 +145,7 @@ Vector3d flight_curvature(const RateKnot& knot, const RigConstants& rig) {
   return snap.cross(t) + j.cross(w.cross(t)) + 2.0 * alpha.cross(alpha.cross(t)) + w.cross(j.cross(t));
 }
 
-// rate_smoother.md (R18)
+// rate_smoother.md (R14)
 RateFactor euler_factor(const RateKnot& knot, const RigConstants& rig) {
   const Vector3d &w = knot.rate_rad_s, &alpha = knot.acceleration_rad_s2;
   const Matrix3d J = rig.inertia_matrix();

@@ -8,8 +8,8 @@
 
 namespace tumble {
 
-/// Where the iteration of RateSmoother starts: the published estimate (Saave), held to the bounds and smoothed. The
-/// samples have been checked.
+/// Initial values of RateSmoother's iteration: the published estimate (Saave), limited to the bounds and smoothed. The
+/// samples must be checked.
 std::vector<RateEstimate> first_guess(std::span<const RateObservation> observations, const RateModelParams& model,
                                       const RateModel& derived, double gap_max_s);
 

@@ -46,13 +46,13 @@ RigConstants::Matrix covariance_of(const RateModelParams& p) {
   return variance.cwiseAbs2().asDiagonal();
 }
 
-// What an impact within the window may add to the loss of a partly clipped reading (one standard deviation), rad/s.
+// Standard deviation of the additional deficit of a partly clipped reading due to an impact within the window, rad/s.
 constexpr double kSubsampleInContact = 0.25;
 
-// The constants that a factor depends on: lever arm and accelerometer's bias in flight, inertia in Euler's equation.
+// Constants on which a factor depends: lever arm and accelerometer bias in flight, inertia in Euler's equation.
 constexpr int kLever = 0, kAccelBias = 6, kInertia = 9;
 
-// What the uncertain rig adds to a residual.
+// Contribution of the calibration's uncertainty to a residual's covariance.
 Eigen::Matrix3d flight_spread(const RateFactor& f, const RigConstants::Matrix& rig) {
   const Eigen::Matrix3d T = f.by_rig.middleCols<3>(kLever), B = f.by_rig.middleCols<3>(kAccelBias);
   const Eigen::Matrix3d between = rig.block<3, 3>(kLever, kAccelBias);
@@ -71,14 +71,15 @@ Eigen::Matrix3d euler_spread(const RateFactor& f, const RigConstants::Matrix& ri
   return IC.lazyProduct(I.transpose());
 }
 
-// Squared residual over its covariance, the sensor's own and what the uncertain rig adds: rate_smoother.md (R22).
+// Squared residual normalised by its covariance, from the sensor and from the uncertain calibration: rate_smoother.md
+// (R16).
 double normalised(const RateFactor& f, Eigen::Matrix3d spread, double sigma, const Vector3d& more = Vector3d::Zero()) {
   spread.diagonal().array() += sigma * sigma;
   spread.diagonal() += more;
   return f.residual.dot(spread.inverse() * f.residual);
 }
 
-// Mahalanobis distance of one part of the constants, over the root of its size: rate_smoother.md (R4)
+// Mahalanobis distance of one part of the constants, divided by the root of its size: rate_smoother.md (R32)
 template <int kFirst, int kCount>
 double mahalanobis(const RigConstants::Vector& moved, const RigConstants::Matrix& covariance) {
   const Eigen::Matrix<double, kCount, 1> part = moved.segment<kCount>(kFirst);
@@ -86,7 +87,7 @@ double mahalanobis(const RigConstants::Vector& moved, const RigConstants::Matrix
   return std::sqrt(part.dot(spread.llt().solve(part)) / kCount);
 }
 
-// Part of a factor that belongs to the sample alone; returns A' * information.
+// Adds the part of a factor that depends on the sample only; returns A' * information.
 Eigen::Matrix<double, 6, 3> add_to_knot(const RateFactor& f, const Eigen::Matrix3d& information, double time_scale_s,
                                         arrow::Block& block) {
   Eigen::Matrix<double, 3, 6> A = f.by_knot;
@@ -97,7 +98,7 @@ Eigen::Matrix<double, 6, 3> add_to_knot(const RateFactor& f, const Eigen::Matrix
   return At;
 }
 
-// Part of a factor that belongs to kCount constants from kFirst on.
+// Adds the part of a factor that depends on kCount constants from kFirst on.
 template <int kFirst, int kCount>
 void add_to_rig(const RateFactor& f, const Eigen::Matrix3d& information, const Eigen::Matrix<double, 6, 3>& At,
                 arrow::Block& block, arrow::Corner& corner) {
@@ -125,7 +126,7 @@ void add_euler(const RateFactor& f, const Eigen::Matrix3d& information, double t
   add_to_rig<kInertia, 5>(f, information, At, block, corner);
 }
 
-// Information of a residual whose covariance is wider than by its own inverse: rate_stream.md (R92).
+// Reduces the information of a residual by an additional covariance: rate_stream.md (R92).
 Eigen::Matrix3d with_doubt(const Eigen::Matrix3d& information, const Eigen::Matrix3d& spread) {
   return (Eigen::Matrix3d::Identity() + information * spread).inverse() * information;
 }
@@ -136,7 +137,7 @@ RateModel::RateModel(const RateModelParams& params, double period_s) : params_(p
   check(params);
   require_within("period_s", period_s, 1e-6, 10.0);
   const double bandwidth_hz = 1.0 / period_s;
-  gyro_sigma_rad_s_ = params.gyro_noise_density * std::sqrt(bandwidth_hz);  // rate_smoother.md (R5)
+  gyro_sigma_rad_s_ = params.gyro_noise_density * std::sqrt(bandwidth_hz);  // rate_smoother.md (R6)
   accel_noise_m_s2_ = params.accel_noise_density * std::sqrt(bandwidth_hz);
   accel_sigma_m_s2_ = std::hypot(params.expert.flight.sigma_m_s2, accel_noise_m_s2_);
   share_ = std::min(1.0, period_s / params.expert.model_error_s);
@@ -160,10 +161,10 @@ void RateModel::weigh(const RateObservation& observation, const RigConstants& ri
                     normalised(euler, euler_spread(euler, rig_covariance), params_.expert.flight.euler_sigma_rad_s2) +
                     jump;
   const double threshold = widen * params_.expert.flight.threshold;
-  // Geman-McClure, rate_smoother.md (R24): the pull of an outlier vanishes with the cube of its size
+  // Geman-McClure, rate_smoother.md (R18): the gradient of an outlier decreases with the cube of its size
   const double ratio = 1.0 / (1.0 + r2 / (threshold * threshold));
   estimate.flight_weight = ratio * ratio;
-  // the residual is model minus reading: rate_smoother.md (R25)
+  // the residual is model minus reading: rate_smoother.md (R19)
   estimate.contact_m_s2 = (estimate.flight_weight - 1.0) * flight.residual;
 }
 
@@ -172,13 +173,13 @@ double RateModel::accel_sigma_m_s2(const RateObservation& observation) const {
                     params_.expert.readings.accel_scale_error * observation.sample.specific_force_m_s2.norm());
 }
 
-// The same as a variance with which samples may be added up: what lasts longer than a sample does not average out.
+// Same as a variance for sums over samples: errors that last longer than a sample do not average out.
 double RateModel::accel_variance_together(const RateObservation& observation) const {
   const double single = accel_sigma_m_s2(observation), noise2 = accel_noise_m_s2_ * accel_noise_m_s2_;
   return share_ < 1.0 ? noise2 + (single * single - noise2) / share_ : single * single;
 }
 
-// The step over its covariance in flight: rate_smoother.md (R23), (R20).
+// The step normalised by its covariance in flight: rate_smoother.md (R17), (R4).
 double RateModel::jump(const RateKnot& from, const RateKnot& to, double dt_s) const {
   const Vector3d e0 = from.rate_rad_s + dt_s * from.acceleration_rad_s2 - to.rate_rad_s;
   const Vector3d e1 = dt_s * (from.acceleration_rad_s2 - to.acceleration_rad_s2);
@@ -189,7 +190,7 @@ double RateModel::jump(const RateKnot& from, const RateKnot& to, double dt_s) co
 double RateModel::gyro_information(const RateObservation& observation, const RateEstimate& estimate, int axis) const {
   if (observation.gyro_repeats) return 0.0;
   if (observation.gyro_age_s > 0.0) {
-    // what contact makes of the rate since the reading was taken: rate_smoother.md (R6)
+    // change of the rate by contact since the reading was taken: rate_smoother.md (R7)
     const double change = params_.expert.contact.gain_rad_m * estimate.contact_m_s2.norm() * observation.gyro_age_s;
     const double lost = (observation.read_in_part() >> axis & 1u) != 0 ? observation.lost_sigma_rad_s[axis] : 0.0;
     return 1.0 / (gyro_sigma_rad_s_ * gyro_sigma_rad_s_ + change * change + lost * lost);
@@ -199,8 +200,8 @@ double RateModel::gyro_information(const RateObservation& observation, const Rat
   return 1.0 / (lost * lost + impact * impact);
 }
 
-// In contact the force is known to be of its own order: of two explanations of a rate that is not seen the gentler one
-// is more likely: rate_smoother.md (R26).
+// In contact, the force has a prior with its current magnitude as standard deviation: rate_smoother.md (R20). Smaller
+// forces are thus more probable explanations of an unmeasured rate.
 RateModel::ForceFactor RateModel::force_factor(const RateObservation& observation, const RateEstimate& estimate,
                                                const RigConstants& rig) const {
   const double flight2 = accel_variance_together(observation);
@@ -274,7 +275,7 @@ void RateModel::add_sample(const RateObservation& observation, const RateEstimat
   }
 }
 
-// A force through one point of the body has no torque about its own direction: rate_smoother.md (R19).
+// A force through one point of the body has no torque about its own direction: rate_smoother.md (R21).
 Eigen::Matrix3d RateModel::euler_information(const RateEstimate& estimate) const {
   const double flight = params_.expert.flight.euler_sigma_rad_s2 * params_.expert.flight.euler_sigma_rad_s2;
   const double force = estimate.contact_m_s2.norm(), lever = params_.expert.contact.lever_rad_m * force;
@@ -288,11 +289,11 @@ Eigen::Matrix3d RateModel::euler_information(const RateEstimate& estimate) const
 void RateModel::add_step(const RateEstimate& from, const RateEstimate& to, double dt_s, arrow::Block& block,
                          arrow::Block& next) const {
   const double h = time_scale_s_, ratio = dt_s / h;
-  // a contact may change the angular acceleration by gain * force within one step of model_error_s, and in shorter ones
-  // by what adds up to that: rate_smoother.md (R21)
+  // a contact may change the angular acceleration by gain * force within one step of model_error_s, and proportionally
+  // less in shorter steps: rate_smoother.md (R5)
   const double change = params_.expert.contact.gain_rad_m * std::max(from.contact_m_s2.norm(), to.contact_m_s2.norm());
   const double psd = params_.expert.flight.jerk_psd_rad2_s5 + share_ * change * change / dt_s;
-  // inverse of Q = psd [dt^3/3, dt^2 h/2; dt^2 h/2, dt h^2] of the scaled state: rate_smoother.md (R20)
+  // inverse of Q = psd [dt^3/3, dt^2 h/2; dt^2 h/2, dt h^2] of the scaled state: rate_smoother.md (R4)
   const double a = 12.0 / (psd * dt_s * dt_s * dt_s), b = -6.0 / (psd * dt_s * dt_s * h),
                c = 4.0 / (psd * dt_s * h * h);
   for (int j = 0; j < 3; ++j) {
@@ -333,7 +334,7 @@ double RateModel::calibration_mahalanobis(const RigConstants& rig) const {
   return std::max({lever, gyro, accel, inertia});
 }
 
-// From the scaled state of rate_smoother.md (R1); scaled() leads back to it.
+// Inverse of scaled(), from the scaled state of rate_smoother.md (R1).
 Eigen::Matrix<double, 6, 1> RateModel::unscaled(const arrow::StateVector& step) const {
   Eigen::Matrix<double, 6, 1> out = step;
   out.tail<3>() /= time_scale_s_;
@@ -349,7 +350,7 @@ arrow::StateVector RateModel::scaled(const Eigen::Matrix<double, 6, 1>& differen
 RateSource rate_source(const RateObservation& o, const RateEstimate& e, const Eigen::Matrix3d& covariance,
                        double sigma) {
   const int clipped = o.clipping.gyro | o.clipping.missing_gyro;
-  // a reading that may stand at a rail nobody has seen is not called clipped, but it is none that was measured
+  // a reading that may be saturated is not called clipped, but is not called measured either
   if (clipped == 0) return o.may_hide() == 0 ? RateSource::measured : RateSource::bounded_only;
   if (e.flight_weight >= 0.5) return RateSource::recovered_flight;
   double largest = 0.0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What other IMUs on the body say: the part of RateModel that deals with auxiliary IMUs.
+// Part of RateModel for auxiliary IMUs.
 #include <Eigen/LU>
 #include <cmath>
 
@@ -18,8 +18,8 @@ void add_row(const AuxiliaryRow& row, double residual, double sigma, arrow::Bloc
   block.gradient.noalias() -= information * residual * row.transpose();
 }
 
-// The part of the primary's force that an auxiliary IMU's axis sees, where none of it is clipped. What element i hides
-// moves the reading along column i of the inverse of the rows.
+// Returns whether an axis of an auxiliary IMU only depends on unclipped components of the primary's force. A deficit of
+// element i moves the reading along column i of the inverse of the rows.
 bool sees_free_axes(const Eigen::RowVector3d& axis, const RateObservation& observation) {
   constexpr double kSlight = 0.02;
   if (observation.clipping.accel == 0) return true;
@@ -31,12 +31,13 @@ bool sees_free_axes(const Eigen::RowVector3d& axis, const RateObservation& obser
   return true;
 }
 
-// What the auxiliary IMU's axes, or elements, see of the primary's.
+// Maps the primary's force to the auxiliary IMU's axes or elements.
 Eigen::Matrix3d seen_by(const Eigen::Matrix3d& R_CI, const ElementRows& elements, bool by_elements) {
   return by_elements ? Eigen::Matrix3d(elements.rows * R_CI) : R_CI;
 }
 
-// Deviation of a reading of a free element whose row nobody knows, another one hiding up to so much.
+// Standard deviation of a free element's reading due to its uncertain row, for a deficit of another element of up to
+// `most`.
 double unknown_row(const ElementRows& elements, bool by_elements, int j, double most) {
   return by_elements ? elements.slope_sigma[j] * most : 0.0;
 }
@@ -49,7 +50,7 @@ void RateModel::add_auxiliary_imus(const RateObservation& observation, const Rat
     const AuxiliaryImu& mount = params_.auxiliary_imus[i];
     const AuxiliaryReading& reading = observation.auxiliary_imus[i];
     const Eigen::Matrix3d R_CI = mount.T_IC.linear().transpose();
-    // the lever from the primary takes the place of that from the centre of mass, rate_smoother.md (R27)
+    // the lever from the primary replaces that from the centre of mass, rate_smoother.md (R15)
     const RateFactor rotation =
         flight_factor(estimate.knot, {.lever_arm_m = mount.T_IC.translation()}, Vector3d::Zero());
     const Vector3d force = observation.sample.specific_force_m_s2 - rig.accel_bias_m_s2 + rotation.residual;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a clipped reading says of its rate: the part of RateModel that deals with bounds.
+// Part of RateModel for the bounds given by clipped readings.
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -16,11 +16,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-// precision of a bound before anything is known, (rad/s)^-2
+// initial precision of a bound, (rad/s)^-2
 constexpr double kStartPrecision = 0.25;
 
-// Search for a sample of flight between impacts: Newton steps, the longest of them [rad/s], and the share of the
-// reading that a force of contact may have to pass for a gentle one.
+// Search for a sample of flight between impacts: Newton steps, longest step [rad/s], and the maximum remaining force as
+// a fraction of the reading.
 constexpr int kSeekIterations = 6;
 constexpr double kSeekStep = 3.0, kGentleShare = 0.25;
 
@@ -32,7 +32,7 @@ void RateModel::seek_flight(const RateObservation& observation, const RigConstan
   const Vector3d reading = corrected_rate(observation, estimate);
   RateEstimate flown = estimate;
   const Eigen::Matrix3d J = rig.inertia_matrix();
-  // what an element hides moves all axes: columns of M^-1 in rails.md (R51)
+  // the deficit of an element moves all axes: columns of M^-1 in rails.md (R51)
   Eigen::Matrix3d rows;
   for (int j = 0; j < 3; ++j) rows.row(j) = rig.element_row(j);
   const Eigen::Matrix3d hides = rows.inverse();
@@ -92,7 +92,7 @@ void RateModel::update_bounds(const RateObservation& observation, const RigConst
     for (int i = 0; i < 3; ++i) by_rig += row[i] * conditional.by_border.row(i);
     const Eigen::Matrix<double, 1, RigConstants::kSize> cross = by_rig.lazyProduct(rig_covariance);
     const Vector3d by_state = conditional.state.topLeftCorner<3, 3>().lazyProduct(row);
-    // mirrored so that the bound lies below: rate_smoother.md (R9); variance as in (R34)
+    // mirrored so that the bound is below: rate_smoother.md (R22); variance as in (R35)
     const NormalMoments marginal{sign * off.residual[j], row.dot(by_state) + cross.dot(by_rig)};
     const NormalSite site =
         refined_bound(marginal, {estimate.bound_precision[j], sign * estimate.bound_shift[j]}, 0.0,
@@ -113,7 +113,7 @@ void mark_subsample_saturation(const RailDetector& rails, const RailDetector::St
     const double reading = now.sample.angular_velocity_rad_s[j], sign = std::copysign(1.0, reading);
     const double neighbour = free_neighbour(std::abs(reading), *rail, j, before, after,
                                             [&](const Vector3d& beside) { return sign * beside[j]; });
-    if (neighbour > std::abs(reading)) continue;  // a dip in a plateau: how deep it is hidden nobody can say
+    if (neighbour > std::abs(reading)) continue;  // a dip within a plateau: its hidden depth is unknown
     const SubsampleSaturation loss = subsample_saturation(std::abs(reading), neighbour, *rail, noise_rad_s);
     if (!loss.saturated) continue;
     now.subsample_saturated = static_cast<std::uint8_t>(now.subsample_saturated | 1u << j);

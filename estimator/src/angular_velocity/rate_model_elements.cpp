@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Gyro and accelerometer while an element of them clips: the part of RateModel that reads them element by element.
+// Part of RateModel for samples with a clipped element of gyro or accelerometer, which are used element by element.
 #include <cmath>
 
 #include "tumble/angular_velocity/detail/rate_model.hpp"
@@ -10,9 +10,9 @@ namespace {
 
 constexpr int kGyroBias = 3;
 
-// One row m_j . (rate - age acceleration + bias - reading), of the given information and pull; `age` in units of the
-// time by which the acceleration is scaled. With `doubted` it tells nothing of m_j, and counts for as little as what is
-// not known of m_j leaves it: rate_smoother.md (R7), rate_stream.md (R92).
+// Adds one row m_j . (rate - age acceleration + bias - reading), with the given information and gradient; `age` is in
+// units of the acceleration's time scale. With `doubted`, the row does not update m_j and has a correspondingly reduced
+// weight: rate_smoother.md (R8), rate_stream.md (R92).
 void add_row(const RateFactor& gyro, int j, double age, double information, double pull,
              const RigConstants::Matrix* doubted, arrow::Block& block, arrow::Corner& corner) {
   const int first = RigConstants::kElements + 2 * j;
@@ -62,7 +62,7 @@ void RateModel::add_elements(const RateObservation& observation, const RateEstim
       pull = information * (gyro.residual[j] - observation.lost_rad_s[j]);
     } else if ((observation.clipping.gyro >> j & 1u) != 0) {
       const bool kept = gyro.residual[j] * observation.sample.angular_velocity_rad_s[j] >= 0.0;
-      if (kept && !estimate.soft_bounds) continue;  // a hard bound: rate_smoother.md (R8)
+      if (kept && !estimate.soft_bounds) continue;  // a hard bound: rate_smoother.md (R9)
       information = 1.0 / (params_.expert.readings.rail_sigma_rad_s * params_.expert.readings.rail_sigma_rad_s);
       pull = information * gyro.residual[j];
       if (estimate.soft_bounds) {
@@ -87,7 +87,7 @@ Eigen::Vector3d RateModel::read_accel_elements(const RateObservation& observatio
   double hidden2 = 0.0;
   for (int j = 0; j < 3; ++j) {
     if ((clipped >> j & 1u) == 0) continue;
-    // residual = model - reading; the truth lies beyond the reading, on the side of its sign: rate_smoother.md (R8)
+    // residual = model - reading; the true value is beyond the reading, on the side of its sign: rate_smoother.md (R9)
     if (flight.residual[j] * observation.sample.specific_force_m_s2[j] < 0.0) continue;
     hidden2 += flight.residual[j] * flight.residual[j];
     flight.residual[j] = 0.0;

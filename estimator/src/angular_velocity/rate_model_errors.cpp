@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What cannot be told from a sample alone: the part of RateModel that keeps contact from the rig's constants, and
-// corrects for and gathers what the device makes of the motion; what is reported of it all.
+// Part of RateModel that protects the calibration from contact, corrects for sensor errors, collects evidence about
+// them, and computes the reported covariance.
 #include "tumble/angular_velocity/detail/rate_model.hpp"
 
 namespace tumble {
@@ -9,8 +9,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-// Weight below which a sample may still draw a clipped rate towards flight, but says nothing of the rig: what is left
-// of the pull of contact is small for the rate and large for constants that are not known yet.
+// Weight below which a sample does not update the calibration, although it still affects a clipped rate. The remaining
+// gradient of a contact is small for the rate, but large for uncertain constants.
 constexpr double kRigWeightMin = 0.05;
 
 }  // namespace
@@ -19,16 +19,16 @@ bool RateModel::says_nothing_of_rig(const RateEstimate& estimate) {
   return estimate.flight_weight < kRigWeightMin;
 }
 
-// The force of a sample in contact draws the rates that are not seen, and nothing else.
+// Limits the force of a sample in contact to its effect on unmeasured rates.
 void RateModel::keep_from_rig(const RateObservation& o, RateFactor& flight) {
   flight.by_rig.setZero();
   for (int j = 0; j < 3; ++j) {
-    // a rate that is seen would hand the pull on to the gyro's bias
+    // a measured rate would pass the gradient on to the gyro's bias
     if ((o.unseen() >> j & 1u) == 0) flight.by_knot.col(j).setZero();
   }
 }
 
-// The rate of which a reading tells: rate_smoother.md (R6).
+// The rate to which a reading refers: rate_smoother.md (R7).
 RateKnot RateModel::at_reading(const RateObservation& observation, const RateEstimate& estimate) const {
   const RateKnot& knot = estimate.knot;
   return {knot.rate_rad_s - observation.gyro_age_s * knot.acceleration_rad_s2, knot.acceleration_rad_s2};
@@ -48,7 +48,7 @@ RateFactor RateModel::flight(const RateObservation& observation, const RateKnot&
   if (exact_ && delay_s == 0.0 && by_delay == nullptr) return flight_factor(knot, rig, reading);
   const Vector3d force = reading - params_.errors.accel * reading;
   RateFactor out = late_flight_factor(knot, rig, force, delay_s, by_delay);
-  // small beside the rest, so that its derivatives may be left out: rate_smoother.md (R17)
+  // small compared with the rest, so its derivatives are neglected: rate_smoother.md (R13)
   out.residual += 0.5 * params_.errors.accel_blur_s2 * flight_curvature(knot, rig);
   return out;
 }
@@ -63,7 +63,7 @@ RateFactor RateModel::flight_by_rig(const RateObservation& observation, const Ra
   return out;
 }
 
-// rate_smoother.md (R35), and the sums over samples of (R37)
+// rate_smoother.md (R36), and the sums over samples of (R38)
 void RateModel::add_errors(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
                            arrow::ErrorMatrix& block, arrow::BorderErrors& border, SensorErrorEvidence& evidence,
                            bool doubted) const {
@@ -104,14 +104,14 @@ void RateModel::add_errors(const RateObservation& observation, const RateEstimat
   }
 
   if (doubted || says_nothing_of_rig(estimate)) return;
-  if (observation.clipping.accel != 0 && observation.accel_rows.tilted()) return;  // rows mix what each axis is told
+  if (observation.clipping.accel != 0 && observation.accel_rows.tilted()) return;  // tilted rows mix the axes
   auto [flight, information] = force_factor(observation, estimate, rig);
   Vector3d by_delay;
   (void)this->flight(observation, estimate.knot, rig, &by_delay);
   const Vector3d curvature = flight_curvature(estimate.knot, rig);
   flight.by_knot.rightCols<3>() /= time_scale_s_;
   for (int j = 0; j < 3; ++j) {
-    if (flight.by_knot.row(j).isZero()) continue;  // a bound that holds
+    if (flight.by_knot.row(j).isZero()) continue;  // a satisfied bound
     Row by_errors = Row::Zero();
     by_errors.segment<3>(SensorErrors::kAccel + 3 * j) = force.transpose();
     by_errors[SensorErrors::kDelay] = by_delay[j];
@@ -124,7 +124,7 @@ void RateModel::add_errors(const RateObservation& observation, const RateEstimat
   }
 }
 
-// rate_smoother.md (R42)
+// rate_smoother.md (R49)
 Eigen::Matrix3d RateModel::reported(const Eigen::Matrix3d& covariance, const RateObservation& observation,
                                     const RateEstimate& estimate) const {
   const double factor = 1.0 + (params_.expert.contact.sigma_factor - 1.0) * (1.0 - estimate.flight_weight);
@@ -136,7 +136,7 @@ Eigen::Matrix3d RateModel::reported(const Eigen::Matrix3d& covariance, const Rat
   const Vector3d late = params_.expert.readings.gyro_time_sigma_s * estimate.knot.acceleration_rad_s2;
   Eigen::Matrix3d timed = covariance + late * late.transpose();
   if (observation.by_elements()) {
-    // within a window of contact the acceleration is what the force makes of it, on the axes that are read too
+    // in contact, the acceleration within a window depends on the force, also on measured axes
     const double struck =
         params_.expert.readings.gyro_time_sigma_s * params_.expert.contact.gain_rad_m * estimate.contact_m_s2.norm();
     timed.diagonal().array() += struck * struck;

@@ -7,7 +7,6 @@
 #include "tumble/angular_velocity/rate_state.hpp"
 #include "tumble/angular_velocity/sensor_errors.hpp"
 
-/// Members of what a rate is estimated from and with: state_visitor.hpp.
 namespace tumble {
 
 template <StateOf<RateState> Self, class Visitor>
@@ -115,7 +114,7 @@ void members(Self& s, Visitor& visit) {
 
 template <StateOf<RateModelParams> Self, class Visitor>
 void others(Self& p, Visitor& visit) {
-  visit.with_nan("nominal", p.nominal);  // NaN where a door has its own
+  visit.with_nan("nominal", p.nominal);  // NaN if the user of the class sets it
   visit("calibration", p.calibration);
   visit("auxiliary_imus", p.auxiliary_imus);
   visit("errors", p.errors);

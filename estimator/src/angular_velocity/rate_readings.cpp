@@ -41,7 +41,7 @@ void suspect_units(std::span<const ImuSample> samples, double rate_max_rad_s, Ra
   health.force_unit_suspect = force > 0.5 && force < 2.0;
 }
 
-// Axes that met a rail in a part of their window, and those that may stand at one which was not seen.
+// Marks axes that were saturated for a part of their window, and those that may be at an unknown level.
 void mark_doubtful(const RailPlaneFinder::Params& expected, const ClippingFinder& finder, const KnownRails& rails,
                    const RailPlanes& planes, double noise_rad_s, std::span<const ImuSample> samples,
                    std::span<RateObservation> observations) {
@@ -60,7 +60,6 @@ void mark_doubtful(const RailPlaneFinder::Params& expected, const ClippingFinder
   if (!rails.upright) doubt_motion_plateaus(planes, least, expected.offset_share, noise_rad_s, observations);
 }
 
-// Readings that a triad says twice, and how old they are.
 void mark_held(const std::optional<HeldReadings>& gyro, const std::optional<HeldReadings>& accel,
                std::span<RateObservation> observations, RateReport& health) {
   for (std::size_t k = 0; k < observations.size(); ++k) {

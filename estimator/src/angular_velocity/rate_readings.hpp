@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the samples of a recording are worth to RateSmoother.
+// Classification of a recording's samples for RateSmoother.
 #pragma once
 
 #include <optional>
@@ -13,17 +13,16 @@
 
 namespace tumble {
 
-/// A recording as the model sees it, and what is known of the rig with what its rails tell.
+/// A recording as input of the model, with the prior calibration including information from saturation planes.
 struct RateReadings {
   std::vector<RateObservation> observations;  ///< one per sample
-  RateModelParams known;                      ///< with a calibration
-  RailPlanes planes;                          ///< of the gyro's elements, in use
-  std::optional<HeldReadings> gyro_held;      ///< of a gyro that is slower than the log
+  RateModelParams known;
+  RailPlanes planes;  ///< of the gyro's elements, in use
+  std::optional<HeldReadings> gyro_held;
 };
 
-/// Judges each sample of at least two by the rails that were found: which elements clip, which axes are read in a part,
-/// which may hide that they clip, where the body is at rest, which readings repeat. Fills what `health` says of rails,
-/// units and repeats. O(N).
+/// Classifies each of at least two samples with the detected levels: clipped elements, partly saturated axes, suspect
+/// axes, rest, and repeated readings. Sets levels, units and repetitions in `health`. O(N).
 RateReadings read_samples(const RateSmoother::Params& params, const ClippingFinder& rails,
                           const ClippingFinder::Found& found, const std::vector<bool>& rest,
                           std::span<const ImuSample> samples,

@@ -12,7 +12,7 @@ namespace tumble {
 
 namespace {
 
-// The accelerometer's readings of other instants: of the sample `shift` after each, at the ends of the last there is.
+// Shifts the accelerometer's readings by `shift` samples; at the ends, the last available reading is repeated.
 void shift_force(std::span<const ImuSample> samples, std::span<const Clipping> clippings, std::ptrdiff_t shift,
                  std::span<const double> accel_age_s, std::span<RateObservation> observations) {
   const auto last = static_cast<std::ptrdiff_t>(samples.size()) - 1;
@@ -25,14 +25,14 @@ void shift_force(std::span<const ImuSample> samples, std::span<const Clipping> c
   }
 }
 
-// A sheet that is believed.
+// The sizes stated in the data sheet, without uncalibrated ones.
 SensorErrorSizes as_stated(SensorErrorSizes sizes) {
   sizes.gyro_unknown = sizes.accel_unknown = sizes.felt_unknown_s_m = sizes.delay_unknown_s = 0.0;
   return sizes;
 }
 
-// Whether a device of which `given` is stated may have such errors: what a fit has beyond that, the model of flight has
-// missed.
+// Returns whether a device with the stated errors `given` may have the errors `found`. Larger errors are due to the
+// flight model.
 bool plausible(const SensorErrors& found, const SensorErrors& given, const SensorErrorSizes& sizes) {
   constexpr double kDeviations = 6.0;
   const SensorErrors errors = SensorErrors::from(found.vector() - given.vector());
@@ -42,12 +42,11 @@ bool plausible(const SensorErrors& found, const SensorErrors& given, const Senso
          std::abs(errors.accel_blur_s2) <= delay_s * delay_s && errors.felt_s_m.cwiseAbs().maxCoeff() <= felt_s_m;
 }
 
-// A guess that tells nothing leaves what was stated.
 bool tells(const TriadDelay& guess) {
   return guess.sigma_s > 0.0 || guess.delay_s != 0.0;
 }
 
-// Whether errors are so far from those that readings have been corrected for that the descent must be made again.
+// Returns whether errors differ enough from those already corrected for another descent.
 bool far_apart(const SensorErrors& a, const SensorErrors& b) {
   constexpr double kMatrix = 1e-3, kFelt_s_m = 3e-5, kDelay_s = 3e-4, kBlur_s2 = 3e-6;
   return (a.gyro - b.gyro).cwiseAbs().maxCoeff() > kMatrix || (a.accel - b.accel).cwiseAbs().maxCoeff() > kMatrix ||
@@ -56,10 +55,10 @@ bool far_apart(const SensorErrors& a, const SensorErrors& b) {
          std::abs(a.accel_blur_s2 - b.accel_blur_s2) > kBlur_s2;
 }
 
-// What one device in a thousand moves three constants by, in deviations of all that may move them.
+// Mahalanobis distance of three constants that one device in a thousand exceeds, with all causes included.
 constexpr double kMahalanobisOfDevice = 2.33;
 
-// The rig as it was known; the gyro's elements, which flight cannot be taken for, stay free.
+// Fixes the calibration at its prior, except for the gyro's elements, which contact does not affect.
 RateModelParams held(const RateModelParams& params, const RateModel& model) {
   constexpr int kFirst = RigConstants::kElements, kCount = RigConstants::kSize - kFirst;
   RateModelParams out = params;
@@ -69,7 +68,7 @@ RateModelParams held(const RateModelParams& params, const RateModel& model) {
   return out;
 }
 
-// How far the constants moved, rate_smoother.md (R4), where the device's errors may have moved them too.
+// Distance of the constants from their prior, rate_smoother.md (R32), including changes due to sensor errors.
 double mahalanobis_of(const RateModelParams& known, const RateModel& model, double period_s,
                       std::span<const RateObservation> observations, const RateSolution& solution) {
   RateIteration again(observations);
@@ -82,7 +81,8 @@ double mahalanobis_of(const RateModelParams& known, const RateModel& model, doub
   return RateModel(wider, period_s).calibration_mahalanobis(solution.rig);
 }
 
-// The descent, with the rig held to what was known of it where it takes contact for flight of another rig.
+// Runs the descent, and repeats it with a fixed calibration if contact was mistaken for flight with another
+// calibration.
 Status descend_held(const RateSmoother::Params& params, const RateModelParams& known, double period_s,
                     std::span<const RateObservation> observations, bool struck, RateFit& fit, RateReport& health) {
   fit.model = RateModel(known, period_s);
@@ -104,17 +104,17 @@ Status descend_held(const RateSmoother::Params& params, const RateModelParams& k
     return {Trouble::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
   }
   health.calibration_mahalanobis = mahalanobis;
-  // held is not known: what was open of the rig stays open in the rates
+  // fixed does not mean known: the rates keep the calibration's uncertainty
   constexpr int kOpen = RigConstants::kElements;
   fit.solution.rig_covariance.topLeftCorner<kOpen, kOpen>() =
       health.calibration.covariance.topLeftCorner<kOpen, kOpen>();
   return {};
 }
 
-// A guess of the delay this many of its deviations from what is assumed is where the descent starts.
+// A guessed delay further from the assumed one, in standard deviations, becomes the initial value.
 constexpr double kGuessFar = 2.0;
 
-// What strikes the body is not seen by the model of flight: evidence of its own, added to rate_smoother.md (R37).
+// Adds the evidence from impacts, which the flight model does not use, to rate_smoother.md (R38).
 void add_guess(const TriadDelay& guess, SensorErrorEvidence& evidence) {
   if (!(guess.sigma_s > 0.0)) return;
   const double information = 1.0 / (guess.sigma_s * guess.sigma_s);
@@ -122,13 +122,12 @@ void add_guess(const TriadDelay& guess, SensorErrorEvidence& evidence) {
   evidence.gradient[SensorErrors::kDelay] += information * (guess.delay_s - evidence.about.accel_delay_s);
 }
 
-// Odds of a device as its sheet says below which the readings speak plainly against it. Above, the mixture over sizes
-// has its doubt in it already.
+// Odds of a device that matches its data sheet below which the readings clearly contradict it. Above, the mixture over
+// sizes includes the uncertainty.
 constexpr double kPlainOdds = 0.05;
 
-// Whether a device is plainly not what its sheet says: a maker who leaves scale or sampling open leaves all open.
-// Naive Bayes over the two, each against what was held of it beforehand; `own_clocks`: the sampling is known to be
-// open.
+// Returns whether a device clearly contradicts its data sheet in scale or in sampling; then neither is reliable. Naive
+// Bayes over the two, each relative to its prior. `own_clocks`: the triads are known to be asynchronous.
 bool off_sheet(const SensorErrorFit& device, const SensorErrorSizes& sizes, bool own_clocks) {
   const SensorErrorFit before = fit_sensor_errors({}, sizes);
   const auto odds = [](double p) { return std::max(p, 1e-12) / std::max(1.0 - p, 1e-12); };
@@ -136,7 +135,7 @@ bool off_sheet(const SensorErrorFit& device, const SensorErrorSizes& sizes, bool
   return own_clocks || of_scale * odds(device.together) < kPlainOdds;
 }
 
-// The sizes of a device of which nothing is stated.
+// The sizes of a device without a data sheet.
 SensorErrorSizes unstated(SensorErrorSizes sizes) {
   sizes.gyro = std::max(sizes.gyro, sizes.gyro_unknown);
   sizes.accel = std::max(sizes.accel, sizes.accel_unknown);
@@ -145,13 +144,13 @@ SensorErrorSizes unstated(SensorErrorSizes sizes) {
   return sizes;
 }
 
-// What an earlier run told, about what is given of the device now.
+// Expresses the estimate of an earlier run relative to the errors stated now.
 SensorErrorEvidence learnt_about(const SensorErrors& given, KnownSensorErrors learnt, const SensorErrorSizes& sizes) {
   learnt.errors = SensorErrors::from(learnt.errors.vector() - given.vector());
   return learnt_evidence(learnt, sizes);
 }
 
-// The fit where errors are assumed about those that were given, `learnt` being about them too.
+// Fits errors relative to the stated ones, as is `learnt`.
 SensorErrorFit fit_about(const SensorErrors& given, SensorErrorEvidence evidence, const SensorErrorSizes& sizes,
                          const SensorErrorEvidence& learnt) {
   evidence.about = SensorErrors::from(evidence.about.vector() - given.vector());
@@ -160,22 +159,21 @@ SensorErrorFit fit_about(const SensorErrors& given, SensorErrorEvidence evidence
   return out;
 }
 
-// What stays the same from round to round of one recording.
 struct Rounds {
   const RateSmoother::Params& params;
-  const RateModelParams& known;  ///< its errors: what is given of the device
+  const RateModelParams& known;  ///< its errors: those stated for the device
   std::span<const ImuSample> samples;
   std::span<const Clipping> clippings;
   double period_s = 0.0;
-  bool estimated = false;          ///< the device's errors are
-  bool own_clocks = false;         ///< of triads whose readings repeat: not sampled as alike as a sheet may have it
-  TriadDelay guess = {};           ///< tells nothing where the sheet states the delay
-  std::vector<double> age_s = {};  ///< of the accelerometer's readings as they stand in the log
-  SensorErrorSizes sizes = {};     ///< those stated, but for what own clocks leave open
+  bool estimated = false;
+  bool own_clocks = false;         ///< readings of a triad repeat, so the triads are asynchronous
+  TriadDelay guess = {};           ///< empty if the data sheet states the delay
+  std::vector<double> age_s = {};  ///< of the accelerometer's readings in the log
+  SensorErrorSizes sizes = {};     ///< those stated, except for the sampling of asynchronous triads
 
   const SensorErrorSizes& stated() const { return known.expert.error_sizes; }
   bool delay_open() const { return estimated && stated().delay_unknown_s > stated().delay_s; }
-  /// A body that is struck and flies is no hand's: its rig may be moved by what the device makes of the motion.
+  /// A body with impacts and flight is not hand-held; sensor errors may then change its calibration.
   bool struck() const { return guess.sigma_s > 0.0; }
 };
 
@@ -194,7 +192,8 @@ Rounds rounds_of(const RateSmoother::Params& params, const RateModelParams& know
   return out;
 }
 
-// Where the descents start: the errors assumed and, for where the first has to hold the rig, the other of two delays.
+// Initial values of the descents: the assumed errors, and the other of two delays if the first requires a fixed
+// calibration.
 struct Start {
   SensorErrors errors;
   double other_delay_s = 0.0;
@@ -210,7 +209,6 @@ Start start_from(const SensorErrors& assumed, const Rounds& rounds) {
   return out;
 }
 
-// The descent with readings corrected for `errors`.
 Status descend_corrected(const Rounds& rounds, const SensorErrors& errors, std::span<RateObservation> observations,
                          RateFit& fit, RateReport& health) {
   const double shift = std::round(errors.accel_delay_s / rounds.period_s);
@@ -221,12 +219,12 @@ Status descend_corrected(const Rounds& rounds, const SensorErrors& errors, std::
   return descend_held(rounds.params, corrected, rounds.period_s, observations, rounds.struck(), fit, health);
 }
 
-// What the descent tells of the errors, about those it was corrected for: fit.moved.
+// Computes the evidence about the errors, relative to those that were corrected: fit.moved.
 Status take_evidence(const Rounds& rounds, const SensorErrors& errors, RateFit& fit, const RateReport& health) {
   const RateSolution& solution = fit.solution;
   fit.moved = solution.iteration.moved_by_errors(fit.model, solution.estimates, solution.rig);
   if (rounds.estimated) {
-    // where the descent has not come to its end, what is left of the gradient must not pass for errors
+    // without convergence, the remaining gradient must not count as evidence of errors
     RateIteration again = solution.iteration;
     if (!again.factorise(fit.model, solution.estimates, solution.rig)) {
       return {Trouble::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
@@ -238,15 +236,14 @@ Status take_evidence(const Rounds& rounds, const SensorErrors& errors, RateFit& 
   return {};
 }
 
-// What the rounds have come to.
 struct Told {
-  SensorErrors errors;  ///< that the last descent was corrected for
+  SensorErrors errors;  ///< corrected in the last descent
   SensorErrorEvidence learnt;
   SensorErrorFit found;
-  bool believed = true;  ///< a device may have such errors
+  bool believed = true;  ///< plausible for a device
 };
 
-// Descent after descent until the errors found are those corrected for.
+// Repeats the descent until the estimated errors equal the corrected ones.
 Status descend_rounds(const Rounds& rounds, std::span<RateObservation> observations, RateFit& fit, RateReport& health,
                       Told& told) {
   const SensorErrors& given = rounds.known.errors;
@@ -282,8 +279,8 @@ Status descend_rounds(const Rounds& rounds, std::span<RateObservation> observati
   }
 }
 
-// Of a device that is plainly not what its sheet says all is left open, in the covariance alone: what readings are
-// corrected for stays what they speak for plainly. The sizes that hold of it then.
+// For a device that clearly contradicts its data sheet, enlarges the covariance to that of an uncalibrated device. The
+// corrections remain those for which the evidence is clear. Returns the sizes in use.
 SensorErrorSizes leave_open(const Rounds& rounds, const RateFit& fit, Told& told, RateReport& health) {
   const bool open = rounds.delay_open() && (off_sheet(told.found, rounds.stated(), rounds.own_clocks) ||
                                             health.calibration_mahalanobis > rounds.params.calibration_mahalanobis_max);
@@ -297,7 +294,7 @@ SensorErrorSizes leave_open(const Rounds& rounds, const RateFit& fit, Told& told
   return sizes;
 }
 
-// The fit as it would be with readings corrected by `step` more, to first order.
+// Changes the fit to first order, as for readings corrected by `step` more.
 void move_by(const SensorErrors::Vector& step, RateFit& fit) {
   for (std::size_t k = 0; k < fit.solution.estimates.size(); ++k) {
     const Eigen::Matrix<double, 6, 1> moved = fit.model.unscaled(fit.moved.of_sample[k] * step);
@@ -320,7 +317,8 @@ Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& kno
   const SensorErrorSizes sizes = leave_open(rounds, fit, told, health);
   const SensorErrorSizes stated = as_stated(rounds.stated());
   if (health.calibration_at_prior || !told.believed || !rounds.estimated) {
-    // what a run without flight tells of the device is nothing, beyond what devices have it is wrong: all is left open
+    // without flight, the run contains no information about the device beyond the prior, and all errors remain
+    // uncertain
     told.found = fit_sensor_errors({}, rounds.estimated ? sizes : stated);
     told.found.known.errors = told.errors;
   } else {
@@ -329,7 +327,7 @@ Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& kno
   health.sensor_errors = told.found.known;
   if (health.calibration_at_prior) return {};
   health.calibration.constants = fit.solution.rig;
-  // the device's errors stay with the device: the next run meets them as this one did, and counts them anew
+  // sensor errors remain part of the device: the next run has the same errors and includes them again
   const SensorErrors::Matrix of_device = fit_sensor_errors({}, stated).known.covariance;
   health.calibration.covariance += fit.moved.of_rig * of_device * fit.moved.of_rig.transpose();
   return {};

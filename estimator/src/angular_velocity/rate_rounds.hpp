@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The descents of RateSmoother from round to round of what they tell of the device's errors.
+// Repeated descents of RateSmoother that estimate sensor errors.
 #pragma once
 
 #include <span>
@@ -8,7 +8,6 @@
 
 namespace tumble {
 
-/// A descent with what it was made with.
 struct RateFit {
   RateFit(std::span<const RateObservation> observations, const RateModel& first)
       : solution{{}, {}, {}, RateIteration(observations)}, model(first) {}
@@ -18,10 +17,10 @@ struct RateFit {
   RateIteration::Moved moved;
 };
 
-/// Descents with readings corrected for the device's errors as the one before has found them, and a last, linear
-/// correction. The rig is held to what was known of it where a descent takes contact for flight of another rig: where
-/// its constants move further than they or the device's errors allow. The first is made again from the other of two
-/// delays, the one assumed and the one guessed, before that is believed.
+/// Repeats the descent with readings corrected for the sensor errors found by the previous one, followed by a linear
+/// correction. If a descent mistakes contact for flight with another calibration, the calibration is fixed at its
+/// prior. The criterion is that its constants move further than their uncertainty or sensor errors allow. Before that,
+/// the first descent is repeated with the other delay (assumed or guessed).
 Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& known, std::span<const ImuSample> samples,
                   std::span<const Clipping> clippings, std::span<RateObservation> observations, RateFit& fit,
                   RateReport& health);

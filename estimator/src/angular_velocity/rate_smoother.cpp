@@ -34,7 +34,7 @@ RateSmoother::RateSmoother(const Params& params)
       rests_(params.expert.rests) {
   require_fields(params);
   if (params.learnt_errors) require_known(*params.learnt_errors);
-  (void)RateModel(params.model, 0.01);  // throws on bad parameters
+  (void)RateModel(params.model, 0.01);  // throws for invalid parameters
 }
 
 Status RateSmoother::estimate(std::span<const ImuSample> samples,

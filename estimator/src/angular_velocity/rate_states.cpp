@@ -14,10 +14,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Deviations within which a delay that both triads share lies: three in a hundred normal ones lie beyond.
+// Maximum shared delay in standard deviations; 3 % of normal values are beyond.
 constexpr double kSharedReach = 2.0;
 
-// What a gyro that is slower than the log says of each sample's own time, where it reads all axes.
+// Rates of a slow gyro at the time of each sample, where it measures all axes.
 std::vector<std::optional<HeldRate>> read_in_time(std::span<const ImuSample> samples, const RateReadings& readings) {
   std::vector<std::uint8_t> hidden(samples.size());
   for (std::size_t k = 0; k < hidden.size(); ++k) {
@@ -27,7 +27,7 @@ std::vector<std::optional<HeldRate>> read_in_time(std::span<const ImuSample> sam
   return rates_between_readings(samples, hidden, readings.gyro_held);
 }
 
-// What remains open of the device's errors, in a rate, and no more than any rate: rate_smoother.md (R41).
+// Contribution of the sensor errors' uncertainty to a rate, limited to the largest rate: rate_smoother.md (R44).
 Eigen::Matrix3d open_of_errors(const arrow::ErrorMatrix& moved, const SensorErrors::Matrix& covariance,
                                double rate_max_rad_s) {
   const Eigen::Matrix<double, 3, SensorErrors::kSize> rates = moved.topRows<3>(), spread = rates * covariance;
@@ -36,8 +36,8 @@ Eigen::Matrix3d open_of_errors(const arrow::ErrorMatrix& moved, const SensorErro
   return std::min(1.0, most / std::max(out.trace(), 1e-300)) * out;
 }
 
-// How fast the rate may change between a sample and the next, beyond the angular acceleration: by free readings that is
-// told, else force of contact bounds it.
+// Maximum change of the rate between two samples in addition to the angular acceleration: from free readings, otherwise
+// bounded by the contact force.
 double change_rad_s2(const RateModelParams& params, std::span<const RateObservation> observations,
                      std::span<const RateEstimate> estimates, std::size_t k) {
   const RateObservation &from = observations[k], &to = observations[k + 1];
@@ -49,8 +49,8 @@ double change_rad_s2(const RateModelParams& params, std::span<const RateObservat
   return (estimates[k + 1].knot.rate_rad_s - estimates[k].knot.rate_rad_s).norm() / dt_s;
 }
 
-// What a time that both triads may share makes of a rate: the most that it changes by within reach of it, where a
-// stroke of the next sample's window may belong to this one.
+// Effect of a delay common to both triads on a rate: its largest change within the delay. Reason: an impact in the next
+// sample's window may belong to this sample.
 Eigen::Matrix3d of_shared_delay(double variance_s2, const RateModelParams& params,
                                 std::span<const RateObservation> observations, std::span<const RateEstimate> estimates,
                                 std::size_t k) {
@@ -66,8 +66,8 @@ Eigen::Matrix3d of_shared_delay(double variance_s2, const RateModelParams& param
   return variance_s2 * (alpha * alpha.transpose() + change * change * Eigen::Matrix3d::Identity());
 }
 
-// The rate some time after a sample, cubic between the knots about that instant, and its covariance, which between two
-// knots is at most the mean of theirs.
+// The rate some time after a sample, by a cubic between the surrounding knots, with its covariance. The covariance is
+// at most the mean of those at the knots.
 RateState state_later(std::span<const RateObservation> observations, std::span<const RateEstimate> estimates,
                       std::span<const Eigen::Matrix3d> covariances, std::size_t k, double late_s) {
   RateState out;
@@ -122,7 +122,7 @@ std::vector<RateState> rate_states(const RateSmoother::Params& params, std::span
   const SensorErrors& errors = health.sensor_errors.errors;
   const double gyro_late_s = std::max(0.0, -errors.accel_delay_s);
   const std::vector<Eigen::Matrix3d> covariances = rate_covariances(params, readings, fit, health);
-  // upright ones show to the bit
+  // equal readings identify clipped output exactly
   const std::vector<std::uint8_t> near = may_meet_rails(samples, health.rails_upright ? RailPlanes{} : readings.planes);
   const std::vector<std::optional<HeldRate>> own = read_in_time(samples, readings);
   std::vector<RateState> states(samples.size());
@@ -132,7 +132,7 @@ std::vector<RateState> rate_states(const RateSmoother::Params& params, std::span
     const RateEstimate& estimate = solution.estimates[k];
     RateState& state = states[k];
     state = state_later(observations, solution.estimates, covariances, k, gyro_late_s);
-    // a motion that flight tells is smoother than readings; of any other they say more than white jerk between them
+    // flight is smoother than readings; in other motion, readings are better than white jerk between them
     const bool by_readings = estimate.flight_weight < 0.5 && !o.at_rest && gyro_late_s == 0.0;
     if (by_readings && !own.empty() && own[k]) {
       const Vector3d felt = errors.felt_s_m * samples[k].specific_force_m_s2;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What RateSmoother says of each sample once its descents have ended.
+// Results of RateSmoother for each sample.
 #pragma once
 
 #include <span>
@@ -10,10 +10,11 @@
 
 namespace tumble {
 
-/// Rates and covariances at the samples: of the fit, with what remains open of the device's errors, of the rig and of a
-/// delay that both triads share (rate_smoother.md); at the gyro's own time; by readings where a slower gyro says more
-/// than white jerk between them. Counts in `health` what was recovered, bounded, void and in flight. `health` holds
-/// what fit_rounds() tells already. O(N), times the samples within a shared delay where there is one.
+/// Computes rates and covariances at the samples. The covariances include the uncertainty of sensor errors,
+/// calibration, and a delay common to both triads (rate_smoother.md). Rates refer to the gyro's time. For a slow gyro,
+/// interpolated readings are used where they are better than white jerk. Sets the numbers of recovered, bounded,
+/// unusable and flight samples in `health`, which already contains the results of fit_rounds(). O(N), times the number
+/// of samples within a shared delay.
 std::vector<RateState> rate_states(const RateSmoother::Params& params, std::span<const ImuSample> samples,
                                    const RateReadings& readings, const RateFit& fit, RateReport& health);
 

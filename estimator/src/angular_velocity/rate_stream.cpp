@@ -28,7 +28,6 @@ double seconds_between(const RateStream::Knot& from, const RateStream::Knot& to)
   return seconds(to.observation.sample.time_ns - from.observation.sample.time_ns);
 }
 
-// Beyond the reading on every clipped axis.
 void hold_to_bounds(const RateObservation& o, Vector3d& rate) {
   for (int j = 0; j < 3; ++j) {
     if ((o.unseen() & o.clipping.gyro & 1u << j) == 0) continue;
@@ -37,7 +36,7 @@ void hold_to_bounds(const RateObservation& o, Vector3d& rate) {
   }
 }
 
-// The prior at another point than the one about which it stands: rate_stream.md (R91).
+// Adds the prior at another point than its linearisation point: rate_stream.md (R91).
 void add_prior(const RateStream::State& state, const RateModel& model, const RateKnot& knot, arrow::Block& block,
                arrow::Corner& corner) {
   Eigen::Matrix<double, 6, 1> moved;
@@ -123,7 +122,7 @@ Status RateStream::push(const ImuSample& sample, std::span<const AuxiliaryReadin
   return {};
 }
 
-// Before a step: makes room for one more sample. All that leaves is taken from the window's front at once.
+// Makes room for one more sample before a step, by removing all leaving samples from the window at once.
 void RateStream::forget_oldest(State& state) const {
   state.waiting = 0;
   std::size_t count = 0;
@@ -134,7 +133,7 @@ void RateStream::forget_oldest(State& state) const {
   state.window.erase(state.window.begin(), state.window.begin() + static_cast<std::ptrdiff_t>(count));
 }
 
-// What can be said of the newest sample before the next step: its reading, or else what the body can have done since.
+// Provisional covariance of the newest sample: from its reading, or from the motion possible since the last one.
 void RateStream::predict_covariance(State& state) const {
   Knot& newest = state.window.back();
   const Knot& before = state.window[state.window.size() - std::min<std::size_t>(2, state.window.size())];
@@ -145,18 +144,19 @@ void RateStream::predict_covariance(State& state) const {
   newest.covariance_rad2_s2 += sigma.cwiseAbs2().asDiagonal();
 }
 
-// rate_stream.md (R90); the weight for good by rate_smoother.md (R22) to (R25), short flights by rate_stream.md (R92).
+// rate_stream.md (R90); the final weight by rate_smoother.md (R16) to (R19), short flights by rate_stream.md (R92).
 void RateStream::marginalise(std::size_t first, State& state) const {
   Knot& oldest = state.window[first];
   const Knot& next = state.window[first + 1];
   arrow::Block block, after;
   arrow::Corner corner;
   add_prior(state, model_, oldest.estimate.knot, block, corner);
-  // what leaves can never be weighed again: it must be flight of the rig as it is known now, not of one as it might be
+  // a sample that leaves cannot be weighed again, so it must be flight under the current calibration, not under a
+  // possible one
   const double after_it = model_.jump(oldest.estimate.knot, next.estimate.knot, seconds_between(oldest, next));
   const double jump = std::min(jump_before(oldest, state), after_it);
   model_.weigh(oldest.observation, state.rig, RigConstants::Matrix::Zero(), 1.0, jump, oldest.estimate);
-  // 20 constants explain any short contact as a flight: what they say is believed after some more of it
+  // 20 constants can explain any short contact as flight, so flights update the calibration only after more samples
   std::size_t run = state.flight_run;
   const auto needed = static_cast<std::size_t>(params_.expert.flight_run_min);
   const auto flies = [](const Knot& knot) { return knot.estimate.flight_weight >= 0.5; };
@@ -176,7 +176,7 @@ void RateStream::marginalise(std::size_t first, State& state) const {
     state.prior_corner = corner;
     remember_errors(block, errors, state);
   } else {
-    // nothing can be said of what left: start from what was known of the rig
+    // the prior from the past is unusable: restart from the prior calibration
     forget_left(state);
     ++state.failures;
   }
@@ -185,13 +185,13 @@ void RateStream::marginalise(std::size_t first, State& state) const {
   state.prior_knot = next.estimate.knot;
   state.prior_rig = state.rig;
   if (model_.calibration_mahalanobis(state.rig) > params_.calibration_mahalanobis_max) {
-    // contact was taken for flight of another rig: drop what was learnt of the rig and of the motion with it
+    // contact was mistaken for flight with another calibration: reset calibration and motion
     forget_rig(state);
     ++state.rig_resets;
   }
 }
 
-// From the sample that left last to the oldest that is there.
+// Jump from the sample that left last to the oldest in the window.
 double RateStream::jump_before(const Knot& oldest, const State& state) const {
   if (!state.left) return std::numeric_limits<double>::max();
   return model_.jump(*state.left, oldest.estimate.knot, seconds(oldest.observation.sample.time_ns - state.left_ns));
@@ -212,7 +212,7 @@ void RateStream::append(const ImuSample& sample, std::span<const AuxiliaryReadin
   knot.repeats = held.repeats && !knot.observation.at_rest;
   if (!knot.observation.at_rest) knot.held = held;
   knot.estimate.knot.rate_rad_s = sample.angular_velocity_rad_s;
-  // until a step of the window says more
+  // until the first step
   knot.covariance_rad2_s2 = std::pow(params_.model.rate_max_rad_s, 2) * Eigen::Matrix3d::Identity();
   state.window.push_back(knot);
   state.window.back().approach_rad_s = approach(state.window);
@@ -227,8 +227,7 @@ void RateStream::append(const ImuSample& sample, std::span<const AuxiliaryReadin
   doubt_possible_rails(state);
 }
 
-// Clipped axes of a new sample start from the prediction or from the centripetal force, whichever explains flight
-// better.
+// Initialises clipped axes of a new sample by the prediction or by the centripetal force, whichever fits flight better.
 void RateStream::guess(Knot& knot, const Knot& previous, const State& state) const {
   const double dt_s = seconds_between(previous, knot);
   const RateKnot& before = previous.estimate.knot;
@@ -262,7 +261,7 @@ void RateStream::guess(Knot& knot, const Knot& previous, const State& state) con
   centripetal.estimate.knot.rate_rad_s = rate.cwiseMin(largest).cwiseMax(-largest);
   model_.weigh(knot.observation, state.rig, state.rig_covariance, 1.0, 0.0, knot.estimate);
   model_.weigh(knot.observation, state.rig, state.rig_covariance, 1.0, 0.0, centripetal.estimate);
-  // it turned as the sample before it did, which may have been pushed: flight of its own turns without torque
+  // the previous sample may be part of an impact, while flight rotates without torque
   model_.seek_flight(knot.observation, state.rig, centripetal.estimate);
   model_.weigh(knot.observation, state.rig, state.rig_covariance, 1.0, 0.0, centripetal.estimate);
   if (centripetal.estimate.flight_weight > knot.estimate.flight_weight) knot.estimate = centripetal.estimate;
@@ -290,7 +289,7 @@ void RateStream::weigh(State& state) const {
   }
 }
 
-// rate_smoother.md (R28) to (R34) over the window.
+// rate_smoother.md (R26) to (R35) over the window.
 bool RateStream::step(State& state) const {
   const std::size_t count = state.window.size();
   std::vector<arrow::Block>& blocks = state.work;
@@ -337,7 +336,7 @@ bool RateStream::step(State& state) const {
   return true;
 }
 
-// rate_stream.md (R93)
+// rate_stream.md (R97)
 RigConstants::Matrix RateStream::inflated(const State& state) const {
   if (params_.model.calibration) return state.rig_covariance;
   const double samples =
@@ -345,7 +344,7 @@ RigConstants::Matrix RateStream::inflated(const State& state) const {
   const double largest = std::sqrt(1.0 + params_.expert.inflation.covariance / (1.0 + samples));
   RigConstants::Vector factor;
   for (int i = 0; i < RigConstants::kSize; ++i) {
-    // nothing is known less than beforehand; the gyro's bias is told by rest, not by flight
+    // the prior is the upper limit; the gyro's bias comes from rest, not from flight
     const bool of_gyro = i >= 3 && i < 6;
     const double before = std::sqrt(model_.prior_covariance()(i, i) / state.rig_covariance(i, i));
     factor[i] = of_gyro ? 1.0 : std::clamp(before, 1.0, largest);

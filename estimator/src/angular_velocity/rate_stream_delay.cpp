@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How much later than the gyro the accelerometer speaks, as a RateStream finds it: from strokes, then from what the
-// readings tell of the device. Each force stands beside the rate of its instant.
+// Estimation of the accelerometer's delay in a RateStream: first from impacts, then from the evidence about sensor
+// errors. Each force is assigned to the rate at its own time.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,18 +12,18 @@ namespace tumble {
 namespace {
 
 constexpr int kBeside = StrokeSums::kMostSamples;
-// Intervals for which strokes are remembered.
+// Time constant of the impact statistics, in intervals.
 constexpr double kMemory = 2000.0;
-// Time between two questions, and what is worth moving the readings for.
+// Time between two evaluations, and minimum change of the delay that is applied.
 constexpr TimeNs kAskEvery_ns = 50'000'000;
 constexpr double kMoved_s = 3e-4;
-// Odds of a device whose triads are sampled as alike as its sheet has it, below which strokes speak plainly; a guess so
-// many deviations from the delay in use takes its place.
+// Odds of triads as synchronous as the data sheet states, below which impacts clearly contradict it; and distance in
+// standard deviations above which a guess replaces the current delay.
 constexpr double kPlainOdds = 0.05, kGuessFar = 3.0;
-// Intervals, and what the correlation must gain over that at the delay that is given: the first strokes of a tumble
-// correlate by chance.
+// Minimum number of intervals, and minimum gain of the correlation over that at the stated delay: the first impacts of
+// a tumble correlate by chance.
 constexpr double kIntervalsMin = 150.0, kGainMin = 0.06;
-// No delay that is further off than so many deviations of a device that nobody has calibrated.
+// Maximum delay in standard deviations of an uncalibrated device.
 constexpr double kReach = 3.0;
 
 double seconds_from(const RateStream::Knot& a, const RateStream::Knot& b) {
@@ -34,7 +34,7 @@ bool repeats_readings(const RateStream::State& state) {
   return state.holds.of(Triad::gyro).held() || state.holds.of(Triad::accelerometer).held();
 }
 
-// The integral of the force's norm about a sample of the window: linear between readings, level beyond them.
+// Integral of the force's norm around a sample of the window: linear between readings, constant beyond them.
 class ForceAbout {
  public:
   ForceAbout(const std::vector<RateStream::Knot>& window, std::size_t middle, std::size_t first) {
@@ -66,13 +66,12 @@ std::ptrdiff_t RateStream::force_shift(const State& state) const {
   return std::lround(state.device.front().delay.in_use_s / params_.period_s);
 }
 
-// The force of the instant of sample k, or of the nearest that there is, and how much later than it the force was read.
-// rate_stream.md (R108)
+// Sets the force at the time of sample k, or the closest available one, and its remaining delay. rate_stream.md (R105)
 void RateStream::pair_force(std::size_t k, State& state) const {
   Knot& knot = state.window[k];
   const auto last = static_cast<std::ptrdiff_t>(state.window.size()) - 1;
   const std::ptrdiff_t own = static_cast<std::ptrdiff_t>(k), wanted = own + force_shift(state);
-  const std::ptrdiff_t at = wanted < 0 ? own : std::min(wanted, last);  // what has left the window is not there
+  const std::ptrdiff_t at = wanted < 0 ? own : std::min(wanted, last);  // only forces in the window are available
   const Knot& source = state.window[static_cast<std::size_t>(at)];
   RateObservation& o = knot.observation;
   o.sample.specific_force_m_s2 = source.read.force_m_s2;
@@ -82,7 +81,7 @@ void RateStream::pair_force(std::size_t k, State& state) const {
   o.accel_age_s = (state.device.front().delay.in_use_s - given_delay_s_) - seconds_from(knot, source);
 }
 
-// After a new sample: those whose force has come, or is nearer than before.
+// After a new sample: updates samples whose force has arrived, or is closer than before.
 std::size_t RateStream::pair_newest(State& state) const {
   const std::size_t newest = state.window.size() - 1;
   if (state.device.front().delay.in_use_s == given_delay_s_ && force_shift(state) == 0) return newest;
@@ -92,8 +91,8 @@ std::size_t RateStream::pair_newest(State& state) const {
   return first;
 }
 
-// Takes the interval between two readings that stand as far back in the window as a delay may reach: by then it is
-// known whether they clip. rate_stream.md (R107)
+// Adds the interval between two readings as far back in the window as the maximum delay, when their clipping is known.
+// rate_stream.md (R104)
 void RateStream::count_strokes(State& state) const {
   if (!delay_open_ || state.window.size() < ForceAbout::kReadings) return;
   const std::size_t first = state.window.size() - ForceAbout::kReadings, after = first + kBeside + 1;
@@ -114,14 +113,14 @@ void RateStream::count_strokes(State& state) const {
   strokes.add((end - begin).norm() / span_s, mean);
 }
 
-// What strokes say; nothing of a log that says readings again, whose repetitions are taken as readings.
+// Delay from impacts; empty for a log with repeated readings, since repetitions would count as readings.
 TriadDelay RateStream::guessed_delay(const State& state) const {
   const StrokeSums& strokes = state.device.front().delay.strokes;
   if (repeats_readings(state) || strokes.intervals < kIntervalsMin) return {};
   return strokes.told(params_.period_s, params_.period_s);
 }
 
-// Before a step: whether readings are to be taken at other instants. rate_stream.md (R109)
+// Before a step: decides whether to change the delay. rate_stream.md (R106)
 void RateStream::seek_delay(State& state) const {
   RateStreamDelay& delay = state.device.front().delay;
   const TimeNs now_ns = state.window.back().observation.sample.time_ns;
@@ -144,7 +143,7 @@ void RateStream::seek_delay(State& state) const {
   if (delay.found && std::abs(delay.told_s - delay.in_use_s) > kMoved_s) refine_delay(state);
 }
 
-// Another delay: what was learnt with the one before is of another rig, and the window is begun anew.
+// Applies another delay: the calibration estimated with the previous one is invalid, and the window restarts.
 void RateStream::take_delay(double delay_s, bool found, State& state) const {
   RateStreamDelay& delay = state.device.front().delay;
   delay.in_use_s = delay.told_s = delay_s;
@@ -161,7 +160,7 @@ void RateStream::take_delay(double delay_s, bool found, State& state) const {
   }
 }
 
-// A little of it: what left the window moves with it to first order. rate_stream.md (R110)
+// Applies a small change of the delay; the prior from the past changes to first order. rate_stream.md (R107)
 void RateStream::refine_delay(State& state) const {
   RateStreamDevice& device = state.device.front();
   const std::ptrdiff_t before = force_shift(state);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a RateStream makes of errors of the device that it does not estimate: it gathers what readings tell of them, and
-// counts what is open of them in its covariances.
+// Sensor errors in a RateStream, as considered parameters: collects evidence about them and adds their uncertainty to
+// the covariances.
 #include <algorithm>
 #include <cmath>
 
@@ -12,10 +12,10 @@ namespace {
 
 using Eigen::Matrix3d;
 
-// Time between two questions of what is open: systems of 29 unknowns are dearer than a step.
+// Time between two evaluations: systems of 29 unknowns cost more than a step.
 constexpr TimeNs kAskEvery_ns = 50'000'000;
 
-// rate_smoother.md (R41): no more than any rate
+// rate_smoother.md (R44), limited to the largest rate
 Matrix3d considered(const arrow::ErrorMatrix& moved, const SensorErrors::Matrix& covariance, double rate_max_rad_s) {
   const Eigen::Matrix<double, 3, SensorErrors::kSize> rates = moved.topRows<3>(),
                                                       spread = rates.lazyProduct(covariance);
@@ -29,7 +29,7 @@ bool moves(const RateStream::Knot& knot) {
 
 }  // namespace
 
-// rate_stream.md (R101): the Schur complement of what leaves, errors being the last of the unknowns
+// rate_stream.md (R100): the Schur complement of a leaving sample, with errors as the last unknowns
 void RateStream::remember_errors(const arrow::Block& block, arrow::ErrorMatrix& errors, State& state) const {
   RateStreamDevice& device = state.device.front();
   device.prior.setZero();
@@ -38,7 +38,7 @@ void RateStream::remember_errors(const arrow::Block& block, arrow::ErrorMatrix& 
   device.evidence.gradient.noalias() += errors.transpose().lazyProduct(block.gradient);
 }
 
-// All that is known of what left but the rig as it is.
+// Deletes all information of samples that left, except for the calibration.
 void RateStream::forget_left(State& state) const {
   state.prior = {};
   state.prior_corner = {};
@@ -50,7 +50,7 @@ void RateStream::forget_left(State& state) const {
   device.evidence.gradient.setZero();
 }
 
-// Back to what was known of the rig beforehand, and nothing of the motion before the window.
+// Resets the calibration to its prior, and deletes information about the motion before the window.
 void RateStream::forget_rig(State& state) const {
   state.rig = state.prior_rig = model_.prior_constants();
   state.rig_covariance = model_.prior_covariance();
@@ -66,7 +66,7 @@ KnownSensorErrors RateStream::sensor_errors(const State& state) const {
   return out;
 }
 
-// rate_stream.md (R102) over the window, whose blocks are eliminated; before its estimates and the rig are moved.
+// rate_stream.md (R101) over the window with eliminated blocks, before its estimates and the calibration change.
 void RateStream::consider_errors(const arrow::BorderVector& rig_step, State& state) const {
   RateStreamDevice& device = state.device.front();
   const std::size_t count = state.window.size();
@@ -101,7 +101,7 @@ void RateStream::consider_errors(const arrow::BorderVector& rig_step, State& sta
   RateStreamDelay& delay = device.delay;
   if (delay.found) {
     if (const TriadDelay& guess = delay.guess; guess.sigma_s > 0.0) {
-      // strokes are believed in full
+      // evidence from impacts has full weight
       const double information = 1.0 / (DeviceDoubt::kBelieved * guess.sigma_s * guess.sigma_s);
       told.information(SensorErrors::kDelay, SensorErrors::kDelay) += information;
       told.gradient[SensorErrors::kDelay] += information * (guess.delay_s - delay.in_use_s);
@@ -112,7 +112,7 @@ void RateStream::consider_errors(const arrow::BorderVector& rig_step, State& sta
   device_.ask(told, doubt, device.open, delay.found);
 }
 
-// What is open of the device's errors, and of a delay that both triads share, in the rate of a sample.
+// Uncertainty of a sample's rate due to sensor errors and a delay common to both triads.
 Matrix3d RateStream::of_device(std::size_t k, const State& state) const {
   const Knot& knot = state.window[k];
   if (!moves(knot)) return Matrix3d::Zero();

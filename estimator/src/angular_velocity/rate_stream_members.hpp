@@ -11,7 +11,7 @@
 
 #include "tumble/angular_velocity/rate_stream.hpp"
 
-/// Members of a RateStream's state and of what its Params hold beside Fields: state_visitor.hpp.
+/// Members of a RateStream's state, and members of its Params that are not Fields: state_visitor.hpp.
 namespace tumble {
 
 template <StateOf<RateStreamForce> Self, class Visitor>

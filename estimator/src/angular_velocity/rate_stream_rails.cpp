@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How the window of a RateStream is read by the rails, as they become known.
+// Classification of a RateStream's window by the detected saturation levels.
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -16,23 +16,24 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Deviations of a plane. So many readings within kBesideRail of the largest of an axis may be at one rail, tilted as
-// rails are. A round top of n readings is (n/(n - 1))^2 <= 2.25 times as high as what its readings show; one that is
-// cut off more than kKink times, and more than so many deviations of the noise.
+// kOpen: standard deviations by which the slopes of a plane may be wrong. kPossibleMin: minimum number of readings
+// within kBesideRail of an axis's largest that may be at one tilted level. kKink: a rounded maximum of n readings is at
+// most (n/(n - 1))^2 <= 2.25 times as high as its readings show. A motion that is cut off exceeds kKink times this
+// height and kPossibleNoise standard deviations of the noise.
 constexpr double kOpen = 3.0, kKink = 4.0, kPossibleNoise = 5.0;
 constexpr std::ptrdiff_t kPossibleMin = 3;
 
-// Elements' rails lie within this share of each other (3 % on the wand of RepoIMU).
+// Maximum difference between elements' levels, as a fraction (3 % on the wand of RepoIMU).
 constexpr double kApart = 0.05;
 
-// Whether the largest reading of an element may be its rail, as far as those of the others tell.
+// Returns whether the largest reading of an element may be its saturation level, compared with the other elements.
 bool may_be_rail(const RailPlanes& planes, double peak_rad_s) {
   return std::all_of(planes.element.begin(), planes.element.end(), [&](const auto& element) {
     return !element || peak_rad_s >= (1.0 - kApart) * element->distance_rad_s;
   });
 }
 
-// The sample that first says the reading before that of sample k; none where the window does not show it.
+// Returns the first sample with the reading before that of sample k; empty if it is not in the window.
 std::optional<std::size_t> reading_before(std::size_t k, const std::vector<RateStream::Knot>& window) {
   while (k > 0 && window[k].repeats) --k;
   if (k == 0) return std::nullopt;
@@ -41,7 +42,7 @@ std::optional<std::size_t> reading_before(std::size_t k, const std::vector<RateS
   return k;
 }
 
-// The sample that says the reading after that of sample k first; the window's size where there is none yet.
+// Returns the first sample with the reading after that of sample k; the window's size before it arrives.
 std::size_t reading_after(std::size_t k, const std::vector<RateStream::Knot>& window) {
   const std::size_t size = window.size();
   if (k >= size) return size;
@@ -50,12 +51,12 @@ std::size_t reading_after(std::size_t k, const std::vector<RateStream::Knot>& wi
   return k;
 }
 
-// Samples whose gyro reads the reading before and after that of a sample, null where there is none.
+// Samples with the gyro readings before and after that of a sample, or null.
 struct Beside {
   const ImuSample *before = nullptr, *after = nullptr;
 };
 
-// Those of sample k by what the gyro says: a reading that is said again has the same neighbours.
+// Neighbours of sample k by the gyro's readings: a repeated reading has the same neighbours.
 Beside readings_beside(std::size_t k, const RateStream::State& state) {
   const std::optional<std::size_t> before = reading_before(k, state.window);
   const std::size_t after = reading_after(k, state.window);
@@ -67,7 +68,6 @@ Beside readings_beside(std::size_t k, const RateStream::State& state) {
 
 }  // namespace
 
-// What upright rails say of the window now that more is known of them.
 void RateStream::classify_again(State& state) const {
   RailDetector::State& upright_rails = state.rails.known.upright_rails;
   for (RailDetector::Channel& channel : upright_rails.channels) channel.clipped = false;
@@ -82,8 +82,8 @@ void RateStream::classify_again(State& state) const {
   for (std::size_t k = 0; force_shift(state) != 0 && k < state.window.size(); ++k) pair_force(k, state);
 }
 
-// Reads samples of the window with the rails as they are known: from one that has changed on, with those that say the
-// reading before, which are judged by what lies beside them too. One that turns out to be clipped starts anew.
+// Classifies samples of the window again with the current levels. Starts with a changed sample and those with the
+// previous reading, whose classification depends on their neighbours. A newly clipped sample is initialised again.
 void RateStream::judge_from(std::size_t changed, State& state) const {
   const std::size_t first = reading_before(changed, state.window).value_or(0);
   const KnownRails& rails = state.rails.known;
@@ -121,8 +121,8 @@ void RateStream::judge_from(std::size_t changed, State& state) const {
   }
 }
 
-// Whether a reading may stand at a rail: at one that is hardly known yet, as far as its slopes are open, or, where none
-// was seen, at the largest reading so far, which is about the rail of the other elements. rate_stream.md (R94)
+// Returns whether a reading may be saturated: if a known level is within reach of its uncertain slopes. Without a known
+// level, the largest reading so far is used if it is close to the other elements' levels. rate_stream.md (R93)
 bool RateStream::may_clip(const ImuSample& sample, int axis, int sign, const State& state) const {
   const Vector3d& y = sample.angular_velocity_rad_s;
   const RailPlanes planes = state.rails.known.planes_in_use();
@@ -138,7 +138,7 @@ bool RateStream::may_clip(const ImuSample& sample, int axis, int sign, const Sta
   return high && std::abs(y[axis]) >= (1.0 - kBesideRail) * extreme;
 }
 
-// What a sample of the window may hide by itself, at a rail near those of the other elements.
+// Computes the possible deficit of a single sample of the window, near a level of the other elements.
 void RateStream::doubt_unseen(std::size_t k, State& state) const {
   RateObservation& now = state.window[k].observation;
   now.lone = 0;
@@ -147,8 +147,7 @@ void RateStream::doubt_unseen(std::size_t k, State& state) const {
   doubt_unseen_rails(state.rails.known.planes_in_use(), state.least, model_.gyro_sigma_rad_s(), before, now, after);
 }
 
-// Takes back the doubts in the window that are refuted by now: by a larger reading, or by a rail that is seen
-// elsewhere.
+// Clears suspicions in the window that are refuted by a larger reading, or by a level found elsewhere.
 void RateStream::forget_doubts(State& state) const {
   for (std::size_t k = 0; k < state.window.size(); ++k) {
     if (state.window[k].observation.may_hide() == 0) continue;
@@ -157,7 +156,7 @@ void RateStream::forget_doubts(State& state) const {
   }
 }
 
-// Doubts readings that may clip and that nothing says do: three and more in a row. Anew with each sample.
+// Marks runs of three or more unflagged readings that may be saturated. Repeated with each sample.
 void RateStream::doubt_possible_rails(State& state) const {
   const unsigned stood = state.window.front().observation.doubted;
   forget_doubts(state);
@@ -167,7 +166,7 @@ void RateStream::doubt_possible_rails(State& state) const {
       const int sign = state.window[k].observation.sample.angular_velocity_rad_s[j] < 0.0 ? -1 : 1;
       std::size_t end = k;
       while (end < state.window.size() && may_clip(state.window[end].observation.sample, j, sign, state)) ++end;
-      // what is left of a run that was doubted when it was whole
+      // the rest of a run that was suspect before part of it left
       const bool goes_on = k == 0 && end > k && (stood >> j & 1u) != 0;
       const auto readings = std::count_if(state.window.begin() + static_cast<std::ptrdiff_t>(k),
                                           state.window.begin() + static_cast<std::ptrdiff_t>(end),
@@ -178,8 +177,8 @@ void RateStream::doubt_possible_rails(State& state) const {
   }
 }
 
-// The larger of the slopes with which the motion came to a run and left it, per sample; of each the lesser of two
-// steps: an impact is one.
+// The larger of the slopes before and after a run, per sample. Each is the smaller of two steps, because an impact is a
+// single step.
 double RateStream::run_slope(int axis, std::size_t first, std::size_t last, const State& state) {
   const auto size = [&](std::size_t k) {
     return std::abs(state.window[k].observation.sample.angular_velocity_rad_s[axis]);
@@ -193,7 +192,7 @@ double RateStream::run_slope(int axis, std::size_t first, std::size_t last, cons
   return std::max({in, out, 0.0});
 }
 
-// One such run: a smooth motion that is cut off there would have gone on with the slopes at its ends. (R95)
+// Marks one such run: a smooth motion that is cut off would have continued with the slopes at its ends. (R94)
 void RateStream::doubt_run(int axis, std::size_t first, std::size_t last, State& state) const {
   const auto size = [&](std::size_t k) {
     return std::abs(state.window[k].observation.sample.angular_velocity_rad_s[axis]);
@@ -214,13 +213,13 @@ void RateStream::doubt_run(int axis, std::size_t first, std::size_t last, State&
     if (((observation.clipping.gyro | observation.clipping.missing_gyro) & bit) != 0) continue;
     observation.lone = static_cast<std::uint8_t>(observation.lone & ~bit);
     observation.doubted = static_cast<std::uint8_t>(observation.doubted | bit);
-    // all of the run are cut off together: what they say is one reading's word
+    // all readings of the run are cut off together, so they count as one reading
     observation.lost_sigma_rad_s[axis] = std::hypot(noise, std::sqrt(samples) * cut);
   }
 }
 
-// Of the newest sample. Two steps: an impact is one, and a spin that it leaves behind is no rail. Per sample of the
-// log.
+// Slope at the newest sample, per sample of the log. Two steps are used, because an impact is a single step and a spin
+// after it is not saturation.
 Vector3d RateStream::approach(const std::vector<Knot>& window) {
   const std::optional<std::size_t> one = reading_before(window.size() - 1, window);
   const std::optional<std::size_t> two = one ? reading_before(*one, window) : std::nullopt;
@@ -234,7 +233,7 @@ Vector3d RateStream::approach(const std::vector<Knot>& window) {
   return now.cwiseMin(before).cwiseMax(0.0);
 }
 
-// Of a run that goes on in the window after its first reading has left.
+// Stores the entry slope of a run that continues in the window after its first reading left.
 void RateStream::remember_entry(const Knot& leaving, const Knot& next, State& state) {
   const auto hidden = [](const Knot& knot, int j) {
     return ((knot.observation.clipping.gyro | knot.observation.read_in_part()) >> j & 1) != 0;
@@ -246,7 +245,7 @@ void RateStream::remember_entry(const Knot& leaving, const Knot& next, State& st
   }
 }
 
-// What the rails tell of the elements that clip at them: anew with each step, since they become known better.
+// Adds the planes' information about the clipped elements; repeated with each step, since it improves.
 void RateStream::add_rails(const State& state, arrow::Corner& corner) const {
   const KnownRails& rails = state.rails.known;
   const RailPlanes planes = rails.planes_in_use();

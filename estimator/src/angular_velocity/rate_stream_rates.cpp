@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a RateStream gives out of a sample of its window.
+// Reported rate of a sample in a RateStream's window.
 #include <algorithm>
 #include <cmath>
 
@@ -8,7 +8,7 @@
 
 namespace tumble {
 
-// Whether a sample is of a flight that is long enough to tell of the rig, as far as the window goes.
+// Returns whether a sample is part of a flight long enough to update the calibration, within the window.
 bool RateStream::in_long_flight(std::size_t at, const State& state) const {
   const std::vector<Knot>& window = state.window;
   const auto needed = static_cast<std::size_t>(params_.expert.flight_run_min);
@@ -20,8 +20,8 @@ bool RateStream::in_long_flight(std::size_t at, const State& state) const {
   return last - first + 1 + (first > 0 ? 0 : state.flight_run) >= needed;
 }
 
-// What a run of clipped readings hides of one of its samples by the slopes at its ends, which a flight ends too: there
-// the force tells the rate. rate_stream.md (R105)
+// Deficit of a sample in a run of clipped readings by the slopes at its ends. A flight also ends the run, since the
+// force then determines the rate. rate_stream.md (R99)
 double RateStream::hidden_by_slopes(std::size_t at, int axis, const State& state) const {
   const std::vector<Knot>& window = state.window;
   const auto hidden = [&](std::size_t k) {
@@ -34,14 +34,14 @@ double RateStream::hidden_by_slopes(std::size_t at, int axis, const State& state
   const bool from_flight = state.flight_run >= static_cast<std::size_t>(params_.expert.flight_run_min);
   const double before =
       static_cast<double>(at - first) + 0.5 + (first > 0 || from_flight ? 0.0 : state.entry_samples[axis]);
-  // a run that goes on lasts as long again at least
+  // a run that continues lasts at least as long again
   const double left = static_cast<double>(last - at) + 0.5,
                after = last + 1 < window.size() ? left : std::max(before, left);
   const double slope = run_slope(axis, first, last, state);
   return slope * before * after / (before + after);
 }
 
-// rate_stream.md (R96), (R105)
+// rate_stream.md (R98), (R99)
 Eigen::Matrix3d RateStream::doubted(std::size_t at, const State& state) const {
   const Knot& knot = state.window[at];
   Eigen::Matrix3d out = knot.covariance_rad2_s2;
@@ -60,8 +60,8 @@ Eigen::Matrix3d RateStream::doubted(std::size_t at, const State& state) const {
   return out;
 }
 
-// Whether the readings that a rate is made of may have met a rail in a part of their windows: its own, and of a log
-// that says readings again those beside.
+// Returns whether the readings of a rate may be partly saturated: its own, and for repeated readings the neighbouring
+// ones.
 bool RateStream::near_rails(std::size_t at, const State& state) const {
   const std::vector<Knot>& window = state.window;
   if (window[at].near != 0) return true;
@@ -73,9 +73,9 @@ bool RateStream::near_rails(std::size_t at, const State& state) const {
   return (window[next].near | after.clipping.gyro | after.may_hide()) != 0;
 }
 
-// Where the gyro is the late triad, the rate of a sample is what it says some time after: the cubic between the knots
-// there, as the batch has it. Beyond the newest the acceleration goes on, and what it adds is open. rate_stream.md
-// (R111)
+// If the gyro is the later triad, evaluates the rate some time after the sample by a cubic between knots, as
+// RateSmoother does. Beyond the newest knot, the acceleration is assumed constant, with uncertainty. rate_stream.md
+// (R108)
 void RateStream::move_later(std::size_t at, double late_s, const State& state, RateState& out) const {
   const auto reported = [&](std::size_t k) {
     const Knot& knot = state.window[k];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What holds of the states of a RateStream, and when two of them are the same.
+// Invariants and comparison of RateStream's states.
 #include <algorithm>
 #include <cmath>
 

@@ -18,7 +18,7 @@ std::uint8_t axes_beyond(const Eigen::Vector3d& rate, double bound) {
   return axes;
 }
 
-// |w|^2 from the specific force along the vector from the IMU to the axis; NaN where the IMU lies on the axis. saave.md
+// |w|^2 from the specific force along the vector from the IMU to the axis; NaN if the IMU is on the axis. saave.md
 // (S1), (S2)
 double squared_rate(const Eigen::Vector3d& lever_arm, const Eigen::Vector3d& axis, const Eigen::Vector3d& force) {
   const Eigen::Vector3d to_axis = lever_arm.dot(axis) * axis - lever_arm;
@@ -47,14 +47,14 @@ Status Saave::step(const ImuSample& sample, State& state, Recovered& out) const 
   out.clipped_axes = axes_beyond(reading, params_.saturation_point_rad_s);
   out.accepted = true;
   if (out.clipped_axes != 0) {
-    // as published: one axis at most, the first in x, y, z order; saave.md (S3)
+    // as published: at most one axis, the first in x, y, z order; saave.md (S3)
     int j = 0;
     while ((out.clipped_axes >> j & 1u) == 0) ++j;
     Eigen::Vector3d unclipped = reading;
     unclipped[j] = 0.0;
     const double others = unclipped.squaredNorm();
     const double squared = squared_rate(params_.lever_arm_m, state.axis, sample.specific_force_m_s2);
-    // written so that NaN (IMU on the axis) rejects
+    // a comparison that rejects NaN (IMU on the axis)
     out.accepted = squared > others;
     if (out.accepted) {
       const double magnitude = std::max(std::sqrt(squared - others), std::abs(reading[j]));

@@ -14,27 +14,26 @@ namespace {
 
 using sample_hold::kMoving_rad_s, sample_hold::kRepeatsMin, sample_hold::kMovingMin, sample_hold::kMovingMax;
 
-// Clocks tried: periods about the mean one (as a share of it), phases; the same again about the best.
+// Clocks tried: periods around the mean (as a fraction of it), and phases; repeated around the best.
 constexpr int kPeriods = 100, kPhases = 24, kFine = 10;
 constexpr double kPeriodShare = 0.03;
-// Share of its period for which an accelerometer filters: the middle of none and all.
+// Window of an accelerometer as a fraction of its period: the middle between none and all.
 constexpr double kForceWindow = 0.5;
 
-// A clock in units of the time from sample to sample.
 struct Clock {
   double period = 1.0, phase = 0.0;
   double reading(double sample) const { return std::floor((sample - phase) / period); }
   double age(double sample) const { return sample - phase - period * reading(sample); }
 };
 
-// Samples that a clock does not explain; counted no further than one beyond `most`.
+// Number of samples that a clock does not explain; counting stops at `most` + 1.
 std::size_t misses_of(const Clock& clock, std::span<const std::size_t> moving, const std::vector<bool>& repeats,
                       std::size_t most) {
   std::size_t misses = 0;
   double last_at = -1.0, last = 0.0;
   for (const std::size_t k : moving) {
     const auto at = static_cast<double>(k);
-    // in a motion that goes on it was asked for at the sample before
+    // in continuous motion, it was evaluated at the previous sample
     const double before = at - 1.0 == last_at ? last : clock.reading(at - 1.0);
     last = clock.reading(at);
     last_at = at;
@@ -43,17 +42,17 @@ std::size_t misses_of(const Clock& clock, std::span<const std::size_t> moving, c
   return misses;
 }
 
-// Phases, side by side on the circle, with which a period explains most: the longest run of them.
+// Longest run of adjacent phases on the circle with which a period explains most.
 struct Phases {
   std::size_t misses = 0;
   double first = 0.0;
   int count = 0;
 };
 
-// A period that leaves more than `most` unexplained is told by that alone: most of those tried leave far more.
+// Stops early for a period that leaves more than `most` samples unexplained, as most periods do.
 Phases best_phases(double period, std::span<const std::size_t> moving, const std::vector<bool>& repeats,
                    std::size_t most) {
-  // the phase at the middle of the motion stays as the period changes
+  // keep the phase at the middle of the motion while the period changes
   const auto middle = static_cast<double>(moving[moving.size() / 2]);
   std::array<std::size_t, kPhases> misses;
   Phases out{most + 1};
@@ -62,7 +61,7 @@ Phases best_phases(double period, std::span<const std::size_t> moving, const std
     misses[p] = misses_of(clock, moving, repeats, std::min(most, out.misses));
     out.misses = std::min(out.misses, misses[p]);
   }
-  // twice round, so that a run may begin before the end of the circle
+  // twice around the circle, so that a run may cross its end
   int run = 0;
   for (int p = 0; p < 2 * kPhases; ++p) {
     run = misses[static_cast<std::size_t>(p % kPhases)] == out.misses ? std::min(run + 1, kPhases) : 0;
@@ -73,8 +72,8 @@ Phases best_phases(double period, std::span<const std::size_t> moving, const std
   return out;
 }
 
-// Of the clocks about `first` the middle one of those that explain most: clocks that explain the same fill a figure in
-// period and phase, in whose middle the most phases stand side by side.
+// Returns the middle one of the best clocks around `first`. Equally good clocks fill an area in period and phase, in
+// whose middle most phases are adjacent.
 Clock best_clock(const Clock& first, double reach, int periods, std::span<const std::size_t> moving,
                  const std::vector<bool>& repeats, double& found) {
   Phases best{moving.size()};

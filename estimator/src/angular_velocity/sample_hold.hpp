@@ -12,34 +12,33 @@
 
 namespace tumble {
 
-/// Readings of a triad whose own rate is below that of the log, so that some are said twice (sample and hold).
+/// Readings of a triad that is slower than the log, so that some are repeated (sample and hold).
 struct HeldReadings {
-  double period_s = 0.0;      ///< from one reading to the next
-  double agreement = 0.0;     ///< share of the samples whose being new or repeated a steady period explains
-  std::vector<double> age_s;  ///< of each sample: how old its reading is beyond that of a reading taken at once
-  std::vector<bool> repeats;  ///< it is the reading of the sample before
-  /// By what the middle of a reading's window lies before that of a sample's, when it ends with the sample: a gyro
-  /// integrates for its own period, an accelerometer for something between none and all of it. docs/maths/carried.md
-  /// (C35), (C36).
+  double period_s = 0.0;      ///< time between two readings
+  double agreement = 0.0;     ///< fraction of samples whose novelty or repetition a regular clock explains
+  std::vector<double> age_s;  ///< per sample: additional age of its reading
+  std::vector<bool> repeats;  ///< the reading equals the previous sample's
+  /// Time from the middle of a reading's window to the middle of the sample's window, if both end together. A gyro
+  /// integrates over its period; an accelerometer over an unknown part of it. docs/maths/carried.md (C11), (C12).
   double window_lag_s = 0.0;
 
   bool steady() const { return agreement >= sample_hold::kAgreementMin; }
-  /// How long before its stamp, and the window that ends there, a sample's reading tells of the motion.
+  /// Returns how long before the sample's window the reading describes the motion.
   double behind_s(std::size_t sample) const { return age_s[sample] + window_lag_s; }
 };
 
-/// Finds them: none where fewer than a twentieth of the samples in motion (faster than 0.3 rad/s, 30 of them at least)
-/// repeat all three numbers of the one before. Period and phase are those with which a steady clock explains best which
-/// samples repeat; ages and the windows' lag follow from them, and are zero where no steady clock does (agreement below
-/// 0.9). O(N) for each of some 5000 clocks, on 1000 samples at most.
+/// Detects repeated readings. Returns nothing if less than a twentieth of the moving samples (faster than 0.3 rad/s, at
+/// least 30) repeat all three numbers. Period and phase are those of the regular clock that best explains the
+/// repetitions. Ages and window lag follow from it, or are zero if no clock does (agreement below 0.9). O(N) for each
+/// of some 5000 clocks, on at most 1000 samples.
 std::optional<HeldReadings> find_held(std::span<const ImuSample> samples, Triad triad);
 
-/// The samples nearest to one whose gyro (or accelerometer) says something else; null where there is none.
+/// The nearest samples with a different reading, or null.
 struct Neighbours {
   const ImuSample *before = nullptr, *after = nullptr;
 };
-/// Of each sample: a reading said twice has the same neighbours both times. Whole segments of equal readings (rest, a
-/// level plateau) are stepped over likewise. O(N).
+/// Returns the neighbours of each sample. All samples of a run of equal readings (repetition, rest, saturation) have
+/// the same neighbours. O(N).
 std::vector<Neighbours> other_readings(std::span<const ImuSample> samples, Triad triad);
 
 }  // namespace tumble

@@ -17,7 +17,7 @@ using Vector = SensorErrors::Vector;
 using Matrix = SensorErrors::Matrix;
 using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
-// Sizes between sheet (0) and unknown (1), and how likely each is beforehand.
+// Sizes between data sheet (0) and uncalibrated (1), and their prior probabilities.
 struct Size {
   double share, probability;
 };
@@ -26,14 +26,13 @@ constexpr std::array<Size, 3> kCrossSizes = {{{0.0, 0.5}, {0.5, 0.2}, {1.0, 0.3}
 constexpr std::array<Size, 2> kFeltSizes = {{{0.0, 0.6}, {1.0, 0.4}}};
 constexpr std::array<Size, 2> kDelaySizes = {{{0.0, 0.6}, {1.0, 0.4}}};
 
-// least deviation, so that each prior can be inverted
+// minimum standard deviation, so that each prior can be inverted
 constexpr double kLeast = 1e-9;
 
 double between(double sheet, double unknown, double share) {
   return std::max(kLeast, unknown <= sheet ? sheet : sheet * std::pow(unknown / std::max(kLeast, sheet), share));
 }
 
-// Of one device; shares of its sizes.
 struct Shares {
   double scale = 1.0, cross = 1.0, felt = 1.0, delay = 1.0;
 };
@@ -51,11 +50,11 @@ Vector deviations(const SensorErrorSizes& s, const Shares& shares) {
   return out;
 }
 
-// Probability of what the sheet states below which the readings speak plainly against it.
+// Probability of the data sheet's values below which the readings clearly contradict it.
 constexpr double kPlain = 0.05;
 
-// A run's samples err in common (what the model of flight misses lasts longer than a sample): of what they say of
-// values this share is believed in the covariance. Which device it is they tell by all of it.
+// Weight of the evidence about the errors' values in the covariance. Sample errors are correlated, because errors of
+// the flight model last longer than a sample. The evidence for the kind of device has full weight.
 constexpr double kBelieved = 0.03;
 
 struct Hypothesis {
@@ -65,7 +64,8 @@ struct Hypothesis {
   Matrix covariance;
 };
 
-// Evidence in units of the prior's deviations, h = gamma + information * errors: rate_smoother.md (R38), (R39), (R46).
+// Evidence in units of the prior's standard deviations, h = gamma + information * errors: rate_smoother.md (R40),
+// (R41), (R43).
 Hypothesis posterior(const Matrix& information, const Matrix& learnt, const Vector& h, const Vector& deviation,
                      double log_prior) {
   constexpr int kRest = SensorErrors::kSize - SensorErrors::kFelt;
@@ -78,7 +78,7 @@ Hypothesis posterior(const Matrix& information, const Matrix& learnt, const Vect
   Vector sharpened = scaled_h;
   all.solve_vector(sharpened);
   out.log_odds = log_prior + 0.5 * scaled_h.dot(sharpened) - all.half_log_determinant();
-  // scale and misalignment stay what they are held for: what the model of flight misses looks like them
+  // scale and misalignment are not corrected, because errors of the flight model look like them
   Vector mean = Vector::Zero();
   mean.tail<kRest>() = scaled_h.tail<kRest>();
   dense::Cholesky(sharp.bottomRightCorner<kRest, kRest>()).solve_vector(mean.tail<kRest>());
@@ -87,7 +87,6 @@ Hypothesis posterior(const Matrix& information, const Matrix& learnt, const Vect
   return out;
 }
 
-// The information without what rounding leaves below zero.
 Matrix evidence_of(const Matrix& information, const SensorErrorSizes& sizes) {
   const Vector unit = deviations(sizes, {});
   const Matrix scaled = unit.asDiagonal() * (0.5 * (information + information.transpose())) * unit.asDiagonal();
@@ -139,7 +138,7 @@ void discount_untold(double share, SensorErrorEvidence& evidence) {
     untold(3 * j + k, 2 + i) = untold(SensorErrors::kAccel + 3 * j + k, 2 + i) = 0.5;
     untold(3 * k + j, 2 + i) = untold(SensorErrors::kAccel + 3 * k + j, 2 + i) = -0.5;
   }
-  // (I - d U U') on both sides; by U's few columns, since a stream asks too, whose thread may have little stack
+  // (I - d U U') on both sides, by U's few columns, because a stream's thread may have a small stack
   Eigen::Matrix<double, 5, SensorErrors::kSize> said = untold.transpose().lazyProduct(evidence.information);
   evidence.information.noalias() -= (1.0 - share) * untold.lazyProduct(said);
   said = untold.transpose().lazyProduct(evidence.information.transpose());
@@ -178,7 +177,7 @@ SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const Sens
     if (one.shares.scale == 0.0) out.calibrated += one.log_odds;
     if (one.shares.delay == 0.0) out.together += one.log_odds;
   }
-  // the sheet's word holds for what readings are corrected for until they speak plainly against it
+  // the data sheet determines the corrections until readings clearly contradict it
   Vector mean = Vector::Zero();
   double kept = 0.0;
   for (const Hypothesis& one : all) {
@@ -187,7 +186,7 @@ SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const Sens
     kept += one.log_odds;
   }
   mean /= std::max(kept, 1e-300);
-  // about the mean in use: rate_smoother.md (R40)
+  // relative to the mean in use: rate_smoother.md (R42)
   for (const Hypothesis& one : all) {
     const Vector off = one.mean - mean;
     out.known.covariance += one.log_odds * (one.covariance + off * off.transpose());
@@ -196,7 +195,7 @@ SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const Sens
   return out;
 }
 
-// rate_smoother.md (R46)
+// rate_smoother.md (R43)
 SensorErrorEvidence learnt_evidence(const KnownSensorErrors& learnt, const SensorErrorSizes& sizes) {
   const Vector unit = deviations(sizes, {});
   const Matrix symmetric = 0.5 * (learnt.covariance + learnt.covariance.transpose());
@@ -204,7 +203,7 @@ SensorErrorEvidence learnt_evidence(const KnownSensorErrors& learnt, const Senso
   Vector values;
   Matrix vectors;
   dense::decompose(scaled, values, vectors);
-  // a direction that is as open as it was before tells nothing
+  // directions with their prior variance contain no information
   const Vector told = values.cwiseMax(1e-12).cwiseInverse();
   const Vector of_mean = (told.array() > 1.0).select(told, Vector::Zero());
   const auto in_units = [&](const Vector& kept_values) -> Matrix {

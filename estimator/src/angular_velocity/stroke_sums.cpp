@@ -8,16 +8,16 @@ namespace tumble {
 
 namespace {
 
-// Readings of a struck body: rate from which it counts as moving, least number and correlation, and how well the delay
-// of the best is known, as a share of the slower triad's period.
+// Impacts: minimum rate of a moving body, minimum correlation, and standard deviation of the best delay as a fraction
+// of the slower triad's period.
 constexpr double kStruckRate_rad_s = 1.0, kCorrelationMin = 0.6, kStruckSigma = 0.15;
 constexpr double kStruckMin = 30.0;
-// A force that strikes, and how many of the segments must have met it; one that a body has that nothing holds up, and
-// in what share of the segments: what is struck and never flies is in a hand.
+// Minimum force of an impact, maximum force of free flight, and minimum fraction of each. A body with impacts that
+// never flies is hand-held.
 constexpr double kStroke_m_s2 = 30.0, kFlying_m_s2 = 5.0, kFlyingShareMin = 0.1;
 constexpr double kStrokesMin = 10.0;
 
-// Of the two of rate_smoother.md (R44).
+// Of the two quantities in rate_smoother.md (R45).
 double correlation(const StrokeSums& sums, int i) {
   const double n = sums.intervals, x = sums.turn, xx = sums.turn_squared;
   const double y = sums.force[i], yy = sums.force_squared[i], xy = sums.product[i];
@@ -25,7 +25,7 @@ double correlation(const StrokeSums& sums, int i) {
   return spread > 0.0 ? (n * xy - x * y) / std::sqrt(spread) : 0.0;
 }
 
-// The same, 0 where it is that of no body that is struck and flies.
+// Same; 0 unless the body has both impacts and flight.
 double believed(const StrokeSums& sums, int i) {
   if (sums.strokes[i] < kStrokesMin || sums.flying[i] < kFlyingShareMin * sums.intervals) return 0.0;
   return correlation(sums, i);

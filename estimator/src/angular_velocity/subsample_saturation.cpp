@@ -8,20 +8,20 @@ namespace tumble {
 
 namespace {
 
-// Hidden share of the window above which the free part says too little of the slope.
+// Maximum hidden fraction of the window; beyond it the free part does not determine the slope.
 constexpr double kShareMax = 0.85;
-// Spread of the loss: share of itself, and share of what the reading lies below the rail (up to 1 rad/s).
+// Standard deviation of the deficit: as a fraction of itself, and of the distance from the level (up to 1 rad/s).
 constexpr double kOfLoss = 0.5, kOfDepth = 0.25, kDepthMax = 1.0;
 
 }  // namespace
 
-// A rate of constant slope that passes the rail: rails.md (R69), (R70).
+// A rate of constant slope that passes the level: rails.md (R69), (R70).
 SubsampleSaturation subsample_saturation(double reading_rad_s, double neighbour_rad_s, double rail_rad_s,
                                          double noise_rad_s) {
   const double depth = rail_rad_s - reading_rad_s, slope = reading_rad_s - neighbour_rad_s;
-  // a mean of clipped values stands on the rail exactly; noise before the rail lowers it by less than this
+  // a mean of clipped values is exactly at the level; noise before clipping lowers it by less than this
   if (!(depth > 0.1 * noise_rad_s)) return {};
-  // nor does a rate cross the rail that does not move: a rail that is tilted a little passes for a plateau that sinks
+  // a constant rate does not cross the level; a slightly tilted plane looks like a decreasing plateau
   if (!(slope > noise_rad_s)) return {};
   double share = 0.0;  // rails.md (R71)
   if (slope > 2.0 * depth) {

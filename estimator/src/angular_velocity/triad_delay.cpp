@@ -22,18 +22,18 @@ using Eigen::Vector3d;
 using Unknown = Eigen::Matrix<double, 6, 1>;  // lever arm, bias
 
 constexpr int kDelayMost = StrokeSums::kMostSamples;  // largest delay, in samples
-constexpr int kPerSample = 4;  // delays tried to a sample, on the coarse and, as many again, about the best of them
+constexpr int kPerSample = 4;  // delays per sample on the coarse grid; as many again around the best
 constexpr double kRateMin_rad_s = 2.0;
 constexpr std::size_t kSamplesMin = 20, kSamplesMax = 2000;
 constexpr double kLeverSigma_m = 0.02, kBiasSigma_m_s2 = 0.3;
-// Readings nearer in time are the same one, said with a jitter.
+// Readings closer in time are the same one with jitter.
 constexpr double kApart_s = 1e-4;
-// Scales of what fits, from the first iteration to the last [m/s^2].
+// Kernel widths from the first iteration to the last [m/s^2].
 constexpr double kScales_m_s2[] = {3.0, 1.5, 0.8, 0.4, 0.25, 0.2};
-// A gain of robust cost, each sample's at most 1, that chance does not make.
+// Minimum gain of the robust cost (at most 1 per sample) that is not due to chance.
 constexpr double kGainMin = 0.4;
 
-// A triad's own readings: those that are not said twice, at the instants of which they tell.
+// Distinct readings of a triad, at their true times.
 struct TriadReadings {
   std::vector<double> time_s;
   std::vector<Vector3d> value;
@@ -68,7 +68,7 @@ struct Instant {
   Matrix3d by_lever;  ///< [alpha]x + [w]x [w]x
 };
 
-// Cubic through the four readings about an instant; `from`: index of the last reading before it, which moves on.
+// Cubic interpolation of four readings around a time; `from`: index of the last reading before it, which is advanced.
 bool force_at(const TriadReadings& force, double time_s, std::size_t& from, Vector3d& out) {
   while (from + 2 < force.size() && force.time_s[from + 1] <= time_s) ++from;
   if (from < 1 || from + 2 >= force.size() || force.time_s[from] > time_s) return false;
@@ -97,7 +97,7 @@ std::vector<Instant> instants_of(const TriadReadings& gyro) {
   return out;
 }
 
-// Robust cost of a delay, least over lever arm and bias: residuals of rate_smoother.md (R13).
+// Robust cost of a delay, minimised over lever arm and bias: residuals of rate_smoother.md (R10).
 double cost(const TriadReadings& accel, std::span<const Instant> instants, const Vector3d& lever_arm_m,
             double delay_s) {
   Unknown prior, at, information;
@@ -130,8 +130,7 @@ double cost(const TriadReadings& accel, std::span<const Instant> instants, const
   return sum;
 }
 
-// The integral of the force's norm, linear between readings, from the first of them on; beyond the ends the nearest
-// reading holds.
+// Integral of the force's norm from the first reading on, linear between readings and constant beyond the ends.
 class ForceIntegral {
  public:
   explicit ForceIntegral(const TriadReadings& force)
@@ -156,7 +155,7 @@ class ForceIntegral {
   std::vector<double> norm_, sum_;
 };
 
-// By what strikes the body, rate_smoother.md (R44); sigma 0 where that tells nothing.
+// From impacts, rate_smoother.md (R45); sigma 0 without information.
 TriadDelay struck(const TriadReadings& gyro, const TriadReadings& accel, double period_s) {
   if (accel.size() < 4) return {};
   const ForceIntegral force(accel);
@@ -181,7 +180,7 @@ TriadDelay struck(const TriadReadings& gyro, const TriadReadings& accel, double 
   return sums.told(period_s, std::max(mean_period(gyro), mean_period(accel)));
 }
 
-// By how it flies; 0 where that tells nothing.
+// From flight; 0 without information.
 double flown_s(const TriadReadings& gyro, const TriadReadings& accel, const Vector3d& lever_arm_m, double period_s) {
   const std::vector<Instant> turning = instants_of(gyro);
   if (turning.size() < kSamplesMin) return 0.0;

@@ -10,18 +10,17 @@
 
 namespace tumble {
 
-/// A first guess of a device's delay, among delays of up to four samples, in two ways; readings that repeat count once,
-/// at the instants of which they tell.
+/// Guesses a device's delay, up to four samples, by two methods. Repeated readings count once, at their true times.
 ///
-/// Where the body is struck: whatever strikes it turns it, so that the angular acceleration is large where the specific
-/// force is. The delay at which the roots of both, taken over the same intervals of time between free readings of the
-/// gyro, correlate best; believed from 0.6 on (30 readings faster than 1 rad/s, 10 of them beyond 30 m/s^2 and a tenth
-/// below 5: what is struck and never flies is in a hand), to 0.15 of the slower triad's period. Else where it flies:
-/// the delay at which the most of the accelerometer's readings are what a rigid body has at a lever arm, alpha x t + w
-/// x (w x t) + bias, of the gyro's readings beside them. Lever arm (about `lever_arm_m`, 0.02 m) and bias are fitted
-/// for each delay, readings that do not fit are left out (Geman-McClure); nothing where there are fewer than 20 that
-/// turn faster than 2 rad/s with no axis clipped, or a gain that chance could have made. O(N) for each of some 60
-/// delays.
+/// From impacts: an impact changes the rotation, so the angular acceleration is large when the specific force is. The
+/// result is the delay with the best correlation of the roots of both, over the same intervals between free gyro
+/// readings. The correlation must be at least 0.6, with 30 readings faster than 1 rad/s, 10 of them above 30 m/s^2 and
+/// a tenth below 5; otherwise the body may be hand-held. The accuracy is 0.15 of the slower triad's period.
+///
+/// Otherwise from flight: the delay for which most accelerometer readings equal the force at a rigid body's lever arm.
+/// This force is alpha x t + w x (w x t) + bias, from the neighbouring gyro readings. Lever arm (about `lever_arm_m`,
+/// 0.02 m) and bias are fitted for each delay, robustly (Geman-McClure). Empty with fewer than 20 unclipped readings
+/// faster than 2 rad/s, or for a gain that may be due to chance. O(N) for each of some 60 delays.
 TriadDelay guess_triad_delay(std::span<const ImuSample> samples, std::span<const Clipping> clippings,
                              const Eigen::Vector3d& lever_arm_m);
 

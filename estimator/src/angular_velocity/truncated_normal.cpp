@@ -9,7 +9,7 @@ namespace tumble {
 
 namespace {
 
-// phi(z) / Phi(z) of the normal distribution, by its asymptotic series where both vanish
+// phi(z) / Phi(z) of the normal distribution, by its asymptotic series where both underflow
 double density_over_share(double z) {
   if (z < -8.0) return -z / (1.0 - 1.0 / (z * z) + 3.0 / (z * z * z * z));
   const double density = std::exp(-0.5 * z * z) * std::numbers::inv_sqrtpi / std::numbers::sqrt2;
@@ -18,7 +18,7 @@ double density_over_share(double z) {
 
 }  // namespace
 
-// rate_smoother.md (R10), (R11)
+// rate_smoother.md (R23), (R24)
 NormalMoments truncated_below(const NormalMoments& from, double bound, double softness2) {
   const double spread2 = from.variance + softness2, spread = std::sqrt(spread2);
   const double z = (from.mean - bound) / spread, r = density_over_share(z);
@@ -26,7 +26,7 @@ NormalMoments truncated_below(const NormalMoments& from, double bound, double so
           from.variance - from.variance * from.variance * r * (z + r) / spread2};
 }
 
-// Cavity and new site: rate_smoother.md (R9), (R12).
+// Cavity and new site: rate_smoother.md (R22), (R25).
 NormalSite refined_bound(const NormalMoments& marginal, const NormalSite& now, double bound, double softness2,
                          double widest2, double share) {
   const double precision = std::max(1.0 / marginal.variance - now.precision, 1.0 / widest2);

@@ -10,15 +10,16 @@ namespace tumble {
 
 namespace {
 
-// Rails of other elements lie within this tilt of those seen (and within kBesideRail); a few samples at one hide about
-// this share of the step to the sample beside them.
+// Maximum tilt of other elements' levels relative to the known ones (in addition to kBesideRail); deficit of a few
+// samples at a level, as a fraction of the step to their neighbour.
 constexpr double kUnseenTilt = 0.06, kUnseenOfStep = 0.5;
 
-// Readings within this share below the largest of a segment are at its top: what a tilt of 0.06 (kUnseenTilt) makes of
-// motion beside of a sixth of the rail. Elements differ by no more than so many deviations.
+// kTopShare: readings within this fraction of a segment's largest are at its top. The fraction is the effect of a tilt
+// of 0.06 (kUnseenTilt) and a rate on the other axes of a sixth of the level. kElementsApart: maximum difference of
+// elements in standard deviations.
 constexpr double kTopShare = 0.01, kElementsApart = 3.0;
 
-// The lowest rail that was seen, or 0.
+// Lowest known level, or 0.
 double lowest_rail(const RailPlanes& planes) {
   double rail = 0.0;
   for (const auto& element : planes.element) {
@@ -27,14 +28,14 @@ double lowest_rail(const RailPlanes& planes) {
   return rail;
 }
 
-// How high a motion may have risen above a top of `count` samples that it enters and leaves by steps of these sizes,
-// going on with each of them until they meet: rails.md (R74).
+// Height of a motion above a top of `count` samples, extrapolated from the steps before and after until they meet:
+// rails.md (R74).
 double hidden_rise(double count, double entered, double left) {
   const double both = std::max(0.0, entered) + std::max(0.0, left);
   return both > 0.0 ? count * std::max(0.0, entered) * std::max(0.0, left) / both : 0.0;
 }
 
-// The rate beside an axis, of which a tilted rail makes a share.
+// The rate on the other axes. The tilt multiplies it in the reading at a level.
 double beside_of(const Eigen::Vector3d& rate_rad_s, Eigen::Index axis) {
   return std::hypot(rate_rad_s[(axis + 1) % 3], rate_rad_s[(axis + 2) % 3]);
 }
@@ -104,7 +105,7 @@ void doubt_motion_plateaus(const RailPlanes& planes, const LeastRails& least, do
         if (first == 0 || last + 1 == count || first == last) continue;
         const double rise =
             hidden_rise(static_cast<double>(last - first + 1), top - value(first - 1), top - value(last + 1));
-        if (!(rise > 0.0)) continue;  // a flank, not a top
+        if (!(rise > 0.0)) continue;  // not a maximum
         if (least.refute(observations[first].sample.angular_velocity_rad_s, axis)) continue;
         for (std::size_t i = first; i <= last; ++i) {
           RateObservation& o = observations[i];

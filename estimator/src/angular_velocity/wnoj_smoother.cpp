@@ -12,14 +12,14 @@ constexpr double kVarianceMin = 1e-18;
 constexpr double kVarianceMax = 1e18;
 
 // One eliminated knot of one axis: R x_k + S x_{k+1} = z with noise of unit variance, R upper triangular.
-// The state x is (rate, acceleration * time_scale), which keeps both columns of like size for any sample rate. saave.md
-// (S6)
+// The state x is (rate, acceleration * time_scale), so that both columns have similar magnitudes for any sample rate.
+// saave.md (S6)
 struct EliminatedKnot {
   Eigen::Matrix2d R, S;
   Eigen::Vector2d z;
 };
 
-// What is known of the current knot from all that went before: R x = z, R upper triangular.
+// Information about the current knot from all earlier ones: R x = z, R upper triangular.
 struct Carried {
   Eigen::Matrix2d R = Eigen::Matrix2d::Zero();
   Eigen::Vector2d z = Eigen::Vector2d::Zero();
@@ -119,8 +119,8 @@ void smooth_axis(std::span<const WnojSmoother::Measurement> measurements, int ax
   }
   measure(carried, measurements.back().rate_rad_s[axis], std::sqrt(measurements.back().variance_rad2_s2[axis]));
 
-  // x_k = R^-1 (z - S x_{k+1}), covariance R^-1 (1 + S P S') R^-T: sums of positive terms, nothing cancels; saave.md
-  // (S7)
+  // x_k = R^-1 (z - S x_{k+1}), covariance R^-1 (1 + S P S') R^-T: sums of positive terms without cancellation;
+  // saave.md (S7)
   Eigen::Matrix2d R_inv = carried.R.triangularView<Eigen::Upper>().solve(Eigen::Matrix2d::Identity());
   Eigen::Vector2d x = R_inv * carried.z;
   Eigen::Matrix2d P = R_inv * R_inv.transpose();

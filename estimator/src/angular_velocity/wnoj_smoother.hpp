@@ -11,25 +11,25 @@
 
 namespace tumble {
 
-/// Smoother of angular velocity with a white-noise-on-jerk prior, exact and linear in the number of samples.
+/// Smooths angular velocity with a white-noise-on-jerk prior, exact and linear in the number of samples.
 ///
-/// Per knot the angle, the rate and the angular acceleration of the body; between knots the prior of Tang, Yoon and
-/// Barfoot (RA-L 2019), Phi and Q of order three with density `jerk_psd`; per knot a measurement of the rate with its
-/// own variance per axis. The angle is unmeasured and locked at the first knot, so eliminating it from the last knot
-/// backwards is exact and leaves the prior of the pair (rate, acceleration) with Q = q [dt^3/3, dt^2/2; dt^2/2, dt]:
-/// only that pair is computed. Gives mean and variance of the rate at every knot by orthogonal (square-root
-/// information) elimination and back-substitution; readings with variances many orders of magnitude apart do no harm.
+/// The state per knot is angle, rate and angular acceleration. The prior between knots is that of Tang, Yoon and
+/// Barfoot (RA-L 2019), with Phi and Q of order three and density `jerk_psd`. Each knot measures the rate with a
+/// separate variance per axis. The angle is not measured. Its value at the first knot is fixed. Eliminating it from the
+/// last knot backwards is therefore exact and leaves the prior of (rate, acceleration) with Q = q [dt^3/3, dt^2/2;
+/// dt^2/2, dt]. Only this pair is computed. Orthogonal (square-root information) elimination and back-substitution give
+/// mean and variance of the rate at every knot, also for variances many orders of magnitude apart.
 ///
-/// What it does not model: three independent axes; what the commutators of SO(3) would add is about
-/// dt^2 |w x alpha| / 4 and is left out. The sign in which the rate enters the prior (the published code feeds +gyro
-/// where its own convention is -gyro) acts through those commutators alone: negating angle, rate and acceleration
-/// together leaves this linear problem as it is. It therefore has no switch here.
+/// Not modelled: coupling of the three axes. The commutators of SO(3) would add about dt^2 |w x alpha| / 4. The
+/// published code feeds +gyro although its convention requires -gyro. This sign only acts through the commutators,
+/// since negating angle, rate and acceleration together does not change this linear problem. The sign therefore has no
+/// parameter here.
 class WnojSmoother {
  public:
   struct Params {
-    double jerk_psd_rad2_s5 = 1e6;  ///< larger follows the readings more closely
+    double jerk_psd_rad2_s5 = 1e6;  ///< larger values follow the readings more closely
 
-    /// Every number of it, stated once.
+    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.jerk_psd_rad2_s5,
@@ -47,12 +47,12 @@ class WnojSmoother {
     Eigen::Vector3d variance_rad2_s2;  ///< posterior variance of the rate, per axis
   };
 
-  /// Throws InvalidParams when the density is outside of its bound.
+  /// Throws InvalidParams if the density is out of bounds.
   explicit WnojSmoother(const Params& params);
 
-  /// One result per measurement. No measurement: `empty`; time stamps must rise strictly (`time_order`), values be
-  /// finite (`non_finite`), variances lie in [1e-18, 1e18] (`out_of_range`); on trouble `out` is left as it was. A
-  /// single measurement is returned unchanged, with acceleration zero. O(N) in time and memory.
+  /// Computes one result per measurement. On error `out` is unchanged: `empty`, `time_order` (time stamps must increase
+  /// strictly), `non_finite`, `out_of_range` (variances must be in [1e-18, 1e18]). A single measurement is returned
+  /// unchanged, with acceleration zero. O(N) in time and memory.
   Status smooth(std::span<const Measurement> measurements, std::vector<Smoothed>& out) const;
 
  private:

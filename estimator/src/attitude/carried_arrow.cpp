@@ -3,7 +3,7 @@
 
 namespace tumble {
 
-// compiled once, for the files that solve the carried body's equations
+// explicit instantiation for all files that solve the equations of hand-held motion
 template struct ArrowSystem<carried::kState, carried::kBorder>;
 
 }  // namespace tumble

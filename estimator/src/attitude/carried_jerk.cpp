@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How much jerk the readings of a carried body's gyro show.
+// Estimation of the angular jerk from a gyro's readings.
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
@@ -13,14 +13,13 @@ using Eigen::Vector3d;
 
 namespace {
 
-// Of q P^3: the variance of a second difference; and the reach of what is seen so, in periods.
+// Variance of a second difference as a multiple of q P^3; and its time range, in periods.
 constexpr double kSecondDifference = 11.0 / 20.0, kJerkReach = 1.5;
 
 bool is_free(const GyroReadings& rates, std::size_t k, Eigen::Index axis) {
   return rates.signs[k].gyro[static_cast<std::size_t>(axis)] == 0 && !(rates.open_rad_s[k][axis] > 0.0);
 }
 
-// Nodes [first, last) within [from_s, to_s].
 struct Reach {
   std::size_t first = 0, last = 0;
   Reach(double from_s, double to_s, double node_s, std::size_t nodes)
@@ -28,8 +27,8 @@ struct Reach {
         last(std::min(nodes, static_cast<std::size_t>(std::max(0.0, std::floor(to_s / node_s) + 1.0)))) {}
 };
 
-// Where readings are free, element by element and three in a row: the second difference of means over windows that
-// follow each other has the variance 11/20 q P^3, and six times that of the noise: carried.md (C37)
+// Estimates the jerk from free readings, per element, three in a row. The second difference of means over contiguous
+// windows has the variance 11/20 q P^3, plus six times that of the noise: carried.md (C24)
 void add_bends(const GyroReadings& rates, const Eigen::Matrix3d& rows, double noise_rad_s, double node_s,
                std::vector<double>& densities) {
   const double period_s = rates.windows.period_s, reach_s = kJerkReach * std::max(period_s, node_s);
@@ -54,8 +53,8 @@ void add_bends(const GyroReadings& rates, const Eigen::Matrix3d& rows, double no
     densities[i] = counts[i] > 0.0 ? std::max(0.0, densities[i] / counts[i]) : 0.0;
 }
 
-// The slope of element `axis` between two free readings that follow each other, and its instant; false where they do
-// not.
+// Computes the slope of element `axis` between two consecutive free readings, and its time. Returns false if they are
+// not consecutive.
 bool slope_of(const GyroReadings& rates, const Eigen::Matrix3d& rows, std::size_t k, Eigen::Index axis, double& slope,
               double& at_s) {
   if (!is_free(rates, k, axis) || !is_free(rates, k + 1, axis)) return false;
@@ -67,9 +66,9 @@ bool slope_of(const GyroReadings& rates, const Eigen::Matrix3d& rows, std::size_
   return true;
 }
 
-// Across a segment that an element hides: white jerk of density q changes its angular acceleration by q T within T, on
-// the mean of squares. What free readings beside it bend says little of a motion that turns about beyond the rail:
-// carried.md (C39)
+// Estimates the jerk across a hidden segment of an element. White jerk of density q changes the angular acceleration by
+// q T within T (mean square). The curvature of adjacent free readings says little about a motion that reverses beyond
+// the saturation level: carried.md (C25)
 void add_across(const GyroReadings& rates, const Eigen::Matrix3d& rows, double noise_rad_s, double node_s,
                 std::vector<double>& densities) {
   const std::size_t count = rates.samples.size();

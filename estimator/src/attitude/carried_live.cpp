@@ -7,7 +7,7 @@ namespace tumble {
 
 namespace {
 
-/// What the gyro's elements sense along, where their planes were seen.
+/// Returns the gyro's sensing directions, where planes are known.
 Eigen::Matrix3d rows_of(const RailPlanes& planes) {
   Eigen::Matrix3d out = Eigen::Matrix3d::Identity();
   for (int j = 0; j < 3; ++j) {
@@ -43,11 +43,11 @@ Status CarriedLive::push(const ImuSample& sample, State& state, std::optional<Ra
   if (!status.ok()) return status;
   state.holds = holds;
   state.news = watch_.observe(sample, state.rails);
-  watch_.upright_rails().classify(sample, state.rails.known.upright_rails);  // carries what is clipped just now
+  watch_.upright_rails().classify(sample, state.rails.known.upright_rails);  // updates the hysteresis
   return status;
 }
 
-/// The newest sample of the window is judged by `next` too, and all of them where the rails are known better now.
+/// Classifies the newest sample of the window with its neighbour `next`, and all samples if the levels have changed.
 void CarriedLive::judge_window(const ImuSample& next, State& state) const {
   const std::vector<CarriedStream::Reading>& window = state.stream.readings;
   RailDetector::State& upright_rails = state.rails.known.upright_rails;

@@ -18,10 +18,10 @@ using so3::hat;
 
 using GyroRow = Eigen::Matrix<double, 1, 6>;          // by rate and angular acceleration
 using BorderRow = Eigen::Matrix<double, 1, kBorder>;  // by the constants
-using ForceState = Eigen::Matrix<double, 3, 12>;      // by attitude, rate, angular acceleration, hand
+using ForceState = Eigen::Matrix<double, 3, 12>;      // by attitude, rate, and both accelerations
 using ForceBorder = Eigen::Matrix<double, 3, kBorder>;
 
-// carried.md (C12): slope h = -d/du log Phi(u) is the hazard phi/Phi; the tail by its asymptotic series, where both
+// carried.md (C14): slope h = -d/du log Phi(u) is the hazard phi/Phi; asymptotic series in the tail, where both
 // underflow
 double hazard(double u) {
   if (u < -12.0) return -u - 1.0 / u * (1.0 - 2.0 / (u * u));
@@ -63,7 +63,7 @@ GyroRows gyro_rows(const Eigen::RowVector3d& m, const Node& node, const Constant
   return rows;
 }
 
-// how far the clipped elements are believed to lie beyond their rails, and the unreadable ones off their readings
+// total deficit of clipped elements, and deviation of unusable ones from their readings, at the current estimate
 double deficit(const NodeReadings& readings, const std::array<GyroRows, 3>& rows, int except) {
   double sum = 0.0;
   for (int i = 0; i < 3; ++i) {
@@ -77,7 +77,8 @@ double deficit(const NodeReadings& readings, const std::array<GyroRows, 3>& rows
   return sum;
 }
 
-// n readings at times t as two independent ones, of the value at their mean time and of the slope: carried.md (C11)
+// replaces n readings at times t by two independent ones, of the value at their mean time and of the slope: carried.md
+// (C13)
 double add_free(const ElementSums& e, const GyroRows& rows, double information, System::Block& block,
                 System::Corner& corner) {
   const double mean_t = e.t_s / e.n;
@@ -96,7 +97,7 @@ double add_free(const ElementSums& e, const GyroRows& rows, double information, 
   return cost;
 }
 
-// carried.md (C12)
+// carried.md (C14)
 double add_bound(const ElementSums& e, const GyroRows& rows, double sigma, double share, System::Block& block,
                  System::Corner& corner) {
   const GyroRow row = rows.value + e.clipped_t_s * rows.slope;
@@ -106,14 +107,14 @@ double add_bound(const ElementSums& e, const GyroRows& rows, double sigma, doubl
   return minus_two_log_phi(u);
 }
 
-// a scalar information `w` on three entries at `i`, of which `value` should be zero
+// adds a scalar information `w` for zero of three entries at `i`, whose current values are `value`
 double add_zero(const Vector3d& value, double w, int i, System::Block& block) {
   block.diagonal.diagonal().segment<3>(i).array() += w;
   block.gradient.segment<3>(i) -= w * value;
   return w * value.squaredNorm();
 }
 
-// information of `n` channels here and next, the same on each axis, the first channel at `first`
+// information of `n` channels of both nodes, the same on each axis, with the first channel at `first`
 template <int N>
 double add_chain(const Eigen::Matrix<double, 2 * N, 2 * N>& information, double scale, int first,
                  const Eigen::Matrix<double, 3, 2 * N>& values, System::Block& block, System::Block& next) {
@@ -160,7 +161,7 @@ double add_gyro(const NodeReadings& readings, const Matrix3d& rows, const Readin
     const ElementSums& e = readings.gyro[static_cast<std::size_t>(i)];
     const GyroRows& element = elements[static_cast<std::size_t>(i)];
     if (e.n > 0.0) {
-      // the same error in each reading of the node, so that their number does not make it smaller
+      // the same error in each reading of the node, so it does not average out
       const double tilt = noise.tilt_share * deficit(readings, elements, i);
       cost += add_free(e, element, 1.0 / (variance + e.n * (tilt * tilt + e.open * e.open)), block, corner);
     }
@@ -172,7 +173,7 @@ double add_gyro(const NodeReadings& readings, const Matrix3d& rows, const Readin
   return cost;
 }
 
-// carried.md (C13)
+// carried.md (C16)
 double add_force(const NodeReadings& readings, const Vector3d& g_W_m_s2, const ReadingNoise& noise, const Node& node,
                  const Constants& constants, System::Block& block, System::Corner& corner) {
   if (!(readings.force_n > 0.0)) return 0.0;
@@ -239,16 +240,16 @@ Vector3d turned(const Node& from, const Node& to, double h) {
 Motion::Motion(const Params& params) : params_(params) {
   const double h = params.step_s;
   const double q = params.jerk_rad_s3_sqrts * params.jerk_rad_s3_sqrts;
-  // white jerk, carried.md (C2): rate and angular acceleration after the step, given those before
+  // white jerk, carried.md (C2): rate and angular acceleration after the step, conditional on those before
   Eigen::Matrix2d Q;
   Q << h * h * h / 3.0, h * h / 2.0, h * h / 2.0, h;
   Eigen::Matrix<double, 2, 4> J;
   J << -1.0, -h, 1.0, 0.0, 0.0, -1.0, 0.0, 1.0;
   jerk_ = J.transpose() * (q * Q).inverse() * J;
-  // the angle given rate and angular acceleration at both ends, a quintic's remainder: carried.md (C4)
+  // the angle conditional on rate and angular acceleration at both ends, remainder of a quintic: carried.md (C4)
   phi_variance_ = q * std::pow(h, 5) / 720.0 + 1e-12;
 
-  // the hand: carried.md (C6), (C7), (C8)
+  // the held point: carried.md (C6), (C7), (C8)
   const double decay = std::exp(-h / params.hand_tau_s);
   const double density = (1.0 - decay * decay) * params.hand_m_s2 * params.hand_m_s2 / h;
   Eigen::Matrix<double, 1, 6> row;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A part of the problem of the carried body, solved alone: what the rest says of its ends, and its cost.
+// Separate solution of a part of the hand-held motion's problem: information from the other nodes, and its cost.
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -12,8 +12,8 @@ namespace tumble::carried {
 
 namespace {
 
-constexpr double kCostChange = 0.2;  // change of the cost, which are odds of 1.1
-constexpr int kStepsMax = 30;        // iterations
+constexpr double kCostChange = 0.2;  // convergence bound of the cost, corresponding to odds of 1.1
+constexpr int kStepsMax = 30;        // maximum number of iterations
 
 Message message(const Node& about, const System::Block& block) {
   return {about, block.diagonal, block.gradient};
@@ -52,10 +52,10 @@ Problem::Problem(const Problem& whole, const Part& part)
             whole.hand_.begin() + static_cast<std::ptrdiff_t>(part.last + 1)),
       blocks_(nodes_.size()) {}
 
-// The Schur complements of carried.md (C14), from both ends.
+// Computes the Schur complements of carried.md (C17), from both ends.
 bool Problem::tell(std::span<Part> parts) const {
   System::Corner unused;
-  // from the left: what is known of a node before its own readings
+  // from the left: the prior of a node from all earlier ones
   System::Block here, next;
   motion_.add_first(nodes_[0], here);
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
@@ -69,7 +69,7 @@ bool Problem::tell(std::span<Part> parts) const {
     here = next;
     here.border.setZero();
   }
-  // and from the right
+  // from the right
   here = {};
   for (std::size_t i = nodes_.size(); i-- > 0;) {
     for (Part& part : parts)

@@ -11,13 +11,13 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kRotationMax_rad = 0.8;  // largest step of an attitude: beyond, the linearisation says little
-constexpr double kConverged = 1e-3;       // of attitudes [rad] and, ten times that, of rates [rad/s]
-constexpr int kFollowFirst = 3;           // iterations before the hand's power is read off the nodes
-constexpr int kFollowLast = 8;            // and after which it stays, so that the iteration ends
-constexpr double kHandMean_s = 0.25;      // over which the hand's mean acceleration is compared
-constexpr int kHalvings = 4;              // of a step after which the cost is larger
-constexpr double kRises = 0.2;            // by more than this: odds of 1.1, which no covariance shows
+constexpr double kRotationMax_rad = 0.8;  // largest step of an attitude; the linearisation is invalid beyond
+constexpr double kConverged = 1e-3;       // convergence bound of attitudes [rad] and, times ten, of rates [rad/s]
+constexpr int kFollowFirst = 3;           // iterations before the held point's power is estimated
+constexpr int kFollowLast = 8;            // iterations after which the power is fixed, so that the iteration converges
+constexpr double kHandMean_s = 0.25;      // averaging time of the held point's acceleration
+constexpr int kHalvings = 4;              // maximum number of times that a step is halved if the cost increases
+constexpr double kRises = 0.2;            // tolerated increase of the cost: odds of 1.1, which no covariance shows
 constexpr Trouble kLost = Trouble::diverged;
 
 }  // namespace
@@ -50,9 +50,9 @@ ReadingNoise reading_noise(const CarriedSmoother::Params& p, double period_s) {
 
 namespace {
 
-// What the covariance counts besides: a bound tells nothing of how far beyond it a rate lies, and the mean over a
-// window P is not the rate at its centre; white jerk of the density q parts them by the variance q P^3/320, carried.md
-// (C38).
+// Returns the noise for the covariances. A bound contains no information about how far the rate is beyond it. The mean
+// over a window P differs from the rate at its centre: white jerk of density q causes the variance q P^3/320,
+// carried.md (C26).
 ReadingNoise stated_noise(const CarriedSmoother::Params& params, ReadingNoise noise, double period_s) {
   noise.bound = 0.0;
   noise.window_rad_s = params.jerk_rad_s3_sqrts * std::sqrt(period_s * period_s * period_s / 320.0);
@@ -129,7 +129,7 @@ double Problem::linearise() {
   return cost;
 }
 
-// carried.md (C14), (C15)
+// carried.md (C17), (C18)
 bool Problem::eliminate(System::BorderVector& step) {
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
     System::Block* const next = i + 1 < blocks_.size() ? &blocks_[i + 1] : nullptr;
@@ -138,10 +138,10 @@ bool Problem::eliminate(System::BorderVector& step) {
   return System::solve_corner(corner_, step, constants_covariance_);
 }
 
-// carried.md (C16)
+// carried.md (C19)
 bool Problem::step(double& largest) {
   if (!eliminate(border_step_)) return false;
-  // the steps replace the gradients, which nothing needs any more
+  // the steps overwrite the gradients, which are no longer needed
   steps_.resize(blocks_.size());
   double turn = 0.0;
   largest = 0.0;
@@ -160,13 +160,13 @@ bool Problem::step(double& largest) {
   return true;
 }
 
-// A share of the last step, from where the nodes are.
+// Applies a fraction of the last step, starting from the current nodes.
 void Problem::go(double share) {
   for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_[i].move(share * steps_[i]);
   constants_.move(share * border_step_);
 }
 
-// the hand is as lively as it was about that time, never far below what is assumed: carried.md (C10)
+// adapts the density of the held point's acceleration to its recent power, with a lower limit: carried.md (C10)
 void Problem::follow_hand() {
   const std::size_t count = nodes_.size();
   const double assumed = 3.0 * params_.hand_m_s2 * params_.hand_m_s2;
@@ -188,14 +188,14 @@ void Problem::restore(Answer answer) {
   covariances_ = std::move(answer.covariances);
 }
 
-// carried.md (C16), (C34)
+// carried.md (C19), (C20)
 Status Problem::solve(CarriedSmoother::Report& report) {
-  std::optional<Iterate> before;  // the last step
+  std::optional<Iterate> before;
   report.converged = false;
   for (int k = 0; k < params_.expert.iterations_max; ++k) {
     if (k >= kFollowFirst && k <= kFollowLast && params_.expert.hand.hand_follow > 0.0) {
       follow_hand();
-      before.reset();  // a cost of another hand
+      before.reset();  // costs for different densities are not comparable
     }
     report.cost = linearise();
     if (before && !descend_from(*before, report.cost)) break;
@@ -207,7 +207,7 @@ Status Problem::solve(CarriedSmoother::Report& report) {
     if (report.converged && k > kFollowFirst) break;
   }
   if (before && !report.converged) {
-    // the last step is not known to have led anywhere
+    // the cost after the last step is not yet checked
     report.cost = linearise();
     (void)descend_from(*before, report.cost);
   }
@@ -216,8 +216,8 @@ Status Problem::solve(CarriedSmoother::Report& report) {
   return {};
 }
 
-// Where the last step led to a larger cost, shorter ones are tried. False when none leads down: the nodes are then back
-// where they were before it, and linearised there.
+// Tries shorter steps if the last one increased the cost. Returns false if none decreases it; the nodes are then
+// restored and linearised again.
 bool Problem::descend_from(const Iterate& before, double& cost) {
   const auto goes_down = [&] { return cost < before.cost + kRises; };
   for (int k = 0; k < kHalvings && !goes_down(); ++k) {
@@ -233,7 +233,7 @@ bool Problem::descend_from(const Iterate& before, double& cost) {
   return false;
 }
 
-// carried.md (C17), (C18), of the jerk of (C19) and with bounds that tell nothing of how far beyond them a rate lies
+// carried.md (C21), (C22), with the jerk of (C23) and bounds without information about the distance beyond
 Status Problem::covariances(CarriedSmoother::Report& report) {
   for (std::size_t i = 0; i < jerk_.size(); ++i)
     jerk_[i] = std::max(params_.expert.jerk_inflation, jerk_seen_[i] / params_.jerk_rad_s3_sqrts);
@@ -256,8 +256,8 @@ Status Problem::covariances(CarriedSmoother::Report& report) {
   return {};
 }
 
-// carried.md (C20): the mean over a window T of a process of deviation s and memory tau has the variance
-// s^2 2 tau/T (1 - tau/T (1 - exp(-T/tau)))
+// carried.md (C30): the mean over a window T of a process with standard deviation s and correlation time tau has the
+// variance s^2 2 tau/T (1 - tau/T (1 - exp(-T/tau)))
 double Problem::hand_mahalanobis() const {
   const auto window = static_cast<std::size_t>(std::max(1.0, kHandMean_s / params_.expert.node_s));
   const double span = static_cast<double>(window) * params_.expert.node_s,

@@ -10,19 +10,19 @@
 
 namespace tumble::carried {
 
-/// What the factors of the motion and of the readings are weighed with; `jerk`: its root density counts so many times.
+/// Returns the weights of motion and reading factors; `jerk` multiplies the root density of the jerk.
 Motion::Params motion_params(const CarriedSmoother::Params& params, double jerk = 1.0);
 ReadingNoise reading_noise(const CarriedSmoother::Params& params, double period_s);
-/// Gyro, force, bounds and rest of one node.
+/// Adds gyro, force, bounds and rest of one node.
 double add_node(const NodeReadings& readings, const Eigen::Matrix3d& rows, const ReadingNoise& noise,
                 const Eigen::Vector3d& g_W_m_s2, const Motion& motion, const Node& node, const Constants& constants,
                 System::Block& block, System::Corner& corner);
-/// Priors of the constants about zero.
+/// Adds the zero-mean priors of the constants.
 double add_constants_prior(const CarriedSmoother::Params& params, const Constants& constants, System::Corner& corner);
-/// The way from one node to another, as Node::move takes it.
+/// Returns the difference of two nodes, in the form that Node::move takes.
 System::StateVector moved(const Node& from, const Node& to);
 
-/// What all that lies on one side of a node says of it: a quadratic about the node as it stood.
+/// Information from all nodes on one side of a node: a quadratic about the node's current value.
 struct Message {
   Node about;
   System::StateMatrix information = System::StateMatrix::Zero();
@@ -30,26 +30,25 @@ struct Message {
   double add(const Node& node, System::Block& block) const;
 };
 
-/// Nodes [first, last] of a problem, and what is said of its ends by all that lies beyond them, the constants given.
+/// Nodes [first, last] of a problem, with the information from all other nodes about its ends for fixed constants.
 struct Part {
   std::size_t first = 0, last = 0;
   Message before = {}, after = {};
 };
 
-/// The normal equations of one recording and their solution.
 class Problem {
  public:
   Problem(const CarriedSmoother::Params& params, const Eigen::Matrix3d& rows, const Collected& collected,
           std::vector<Node> nodes);
-  /// A part of another one alone, `part.before` and `after` filled by tell(). The constants and how lively the hand is
-  /// stay as they are there.
+  /// A part of another problem; tell() must have set `part.before` and `part.after`. Constants and density of the held
+  /// point's acceleration are copied and fixed.
   Problem(const Problem& whole, const Part& part);
 
-  /// Gauss-Newton; `diverged` when the equations lose their definiteness.
+  /// Gauss-Newton; returns `diverged` if the equations are not positive definite.
   Status solve(CarriedSmoother::Report& report);
-  /// Covariances of all nodes at the solution.
+  /// Computes the covariances of all nodes at the solution.
   Status covariances(CarriedSmoother::Report& report);
-  /// The solution as it stands, with its covariances, to come back to.
+  /// Copy of the solution and its covariances, to be restored later.
   struct Answer {
     std::vector<Node> nodes;
     Constants constants;
@@ -59,13 +58,14 @@ class Problem {
   };
   Answer answer() const { return {nodes_, constants_, constants_covariance_, hand_, covariances_}; }
   void restore(Answer answer);
-  /// Fills what the rest says of each part's ends: one sweep from either side. False where it loses its definiteness.
+  /// Computes the information about each part's ends, with one sweep from either side. Returns false if not positive
+  /// definite.
   bool tell(std::span<Part> parts) const;
-  /// Gauss-Newton of a part. The cost at the solution, infinite where it did not converge.
+  /// Gauss-Newton of a part. Returns the cost at the solution, or infinity without convergence.
   double converge();
 
   const Eigen::Matrix3d& rows() const { return rows_; }
-  /// Rate and bias of a node: what the gyro would read.
+  /// Returns rate plus bias of a node: the expected gyro reading.
   Eigen::Vector3d gyro_rad_s(std::size_t node) const { return nodes_[node].w_WI_I_rad_s + constants_.gyro_bias_rad_s; }
   double rail_sigma_rad_s() const { return noise_.rail_rad_s; }
   double jerk_rad_s3_sqrts() const { return params_.jerk_rad_s3_sqrts; }
@@ -73,11 +73,10 @@ class Problem {
   const Eigen::Vector3d& gravity_W_m_s2() const { return g_W_m_s2_; }
   const NodeReadings& readings(std::size_t node) const { return readings_[node]; }
   std::span<const Node> nodes() const { return nodes_; }
-  /// Other nodes from `first` on: another start.
+  /// Replaces the nodes from `first` on, as other initial values.
   void place(std::size_t first, std::span<const Node> nodes);
-  /// Adds to a node's covariance.
   void widen(std::size_t node, const Eigen::Matrix<double, 9, 9>& by) { covariances_[node] += by; }
-  /// Of attitude (error in sensor axes), rate, angular acceleration.
+  /// Covariance of attitude (error in sensor axes), rate, angular acceleration.
   const Eigen::Matrix<double, 9, 9>& covariance(std::size_t node) const { return covariances_[node]; }
 
  private:
@@ -85,7 +84,7 @@ class Problem {
   double add_node(std::size_t i, System::Block& block, System::Corner& corner) const;
   bool eliminate(System::BorderVector& step);
   bool step(double& largest);
-  /// Where a step of the descent began.
+  /// State before a step of the descent.
   struct Iterate {
     std::vector<Node> nodes;
     Constants constants;
@@ -101,17 +100,17 @@ class Problem {
   std::span<const NodeReadings> readings_;
   std::span<const double> jerk_seen_;  // of Collected
   Motion motion_;
-  double period_s_ = 0.0;  // of the gyro's own readings
+  double period_s_ = 0.0;  // of the gyro's distinct readings
   ReadingNoise noise_;
   Eigen::Vector3d g_W_m_s2_;
-  std::optional<Part> part_;  // of another problem; the constants stay then
+  std::optional<Part> part_;  // if set, a part of another problem with fixed constants
   std::vector<Node> nodes_;
   Constants constants_;
-  std::vector<double> jerk_;        // what the root density of the jerk is multiplied with, per node
-  std::vector<double> hand_;        // what the density of the hand's acceleration is multiplied with, per step
-  std::vector<double> hand_power_;  // running sum of its square
+  std::vector<double> jerk_;        // multiplier of the jerk's root density, per node
+  std::vector<double> hand_;        // multiplier of the density of the held point's acceleration, per step
+  std::vector<double> hand_power_;  // cumulative sum of its square
   std::vector<System::Block> blocks_;
-  std::vector<System::StateVector> steps_;  // the last step
+  std::vector<System::StateVector> steps_;
   System::BorderVector border_step_ = System::BorderVector::Zero();
   System::Corner corner_;
   System::BorderMatrix constants_covariance_;

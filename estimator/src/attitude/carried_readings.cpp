@@ -45,16 +45,16 @@ double since_s(std::span<const ImuSample> samples, std::size_t from, std::size_t
   return seconds(samples[to].time_ns - samples[from].time_ns);
 }
 
-constexpr double kSteady = 0.9;  // agreement of a steady clock from which on repeated readings are believed to be held
-// Nodes: longer windows may have met the rail in a part. Measured: those of 20 ms of the pendulums did, of the wand's,
-// of 10 ms, none does that shows.
+constexpr double kSteady = 0.9;  // minimum agreement with a regular clock for treating equal readings as repetitions
+// In nodes: longer windows may be partly saturated. Measured: pendulums' windows of 20 ms were, hand-held wands'
+// windows of 10 ms were not.
 constexpr double kLongWindow = 1.5;
 
 TimeNs nanoseconds(double s) {
   return static_cast<TimeNs>(std::llround(1e9 * s));
 }
 
-/// Of fewer than two samples `otherwise_s`.
+/// With fewer than two samples, `otherwise_s`.
 double median_step_or(std::span<const ImuSample> samples, double otherwise_s) {
   if (samples.size() < 2) return otherwise_s;
   std::vector<double> periods(samples.size() - 1);
@@ -88,7 +88,7 @@ void add_gyro_reading(double z, double t, int sign, ElementSums& e) {
   e.zt += z * t;
 }
 
-/// The clipped segment [begin, end) of one element, whose readings are `raw`.
+/// Fills the clipped segment [begin, end) of one element, whose readings are `raw`.
 void fill_segment(std::span<const ImuSample> samples, const std::vector<double>& raw, std::size_t begin,
                   std::size_t end, int sign, std::vector<double>& filled) {
   if (begin < 2 || end + 1 >= raw.size()) return;
@@ -105,8 +105,7 @@ void fill_segment(std::span<const ImuSample> samples, const std::vector<double>&
   }
 }
 
-/// From `begin` on: as long as an element stands at one rail, readings that say nothing among them, or as long as it is
-/// free (sign 0).
+/// A segment from `begin` on, in which an element is at one level, including unusable readings, or free (sign 0).
 struct HiddenSegment {
   std::size_t end = 0;
   int sign = 0;
@@ -124,12 +123,12 @@ HiddenSegment hidden_segment(std::span<const ClipSigns> signs, std::size_t eleme
     if (sign == 0 || (sign != ClipSigns::kMissing && out.sign != 0 && sign != out.sign)) break;
     if (sign != ClipSigns::kMissing) out.sign = sign;
   }
-  // none but unreadable ones: beyond the rail on the side from which it came
+  // only unusable readings: beyond the level on the side of the previous reading
   if (out.sign == 0) out.sign = raw[begin == 0 ? begin : begin - 1] < 0.0 ? -1 : 1;
   return out;
 }
 
-// Ends and centres of the windows of readings that come every `period_s`; one after a drop-out is as long as any other.
+// Computes ends and centres of windows for readings every `period_s`; a window after a drop-out has the usual length.
 Windows windows_of(std::span<const ImuSample> samples, TimeNs origin_ns, double period_s) {
   Windows out;
   out.period_s = period_s;
@@ -151,8 +150,8 @@ void place(double node_s, std::size_t nodes, Windows& windows) {
   }
 }
 
-// An accelerometer that is slower than the log may filter for its whole period or read at once: centres move to the
-// middle of that, and what is open of them makes of the force what it changes by: carried.md (C36)
+// A slow accelerometer averages over an unknown part of its period. Window centres are moved to the middle of the
+// possible range, and the force's change over the rest is added as uncertainty: carried.md (C12)
 std::vector<double> open_forces(OwnReadings& forces, double log_period_s) {
   const std::vector<ImuSample>& samples = forces.samples;
   std::vector<double> out(samples.size(), 0.0);
@@ -166,8 +165,7 @@ std::vector<double> open_forces(OwnReadings& forces, double log_period_s) {
   return out;
 }
 
-// The free reading beside a clipped one whose window met the rail as well: what it lost by rails.md (R69) to (R73) is
-// given back.
+// Corrects free readings next to clipped ones for subsample saturation by rails.md (R69) to (R73).
 void whole_windows(double noise_rad_s, const Eigen::Matrix3d& rows, GyroReadings& rates) {
   const std::size_t count = rates.samples.size();
   const auto along = [&](std::size_t k, Eigen::Index j) {
@@ -193,7 +191,7 @@ void whole_windows(double noise_rad_s, const Eigen::Matrix3d& rows, GyroReadings
   for (std::size_t k = 0; k < count; ++k) rates.samples[k].angular_velocity_rad_s += inverse * lost[k];
 }
 
-// carried.md (C40): errors that have a memory, as readings whose errors have none
+// carried.md (C15): replaces readings with correlated errors by equivalent ones with independent errors
 void recovered_readings(const CarriedSmoother::Params& params, const ClippedElements& clipped, GyroReadings& rates) {
   const double nodes = std::sqrt(2.0 * params.expert.readings.recovered_tau_s / params.expert.node_s);
   for (std::size_t k = 0; k < clipped.recovered_rad2_s2.size(); ++k) {
@@ -216,7 +214,7 @@ OwnReadings own_readings(std::span<const ImuSample> samples, const ClippedElemen
     }
     ImuSample own = samples[k];
     if (held) own.time_ns -= nanoseconds(held->age_s[k]);
-    // a clock that is a little off may put two of them into one of its steps
+    // an inaccurate clock may put two readings into one step
     if (held && !out.samples.empty())
       own.time_ns = std::max(own.time_ns, out.samples.back().time_ns + nanoseconds(0.5 * period_s));
     out.samples.push_back(own);
@@ -334,7 +332,7 @@ Status start_nodes(const CarriedSmoother::Params& params, const Eigen::Matrix3d&
     const double off = std::abs(windows.centre_s[k] - static_cast<double>(i) * params.expert.node_s);
     if (off < nearest[i]) nearest[i] = off, nodes[i].q_WI = state.q_WI;
   }
-  // those without a reading lie between two that have one, or beyond the last
+  // samples without a reading are between two with one, or beyond the last
   std::size_t before = 0;
   for (std::size_t i = 1; i < count; ++i) {
     if (!(readings[i] > 0.0)) continue;

@@ -6,80 +6,79 @@
 
 #include "tumble/attitude/carried_smoother.hpp"
 
-/// Readings of a carried body's IMU, summed by node: what its Problem is made of.
+/// Readings of a hand-held body's IMU, summed by node: input of Problem.
 namespace tumble::carried {
 
-/// Least determinant of the elements' rows: below, they do not span the axes.
+/// Minimum determinant of the elements' rows; below, they do not span the axes.
 inline constexpr double kRowsMin = 0.1;
-/// Deviation of the time at which a reading was taken that the log says again, anywhere within the sample before:
-/// 1/sqrt(12).
+/// Standard deviation of the time of a repeated reading, uniform within the previous sample: 1/sqrt(12).
 inline constexpr double kTaken_samples = 0.29;
 
-/// Where windows lie on the line of the nodes, which begins at the centre of the first sample's window.
+/// Positions of windows relative to the nodes, whose time starts at the centre of the first sample's window.
 struct Windows {
-  double period_s = 0.0;             ///< median
-  std::vector<double> centre_s;      ///< of each window
+  double period_s = 0.0;
+  std::vector<double> centre_s;
   std::vector<double> end_s;         ///< of each window: its time stamp
-  std::vector<std::size_t> node_of;  ///< the nearest to each centre
+  std::vector<std::size_t> node_of;  ///< nearest node to each centre
 };
 
-/// The readings of one triad, each once and at its own time: one that is slower than the log repeats itself.
+/// Distinct readings of one triad at their true times; a triad that is slower than the log repeats readings.
 struct OwnReadings {
   std::vector<ImuSample> samples;  ///< stamped at the end of their windows
   std::vector<ClipSigns> signs;    ///< one per sample
   Windows windows;
-  std::vector<std::size_t> of_sample;  ///< of each sample of the IMU, the reading that it says, anew or again
+  std::vector<std::size_t> of_sample;  ///< for each sample of the IMU, the index of its reading
 };
 
-/// Those of the gyro, and what a window lost that met the rail in a part of its length.
+/// Readings of the gyro, corrected for subsample saturation.
 struct GyroReadings : OwnReadings {
-  /// Deviation of what a window lost of each element's reading, which stands in the readings; 0: the reading is whole.
+  /// Standard deviation of the correction for subsample saturation, per element; 0: not corrected.
   std::vector<Eigen::Vector3d> open_rad_s;
 };
 
-/// What the readings about each node say, and where the samples lie among the nodes.
+/// Readings summed by node, and the positions of samples relative to the nodes.
 struct Collected {
   Windows samples;
   GyroReadings rates;
   std::vector<NodeReadings> nodes;  ///< at equal times from the first sample's centre
-  /// Root density of the angular jerk that the readings about each node show [rad/s^3 sqrt(s)]; 0: none is there.
+  /// Root density of the angular jerk estimated from the readings near each node [rad/s^3 sqrt(s)]; 0: no estimate.
   std::vector<double> jerk;
 };
 
-/// Sums the readings by node. O(N).
 Collected collect(const CarriedSmoother::Params& params, std::span<const ImuSample> samples,
                   const ClippedElements& clipped);
 
-inline constexpr double kLongest = 1.5;  ///< periods: the longest window
+inline constexpr double kLongest = 1.5;  ///< longest window, in periods
 
-/// The root density of the angular jerk about each of `nodes` nodes as readings show it [rad/s^3 sqrt(s)]: where they
-/// are free by how they bend, across what an element hides by how its slope has changed meanwhile; 0 where none tells.
-/// carried.md (C37), (C39). O(N).
+/// Estimates the root density of the angular jerk near each of `nodes` nodes from readings [rad/s^3 sqrt(s)]. The
+/// estimate uses the curvature of free readings, and the change of slope across hidden segments. 0 without information.
+/// carried.md (C24), (C25). O(N).
 std::vector<double> seen_jerk(const GyroReadings& rates, const Eigen::Matrix3d& rows, double noise_rad_s, double node_s,
                               std::size_t nodes);
 
-/// Rates with the clipped segments of each element replaced by cubics: value and slope continued from both sides, held
-/// beyond the rail and within kFillMost of it.
+/// Returns the rates with clipped segments of each element replaced by cubics. Value and slope are continuous at both
+/// ends, and the cubic is limited to the range from the saturation level to kFillMost times it.
 std::vector<Eigen::Vector3d> filled_rates(std::span<const ImuSample> samples, const ClippedElements& clipped);
 
-inline constexpr double kFillMost = 2.5;  ///< rails: the fill is a start, no more
+inline constexpr double kFillMost = 2.5;  ///< only an initial value
 
-/// While nothing in the window of CarriedStream clips, one step for so many nodes.
+/// Nodes per step while nothing in the window of CarriedStream clips.
 inline constexpr int kFreeNodes = 5;
 
-/// Whether an element of the gyro is not read, in a part of the node's time or in all of it.
+/// Returns whether an element of the gyro is unmeasured for a part of the node's time.
 bool clips(const NodeReadings& readings);
 
-/// Of the period of an accelerometer that may filter for all of it or read at once: deviation of a centre that lies
-/// evenly between the window's end and its middle, 1/(4 sqrt(3)).
+/// Standard deviation of the window centre of an accelerometer with unknown averaging, as a fraction of the period:
+/// 1/(4 sqrt(3)). The centre is uniform between the window's end and its middle.
 inline constexpr double kOpenShare = 0.144;
 
-/// Adds one triad's reading, `t` seconds from the node; `open_rad_s`: more deviation of each element's.
+/// Adds one reading of the gyro, `t` seconds from the node; `open_rad_s`: additional standard deviation per element.
 void add_rate(const ImuSample& sample, const Eigen::Matrix3d& rows, const ClipSigns& signs, double t,
               const Eigen::Vector3d& open_rad_s, NodeReadings& node);
 void add_force(const ImuSample& sample, const ClipSigns& signs, double t, NodeReadings& node);
 
-/// Attitude and rates of the nodes by a filter (VQF) on the filled rates; the hand's acceleration is what is left.
+/// Initialises attitude and rates of the nodes by a filter (VQF) on the filled rates, and the held point's acceleration
+/// by the remaining force.
 Status start_nodes(const CarriedSmoother::Params& params, const Eigen::Matrix3d& rows, const Collected& collected,
                    std::vector<Node>& nodes);
 

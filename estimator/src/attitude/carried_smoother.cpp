@@ -37,7 +37,7 @@ Status check(const CarriedSmoother::Params& params, std::span<const ImuSample> s
   return check_samples(samples, params.expert.gap_max_s);
 }
 
-// Elements at the rail, in the whole window of the reading or in a part of it.
+// Elements that are saturated in the reading's window, completely or partly.
 std::uint8_t clipped_axes(const carried::GyroReadings& rates, std::size_t k) {
   const std::size_t reading = rates.of_sample[k];
   std::uint8_t axes = 0;
@@ -54,8 +54,8 @@ RateSource source(const RateState& rate, double recovered_sigma) {
   return variance < recovered_sigma * recovered_sigma ? RateSource::recovered_contact : RateSource::bounded_only;
 }
 
-/// A body that nobody holds turns one way and on, so that an error of the gyro's scale gathers: over what has turned
-/// since the last rest, or will until the next, whichever is less. carried.md (C42).
+/// Adds the effect of the gyro's scale error for a body that is not hand-held and rotates on in one direction. The
+/// error grows with the rotation since the last rest or until the next one, whichever is smaller. carried.md (C27).
 void widen_by_rotation(const CarriedSmoother::Params& params, const carried::Collected& collected,
                        const std::vector<RateState>& rates, std::vector<AttitudeState>& attitudes) {
   const double share = params.expert.readings.recovered_scale_share;
@@ -109,7 +109,8 @@ Status CarriedSmoother::estimate(std::span<const ImuSample> samples, const Clipp
     const double at = static_cast<double>(i) * params_.expert.node_s;
     const double centre = collected.samples.centre_s[k] - at, end = collected.samples.end_s[k] - at;
     rates[k].time_ns = attitudes[k].time_ns = samples[k].time_ns;
-    // a reading is the mean over its window, so the rate is that at the window's centre; the attitude is at the stamp
+    // a reading is the mean over its window, so the rate refers to the window's centre; the attitude refers to the
+    // stamp
     rates[k].w_WI_I_rad_s = node.w_WI_I_rad_s + centre * node.angular_acceleration_rad_s2;
     rates[k].covariance_rad2_s2 = covariance.block<3, 3>(carried::kRate, carried::kRate);
     rates[k].clipped_axes = clipped_axes(collected.rates, k);

@@ -18,8 +18,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kRotationMax_rad = 0.8;  // largest step of an attitude
-constexpr int kFirstNodes = 100;          // but for the first, which still find their attitude
+constexpr double kRotationMax_rad = 0.8;
+constexpr int kFirstNodes = 100;  // the first nodes, whose attitude still converges
 
 System::BorderVector moved(const carried::Constants& from, const carried::Constants& to) {
   System::BorderVector out;
@@ -51,7 +51,7 @@ CarriedStream::CarriedStream(const Params& params)
   require_within("window_s", params.window_s, params.lag_s + 4.0 * params.body.expert.node_s, 20.0);
   nodes_max_ = static_cast<std::size_t>(std::lround(params.window_s / params.body.expert.node_s)) + 1;
   delay_ = static_cast<std::size_t>(std::lround(params.lag_s / params.period_s));
-  // samples may come denser than is said; beyond twice as dense the oldest go
+  // up to twice the nominal sample rate; beyond it, the oldest readings are dropped
   readings_max_ = 2 * static_cast<std::size_t>(std::ceil(params.window_s / params.period_s)) + 4;
 }
 
@@ -81,7 +81,7 @@ Status CarriedStream::check_reading(const Reading& reading, const Reading* befor
     const Status status = check_follows(time_ns, before->sample.time_ns, params_.body.expert.gap_max_s);
     if (!status.ok()) return status;
   }
-  // unsigned: the difference of two 64-bit stamps may not fit into a signed one
+  // unsigned, because the difference of two 64-bit stamps may overflow a signed integer
   const std::uint64_t since_ns = static_cast<std::uint64_t>(time_ns) - static_cast<std::uint64_t>(start_ns);
   if (time_ns < start_ns || since_ns > static_cast<std::uint64_t>(std::numeric_limits<TimeNs>::max()))
     return {Trouble::time_order, "carried.start_ns", double(start_ns), double(time_ns)};
@@ -135,14 +135,14 @@ Status CarriedStream::push(const ImuSample& sample, const ClippedElements& known
   const Reading& latest = state.readings.back();
   const auto end = [&] { return state.first_node + static_cast<std::int64_t>(state.window.size()); };
   const bool begun = latest.node >= end();
-  while (latest.node > end()) {  // nodes that no sample is near to
+  while (latest.node > end()) {  // nodes without samples
     extend(state);
     predict_newest(state);
   }
   if (begun) extend(state);
   add(latest, state);
   if (begun) predict_newest(state);
-  // a free gyro takes nodes where they belong: steps now and then keep attitude and constants
+  // with a free gyro, the nodes are already accurate: occasional steps update attitude and constants
   const bool due =
       begun && (latest.node % carried::kFreeNodes == 0 || latest.node < kFirstNodes || anything_clips(state));
   const bool factorised = due && step(state);
@@ -160,7 +160,7 @@ void CarriedStream::extend(State& state) const {
   state.window.emplace_back();
 }
 
-// The newest node, by its readings.
+// Updates the newest node with its readings.
 void CarriedStream::predict_newest(State& state) const {
   Knot& newest = state.window.back();
   if (state.window.size() == 1) {
@@ -170,7 +170,7 @@ void CarriedStream::predict_newest(State& state) const {
   }
 }
 
-// The next sample of the window. A window after a drop-out is as long as any other.
+// Adds a sample to the window. A window after a drop-out has the usual length.
 void CarriedStream::append(const ImuSample& sample, const HoldWatch::State& held, State& state) const {
   Reading reading;
   reading.sample = sample;
@@ -192,7 +192,7 @@ void CarriedStream::append(const ImuSample& sample, const HoldWatch::State& held
   ++state.samples;
 }
 
-// Takes over signs and rows as they are known now; true where what was read before has changed.
+// Updates signs and rows. Returns whether samples in the window have changed.
 bool CarriedStream::read_again(const ClippedElements& known, State& state) const {
   bool changed = state.rows != known.rows;
   state.rows = known.rows;
@@ -206,15 +206,15 @@ bool CarriedStream::read_again(const ClippedElements& known, State& state) const
   return changed;
 }
 
-// The newest reading is added by push().
+// push() adds the newest reading.
 void CarriedStream::rebuild(State& state) const {
   for (Knot& knot : state.window) knot.readings = {};
   for (const Reading& reading : std::span(state.readings).first(state.readings.size() - 1)) add(reading, state);
 }
 
-// To the nodes of the window where its parts belong. What the log says again belongs to none; a reading of a sensor
-// that is slower than the log is of a window of its own length, which ended at some time since the sample before, and
-// an accelerometer's may be of the end of that alone, as in carried.md (C36): rate_stream.md (R97).
+// Adds a reading to the nodes of the window. Repetitions are skipped. A reading of a slow sensor has a window of its
+// own period, which ended at an unknown time since the previous sample. For an accelerometer, the length of the window
+// is unknown as well, as in carried.md (C12): rate_stream.md (R95).
 void CarriedStream::add(const Reading& reading, State& state) const {
   const double node_s = params_.body.expert.node_s;
   const auto readings_at = [&](std::int64_t node) -> carried::NodeReadings* {
@@ -249,7 +249,7 @@ void CarriedStream::add(const Reading& reading, State& state) const {
   if (carried::NodeReadings* const own = readings_at(reading.node)) own->rest = own->rest || reading.rest;
 }
 
-// Of readings as long as the gyro's own, where the log says them again.
+// Noise of readings with the gyro's own period, if the log repeats them.
 carried::ReadingNoise CarriedStream::noise_of(const State& state) const {
   const HeldReading& gyro = state.readings.back().gyro;
   return gyro.held() ? carried::reading_noise(params_.body, gyro.period_samples * params_.period_s) : noise_;
@@ -264,7 +264,8 @@ Node CarriedStream::begin(const State& state) const {
   return out;
 }
 
-// A new node from the one before it: turned on, its rate as read where elements are free, beyond the rail where not.
+// Predicts a new node from the previous one: with its rate, measured for free elements, and beyond the level for
+// others.
 void CarriedStream::predict(const Node& before, const Eigen::Matrix3d& rows, Knot& knot) const {
   const double h = params_.body.expert.node_s;
   Node& node = knot.node;
@@ -286,7 +287,7 @@ void CarriedStream::predict(const Node& before, const Eigen::Matrix3d& rows, Kno
   if (knot.readings.force_n > 0.0) node.a_W_m_s2 = node.q_WI * knot.readings.force_m_s2 + g_W_m_s2_;
 }
 
-// carried.md (C32)
+// carried.md (C41)
 double CarriedStream::hand(const State& state) const {
   return std::max(params_.body.expert.hand.hand_floor,
                   1.0 + params_.body.expert.hand.hand_follow * (state.hand_power - 1.0));
@@ -308,7 +309,7 @@ void CarriedStream::add_prior(const State& state, System::Block& block, System::
   corner.gradient += state.prior_corner.gradient - state.prior_corner.matrix * c - state.prior.border.transpose() * x;
 }
 
-// carried.md (C14), as rate_stream.md (R90); the hand's power is that of carried.md (C32).
+// carried.md (C17), as rate_stream.md (R90); the held point's power is that of carried.md (C41).
 void CarriedStream::marginalise_oldest(State& state) const {
   keep_rates_of_oldest(state);
   const Knot& oldest = state.window[0];
@@ -323,7 +324,7 @@ void CarriedStream::marginalise_oldest(State& state) const {
     state.prior = after;
     state.prior_corner = corner;
   } else {
-    // nothing can be said of what left: as at the start
+    // the prior from the past is unusable: restart from the initial one
     state.prior = {};
     state.prior_corner = {};
     (void)motion_.add_first(next, state.prior);
@@ -340,7 +341,7 @@ void CarriedStream::marginalise_oldest(State& state) const {
   forget_readings(state);
 }
 
-// Readings whose node has left and whose rate was given out.
+// Deletes readings whose node has left the window and whose rate was reported.
 void CarriedStream::forget_readings(State& state) const {
   std::size_t gone = 0;
   const std::size_t given = first_not_given(state);
@@ -348,7 +349,7 @@ void CarriedStream::forget_readings(State& state) const {
   state.readings.erase(state.readings.begin(), state.readings.begin() + static_cast<std::ptrdiff_t>(gone));
 }
 
-// carried.md (C14), (C15)
+// carried.md (C17), (C18)
 bool CarriedStream::factorise(const carried::Motion& motion, const carried::ReadingNoise& noise, State& state,
                               System::BorderVector& step) const {
   const std::size_t count = state.window.size();
@@ -371,7 +372,7 @@ bool CarriedStream::factorise(const carried::Motion& motion, const carried::Read
   return System::solve_corner(corner, step, state.constants_covariance);
 }
 
-// carried.md (C16)
+// carried.md (C19)
 bool CarriedStream::step(State& state) const {
   System::BorderVector border;
   if (!factorise(motion_, noise_of(state), state, border)) return false;

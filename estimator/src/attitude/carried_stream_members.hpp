@@ -6,7 +6,7 @@
 #include "tumble/attitude/carried_stream.hpp"
 #include "tumble/attitude/detail/carried_live.hpp"
 
-/// Members of the states of CarriedStream and CarriedLive, and of what their Params hold beside Fields:
+/// Members of the states of CarriedStream and CarriedLive, and members of their Params that are not Fields:
 /// state_visitor.hpp.
 namespace tumble {
 

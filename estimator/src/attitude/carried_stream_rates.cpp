@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a CarriedStream gives out of its window: rates and their covariances.
+// Reported rates of a CarriedStream and their covariances.
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -16,8 +16,8 @@ using carried::System;
 
 namespace {
 
-constexpr double kUnknown_rad2_s2 = 1e6;  // variance where the equations fail
-constexpr double kNear_s = 0.1;           // so near to a clipped node covariances are those of the doubted jerk
+constexpr double kUnknown_rad2_s2 = 1e6;  // variance if the equations cannot be solved
+constexpr double kNear_s = 0.1;           // near clipped nodes, covariances use the inflated jerk
 
 std::uint8_t clipped_axes(const ClipSigns& signs) {
   std::uint8_t axes = 0;
@@ -28,7 +28,8 @@ std::uint8_t clipped_axes(const ClipSigns& signs) {
 
 }  // namespace
 
-// Of reading `at`. The covariance of a node stands until the next step of the window. `factorised`: as publish().
+// Returns the rate of reading `at`. A node's covariance is reused until the next step of the window. `factorised`: as
+// in publish().
 RateState CarriedStream::give(std::size_t at, bool due, bool factorised, State& state) const {
   const Reading& reading = state.readings[at];
   if (reading.smoothed) return *reading.smoothed;
@@ -42,12 +43,12 @@ RateState CarriedStream::give(std::size_t at, bool due, bool factorised, State& 
   return rate;
 }
 
-// Among the readings, the newest of which is being taken.
+// Among the readings, excluding the one being processed.
 std::size_t CarriedStream::first_not_given(const State& state) const {
   return state.readings.size() - std::min(state.readings.size(), delay_ + 1);
 }
 
-// Samples that come sparser than is said are given out after their node has left: their rates stand as they are now.
+// With samples sparser than stated, a node may leave before its rate is reported: stores the current rate.
 void CarriedStream::keep_rates_of_oldest(State& state) const {
   const std::size_t first = first_not_given(state);
   for (std::size_t k = first; k < state.readings.size() && state.readings[k].node <= state.first_node; ++k) {
@@ -75,7 +76,7 @@ RateState CarriedStream::to_rate(const Reading& reading, const State& state, con
   return out;
 }
 
-// Whether reading `at`, which is being given out, makes its segment one that may hide a whole turn: carried.md (C44).
+// Counts the segment of the reported reading `at` if it may contain an additional revolution: carried.md (C43).
 void CarriedStream::count_revolutions(std::size_t at, const RateState& rate, State& state) const {
   const Reading& reading = state.readings[at];
   const double since_s = at > 0 ? reading.end_s - state.readings[at - 1].end_s : params_.period_s;
@@ -96,8 +97,8 @@ void CarriedStream::count_revolutions(std::size_t at, const RateState& rate, Sta
   }
 }
 
-// Rates of the readings [first, last], with their covariances: near to clipped nodes those of carried.md (C19), (C43).
-// `factorised`: the work holds the equations with the jerk that is assumed.
+// Reports the rates of the readings [first, last] with their covariances; near clipped nodes those of carried.md (C23),
+// (C42). `factorised`: the buffer contains the equations with the assumed jerk.
 void CarriedStream::publish(std::size_t first, std::size_t last, bool factorised, State& state,
                             std::span<RateState> out) const {
   const auto of = [&](std::size_t k) {
@@ -110,7 +111,7 @@ void CarriedStream::publish(std::size_t first, std::size_t last, bool factorised
   for (std::size_t i = from; i < to; ++i) clipped = clipped || carried::clips(state.window[i].readings);
   System::BorderVector unused;
   carried::ReadingNoise noise = noise_of(state);
-  // a bound says nothing of how far beyond it a rate or a force lies: carried.md (C43)
+  // a bound contains no information about how far a rate or a force is beyond it: carried.md (C42)
   if (clipped) noise.bound = noise.force_bound = 0.0;
   const bool known = (factorised && !clipped) || factorise(clipped ? doubted_ : motion_, noise, state, unused);
   System::Conditional here, next;

@@ -25,7 +25,7 @@ ForceErrors::ForceErrors(const Params& p) : params_(p) {
   require_within("doubt", p.doubt, 1e-12, 1e3);
 }
 
-/// Gathers both sides of imu_merge.md (I8), (I9): the difference, and what its derivatives are made of.
+/// Accumulates both sides of imu_merge.md (I10), (I11): the difference, and the terms of its derivatives.
 void ForceErrors::learn(std::span<const Eigen::Vector3d> forces, const Eigen::Vector3d& rate,
                         const Eigen::Vector3d& acceleration, double dt_s, State& state) const {
   const auto count = static_cast<std::size_t>(params_.count);
@@ -56,7 +56,7 @@ void ForceErrors::learn(std::span<const Eigen::Vector3d> forces, const Eigen::Ve
   if (state.span_s >= kSpan_s - 0.5 * dt_s) update(state);
 }
 
-/// imu_merge.md (I9).
+/// imu_merge.md (I11).
 void ForceErrors::update(State& state) const {
   const double share = 1.0 / params_.count;
   const double samples = state.samples;
@@ -96,7 +96,7 @@ void ForceErrors::update(State& state) const {
   state.span_s = 0.0;
 }
 
-/// imu_merge.md (I10).
+/// imu_merge.md (I13).
 Eigen::Vector3d ForceErrors::corrected(int k, const Eigen::Vector3d& force, const State& state) {
   if (!state.started) return force;
   const auto own = state.x.segment<kPerUnit>(kPerUnit * k);

@@ -16,17 +16,17 @@ namespace tumble {
 namespace {
 
 constexpr double kBiasSigma_rad_s = 0.01, kScaleSigma = 0.01;
-constexpr double kRotating_rad_s2 = 1.0;  // an angular acceleration that tells a time offset from noise
-constexpr double kBeyondDoubt = 4.0;      // sigmas
-constexpr int kRecovering = 3;            // so many units tell the rate by their accelerometers
-constexpr double kUnharmed = 0.8;         // of the accelerometer's range, up to which its errors are learnt
+constexpr double kRotating_rad_s2 = 1.0;  // minimum angular acceleration for estimating a time offset
+constexpr double kBeyondDoubt = 4.0;
+constexpr int kRecovering = 3;     // minimum number of units for recovering the rate from accelerometers
+constexpr double kUnharmed = 0.8;  // errors are estimated up to this fraction of the accelerometer's range
 constexpr int kOffset = ImuMerge::kErrors - 1;
-constexpr double kArmSquareMin_m2_s3 = 1.0;  // 1 m/s^2 for a second: a bias of 0.05 makes 0.05 of the share
+constexpr double kArmSquareMin_m2_s3 = 1.0;  // 1 m/s^2 for a second: a bias of 0.05 changes the result by 0.05
 constexpr double kHeld_s = 0.03;
-constexpr double kWindowMax_s = 0.05;  // over a longer one a central difference says nothing
+constexpr double kWindowMax_s = 0.05;  // maximum window for a central difference
 
-constexpr double kSuspect_s = 0.04;         // impacts come in rows, and what one takes a filter gives back later
-constexpr double kAccelerationShare = 0.3;  // of its change from sample to sample, that an acceleration is in doubt by
+constexpr double kSuspect_s = 0.04;         // impacts come in groups, and a filter's response outlasts the impact
+constexpr double kAccelerationShare = 0.3;  // uncertainty of an acceleration, of its change between samples
 
 }  // namespace
 
@@ -37,7 +37,7 @@ ForceErrors::Params ImuMerge::force_params(const Params& p) {
   return out;
 }
 
-/// About the mean position of the units.
+/// Uses positions relative to the mean position of the units.
 RateRecovery::Params ImuMerge::recovery_params(const Params& p) {
   RateRecovery::Params out;
   out.count = p.count;
@@ -92,7 +92,7 @@ Status ImuMerge::step(std::span<const ImuSample> samples, State& state, std::opt
   return {};
 }
 
-/// Readings that are finite go into the windows of their units, with flags of the axes that are at a rail.
+/// Adds finite readings to the windows of their units, with the flags of saturated axes.
 void ImuMerge::gather(std::span<const ImuSample> samples, double dt_s, State& state) const {
   const double weight_s = state.samples > 0 ? dt_s : params_.window_s;
   for (std::size_t k = 0; k < samples.size(); ++k) {
@@ -113,7 +113,7 @@ void ImuMerge::gather(std::span<const ImuSample> samples, double dt_s, State& st
   state.window_s += dt_s;
 }
 
-/// Closes the windows, and begins the next.
+/// Completes the windows and starts the next.
 ImuSample ImuMerge::merge(State& state) const {
   const auto count = static_cast<std::size_t>(params_.count);
   const double h = state.window_s;
@@ -130,7 +130,7 @@ ImuSample ImuMerge::merge(State& state) const {
     raw_forces[k] = R_CI * readings[k].specific_force_m_s2;
   }
   watch_holds(finite, raw_rates, raw_forces, h, time_ns, state);
-  const double since_s = 0.5 * (h + state.length_s);  // from the middle of the last window to that of this one
+  const double since_s = 0.5 * (h + state.length_s);  // between the middles of the last two windows
   for (std::size_t k = 0; k < count; ++k) {
     const Unit& unit = state.units[k];
     present[k] = finite[k] && !unit.left_out_for_long();
@@ -161,7 +161,7 @@ ImuSample ImuMerge::merge(State& state) const {
   if (std::count(present.begin(), present.end(), true) >= kRecovering) {
     recover(readings, present, h, state, merged);
   } else {
-    state.recovery.running = false;  // what comes after a silence is not predicted from before it
+    state.recovery.running = false;  // a prediction across silence is not valid
   }
   const auto suspect = [](const Unit& unit) { return unit.suspect_s > 0.0; };
   if (2 * std::count_if(state.units.begin(), state.units.begin() + params_.count, suspect) > params_.count) {
@@ -171,10 +171,10 @@ ImuSample ImuMerge::merge(State& state) const {
   return merged;
 }
 
-/// Units whose rate and force agree with the median, and that met no rail: imu_merge.md (I5).
+/// Selects unsaturated units whose rate and force agree with the median: imu_merge.md (I5).
 ImuMerge::Flags ImuMerge::choose(const Readings& readings, const Flags& present, const Vectors& rates,
                                  const Vectors& forces, double h, State& state) const {
-  // the positions differ, so forces may by what the rate makes of it; the tolerance has to bear that
+  // at different positions, forces differ due to the rotation, which the tolerance must cover
   const Eigen::Vector3d middle_rate = median(rates, present), middle_force = median(forces, present);
   const auto units = std::count(present.begin(), present.end(), true);
   const double rate_tolerance =
@@ -185,14 +185,14 @@ ImuMerge::Flags ImuMerge::choose(const Readings& readings, const Flags& present,
     const double turned = (params_.T_CI[i].translation() - p_C_m_).norm() * middle_rate.squaredNorm() * 2.0;
     const bool agrees = units < 3 || ((rates[i] - middle_rate).norm() < rate_tolerance &&
                                       (forces[i] - middle_force).norm() < params_.expert.outliers.force_m_s2 + turned);
-    // with three units and more a clipped gyro is a bound, and its accelerometer is needed
+    // with three or more units, a clipped gyro is a bound, and its accelerometer is needed
     const int clipping = units < kRecovering ? kClipAccel | kClipGyro : kClipAccel;
     used[i] = agrees && (readings[i].device_clip_flags & clipping) == 0;
   }
   const auto kept = std::count(used.begin(), used.end(), true);
-  // no majority: nobody is to blame; of one or two, who is free is believed
+  // without a majority all are used; of one or two units, only free ones
   if (units < kRecovering ? kept == 0 : 2 * kept <= units && kept < units) used = present;
-  const bool apart = state.windows > 0 && h > 0.0;  // there is a window to take derivatives from
+  const bool apart = state.windows > 0 && h > 0.0;  // whether a previous window allows derivatives
   if (units >= kRecovering && apart && middle_rate.cwiseAbs().maxCoeff() < params_.gyro_range_rad_s) {
     leave_out_subsample_saturated(readings, present, forces, middle_rate, h, state, used);
   }
@@ -200,7 +200,7 @@ ImuMerge::Flags ImuMerge::choose(const Readings& readings, const Flags& present,
   return used;
 }
 
-/// The mean of those in use, moved to the mean position of all: imu_merge.md (I1), (I2).
+/// Mean of the selected units, transformed to the mean position of all: imu_merge.md (I1), (I2).
 ImuSample ImuMerge::mean_of_used(const Vectors& rates, const Vectors& forces, const Flags& used, double h,
                                  const State& state) const {
   const auto kept = static_cast<int>(std::count(used.begin(), used.end(), true));
@@ -224,19 +224,18 @@ ImuSample ImuMerge::mean_of_used(const Vectors& rates, const Vectors& forces, co
   return merged;
 }
 
-/// imu_merge.md (I7).
+/// imu_merge.md (I8).
 std::optional<double> ImuMerge::arm_share(const State& state) {
   if (state.arm_square_m2_s3 < kArmSquareMin_m2_s3) return std::nullopt;
   return state.arm_product / state.arm_square_m2_s3;
 }
 
-/// Learns from the means over the windows, and begins the next.
+/// Updates the error estimates with the means over the windows, and starts the next.
 void ImuMerge::close_windows(const Flags& present, const Vectors& rates, const Vectors& forces, bool all_used,
                              const ImuSample& merged, State& state) const {
   const double length_s = state.windows > 0 ? state.window_s : params_.window_s;
   const bool follows = state.windows > 1 && length_s < kWindowMax_s;
-  // a unit that repeats itself may turn out to be frozen, and nothing is to be learnt from one; where all do, it is the
-  // body that keeps its rate
+  // a unit with a repeated reading may be frozen and does not update the errors; if all repeat, the rate is constant
   const auto end = state.units.begin() + params_.count;
   const auto some_hold = [&](Hold Unit::*hold) {
     const auto holding =
@@ -252,7 +251,7 @@ void ImuMerge::close_windows(const Flags& present, const Vectors& rates, const V
     if (unit.window.readings > 0) {
       unit.last_rate_rad_s = rates[k];
       unit.last_force_m_s2 = forces[k];
-    } else {  // what it would have read, by the others: what it did read before its silence is of another motion
+    } else {  // use the value predicted from the others, since its last reading belongs to an earlier motion
       const Eigen::Vector3d& rate = merged.angular_velocity_rad_s;
       unit.last_rate_rad_s = rate;
       unit.last_force_m_s2 =
@@ -268,10 +267,10 @@ void ImuMerge::close_windows(const Flags& present, const Vectors& rates, const V
   ++state.windows;
 }
 
-/// An impact may take a unit to its rail for less than a sample. On a rigid body one unit tells what the others feel,
-/// along the line between the two without the angular acceleration. Who disagrees with the one that is believed is left
-/// out: imu_merge.md (I6). Where nobody agrees with anybody, all may turn by an acceleration that began within the
-/// window, which is asked first: (I6a).
+/// Excludes units that may be saturated for less than a sample by an impact. On a rigid body, one unit predicts the
+/// force on the others along the connecting line, without the angular acceleration. Units that disagree with the
+/// accepted one are excluded: imu_merge.md (I6). If no two units agree, a common angular acceleration that started
+/// within the window is tested first: (I7).
 void ImuMerge::leave_out_subsample_saturated(const Readings& samples, const Flags& present, const Vectors& forces,
                                              const Eigen::Vector3d& rate, double h, State& state, Flags& used) const {
   const double since_s = 0.5 * (h + state.length_s);
@@ -327,8 +326,8 @@ void ImuMerge::recover(const Readings& readings, const Flags& present, double h,
   recovery_.step({corrected.data(), static_cast<std::size_t>(params_.count)}, h, state.recovery, merged);
 }
 
-/// A unit's rate over the last window less the mean of all, explained by bias, scale and time offset; the angular
-/// acceleration is the central difference, from the window before to this one. imu_merge.md (I3), (I7).
+/// Updates the errors of a unit's rate over the last window relative to the mean: bias, scale and time offset. The
+/// angular acceleration is a central difference over the adjacent windows. imu_merge.md (I3), (I8).
 void ImuMerge::learn(const Vectors& rates, State& state) const {
   const auto count = static_cast<std::size_t>(params_.count);
   Eigen::Vector3d now = Eigen::Vector3d::Zero(), mean = Eigen::Vector3d::Zero();
@@ -353,7 +352,7 @@ void ImuMerge::learn(const Vectors& rates, State& state) const {
   for (std::size_t k = 0; k < count; ++k) {
     const Eigen::Vector3d from_mean_m = params_.T_CI[k].translation() - p_C_m_, by_rotation = by_position * from_mean_m;
     state.senses.add(forces[k] - mean_force, from_mean_m, mean, acceleration, state.length_s);
-    state.arm_product += state.length_s * by_rotation.dot(forces[k]);  // the mean of all drops out of the sum
+    state.arm_product += state.length_s * by_rotation.dot(forces[k]);  // the mean of all cancels in the sum
     state.arm_square_m2_s3 += state.length_s * by_rotation.squaredNorm();
   }
   if (acceleration.norm() < kRotating_rad_s2) return;

@@ -5,25 +5,25 @@
 
 #include "tumble/attitude/imu_merge.hpp"
 
-// what is odd about units: rails, freezing, disagreement
+// faults of units: saturation, freezing, disagreement
 namespace tumble {
 
 namespace {
 
-constexpr int kBlaming = 3;  // of two units that differ, nobody is to blame
+constexpr int kBlaming = 3;  // with two units, the wrong one cannot be identified
 constexpr double kMisfitTau_s = 0.5;
-constexpr double kComparable = 0.8;  // of the gyro's range, up to which units are compared
+constexpr double kComparable = 0.8;  // units are compared up to this fraction of the gyro's range
 
-constexpr double kPart = 0.02;  // of a clipped axis in another, from which on that is clipped too
+constexpr double kPart = 0.02;  // contribution of a clipped axis above which another axis counts as clipped
 
-/// How far gravity has turned in the body, if what is held is mostly gravity.
+/// Rotation of gravity in the body, if the repeated force is mostly gravity.
 double turned_across(const ImuMerge::Hold& hold) {
   return hold.turned_rad.cross(hold.reading.stableNormalized()).norm();
 }
 
 }  // namespace
 
-/// Flags of the units in question, of the axes of C that a clipped axis of theirs has a part in.
+/// Returns the flags of the selected units, for all axes of C to which a clipped axis contributes.
 std::uint8_t ImuMerge::flags_of(const Readings& readings, const Flags& which) const {
   unsigned out = 0;
   for (std::size_t k = 0; k < which.size(); ++k) {
@@ -57,8 +57,8 @@ Eigen::Vector3d ImuMerge::median(const Vectors& values, const Flags& which) {
   return out;
 }
 
-/// Triads that repeat themselves while the median of all moves on, forces also while the body turns: all may freeze at
-/// once.
+/// Detects triads with repeated readings while the median changes. For forces, rotation of the body is sufficient,
+/// since all units may freeze together.
 void ImuMerge::watch_holds(const Flags& present, const Vectors& rates, const Vectors& forces, double dt_s,
                            TimeNs time_ns, State& state) const {
   Flags counted = present;
@@ -108,7 +108,7 @@ Status ImuMerge::verdict(const State& state) const {
           params_.expert.frozen.after_s};
 }
 
-/// Units that are off from the others for long.
+/// Detects units that disagree with the others for long.
 void ImuMerge::watch_misfits(const Flags& present, const Vectors& rates, const Vectors& forces, TimeNs time_ns,
                              State& state) const {
   if (std::count(present.begin(), present.end(), true) < kBlaming) return;
@@ -139,7 +139,7 @@ void ImuMerge::watch_misfits(const Flags& present, const Vectors& rates, const V
     if (unit.misfits_s < params_.expert.disagreeing.after_s) continue;
     unit.disagrees = true;
     unit.disagrees_since_ns = unit.misfits_since_ns;
-    break;  // the median is another one without it
+    break;  // without it, the median changes
   }
 }
 

@@ -11,16 +11,16 @@ namespace tumble {
 
 namespace {
 
-constexpr double kStandstillRad2 = 1e-6;  // of a gyro beside a force that turned by `rotation_min_rad2`
-constexpr double kPushed = 0.5;           // of gravity, by which a force is no rest's
-constexpr double kPushedLeast_s = 0.2;    // and for so long: what moves a body so turns any gyro by more than a quantum
-constexpr double kWeightless = 0.05;      // of gravity in m/s^2, in whatever unit it comes: no direction below it
+constexpr double kStandstillRad2 = 1e-6;  // largest rotation of a gyro that does not move
+constexpr double kPushed = 0.5;           // difference from gravity that excludes rest, as a fraction of gravity
+constexpr double kPushedLeast_s = 0.2;    // and its minimum duration
+constexpr double kWeightless = 0.05;      // of gravity: minimum force with a direction, for any unit
 
 auto least_unexplained(const ImuPlausibility::State& state) {
   return std::min_element(state.unexplained_rad2.begin(), state.unexplained_rad2.end());
 }
 
-// imu_merge.md (I17): |a - b|^2 = |a|^2 + |b|^2 - 2 a b.
+// imu_merge.md (I20): |a - b|^2 = |a|^2 + |b|^2 - 2 a b.
 double together_rad2(const ImuPlausibility::State& state) {
   return 0.5 * (state.by_force_rad2 + state.by_gyro_rad2 - state.unexplained_rad2.front());
 }
@@ -73,7 +73,7 @@ void ImuPlausibility::hold(const Eigen::Vector3d& reading, double dt_s, Hold& ho
   if (froze) hold.frozen_s = std::max(hold.frozen_s, hold.held_s);
 }
 
-/// imu_merge.md (I15), (I16).
+/// imu_merge.md (I18), (I19).
 void ImuPlausibility::take(State& state) const {
   const Eigen::Vector3d force = state.average.mean.specific_force_m_s2;
   const Eigen::Vector3d turned = state.average.length_s * state.average.mean.angular_velocity_rad_s;
@@ -81,8 +81,8 @@ void ImuPlausibility::take(State& state) const {
   state.average = {};
   if (std::abs(force.norm() - params_.gravity_m_s2) > kPushed * params_.gravity_m_s2) state.pushed_s += length_s;
   if (state.open) {
-    // forces stand in the middle of their averages, so the first and the last turn count by half: to first order the
-    // same as all but the first
+    // forces are at the centres of their averages, so the first and the last rotation count by half; to first order
+    // this equals all but the first
     state.turned = (state.turned * so3::exp(turned)).normalized();
     state.length_s += length_s;
     const double start = state.force_start_m_s2.norm();
@@ -106,7 +106,7 @@ void ImuPlausibility::take(State& state) const {
   }
 }
 
-/// The sums of a steady window. imu_merge.md (I16), (I18).
+/// Adds a window with constant force to the sums. imu_merge.md (I19), (I22).
 void ImuPlausibility::compare(const Eigen::Vector3d& force_m_s2, State& state) const {
   const auto near_gravity = [&](const Eigen::Vector3d& force) {
     return std::abs(force.norm() - params_.gravity_m_s2) <= params_.near_share * params_.gravity_m_s2;
@@ -146,9 +146,9 @@ double ImuPlausibility::unexplained_share(const State& state) const {
   return turned(state) ? state.unexplained_rad2.front() / std::max(state.by_force_rad2, state.by_gyro_rad2) : 0.0;
 }
 
-/// A device that never moved has not shown that it does, but for a body that moves: by the force that the gyro leaves
-/// unexplained or that is no rest's, or by the gyro while the accelerometer reads what not even free fall gives for so
-/// long.
+/// A device that never changed counts as frozen only while the body moves. For a gyro, evidence of motion is an
+/// unexplained rotation of the force, or forces that exclude rest. For an accelerometer, evidence of motion comes from
+/// the gyro, while the readings are zero for longer than a free fall lasts.
 double ImuPlausibility::frozen_s(const State& state) const {
   const auto never_moved = [&](const Hold& hold) {
     return hold.moved_s == 0.0 && hold.held_s >= params_.expert.frozen.repeats_s;
@@ -161,7 +161,7 @@ double ImuPlausibility::frozen_s(const State& state) const {
       {state.gyro.frozen_s, state.accel.frozen_s, gyro ? state.gyro.held_s : 0.0, accel ? state.accel.held_s : 0.0});
 }
 
-/// imu_merge.md (I17).
+/// imu_merge.md (I20).
 double ImuPlausibility::rotation_slope(const State& state) const {
   if (!turned(state)) return 1.0;
   return together_rad2(state) / std::max(state.by_gyro_rad2, kStandstillRad2);
@@ -177,7 +177,7 @@ double ImuPlausibility::force_rotated_share(const State& state) const {
                                                                         : state.all_force_rad2 / state.all_gyro_rad2;
 }
 
-/// imu_merge.md (I18).
+/// imu_merge.md (I22).
 std::optional<AxisLabels> ImuPlausibility::other_labels(const State& state) const {
   if (unexplained_share(state) < params_.expert.naming.unexplained_least) return std::nullopt;
   const auto least = least_unexplained(state);
@@ -185,11 +185,11 @@ std::optional<AxisLabels> ImuPlausibility::other_labels(const State& state) cons
   return axis_labels()[static_cast<std::size_t>(least - state.unexplained_rad2.begin())];
 }
 
-/// Pushes turn the force as well, and leave as much unexplained whatever the gyro's scale: imu_merge.md (I21).
+/// Pushes rotate the force, too, and leave the same residual for any gyro scale: imu_merge.md (I21).
 bool ImuPlausibility::explains_more(const State& state) const {
   const double slope = rotation_slope(state), agreement = rotation_agreement(state);
   const double left = state.by_force_rad2 * (1.0 - agreement * agreement);
-  // they take from a slope easily, and turn it or add half of it hardly ever
+  // pushes often reduce a slope, but rarely invert it or increase it by half
   const bool low = slope > 0.0 && slope < 1.0;
   const double most = low ? params_.expert.naming.unexplained_share_max : params_.expert.turning.unexplained_share_max;
   return left < most * state.unexplained_rad2.front();

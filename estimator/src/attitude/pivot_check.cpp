@@ -18,14 +18,14 @@ namespace tumble {
 namespace {
 
 constexpr double kScaleStep = 0.05;
-constexpr std::size_t kHalf = kAxisLabels, kTwice = kAxisLabels + 1;  // after the namings; then those about 1
+constexpr std::size_t kHalf = kAxisLabels, kTwice = kAxisLabels + 1;  // after the labels; then those around 1
 constexpr std::size_t kLower = kAxisLabels + 2, kUpper = kAxisLabels + 3, kReadings = kAxisLabels + 4;
-constexpr std::size_t kCompared = kLower;  // what is no neighbour of the rates as they are
+constexpr std::size_t kCompared = kLower;  // alternatives that are not close to the unchanged rates
 constexpr double kClearly = 0.4;           // logarithm of a ratio of squares
 
 using Readings = std::array<Eigen::Matrix3d, kReadings>;
 
-/// By what rates are multiplied, S of imu_merge.md (I24).
+/// Factors of the rates, S of imu_merge.md (I27).
 Readings all_readings() {
   Readings out;
   for (std::size_t k = 0; k < kAxisLabels; ++k) {
@@ -41,12 +41,12 @@ Readings all_readings() {
   return out;
 }
 
-/// What a segment says of the scale: Newton's step from 1, and the curvature of the residual.
+/// Estimate of the scale from a segment: Newton's step from 1, and the curvature of the residual.
 struct ScaleVote {
   double step, weight;
 };
 
-/// What segments have said so far, and the one that is open.
+/// Results of the completed segments, and the current one.
 class Segments {
  public:
   Segments(const PivotCheckParams& params, const Readings& readings) : params_(params), readings_(readings) {}
@@ -59,7 +59,7 @@ class Segments {
     rotated_rad_ += dt_s * rate_rad_s.norm();
     if (length_s_ >= params_.segment_s) close();
   }
-  /// Ends the segment that is open, which counts when it is half as long as a whole one.
+  /// Completes the current segment, which counts if it has at least half of the full length.
   void close() {
     if (length_s_ >= 0.5 * params_.segment_s && rotated_rad_ >= params_.rotation_least_rad) take();
     sums_ = {};
@@ -69,7 +69,7 @@ class Segments {
   std::array<double, kCompared> evidence{};
   std::array<std::size_t, kCompared> counted{}, better{}, worse{};
   std::vector<ScaleVote> votes;
-  std::size_t explained = 0;  // by the rates as they are
+  std::size_t explained = 0;  // by the unchanged rates
 
  private:
   void take() {
@@ -79,9 +79,9 @@ class Segments {
     vote(fits);
   }
 
-  /// imu_merge.md (I25), (I26).
+  /// imu_merge.md (I28), (I29).
   void compare(const std::array<PivotFit, kReadings>& fits) {
-    // a force of another size than gravity's is as wrong as a velocity that is not explained
+    // a force magnitude other than gravity's counts as an error, like an unexplained velocity
     const auto residual = [&](std::size_t k) {
       return std::hypot(fits[k].residual_m_s,
                         length_s_ * (fits[k].gravity_m_s2 - params_.gravity_m_s2) / std::sqrt(12.0));
@@ -99,7 +99,7 @@ class Segments {
     }
   }
 
-  /// imu_merge.md (I27).
+  /// imu_merge.md (I30).
   void vote(const std::array<PivotFit, kReadings>& fits) {
     const PivotFit& fit = fits[0];
     if (fit.residual_m_s > params_.explains_m_s) return;
@@ -118,7 +118,8 @@ class Segments {
   double length_s_ = 0.0, rotated_rad_ = 0.0;
 };
 
-/// Weighted mean of the votes, and its deviation from how they are spread (White, 1980). imu_merge.md (I27).
+/// Weighted mean of the segments' scales, with its heteroscedasticity-consistent deviation (White, 1980). imu_merge.md
+/// (I30).
 void conclude_scale(const std::vector<ScaleVote>& votes, PivotCheck::Found& found) {
   double weight = 0.0, sum = 0.0, spread = 0.0;
   for (const ScaleVote& vote : votes) weight += vote.weight, sum += vote.weight * vote.step;
@@ -141,7 +142,7 @@ PivotCheck::PivotCheck(const Params& params) : params_(params) {
 
 PivotCheck::Found PivotCheck::find(std::span<const ImuSample> samples, std::span<const RateState> rates) const {
   static const Readings readings = all_readings();
-  // two series, the second half a segment behind, so that no segment's border hides what happens there
+  // two series, offset by half a segment, so that no event is split in both
   std::array<Segments, 2> series = {Segments(params_, readings), Segments(params_, readings)};
   double mean_s = 0.0, since_s = 0.0;
   Eigen::Vector3d turned = Eigen::Vector3d::Zero(), gained = Eigen::Vector3d::Zero();
@@ -188,7 +189,7 @@ PivotCheck::Found PivotCheck::find(std::span<const ImuSample> samples, std::span
   return found;
 }
 
-/// imu_merge.md (I26), (I27).
+/// imu_merge.md (I29), (I30).
 Status PivotCheck::verdict(const Found& found) const {
   const double least = std::max(params_.evidence_least, params_.evidence_of_each * static_cast<double>(found.counted));
   const auto better = static_cast<double>(found.better), worse = static_cast<double>(found.worse);

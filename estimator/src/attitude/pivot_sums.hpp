@@ -10,17 +10,17 @@
 
 namespace tumble {
 
-/// A segment of motion as turning about a point of the body that keeps its velocity. imu_merge.md (I24).
+/// Fit of a segment of motion by rotation about a point of the body that keeps its velocity. imu_merge.md (I27).
 struct PivotFit {
-  double residual_m_s = 0.0;  ///< root mean square of what is left of the velocity's three components together
-  double gravity_m_s2 = 0.0;  ///< size of the force that does not turn
+  double residual_m_s = 0.0;  ///< root mean square of the velocity residual, all components together
+  double gravity_m_s2 = 0.0;  ///< magnitude of the force that does not rotate
   double arm_m = 0.0;         ///< from the pivot to the sensor
 };
 
-/// Normal equations of imu_merge.md (I24) by one reading of the gyro.
+/// Normal equations of imu_merge.md (I27) for one alternative of the gyro.
 class PivotSums {
  public:
-  /// A mean reading over `dt_s`, whose middle is `at_s` after the segment began. O(1).
+  /// Adds a mean reading over `dt_s`, with its middle `at_s` after the segment's start. O(1).
   void add(double at_s, double dt_s, const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& force_m_s2) {
     const Eigen::Quaterniond half = so3::exp(0.5 * dt_s * rate_rad_s);
     const Eigen::Quaterniond middle = turned_ * half;
@@ -42,7 +42,7 @@ class PivotSums {
   }
 
   PivotFit fit() const {
-    constexpr double kArm = 0.01;  // s^-2: where the body hardly turns its arm stays short
+    constexpr double kArm = 0.01;  // s^-2: keeps the arm short if the body hardly rotates
     using Nine = Eigen::Matrix<double, 9, 1>;
     const Eigen::Matrix3d one = Eigen::Matrix3d::Identity();
     Eigen::Matrix<double, 9, 9> normal;
@@ -56,7 +56,7 @@ class PivotSums {
 
  private:
   Eigen::Quaterniond turned_ = Eigen::Quaterniond::Identity();
-  Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();  ///< gained from forces, in the axes of the start
+  Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();  ///< integral of the forces, in the axes of the start
   double n_ = 0.0, t_ = 0.0, tt_ = 0.0, vv_ = 0.0;
   Eigen::Matrix3d a_ = Eigen::Matrix3d::Zero(), ta_ = Eigen::Matrix3d::Zero(), aa_ = Eigen::Matrix3d::Zero();
   Eigen::Vector3d v_ = Eigen::Vector3d::Zero(), tv_ = Eigen::Vector3d::Zero(), av_ = Eigen::Vector3d::Zero();

@@ -25,14 +25,13 @@ void update(const Row& row, double innovation, double variance, RateRecovery::St
   state.x += scalar_update(row, innovation, variance, state.P);
 }
 
-// A triad of one unit as it is read: axis by axis, or along the rows of its elements while one of them clips, by
-// rails.md (R52).
+// Readings of one triad: per axis, or along the rows of its elements while one of them clips, by rails.md (R52).
 struct Seen {
   Eigen::Matrix3d rows_C;
   Eigen::Vector3d reading, slope_sigma = Eigen::Vector3d::Zero();
   std::array<bool, 3> railed{};
 
-  // What the clipped elements hide where they should have read `expected`.
+  // Returns the deficit of the clipped elements for the expected values.
   double hidden(const Eigen::Vector3d& expected) const {
     double sum2 = 0.0;
     for (int axis = 0; axis < 3; ++axis) {
@@ -102,15 +101,15 @@ RateRecovery::Met RateRecovery::met_by(std::span<const ImuSample> units) const {
     }
     clipped += force;
   }
-  // with a rate that is right, the units that are left tell the force better than the filter: only where they are few
-  // does it count as clipped
+  // with a correct rate, the remaining units give a better force than the filter, so it counts as clipped only if they
+  // are few
   out.force = clipped > 0 && (out.rate || 2 * clipped > heard);
   return out;
 }
 
 void RateRecovery::step(std::span<const ImuSample> units, double dt_s, State& state, ImuSample& merged) const {
   const Met met = met_by(units);
-  // rails are met when gravity and the turning add up: what is left is off in one direction of W
+  // saturation occurs when gravity and rotation add up, so the remaining mean is biased in one direction of W
   merged.device_clip_flags = met.force ? kClipAccelX | kClipAccelY | kClipAccelZ : 0;
   const bool fast = merged.angular_velocity_rad_s.cwiseAbs().maxCoeff() >= kFast * params_.gyro_range_rad_s;
   if (!fast && !met.rate) {
@@ -131,12 +130,12 @@ void RateRecovery::step(std::span<const ImuSample> units, double dt_s, State& st
   } else if (met.rate) {
     merged.device_clip_flags = static_cast<std::uint8_t>(merged.device_clip_flags | kClipGyro);
   }
-  // the mean of the units in use was moved to the mean position with a rate that may be wrong
+  // the mean was transformed to the mean position with a rate that may be wrong
   if (met.rate || met.force) merged.specific_force_m_s2 = state.x.segment<3>(kForce);
 }
 
 void RateRecovery::start(const ImuSample& merged, State& state) const {
-  // what was learnt of the lever arms stays
+  // the lever arms keep their estimates
   state.P.topRows<kArms>().setZero();
   state.P.leftCols<kArms>().setZero();
   auto diagonal = state.P.diagonal();
@@ -148,10 +147,10 @@ void RateRecovery::start(const ImuSample& merged, State& state) const {
   state.started = state.running = true;
 }
 
-/// imu_merge.md (I11), (I12).
+/// imu_merge.md (I14), (I15).
 void RateRecovery::predict(double dt_s, State& state) const {
   const Eigen::Vector3d rate = state.x.segment<3>(kRate), force = state.x.segment<3>(kForce);
-  const Eigen::Matrix3d turn = so3::exp(-dt_s * rate).toRotationMatrix();  // a force that stays in W turns back in C
+  const Eigen::Matrix3d turn = so3::exp(-dt_s * rate).toRotationMatrix();  // a constant force in W rotates in C
   Eigen::Matrix<double, kArms, kArms> F = Eigen::Matrix<double, kArms, kArms>::Identity();
   F.block<3, 3>(kRate, kAcceleration) = dt_s * Eigen::Matrix3d::Identity();
   F.block<3, 3>(kForce, kForce) = turn;
@@ -167,7 +166,7 @@ void RateRecovery::predict(double dt_s, State& state) const {
   diagonal.segment<3>(kForce).array() += squared(params_.force_walk_m_s2_sqrts) * dt_s;
 }
 
-/// imu_merge.md (I13).
+/// imu_merge.md (I16).
 void RateRecovery::measure_rates(std::span<const ImuSample> units, double dt_s, State& state) const {
   const double shorter = std::max(1.0, kReading_s / dt_s);
   for (std::size_t k = 0; k < units.size(); ++k) {
@@ -180,7 +179,7 @@ void RateRecovery::measure_rates(std::span<const ImuSample> units, double dt_s, 
       const double reading = seen.reading[axis];
       const double missing = reading - seen.rows_C.row(axis).dot(state.x.segment<3>(kRate));
       if (seen.railed[static_cast<std::size_t>(axis)] && missing * reading < 0.0)
-        continue;  // beyond the rail, as it may be
+        continue;  // consistent with saturation
       Row row = Row::Zero();
       row.segment<3>(kRate) = seen.rows_C.row(axis);
       const double sigma = params_.noise.rate_rad_s + params_.noise.rate_share * std::abs(reading);
@@ -190,7 +189,7 @@ void RateRecovery::measure_rates(std::span<const ImuSample> units, double dt_s, 
   }
 }
 
-/// imu_merge.md (I14).
+/// imu_merge.md (I17).
 void RateRecovery::measure_forces(std::span<const ImuSample> units, double dt_s, State& state) const {
   const double shorter = std::max(1.0, kReading_s / dt_s);
   for (std::size_t k = 0; k < units.size(); ++k) {

@@ -11,13 +11,12 @@ namespace tumble {
 
 namespace {
 
-/// Whether a reading is clipped or doubted; one that only may have met its rail in a part of its window is read.
+/// Returns whether a reading is clipped or suspect; one that is only partly saturated counts as measured.
 bool unread(const RateReport& report, const RateState& rate, std::size_t k) {
   return rate.clipped_axes != 0 || report.doubted_axes[k] != 0;
 }
 
-/// The samples with the forces of their own time, as the rates are; those of an accelerometer that repeats are older.
-/// carried.md (C28)
+/// Returns the samples with forces at the times of the rates; those of a slow accelerometer are older. carried.md (C38)
 std::vector<ImuSample> forces_in_time(std::span<const ImuSample> samples) {
   std::vector<ImuSample> out(samples.begin(), samples.end());
   const std::vector<Eigen::Vector3d> forces = forces_between_readings(samples);
@@ -70,13 +69,13 @@ void RegimeSmoother::join(std::span<const ImuSample> samples, std::vector<RateSt
     if (by_segment[k] <= params_.carried_min) continue;
     const bool only_doubted = rates[k].clipped_axes == 0 && rates[k].source != RateSource::measured;
     rates[k] = either(rates[k], other[k], by_segment[k]);
-    // no clipping was found there, whoever holds the body
+    // no clipping was detected there, in any regime
     if (only_doubted) rates[k].clipped_axes = 0, rates[k].source = RateSource::bounded_only;
   }
 }
 
-/// Probability that the body was carried within `near_s` of a sample, as far as the segment of clipped or doubted
-/// samples reaches that it lies in or near to; 0 away from all. carried.md (C41)
+/// Probability of hand-held motion within `near_s` of a sample, restricted to its segment of clipped or suspect
+/// samples; 0 away from all segments. carried.md (C40)
 std::vector<double> RegimeSmoother::carried_segments(std::span<const RegimeShares> shares, const RateReport& report,
                                                      std::span<const RateState> rates) const {
   std::vector<double> out(rates.size(), 0.0);
@@ -90,7 +89,7 @@ std::vector<double> RegimeSmoother::carried_segments(std::span<const RegimeShare
     for (; k < rates.size() && rates[k].time_ns <= rates[last].time_ns + near_ns; ++k)
       if (unread(report, rates[k], k)) last = k;
     const TimeNs from_ns = rates[first].time_ns - near_ns, to_ns = rates[last].time_ns + near_ns;
-    std::size_t i = first, a = first, b = first;  // of the segment, a to b lie within reach of i
+    std::size_t i = first, a = first, b = first;  // a to b: samples of the segment within reach of i
     while (i > 0 && rates[i - 1].time_ns >= from_ns) --i;
     for (; i < rates.size() && rates[i].time_ns <= to_ns; ++i) {
       while (a < last && rates[a].time_ns < rates[i].time_ns - near_ns) ++a;

@@ -8,44 +8,44 @@ namespace tumble {
 
 namespace {
 
-constexpr double kTurn_s = 0.01;     // the rates' derivative is taken over so long: model_error_s of the rates' model
-constexpr double kDoubtShare = 0.5;  // of the steps of a lag, those that dropped the rig
+constexpr double kTurn_s = 0.01;     // time base of the rates' derivative: model_error_s of the rate model
+constexpr double kDoubtShare = 0.5;  // fraction of a lag's steps that reset the calibration
 
 CarriedStream::Params joined(const RegimeStream::Params& params) {
   CarriedStream::Params out = params.carried;
   out.period_s = params.rate.period_s;
   out.lag_s = params.rate.lag_s;
   out.window_s = std::max(out.window_s, out.lag_s + 4.0 * out.body.expert.node_s);
-  // over a longer gap samples would leave the window before they are given out: the body is begun anew
+  // over a longer gap, samples would leave the window before they are reported: CarriedStream restarts
   out.body.expert.gap_max_s = std::min(out.body.expert.gap_max_s, out.window_s - out.lag_s);
   return out;
 }
 
-// Clipped, in a part of its window at least, or doubted: a rail may be there that was not seen yet.
+// Clipped, partly saturated, or suspect.
 bool clips(const RateStream::Knot& knot) {
   return (knot.observation.unseen() | knot.observation.read_in_part()) != 0;
 }
 
-// A run of readings that may be clipped is a bound like one that is: the truth lies at it or beyond.
+// A run of suspect readings is a lower bound, like a clipped one.
 ClipSigns signs_of(const RateObservation& observation) {
   Clipping clipping = observation.clipping;
   clipping.gyro = static_cast<std::uint8_t>(clipping.gyro | observation.read_in_part());
   return clip_signs(observation.sample, clipping);
 }
 
-// What is but doubted is told by the source: it is no clipping that was found, whoever holds the body.
+// The source marks suspect readings; they are not called clipped in any regime.
 RateState joined_rate(const RateState& rate, const RateState& carried, double share) {
   RateState out = either(rate, carried, share);
   out.clipped_axes = rate.clipped_axes;
-  // the carried body is not told which readings may have met a rail in a part
+  // CarriedStream does not know which readings may be partly saturated
   if (rate.source == RateSource::bounded_only && out.source == RateSource::measured) out.source = rate.source;
   return out;
 }
 
-// That of the rates themselves about sample k, over kTurn_s where there are so many. RateStream's own is bent by the
-// very force that is to be judged, also where the gyro reads all of the rate: carried.md (C33)
+// Derivative of the rates around sample k, over kTurn_s if there are enough samples. RateStream's own angular
+// acceleration depends on the force to be judged, even if the gyro measures the rate: carried.md (C44)
 Eigen::Vector3d angular_acceleration(std::span<const RateStream::Knot> window, std::size_t k) {
-  // differences of whole nanoseconds: in seconds since the clock's start they would hang on when that was
+  // integer differences, since seconds since the clock's start would lose precision
   const auto between_s = [&](std::size_t from, std::size_t to) {
     return seconds(window[to].observation.sample.time_ns - window[from].observation.sample.time_ns);
   };
@@ -87,7 +87,7 @@ Status RegimeStream::push(const ImuSample& sample, std::span<const AuxiliaryRead
     share = share_of(*out, state);
   }
   std::optional<RateState> carried;
-  // what RateStream takes has nothing that CarriedStream refuses, but rows that are no frame
+  // CarriedStream accepts everything that RateStream accepts, except degenerate rows
   if (state.shares.carried >= params_.carried_min) {
     if (!state.carrying) {
       carried_.restart(state.carried);
@@ -106,7 +106,6 @@ Status RegimeStream::push(const ImuSample& sample, std::span<const AuxiliaryRead
   return {};
 }
 
-// Signs and rows as RateStream knows them now.
 ClippedElements RegimeStream::known_of(State& state) const {
   state.signs.clear();
   for (const RateStream::Knot& knot : state.rate.window) state.signs.push_back(signs_of(knot.observation));
@@ -122,7 +121,7 @@ ClippedElements RegimeStream::known_of(State& state) const {
 RegimeShares RegimeStream::next(const RegimeShares& before, double dt_s, std::span<const RateStream::Knot> window,
                                 std::size_t k, const RigCalibration& rig, bool doubted) const {
   const RateStream::Knot& knot = window[k];
-  // a rate that was fitted to the force by a rig that is none agrees with the force whoever holds the body
+  // a rate that was fitted to the force with an invalid calibration agrees with the force in any regime
   if (doubted && knot.observation.unseen() != 0) return before;
   RateState rate;
   rate.w_WI_I_rad_s = knot.estimate.knot.rate_rad_s;
@@ -132,7 +131,6 @@ RegimeShares RegimeStream::next(const RegimeShares& before, double dt_s, std::sp
                         rig.constants.lever_arm_m, rig.covariance.topLeftCorner<3, 3>());
 }
 
-// The sample of the window that a rate is of.
 std::size_t RegimeStream::index_of(const RateState& rate, const State& state) const {
   const std::vector<RateStream::Knot>& window = state.rate.window;
   std::size_t k = 0;
@@ -140,14 +138,14 @@ std::size_t RegimeStream::index_of(const RateState& rate, const State& state) co
   return k;
 }
 
-// Whether RateStream drops one rig after another: then there is none that these would be flights of. Over its lag, as a
-// rate that is given out was fitted by the rigs of those steps: what was dropped before says nothing of it.
+// Returns whether RateStream resets its calibration repeatedly, which indicates that there is no flight. Evaluated over
+// its lag, because the steps of this time determined the reported rate.
 bool RegimeStream::doubts(const State& state) const {
   const RateStream::Params& rate = params_.rate;
   return state.resets > kDoubtShare * rate.lag_s / std::max(rate.period_s, rate.step_s);
 }
 
-// The evidence of the sample that is given out, by its own rate: the forward half of carried.md (C28).
+// Updates the evidence with the reported sample and its rate: the forward pass of carried.md (C38).
 void RegimeStream::judge(const RateState& rate, State& state) const {
   const double dt_s = state.given == 0 ? params_.evidence.memory_s : seconds(rate.time_ns - state.given_ns);
   state.shares =
@@ -162,9 +160,8 @@ void RegimeStream::judge(const RateState& rate, State& state) const {
   state.sum.carried += state.shares.carried;
 }
 
-// With which probability CarriedStream is right about the sample given out, s of carried.md (C41): the least over what
-// is near in the segment of clipped samples that it lies in, or near to, as far as the window shows it; 0 away from
-// all.
+// Returns the weight of CarriedStream for the reported sample, s of carried.md (C40). The weight is the smallest nearby
+// probability in the segment of clipped samples, within the window; 0 away from all segments.
 double RegimeStream::share_of(const RateState& rate, State& state) const {
   const auto near_ns = static_cast<TimeNs>(std::llround(1e9 * params_.near_s));
   const std::vector<RateStream::Knot>& window = state.rate.window;
@@ -182,7 +179,7 @@ double RegimeStream::share_of(const RateState& rate, State& state) const {
   if (!after && !before) return 0.0;
   double out = state.near.empty() ? 1.0 : state.near.front().carried;
   if (out < params_.carried_min || !before) return out;
-  // what lies ahead, by rates that are not given out yet
+  // continues into the future with provisional rates
   RegimeShares shares = state.shares;
   const RigCalibration rig = rate_.calibration(state.rate);
   const bool doubted = doubts(state);

@@ -5,7 +5,7 @@
 #include "carried_stream_members.hpp"
 #include "tumble/attitude/regime_stream.hpp"
 
-/// Members of a RegimeStream's state and of what its Params hold beside Fields: state_visitor.hpp.
+/// Members of a RegimeStream's state, and members of its Params that are not Fields: state_visitor.hpp.
 namespace tumble {
 
 template <StateOf<RegimeShares> Self, class Visitor>

@@ -12,38 +12,63 @@ namespace tumble {
 
 namespace {
 
-constexpr double kRested_s = 1.0;  // in all, for its size to be asked
+constexpr double kRested_s = 1.0;   // total rest needed for checking the magnitude
+constexpr double kOtherUnit = 3.0;  // a factor that no scale error or bias of an accelerometer reaches
 
-/// Of a body without any force that could be gravity, in whatever unit.
+/// Parameters that detect rest without any gravity-like force, for any unit.
 RestDetector::Params without_force(RestDetector::Params rests) {
   rests.force_max_m_s2 = rests.force_min_m_s2;
   rests.force_min_m_s2 = 0.0;
   return rests;
 }
 
+/// Of readings in mg, cm/s^2 or counts, whose noise is larger by as much. No robot stands still in ten times gravity.
+RestDetector::Params of_larger_numbers(RestDetector::Params rests) {
+  constexpr double kLarger = 100.0;
+  rests.force_min_m_s2 = kLarger;
+  rests.force_max_m_s2 = 1e6;
+  rests.force_spread_m_s2 = std::min(kLarger * rests.force_spread_m_s2, 1e6);
+  return rests;
+}
+
 }  // namespace
 
 RestGravity::RestGravity(const Params& params)
-    : params_(params), detector_(params.rests), weightless_(without_force(params.rests)) {
+    : params_(params),
+      detector_(params.rests),
+      weightless_(without_force(params.rests)),
+      heavy_(of_larger_numbers(params.rests)) {
   require_fields(params);
 }
 
-void RestGravity::step(const ImuSample& sample, const RateState& rate, State& state) const {
-  if (!check_sample(sample).ok()) return;
+RestGravity::Step RestGravity::follow(const ImuSample& sample, Size& state) const {
+  if (!check_sample(sample).ok()) return {};
   double dt_s = 0.0;
   const Status follows =
       state.started ? elapsed(sample.time_ns, state.last_time_ns, params_.gap_max_s, dt_s) : Status{};
-  if (follows.trouble == Trouble::time_order) return;
+  if (follows.trouble == Trouble::time_order) return {};
   state.started = true;
   state.last_time_ns = sample.time_ns;
   if (!follows.ok()) {
-    state.rest = state.weightless = {};
-    state.from_m_s2.setZero();
+    state.rest = state.weightless = state.heavy = {};
     state.rests = false;
   }
   if (weightless_.observe(sample, state.weightless)) state.weightless_s += dt_s;
-  const bool rested = state.rests;
+  const bool heavy = heavy_.observe(sample, state.heavy);
   state.rests = detector_.observe(sample, state.rest);
+  if (state.rests || heavy) {
+    state.rest_s += dt_s;
+    state.force_sum_m += dt_s * sample.specific_force_m_s2.norm();
+  }
+  return {follows.ok() ? Follows::directly : Follows::after_gap, dt_s};
+}
+
+void RestGravity::step(const ImuSample& sample, const RateState& rate, State& state) const {
+  const bool before = state.rests;
+  const auto [follows, dt_s] = follow(sample, state);
+  if (follows == Follows::not_at_all) return;
+  if (follows == Follows::after_gap) state.from_m_s2.setZero();
+  const bool rested = before && follows == Follows::directly;
   if (!state.rests) {
     turn(sample, rate, dt_s, state);
     if (rate.source != RateSource::measured) {
@@ -56,8 +81,6 @@ void RestGravity::step(const ImuSample& sample, const RateState& rate, State& st
     return;
   }
   if (!rested) arrive(state);
-  state.rest_s += dt_s;
-  state.force_sum_m += dt_s * sample.specific_force_m_s2.norm();
   state.from_m_s2 = state.rest.mean_force_m_s2();
   state.turned.setIdentity();
   state.velocity_sum_m_s.setZero();
@@ -65,7 +88,7 @@ void RestGravity::step(const ImuSample& sample, const RateState& rate, State& st
   state.span_angle_rad = state.variance_rad2 = state.segment_s = state.segment_rad2_s = 0.0;
 }
 
-/// A reading is a mean over its time, and stands in the middle of it: imu_merge.md (I22).
+/// A reading is a mean over its window and refers to the middle of it: imu_merge.md (I25).
 void RestGravity::turn(const ImuSample& sample, const RateState& rate, double dt_s, State& state) const {
   const Eigen::Quaterniond half = so3::exp(0.5 * dt_s * rate.w_WI_I_rad_s);
   const Eigen::Vector3d& force = sample.specific_force_m_s2;
@@ -78,13 +101,13 @@ void RestGravity::turn(const ImuSample& sample, const RateState& rate, double dt
   if (at_range || (sample.device_clip_flags & kClipAccel) != 0) state.hidden_m_s += dt_s * peak;
 }
 
-/// What a rail hid of a segment hangs together as long as the segment lasts: imu_merge.md (I19).
+/// Saturation deficits within a segment are correlated: imu_merge.md (I23).
 void RestGravity::end_segment(State& state) const {
   state.variance_rad2 += std::max(params_.correlation_s, state.segment_s) * state.segment_rad2_s;
   state.segment_s = state.segment_rad2_s = 0.0;
 }
 
-/// imu_merge.md (I19).
+/// imu_merge.md (I23).
 void RestGravity::arrive(State& state) const {
   end_segment(state);
   if (state.from_m_s2.isZero(0.0) || state.span_angle_rad < params_.rotation_least_rad ||
@@ -100,7 +123,7 @@ void RestGravity::arrive(State& state) const {
   state.miss_sigma_rad = sigma_rad;
 }
 
-/// imu_merge.md (I22), (I23).
+/// imu_merge.md (I25), (I26).
 void RestGravity::close_velocity(const Eigen::Vector3d& here_m_s2, double sigma_rad, State& state) const {
   const Eigen::Vector3d mean_m_s2 = state.velocity_sum_m_s / state.span_s;
   const double from_start = (mean_m_s2 - state.from_m_s2).norm() / state.from_m_s2.norm();
@@ -113,21 +136,24 @@ void RestGravity::close_velocity(const Eigen::Vector3d& here_m_s2, double sigma_
   state.velocity_allowed_share = allowed;
 }
 
-/// imu_merge.md (I20).
+/// imu_merge.md (I24).
 double RestGravity::allowed_rad(double sigma_rad) const {
   return std::min(params_.miss_most_rad, std::max(params_.miss_least_rad, params_.miss_deviations * sigma_rad));
 }
 
-double RestGravity::size_share(const State& state) const {
+double RestGravity::size_share(const Size& state) const {
   if (state.rest_s >= kRested_s) return state.force_sum_m / state.rest_s / params_.gravity_m_s2;
   return state.weightless_s >= kRested_s ? 0.0 : 1.0;
 }
 
-Status RestGravity::size_verdict(const State& state) const {
+Status RestGravity::size_verdict(const Size& state) const {
   const double size = size_share(state);
   if (std::abs(size - 1.0) > params_.size_share_max) {
-    return {Trouble::out_of_range, "specific force at rest as a share of gravity", size,
-            1.0 + std::copysign(params_.size_share_max, size - 1.0)};
+    const bool unit = size > 0.0 && (size < 1.0 / kOtherUnit || size > kOtherUnit);
+    return {Trouble::out_of_range,
+            unit ? "accelerometer unit: specific force at rest as a share of gravity"
+                 : "specific force at rest as a share of gravity",
+            size, 1.0 + std::copysign(params_.size_share_max, size - 1.0)};
   }
   return {};
 }

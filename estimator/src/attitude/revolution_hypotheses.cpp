@@ -21,37 +21,36 @@ using Vector9 = Eigen::Matrix<double, 9, 1>;
 using Matrix9 = Eigen::Matrix<double, 9, 9>;
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kAgainst = 3.0;           // deviations of the rail beyond it, on the mean of a segment
-constexpr double kRevolutionCost = 100.0;  // of the jerk that makes a turn: ten deviations
-constexpr double kAround_s = 0.3;          // solved with a segment, on either side
-constexpr double kTakeLogOdds = 3.0;       // 1 to 20: for a turn that is taken, costs leave out what the model misses
-constexpr int kTurnsMax = 2;               // more or less than the descent says
-constexpr int kRounds = 3;                 // of asking, solving the whole between them
+constexpr double kAgainst = 3.0;           // segments whose mean is closer to the level, in deviations, are tested
+constexpr double kRevolutionCost = 100.0;  // limit of a revolution's jerk cost: ten standard deviations
+constexpr double kAround_s = 0.3;          // duration before and after a segment that is solved with it
+constexpr double kTakeLogOdds = 3.0;       // 1 to 20: stricter for a change, because the cost excludes model errors
+constexpr int kTurnsMax = 2;               // more or less than the descent's solution
+constexpr int kRounds = 3;                 // maximum rounds of tests, with a complete solution after each
 
-/// Nodes [first, last] in which `element` had no free reading and stood at its rail.
+/// Nodes [first, last] in which `element` was saturated and had no free reading.
 struct Segment {
   std::size_t element = 0, first = 0, last = 0;
 };
 
-/// One number of turns: nodes from `from` on, and its cost.
+/// One number of revolutions: nodes from `from` on, and its cost.
 struct Hypothesis {
   std::vector<Node> nodes;
   double cost = 0.0;
 };
 
-/// What is left of a segment when its turns have been asked for: the likely ones but that which stands, with their
-/// shares.
+/// Remaining alternatives of a segment: the probable ones other than the current solution, with their probabilities.
 struct Open {
   std::size_t from = 0;
   std::vector<std::pair<double, std::vector<Node>>> others;
 };
 
-/// Of a turn within so many steps.
+/// Cost of an additional revolution within this many steps.
 double revolution_cost(const Problem& problem, std::size_t steps) {
   return carried::revolution_cost(static_cast<double>(steps) * problem.node_s(), problem.jerk_rad_s3_sqrts());
 }
 
-/// carried.md (C30)
+/// carried.md (C28)
 std::vector<Segment> doubtful_segments(const Problem& problem) {
   std::vector<Segment> out;
   const std::size_t count = problem.nodes().size();
@@ -72,7 +71,7 @@ std::vector<Segment> doubtful_segments(const Problem& problem) {
         const Eigen::Matrix3d covariance = problem.covariance(i).block<3, 3>(kRate, kRate);
         angle_rad += problem.node_s() * std::sqrt(std::max(0.0, m.dot(covariance * m.transpose())));
       }
-      // one that begins or ends with the recording has nothing behind it that would tell whole turns apart
+      // a segment at either end of the recording has no later information about revolutions
       if (segment.first == 0 || segment.last + 1 >= count) continue;
       const bool against_rail = beyond_rad_s < kAgainst * problem.rail_sigma_rad_s() * clipped &&
                                 revolution_cost(problem, segment.last + 2 - segment.first) < kRevolutionCost;
@@ -82,8 +81,8 @@ std::vector<Segment> doubtful_segments(const Problem& problem) {
   return out;
 }
 
-/// The nodes of a part turned `turns` more about `axis` between its nodes a and b: a smooth bump of the rate, the
-/// attitudes that follow from it, and what they miss at b spread evenly.
+/// Returns the nodes of a part with `turns` additional revolutions about `axis` between nodes a and b. Adds a smooth
+/// bump to the rate, integrates the attitudes, and distributes the remaining error at b evenly.
 std::vector<Node> with_more_revolutions(const Problem& part, const Vector3d& axis, double turns, std::size_t a,
                                         std::size_t b) {
   std::vector<Node> nodes(part.nodes().begin(), part.nodes().end());
@@ -112,7 +111,7 @@ double angle_between(std::span<const Node> from, std::span<const Node> to, const
   return out;
 }
 
-/// The number of turns that the descent found and those about it that are possible.
+/// Returns the descent's number of revolutions and the possible alternatives.
 std::vector<Hypothesis> hypotheses(const Problem& whole, const Segment& segment, const Part& part) {
   const Eigen::RowVector3d m = whole.rows().row(static_cast<Eigen::Index>(segment.element));
   const Vector3d axis = whole.rows().inverse().col(static_cast<Eigen::Index>(segment.element)).normalized();
@@ -122,7 +121,7 @@ std::vector<Hypothesis> hypotheses(const Problem& whole, const Segment& segment,
     Hypothesis found{{}, problem.converge()};
     found.nodes.assign(problem.nodes().begin(), problem.nodes().end());
     if (!std::isfinite(found.cost)) return false;
-    // the same turns as another's, come back to
+    // converged to the same number of revolutions as another
     for (const Hypothesis& other : out)
       if (std::abs(angle_between(other.nodes, found.nodes, m, whole.node_s())) < kPi) return false;
     const bool likely = out.empty() || found.cost < out.front().cost + 2.0 * kLogOdds;
@@ -140,13 +139,13 @@ std::vector<Hypothesis> hypotheses(const Problem& whole, const Segment& segment,
       if (!keep(other)) break;
     }
   }
-  // those that a better one, found later, leaves behind
+  // alternatives that a better one, found later, rules out
   std::erase_if(out, [&](const Hypothesis& each) { return each.cost > out.front().cost + 2.0 * kLogOdds; });
   return out;
 }
 
-/// One segment that was asked: what was found of its part's nodes, from `from` on, the best first, which of it is the
-/// number of turns that stands, where that is still among them, and whether another is to be taken.
+/// Result of testing one segment: the solutions of the part's nodes from `from` on, best first; which of them is the
+/// current solution, if it is still among them; and whether another one is to replace it.
 struct Asked {
   std::size_t from = 0;
   std::vector<Hypothesis> found;
@@ -154,7 +153,7 @@ struct Asked {
   bool another = false;
 };
 
-/// The shares of carried.md (C31) of all but `standing`.
+/// Returns the probabilities of carried.md (C29) of all but `standing`.
 Open shares_of(const Asked& asked, std::optional<std::size_t> standing) {
   Open out{asked.from, {}};
   const double least = asked.found.front().cost;
@@ -167,7 +166,7 @@ Open shares_of(const Asked& asked, std::optional<std::size_t> standing) {
   return out;
 }
 
-/// What is left open once the turns that are to be taken stand, or once they do not.
+/// Returns the remaining alternatives after the selected changes were applied, or without them.
 std::vector<Open> left_open(const std::vector<Asked>& asked, bool taken) {
   std::vector<Open> out;
   for (const Asked& each : asked) {
@@ -195,8 +194,8 @@ std::vector<Part> with_surroundings(const Problem& problem, std::span<const Segm
   return out;
 }
 
-/// Asks each part. The descent's own turns stand until others are clearly better; once they have fallen (`fallen`) the
-/// best of the others stands.
+/// Tests each part. The descent's solution remains until an alternative is clearly better; if it was ruled out
+/// (`fallen`), the best alternative is used.
 std::vector<Asked> ask(const Problem& problem, std::span<const Segment> segments, std::span<const Part> parts,
                        std::vector<bool>& fallen) {
   std::vector<Asked> out;
@@ -241,12 +240,12 @@ void ask_revolutions(Problem& problem, CarriedSmoother::Report& report, SolveAga
   std::vector<Part> parts = with_surroundings(problem, segments);
   std::vector<Open> open;
   std::vector<bool> fallen(parts.size(), false);
-  // what the rest says of a part is linear: right where it stands, and so asked again once a turn was taken
+  // the information about a part is linearised, so the tests are repeated after a change
   for (int round = 0; round < kRounds; ++round) {
     if (!problem.tell(parts)) break;
     const std::vector<Asked> asked = ask(problem, segments, parts, fallen);
     const auto taken = std::count_if(asked.begin(), asked.end(), [](const Asked& each) { return each.another; });
-    open = left_open(asked, true);  // in the place of what the round before left open
+    open = left_open(asked, true);  // replaces the alternatives of the previous round
     if (taken == 0) break;
     const Problem::Answer before = problem.answer();
     const CarriedSmoother::Report report_before = report;
@@ -263,7 +262,7 @@ void ask_revolutions(Problem& problem, CarriedSmoother::Report& report, SolveAga
     report.revolutions_taken += static_cast<int>(taken);
   }
   report.revolutions_open = static_cast<int>(open.size());
-  // carried.md (C31)
+  // carried.md (C29)
   for (const Open& segment : open) {
     for (const auto& [share, nodes] : segment.others) {
       for (std::size_t i = 0; i < nodes.size(); ++i) {

@@ -12,23 +12,23 @@
 
 namespace tumble {
 
-/// The specific forces of units at several places of one rigid body over a window, body axes, and whose may be that of
-/// another motion than all turn by. imu_merge.md (I6), (I6a).
+/// Specific forces of units at different positions of one rigid body over a window, body axes. Finds units whose force
+/// contradicts the common motion. imu_merge.md (I6), (I7).
 struct RigidForces {
   static constexpr std::size_t kUnits = ImuMergeState::kImus;
 
   std::array<bool, kUnits> present{};
   std::array<Eigen::Vector3d, kUnits> position_m{}, force_m_s2{};
-  std::array<double, kUnits> peak_m_s2{};    ///< largest component as read
-  std::array<double, kUnits> change_m_s2{};  ///< of the force since the last window
+  std::array<double, kUnits> peak_m_s2{};    ///< largest component of the readings
+  std::array<double, kUnits> change_m_s2{};  ///< change of the force since the last window
   Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero(), acceleration_rad_s2 = Eigen::Vector3d::Zero();
   double doubt_rad_s2 = 0.0;       ///< of the acceleration
-  double small_peak_m_s2 = 0.0;    ///< two units that read less hide nothing
-  double hidden_force_m_s2 = 0.0;  ///< by which the others may disagree
+  double small_peak_m_s2 = 0.0;    ///< two units with smaller readings are not saturated
+  double hidden_force_m_s2 = 0.0;  ///< tolerated disagreement of the others
 
   struct Believed {
     std::size_t unit = 0;
-    int others = -1;  ///< that agree with it
+    int others = -1;  ///< number of agreeing units
   };
 
   Eigen::Vector3d misfit(std::size_t k, std::size_t j) const {
@@ -43,7 +43,7 @@ struct RigidForces {
            e.norm() <= hidden_force_m_s2 + doubt_rad_s2 * d.norm();
   }
 
-  /// The unit that most others agree with, among equals the one whose force changed least.
+  /// Returns the unit with which most others agree; among equals, the one whose force changed least.
   Believed most_agreed() const {
     Believed best;
     for (std::size_t k = 0; k < kUnits; ++k) {
@@ -56,7 +56,7 @@ struct RigidForces {
     return best;
   }
 
-  /// What is to be added to the acceleration for it to explain most of all differences. (I6a)
+  /// Returns the correction of the acceleration that minimises all differences. (I7)
   Eigen::Vector3d common_acceleration() const {
     Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
     Eigen::Vector3d b = Eigen::Vector3d::Zero();
@@ -68,7 +68,7 @@ struct RigidForces {
         b += d.cross(misfit(k, j));
       }
     }
-    return A.completeOrthogonalDecomposition().solve(b);  // units in a line leave one component open
+    return A.completeOrthogonalDecomposition().solve(b);  // collinear units leave one component undetermined
   }
 };
 

@@ -21,8 +21,8 @@ constexpr double kDisplacementSigmaStart_m = 0.1;
 constexpr double kContradicts_sigma2 = 4.0;
 constexpr int kTilt = 0, kBias = 2, kVelocity = 5, kDisplacement = 7, kHeading = 9;
 
-/// Kalman update by one scalar measurement of state `index` of attitude.md (A4): `innovation` is measurement minus
-/// estimate. What is known of the heading stays: attitude.md (A8b).
+/// Kalman update by a scalar measurement of state `index` of attitude.md (A4): `innovation` is measurement minus
+/// prediction. The heading's variance is unchanged: attitude.md (A9).
 void update(int index, double innovation, double variance, TumbleAttitude::State& state) {
   const double heading = state.covariance(kHeading, kHeading);
   const Eigen::Matrix<double, TumbleAttitude::State::kStates, 1> correction =
@@ -38,7 +38,7 @@ double tilt_variance_rad2(const TumbleAttitude::State& state) {
   return state.covariance.diagonal().segment<2>(kTilt).maxCoeff();
 }
 
-/// The same as given out: while an alignment looks for up, not less than what was lost.
+/// Reported tilt variance; during a coarse alignment, at least the value at its start.
 double reported_tilt_rad2(const TumbleAttitude::State& state) {
   const double filtered = tilt_variance_rad2(state);
   return state.alignment.running ? std::max(filtered, state.alignment.tilt_rad2()) : filtered;
@@ -80,7 +80,7 @@ Status TumbleAttitude::step(const ImuSample& sample, const Eigen::Matrix3d& rate
       state.last_time_ns = sample.time_ns;
       return {};
     }
-    // of the average so far the attitude before it is turned on
+    // during an average, the attitude before it is extrapolated
     if (state.average.readings == 0) {
       state.q_taken_WI = state.q_WI;
     } else {
@@ -102,7 +102,7 @@ Status TumbleAttitude::step(const ImuSample& sample, const Eigen::Matrix3d& rate
 Eigen::Matrix3d TumbleAttitude::attitude_covariance_rad2(const State& state) {
   constexpr std::array kAttitude = {kTilt, kTilt + 1, kHeading};
   Eigen::Matrix3d covariance = state.covariance(kAttitude, kAttitude);
-  if (state.alignment.running) {  // until it has had its say, nothing of what the filter believes since
+  if (state.alignment.running) {  // until the alignment is complete, later corrections of the filter are not used
     covariance.topLeftCorner<2, 2>() = reported_tilt_rad2(state) * Eigen::Matrix2d::Identity();
     covariance.topRightCorner<2, 1>().setZero();
     covariance.bottomLeftCorner<1, 2>().setZero();
@@ -121,7 +121,7 @@ void TumbleAttitude::take_average(State& state) const {
   if (state.node_s >= params_.expert.node_s - 0.5 * length_s) end_node(state);
 }
 
-/// attitude.md (A11a): whether the mean rate of the run is the bias, as well as both are known.
+/// attitude.md (A16): whether the mean rate of the run agrees with the bias, within the uncertainty of both.
 bool TumbleAttitude::rotates_by_bias_alone(const State& state) const {
   const Eigen::Array3d off_rad_s = (state.rest.mean_rate_rad_s() - state.bias_rad_s).array();
   const Eigen::Array3d variance = state.covariance.diagonal().segment<3>(kBias).array() +
@@ -152,7 +152,7 @@ void TumbleAttitude::integrate(const ImuSample& sample, double dt_s, State& stat
   state.node_s += dt_s;
 }
 
-/// attitude.md (A8c), (A8d).
+/// attitude.md (A17), (A18).
 void TumbleAttitude::bridge_gap(const ImuSample& after, const Eigen::Matrix3d& rate_covariance_rad2_s2, double gap_s,
                                 State& state) const {
   if (state.average.readings > 0) take_average(state);
@@ -160,7 +160,7 @@ void TumbleAttitude::bridge_gap(const ImuSample& after, const Eigen::Matrix3d& r
   const Eigen::Vector3d from = state.rate_rad_s;
   Eigen::Vector3d to = after.angular_velocity_rad_s - state.bias_rad_s;
   if (state.at_rest) to.setZero();
-  ImuSample straight = after;  // a force of gravity alone: the velocity goes on
+  ImuSample straight = after;  // only gravity: the velocity continues
   straight.angular_velocity_rad_s = 0.5 * (from + to) + state.bias_rad_s;
   const Eigen::Quaterniond q_mid = state.q_WI * so3::exp(0.25 * gap_s * (from + to));
   straight.specific_force_m_s2 = q_mid.conjugate() * Eigen::Vector3d(0.0, 0.0, params_.gravity_m_s2);
@@ -176,9 +176,10 @@ void TumbleAttitude::bridge_gap(const ImuSample& after, const Eigen::Matrix3d& r
     state.covariance.diagonal().segment<2>(kVelocity).array() += squared(gap.velocity_walk_m_s_sqrts) * gap_s;
   }
   predict_node(state);
-  // a sphere that grips has the velocity of its rolling again, and has not slipped for having changed it
+  // a gripping sphere has its rolling velocity again, and the change of velocity was no slip
   if (params_.radius_m > 0.0 && !state.slipping) state.v_W_m_s = velocity_of_rotation(state);
-  // before the correction: by what one reading tells it is not linear either. Axes of an alignment before are lost.
+  // before the correction, because the update with one reading is not linear either. The axes of an earlier alignment
+  // are lost.
   const double tilt = reported_tilt_rad2(state);
   state.alignment = {};
   correct_node(state);
@@ -196,7 +197,7 @@ void TumbleAttitude::end_node(State& state) const {
   clear_node(state);
 }
 
-/// Variance of the velocity of a body, one axis, that nothing but its own motion so far and its turning tells.
+/// Variance of a body's velocity, one axis, known only from its motion so far and its rotation.
 double TumbleAttitude::own_velocity_m2_s2(double power_m2_s2, const State& state) const {
   if (state.at_rest) return squared(params_.expert.at_rest.velocity_sigma_m_s);
   const double believed = squared(params_.velocity_m_sqrts) / params_.motion_tau_s;
@@ -204,15 +205,15 @@ double TumbleAttitude::own_velocity_m2_s2(double power_m2_s2, const State& state
   return std::max({believed, power_m2_s2, turning});
 }
 
-/// What the correction of this node, a rotation of W, leaves of an alignment; attitude.md (A10c), (A10d).
+/// Updates an alignment after this node's correction, a rotation of W; attitude.md (A19), (A20).
 void TumbleAttitude::align(const Eigen::Quaterniond& corrected, State& state) const {
   CoarseAlignment& alignment = state.alignment;
   alignment.force_W_m_s = corrected * alignment.force_W_m_s;
-  // what the filter has made of the motion since is of a tilt that may be wrong
+  // the filter's velocity since then relies on a tilt that may be wrong
   const double velocity = own_velocity_m2_s2(alignment.velocity_m2_s2, state);
   const double variance = alignment.variance_rad2(velocity, params_.gravity_m_s2);
   if (variance > squared(params_.expert.gap.aligned_tilt_rad)) {
-    // of a body that has come to rest, what comes counts alone
+    // for a body that came to rest, only later data count
     if (state.at_rest && alignment.velocity_m2_s2 > velocity) alignment.begin(velocity, alignment.tilt_rad2());
     return;
   }
@@ -222,7 +223,8 @@ void TumbleAttitude::align(const Eigen::Quaterniond& corrected, State& state) co
   alignment = {};
 }
 
-/// From an attitude that is known to `tilt_rad2`: W turned by `levelling`, and of the motion what the body's own tells.
+/// Restarts from an attitude with the variance `tilt_rad2`: rotates W by `levelling` and resets the velocity to that
+/// known from the body's motion.
 void TumbleAttitude::restart(const Eigen::Quaterniond& levelling, double tilt_rad2, double velocity_m2_s2,
                              State& state) const {
   state.q_WI = (levelling * state.q_WI).normalized();
@@ -241,7 +243,7 @@ void TumbleAttitude::restart(const Eigen::Quaterniond& levelling, double tilt_ra
   state.displacement_power_m2 = 0.0;
 }
 
-/// attitude.md (A8a).
+/// attitude.md (A10).
 void TumbleAttitude::add_recovered(double dt_s, State& state) const {
   if (state.at_rest || state.recovered_rad2_s2.isZero(0.0)) {
     state.recovered_rad.setZero();
@@ -256,11 +258,11 @@ void TumbleAttitude::add_recovered(double dt_s, State& state) const {
   state.recovered_rad2_s2.setZero();
 }
 
-/// attitude.md (A6), (A7), (A8), (A8b).
+/// attitude.md (A6), (A7), (A8), (A9).
 void TumbleAttitude::predict_node(State& state) const {
   const double h = state.node_s;
   const double keep = std::exp(-h / params_.displacement_tau_s);
-  const Eigen::Vector2d gained = state.f_W_m_s.head<2>();  // gravity has no horizontal part
+  const Eigen::Vector2d gained = state.f_W_m_s.head<2>();  // gravity has no horizontal component
   state.d_W_m = keep * state.d_W_m + h * (state.v_W_m_s + 0.5 * gained);
   state.v_W_m_s += gained;
 
@@ -269,7 +271,8 @@ void TumbleAttitude::predict_node(State& state) const {
     F.block<2, 3>(kTilt, kBias) = -state.R_WI_s.topRows<2>();
     F.block<1, 3>(kHeading, kBias) = -state.R_WI_s.row(2);
   }
-  // horizontal part of phi x f; a heading error would turn accelerations, but the velocity is no reference for heading
+  // horizontal part of phi x f; a heading error would rotate accelerations, but the velocity is no reference for the
+  // heading
   F(kVelocity, kTilt + 1) = state.f_W_m_s.z();
   F(kVelocity + 1, kTilt) = -state.f_W_m_s.z();
   F.block<2, 2>(kDisplacement, kVelocity) = h * Eigen::Matrix2d::Identity();
@@ -285,7 +288,7 @@ void TumbleAttitude::predict_node(State& state) const {
   state.covariance.diagonal().segment<2>(kVelocity).array() += squared(params_.expert.acceleration_noise_m_s_sqrts) * h;
 }
 
-/// Whether rolling is not to be believed at this node.
+/// Returns whether the rolling constraint is not usable at this node.
 bool TumbleAttitude::watch_slip(const Eigen::Vector2d& misfit_m_s, State& state) const {
   const double misfit = misfit_m_s.norm();
   state.slip_s = state.slipping ? state.slip_s + state.node_s : 0.0;
@@ -293,7 +296,7 @@ bool TumbleAttitude::watch_slip(const Eigen::Vector2d& misfit_m_s, State& state)
   if (state.slipping) {
     state.slipping = !state.at_rest && state.fits_s <= params_.expert.rolling.slip_quiet_s;
     if (state.slip_s > params_.expert.rolling.slip_timeout_s) {
-      // what the integral says by now is worth less than rolling
+      // after a slip, the integrated velocity is less accurate than rolling
       state.covariance.diagonal().segment<2>(kVelocity).array() += squared(misfit);
       state.slipping = false;
     }
@@ -303,8 +306,7 @@ bool TumbleAttitude::watch_slip(const Eigen::Vector2d& misfit_m_s, State& state)
   return state.slipping;
 }
 
-/// attitude.md (A10a): variance of a body's own velocity or displacement, one axis. `power` is what was
-/// believed before.
+/// attitude.md (A13): variance of a body's own velocity or displacement, one axis. `power` is the previous value.
 double TumbleAttitude::own_motion(const Eigen::Vector2d& misfit, int index, double sigma_sqrts, double power,
                                   const State& state) const {
   const double seen = 0.5 * (misfit.squaredNorm() - state.covariance.block<2, 2>(index, index).trace());
@@ -312,7 +314,7 @@ double TumbleAttitude::own_motion(const Eigen::Vector2d& misfit, int index, doub
   return std::max({squared(sigma_sqrts) / params_.motion_tau_s, seen, remembered});
 }
 
-/// A body that is no sphere: velocity, while it moves, and displacement about zero. attitude.md (A10), (A10b).
+/// A body other than a sphere: velocity, while it moves, and displacement about zero. attitude.md (A12), (A14).
 void TumbleAttitude::correct_body(const Eigen::Vector2d& turned_m_s, State& state) const {
   const double memories = params_.motion_tau_s / state.node_s;
   if (!state.at_rest) {
@@ -330,14 +332,14 @@ void TumbleAttitude::correct_body(const Eigen::Vector2d& turned_m_s, State& stat
   }
 }
 
-/// Of the IMU by the turning of the body: about the centre, and of the centre that rolls. attitude.md (A9).
+/// Velocity of the IMU due to the body's rotation about the centre, and of the rolling centre. attitude.md (A11).
 Eigen::Vector2d TumbleAttitude::velocity_of_rotation(const State& state) const {
   const Eigen::Vector3d w_W = state.q_WI * state.rate_rad_s;
   const Eigen::Vector3d arm_W = state.q_WI * params_.lever_arm_m + params_.radius_m * Eigen::Vector3d::UnitZ();
   return w_W.cross(arm_W).head<2>();
 }
 
-/// The velocity of a sphere or of a body at rest, and the bias at rest. attitude.md (A9), (A10).
+/// Velocity of a sphere or of a body at rest, and the bias at rest. attitude.md (A11), (A12).
 void TumbleAttitude::correct_node(State& state) const {
   const double h = state.node_s;
   const Eigen::Vector2d turned = velocity_of_rotation(state);

@@ -17,7 +17,8 @@ constexpr double kNoDirection_m_s2 = 1e-6;
 /// The bias variance grows to the square of this in the forgetting time (0.1 deg/s, fixed by the publication).
 constexpr double kForgottenSigma_rad_s = 1.7453292519943295e-3;
 
-/// Measurement variance with which the scalar filter of bias and walk `growth` settles at the variance sigma^2.
+/// Measurement variance for which the scalar filter of a bias with random walk `growth` converges to the variance
+/// sigma^2.
 double steady_noise(double sigma, double growth) {
   const double variance = sigma * sigma;
   return variance * variance / growth + variance;
@@ -64,7 +65,7 @@ void Vqf::detect_rest(const ImuSample& sample, double dt_s, State& state) const 
   state.at_rest = state.rest_s >= params_.rest_time_s && quiet;
 }
 
-/// Corrects q_WN; returns the unit vector "up" as the force says, in W before the correction.
+/// Corrects q_WN; returns the unit vector "up" according to the force, in W before the correction.
 Eigen::Vector3d Vqf::level_inertial_frame(const Eigen::Vector3d& f_I_m_s2, double dt_s, State& state) const {
   // attitude.md (A3)
   state.f_N_m_s2.advance(state.q_NI * f_I_m_s2, params_.tau_s, dt_s, low_pass_warp(params_.tau_s, dt_s));
@@ -97,8 +98,7 @@ void Vqf::estimate_bias(const Eigen::Vector3d& up_W, double dt_s, State& state) 
     noise.setConstant(steady_noise(params_.expert.bias_sigma_rest_rad_s, growth));
   } else if (params_.motion_bias_estimation) {
     H = Eigen::Map<const Eigen::Matrix3d>(state.R_WI.value.data());
-    // the levelling's rate is what the bias still leaves, plus what the bias removed since the force entered the
-    // low-pass
+    // the levelling's rate is the remaining bias plus the bias removed since the force entered the low-pass
     const Eigen::Vector2d low_passed = state.bias_W_rad_s.value;
     innovation = Eigen::Vector3d(low_passed.x() - up_W.y() / dt_s, low_passed.y() + up_W.x() / dt_s, 0.0) - H * b;
     const double motion = steady_noise(params_.expert.bias_sigma_motion_rad_s, growth);

@@ -3,15 +3,15 @@
 
 #include <Eigen/Core>
 
-/// Decompositions of symmetric matrices of many unknowns, compiled once: of fixed size each file and each size would
-/// have the compiler make Eigen's anew, which took half of the time of the files that did so. Factorisations are to the
-/// bit those of the fixed sizes, eigenvalues to rounding. Each call allocates: for once in a sweep or a run.
+/// Decompositions of large symmetric matrices, compiled once. Eigen's fixed-size versions would be instantiated per
+/// file and size, which doubles the compile time of such files. Factorisations equal those of fixed size bit for bit,
+/// eigenvalues to rounding. Each call allocates, so use at most once per sweep or run.
 namespace tumble::dense {
 
-using Symmetric = Eigen::Ref<const Eigen::MatrixXd>;  ///< its lower triangle is read
+using Symmetric = Eigen::Ref<const Eigen::MatrixXd>;  ///< only the lower triangle is read
 
-/// A^-1 in place of B as columns; A positive definite, by Cholesky. Where it is not, `ok()` is false and all else of no
-/// use.
+/// Computes A^-1 B in place for positive definite A, by Cholesky. If A is not positive definite, `ok()` is false and
+/// the results are undefined.
 class Cholesky {
  public:
   explicit Cholesky(const Symmetric& A);
@@ -21,7 +21,7 @@ class Cholesky {
   void solve(Eigen::Ref<Eigen::MatrixXd> B) const;
   void solve_vector(Eigen::Ref<Eigen::VectorXd> b) const;
 
-  /// A^-1, as `Matrix`.
+  /// Returns A^-1 as `Matrix`.
   template <class Matrix>
   Matrix inverse() const {
     Matrix out = Matrix::Identity();
@@ -34,11 +34,11 @@ class Cholesky {
   bool ok_ = false;
 };
 
-/// A^-1 B in place of B, A positive or negative semidefinite, by Cholesky with pivots and without roots (LDLT).
+/// Computes A^-1 B in place for a semidefinite A, by pivoted Cholesky without roots (LDLT).
 void solve_semidefinite(const Symmetric& A, Eigen::Ref<Eigen::MatrixXd> B);
 void solve_semidefinite_vector(const Symmetric& A, Eigen::Ref<Eigen::VectorXd> b);
 
-/// Eigenvalues, ascending, and eigenvectors.
+/// Computes ascending eigenvalues and eigenvectors.
 void decompose(const Symmetric& A, Eigen::Ref<Eigen::VectorXd> values, Eigen::Ref<Eigen::MatrixXd> vectors);
 void eigenvalues(const Symmetric& A, Eigen::Ref<Eigen::VectorXd> values);
 

@@ -6,7 +6,6 @@
 #include "tumble/common/imu.hpp"
 #include "tumble/common/pose.hpp"
 
-/// Members of what states are made of everywhere: state_visitor.hpp.
 namespace tumble {
 
 template <StateOf<ImuSample> Self, class Visitor>

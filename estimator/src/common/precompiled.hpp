@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What nearly every source of the library includes, and the types of Eigen's expressions that at least a dozen of them
-// instantiate: the classes behind an expression of three numbers take a compiler longer than its code
-// (docs/figures.md). Precompiled (CMakeLists.txt), included by no source: it saves time alone.
+// Headers used by nearly every source, and types of Eigen expressions used by at least a dozen sources. The compiler
+// needs longer for the classes of an expression than for its code (docs/figures.md). Precompiled (CMakeLists.txt) and
+// never included: it only reduces the compile time.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -29,7 +29,7 @@ constexpr bool known_squares = known_matrices<Matrices...>&& known<decltype(Matr
 template <int rows, int columns = 1>
 using Real = Eigen::Matrix<double, rows, columns>;
 
-// operands, which are named in what follows and nowhere else
+// operands of the following expressions; never defined
 extern const Eigen::Vector3d a, b;
 extern Eigen::Vector3d c;
 extern const Eigen::Matrix3d R;
@@ -39,17 +39,17 @@ extern const double s;
 
 static_assert(known_matrices<Real<2>, Real<3>, Real<4>, Real<5>, Real<6>, Real<9>, Real<Eigen::Dynamic>, Real<3, 6>>);
 static_assert(known_squares<Real<2, 2>, Real<3, 3>, Real<4, 4>, Real<6, 6>, Real<9, 9>>);
-// as many as the model of the rates has states, and states with what one node shares with its next
+// the sizes of the rate model's states
 static_assert(known_matrices<Real<20>, Real<29>, Real<3, 20>, Real<29, 29>> && known_squares<Real<20, 20>>);
-// sums, differences, multiples, lengths and products of three numbers
+// sums, differences, multiples, norms and products of 3-vectors
 static_assert(known<decltype(a + b), decltype(a - b), decltype(s * a), decltype(a / s), decltype(a + s * b),
                     decltype(s * (a - b)), decltype(a.cwiseAbs()), decltype(a.cwiseAbs2()),
                     decltype(a.conjugate().cwiseProduct(b)), decltype(R * a), decltype(R.lazyProduct(a)),
                     decltype(a.transpose()), decltype(s * part)>);
-// whether all are finite, whether two are the same
+// comparisons and finiteness checks
 static_assert(known<decltype((a - a).array()), decltype((a - a).array() == (a - a).array()), decltype(a.cwiseEqual(b)),
                     decltype(R.cwiseNotEqual(Q.Identity()))>);
-// rows and columns of a rotation, and what its product with three numbers makes of them
+// rows and columns of a rotation, and its product with a 3-vector
 static_assert(
     known<decltype(R.row(0)), decltype(R.col(0)), decltype(Q.row(0)), decltype(R.row(0).transpose()),
           decltype(Q.row(0).transpose()), decltype(a.col(0)), decltype(R.row(0).transpose().cwiseProduct(a.col(0)))>);

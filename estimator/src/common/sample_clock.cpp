@@ -11,27 +11,25 @@ namespace tumble {
 
 namespace {
 
-constexpr double kOutlier = 4.0;  // standard deviations beyond which an error counts no more than there
-constexpr double kStray = 0.4;    // periods off: the sample's number may be another
+constexpr double kOutlier = 4.0;  // errors are limited to this many standard deviations
+constexpr double kStray = 0.4;    // error in periods above which the sample number is uncertain
 constexpr std::size_t kStraysMax = 8;
-constexpr double kNoPeriod = 0.25;    // jitter in periods; stamps at random are 0.29 from the next number
-constexpr double kWander = 0.5;       // correlation of an error with the one before, of a line that does not follow
-constexpr double kLeastStep = 0.25;   // periods between two times
-constexpr double kNumberSigma = 0.1;  // periods that the line may be unsure of behind a gap
+constexpr double kNoPeriod = 0.25;    // maximum jitter in periods; random stamps have 0.29
+constexpr double kWander = 0.5;       // maximum correlation of successive errors for a line that follows the clock
+constexpr double kLeastStep = 0.25;   // minimum time between two samples, in periods
+constexpr double kNumberSigma = 0.1;  // maximum uncertainty of the sample number after a gap, in periods
 
 constexpr double kPeriodMax_ns = 1e11;
-constexpr TimeNs kLast_ns = TimeNs{1} << 62;  // beyond, a time may not be moved
+constexpr TimeNs kLast_ns = TimeNs{1} << 62;  // larger stamps are not corrected, to avoid overflow
 
-// From an earlier stamp to a later one, whatever they are [ns].
 double after_ns(TimeNs later_ns, TimeNs earlier_ns) {
   return static_cast<double>(static_cast<std::uint64_t>(later_ns) - static_cast<std::uint64_t>(earlier_ns));
 }
 
-// The line through numbered stamps.
 struct Line {
   double period_ns = 0.0, last_ns = 0.0;  ///< slope; value at the last stamp's number, from the first stamp
-  double sum_n = 0.0, sum_nn = 0.0;       ///< of the numbers, counted from the last
-  double square_ns2 = 0.0;                ///< variance of the stamps about it
+  double sum_n = 0.0, sum_nn = 0.0;       ///< sums over the numbers, counted from the last
+  double square_ns2 = 0.0;                ///< variance of the stamps about the line
 };
 
 using Offsets = std::array<double, SampleClock::kStart>;  // from the first stamp [ns]
@@ -65,7 +63,7 @@ double median_step(const Offsets& x_ns) {
   return steps[steps.size() / 2];
 }
 
-// Numbers of samples from one to the next by what lies between their stamps.
+// Numbers the samples by the time steps between their stamps.
 Numbers by_steps(const Offsets& x_ns, double period_ns) {
   Numbers n{};
   for (std::size_t k = 1; k < n.size(); ++k)
@@ -115,7 +113,7 @@ Status SampleClock::push(TimeNs stamp_ns, State& state, TimeNs& time_ns) const {
     const double bound_ns = 0.5 * state.period_ns;
     time_ns += std::llround(std::clamp(state.ahead_ns, -bound_ns, bound_ns));
   }
-  // what is not mended, or stamped in a burst, may lie before the last time: the stamps catch up
+  // after an uncorrected stamp or a burst, time must still increase: the stamps catch up
   if (state.stamp_ns && time_ns <= state.time_ns)
     time_ns = state.time_ns + std::max<TimeNs>(1, std::llround(std::min(kLeastStep * state.period_ns, 0.5 * step_ns)));
   state.stamp_ns = stamp_ns;
@@ -123,7 +121,7 @@ Status SampleClock::push(TimeNs stamp_ns, State& state, TimeNs& time_ns) const {
   return {};
 }
 
-/// A line through the first stamps, where they have one.
+/// Fits a line to the first stamps if they have a period.
 void SampleClock::begin(State& state) const {
   Offsets x_ns{};
   for (std::size_t k = 0; k < kStart; ++k) x_ns[k] = after_ns(state.start[k], state.start.front());
@@ -145,8 +143,7 @@ void SampleClock::begin(State& state) const {
   state.strays = 0;
 }
 
-/// Takes the stamp into the line, sample_clock.md (S1), (S2) and (S3), or begins anew where it is no longer known which
-/// sample this is.
+/// Updates the line with a stamp, sample_clock.md (S1), (S2) and (S3). Restarts if the sample's number is uncertain.
 void SampleClock::follow(double step_ns, TimeNs stamp_ns, State& state) const {
   const double passed_ns = step_ns - state.ahead_ns;
   const double number = std::max(1.0, std::round(passed_ns / state.period_ns));
@@ -169,7 +166,7 @@ void SampleClock::follow(double step_ns, TimeNs stamp_ns, State& state) const {
   state.product_ns2 += fading * (limited_ns * state.error_ns - state.product_ns2);
   state.error_ns = limited_ns;
 
-  // numbers count from this sample on; of the residuals about the line it alone has one
+  // numbers count from this sample; only its residual about the line is not zero
   const double keep = 1.0 - fading;
   state.sum_nn = keep * (state.sum_nn - 2.0 * number * state.sum_n + number * number * state.sum);
   state.sum_n = keep * (state.sum_n - number * state.sum);

@@ -4,7 +4,6 @@
 #include "state_visitor.hpp"
 #include "tumble/common/sample_clock.hpp"
 
-/// Members of what is known of a sensor's clock: state_visitor.hpp.
 namespace tumble {
 
 template <StateOf<SampleClock::State> Self, class Visitor>

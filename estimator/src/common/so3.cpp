@@ -47,7 +47,7 @@ Eigen::Quaterniond exp(const Eigen::Vector3d& phi) {
 }
 
 Eigen::Vector3d log(const Eigen::Quaterniond& q) {
-  // of the two vectors of a half turn the one whose first non-zero component is positive, so that q and -q agree
+  // of the two vectors of a half turn, use the one whose first non-zero component is positive, so that q and -q agree
   double sign = q.w() < 0.0 ? -1.0 : 1.0;
   if (q.w() == 0.0) {
     const double lead = q.x() != 0.0 ? q.x() : (q.y() != 0.0 ? q.y() : q.z());
@@ -77,8 +77,8 @@ Eigen::Matrix3d left_jacobian_inverse(const Eigen::Vector3d& phi) {
 }
 
 Eigen::Quaterniond shortest_arc(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
-  // q = (|h| / 2, from x to / |h|) with h = from + to. from x to = from x h, and h is exact to rounding where the
-  // vectors are nearly opposite, so nothing cancels up to a half turn.
+  // q = (|h| / 2, from x to / |h|) with h = from + to. from x to = from x h, and h is exact to rounding for nearly
+  // opposite vectors, so nothing cancels up to a half turn.
   const Eigen::Vector3d h = from + to;
   const double length = h.norm();
   if (length < 1e-15) {

@@ -9,7 +9,7 @@ namespace tumble {
 
 namespace {
 
-constexpr std::uint64_t kPrime = 0x100000001b3u;  // of FNV-1a with 64 bits
+constexpr std::uint64_t kPrime = 0x100000001b3u;  // FNV-1a, 64 bits
 
 std::uint64_t mixed(std::uint64_t digest, std::uint64_t value) {
   for (int byte = 0; byte < 8; ++byte) digest = (digest ^ (value >> (8 * byte) & 0xffu)) * kPrime;
@@ -47,7 +47,7 @@ bool StateReader::take(const char* name, std::byte* to, std::size_t count, std::
 std::size_t StateReader::length(const char* name, std::size_t /*replaced*/) {
   std::uint64_t count = 0;
   if (!take(name, reinterpret_cast<std::byte*>(&count), 1, sizeof count, false)) return 0;
-  // an element has a byte at least
+  // each element has at least one byte
   bounded(name, double(count), 0.0, double(left_.size()));
   return going() ? static_cast<std::size_t>(count) : 0;
 }

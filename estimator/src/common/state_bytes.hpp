@@ -12,23 +12,23 @@
 #include "state_visitor.hpp"
 #include "tumble/common/status.hpp"
 
-/// States as bytes: numbers of fixed width, little-endian on every machine, in the order in which they are visited;
-/// before a sequence its length (8 bytes).
+/// Serialisation of states: numbers of fixed width, little-endian on every machine, in the order in which they are
+/// visited. A sequence is preceded by its length (8 bytes).
 namespace tumble {
 
-/// 64 bits that change with any one byte: FNV-1a (G. Fowler, L. Noll, K.-P. Vo, RFC 9923). Against faults, not fraud.
+/// Returns a 64-bit checksum that changes with any one byte: FNV-1a (G. Fowler, L. Noll, K.-P. Vo, RFC 9923). Detects
+/// accidental damage, not manipulation.
 std::uint64_t checksum(std::span<const std::byte> bytes, std::uint64_t before = 0xcbf29ce484222325u);
 
 namespace detail {
 
 static_assert(sizeof(std::size_t) == 8 && sizeof(int) == 4, "states are of machines of 64 bits");
 
-/// Between numbers as they lie in memory and little-endian ones; the same way in both directions.
+/// Converts numbers between memory order and little-endian, in either direction.
 void copy_little_endian(const std::byte* from, std::byte* to, std::size_t count, std::size_t width);
 
 }  // namespace detail
 
-/// Appends states to bytes.
 class StateWriter : public StateVisitor<StateWriter> {
  public:
   static constexpr bool kReads = false;
@@ -57,15 +57,15 @@ class StateWriter : public StateVisitor<StateWriter> {
   std::vector<std::byte>& out_;
 };
 
-/// Reads them back, from bytes of anybody's. After the first trouble, which status() tells, nothing more is read; what
-/// was read till then is of no use. Trouble: `too_few` (bytes that end within `field`), `non_finite`, `out_of_range`
-/// (an index, a count, an enumeration, a length that the bytes left cannot hold).
+/// Reads states from untrusted bytes. After the first error, which status() returns, nothing more is read, and the
+/// values read so far are invalid. Errors: `too_few` (the bytes end within `field`), `non_finite`, `out_of_range` (an
+/// index, a count, an enumeration, or a length larger than the remaining bytes).
 class StateReader : public StateVisitor<StateReader> {
  public:
   static constexpr bool kReads = true;
   static constexpr bool kDescribes = false;
-  static constexpr double kCountMax = 1e9;    ///< of an int
-  static constexpr double kTimeMax = 4.6e18;  ///< of 64 bits, half of what they hold: differences do not overflow
+  static constexpr double kCountMax = 1e9;    ///< limit of an int
+  static constexpr double kTimeMax = 4.6e18;  ///< half of the range of 64 bits, so that differences do not overflow
 
   explicit StateReader(std::span<const std::byte> bytes) : left_(bytes) {}
 
@@ -84,7 +84,7 @@ class StateReader : public StateVisitor<StateReader> {
   requires requires(T& value, StateReader& in) { value.load(in); }
   void whole(const char* /*name*/, T& value) { value.load(*this); }
 
-  /// What holds of every state that was saved, between its members.
+  /// Requires a relation between members that holds in every saved state.
   void require(const char* name, bool holds, double value = 0.0, double bound = 1.0) {
     if (going() && !holds) status_ = {Trouble::out_of_range, name, value, bound};
   }

@@ -12,11 +12,11 @@
 #include "state_visitor.hpp"
 #include "tumble/common/status.hpp"
 
-/// Whether bytes are of these parameters and of this layout.
+/// Checks that bytes belong to given parameters and a given layout.
 namespace tumble {
 
-/// Holds what is visited to bytes: `out_of_range` with the name of the first number that differs, the one of the bytes
-/// and the one visited; `too_few` where they end.
+/// Compares visited members with bytes. Returns `out_of_range` with the name of the first number that differs, the
+/// stored and the visited value; `too_few` if the bytes end.
 class StateMatcher : public StateVisitor<StateMatcher> {
  public:
   static constexpr bool kReads = false;
@@ -57,7 +57,8 @@ class StateMatcher : public StateVisitor<StateMatcher> {
   Status status_;
 };
 
-/// 64 bits that change with the names, widths and order of what is visited: bytes of another layout are refused by it.
+/// Computes a 64-bit digest of the names, widths and order of visited members. Bytes of another layout are rejected by
+/// it.
 class StateLayout : public StateVisitor<StateLayout> {
  public:
   static constexpr bool kReads = false;

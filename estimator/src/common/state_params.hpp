@@ -6,12 +6,12 @@
 #include "state_visitor.hpp"
 #include "tumble/common/parameters.hpp"
 
-/// A `Params` that is part of a state: state_visitor.hpp.
+/// Visiting a `Params` that is part of a state: state_visitor.hpp.
 namespace tumble {
 
 namespace detail {
 
-/// Takes the Fields of a `Params` to a StateVisitor.
+/// Passes the Fields of a `Params` to a StateVisitor.
 template <class Visitor>
 class FieldsAsMembers {
  public:
@@ -36,7 +36,7 @@ class FieldsAsMembers {
 
 }  // namespace detail
 
-/// All of a `Params`: its Fields, and what is none.
+/// Visits all of a `Params`: its Fields and other members.
 template <class Params, class Visitor>
 void visit_params(Params& params, Visitor& visit) {
   detail::FieldsAsMembers<Visitor> fields(visit);

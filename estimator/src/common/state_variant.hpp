@@ -6,10 +6,10 @@
 #include <utility>
 #include <variant>
 
-/// Variants among the members of a state: state_visitor.hpp.
+/// Visiting variants in a state: state_visitor.hpp.
 namespace tumble {
 
-/// One of several kinds: which, and its members.
+/// Visits the index of the current alternative and its members.
 template <class Variant, class Visitor, std::size_t... Kinds>
 void visit_variant(const char* name, Variant& value, Visitor& visit, std::index_sequence<Kinds...>) {
   using V = std::remove_const_t<Variant>;

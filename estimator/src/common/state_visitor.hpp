@@ -8,24 +8,24 @@
 
 #include "state_kinds.hpp"
 
-/// What evolves in an estimator, stated once, member by member: saving, loading and comparing are visitors of it.
+/// Description of an estimator's state, member by member, in one place. Saving, loading and comparing are visitors.
 ///
-/// A state has `members(Self& s, Visitor& visit)`, found beside its type (or, where its members are private, as its
-/// static function), which calls `visit("name", s.member)` for each: numbers, Eigen's fixed sizes, arrays, vectors,
-/// deques, optionals and states within. What is used as an index or counts something is given with its bounds, an
-/// enumeration with its last value; what may be NaN goes through `with_nan`; memory without meaning through `scratch`.
-/// Self may be const. A `Params` that is part of a state is visited by `visit_params`: its Fields, and what is none by
-/// `others(Self& p, Visitor& visit)`.
+/// A state has a function `members(Self& s, Visitor& visit)` in its namespace, or a static one if its members are
+/// private. The function calls `visit("name", s.member)` for each member: numbers, fixed-size Eigen types, arrays,
+/// vectors, deques, optionals and nested states. Indices and counts are visited with their bounds, enumerations with
+/// their last value. Values that may be NaN use `with_nan`, buffers `scratch`. Self may be const. A `Params` that is
+/// part of a state is visited by `visit_params`: its Fields, and its other members by `others(Self& p, Visitor&
+/// visit)`.
 namespace tumble {
 
-/// Takes states apart. `Derived` has
-/// - numbers(name, data, count): numbers that lie in a row
-/// - length(name, count): of a sequence, or of an optional (0 or 1); returns the one that counts
-/// - bounded(name, value, low, high): of a number that was visited
-/// - going(): false when nothing more is of use
-/// - whole(name, value), if it likes: of what takes itself apart
-/// - kReads: true where what is visited is filled
-/// - kDescribes: true where a sequence is to be visited as if it had one element that is as at the start.
+/// Visits the members of a state. `Derived` has
+/// - numbers(name, data, count): contiguous numbers
+/// - length(name, count): size of a sequence or an optional (0 or 1); returns the size to use
+/// - bounded(name, value, low, high): checks a visited number
+/// - going(): false to stop
+/// - whole(name, value), optional: a member that serialises itself
+/// - kReads: true if visited members are overwritten
+/// - kDescribes: true to visit a sequence as one element in its initial state.
 template <class Derived>
 class StateVisitor {
  public:
@@ -60,14 +60,13 @@ class StateVisitor {
     }
   }
 
-  /// A number that has to lie within bounds: an index, a count.
+  /// A number with bounds: an index or a count.
   template <class T>
   void operator()(const char* name, T& value, double low, double high) {
     (*this)(name, value);
     self().bounded(name, static_cast<double>(value), low, high);
   }
 
-  /// An enumeration.
   template <class T>
   requires std::is_enum_v<std::remove_const_t<T>>
   void operator()(const char* name, T& value, std::remove_const_t<T> last) {
@@ -76,14 +75,14 @@ class StateVisitor {
     if constexpr (Derived::kReads) value = static_cast<T>(number);
   }
 
-  /// The first `count` elements of an array whose others are as at the start.
+  /// The first `count` elements of an array; the others are in their initial state.
   template <class Array>
   void leading(const char* name, Array& array, std::size_t count) {
     if (Derived::kDescribes) count = 1;
     for (std::size_t k = 0; k < count && k < array.size(); ++k) (*this)(name, array[k]);
   }
 
-  /// What may be NaN.
+  /// A value that may be NaN.
   template <class T>
   void with_nan(const char* name, T& value) {
     const bool before = nan_allowed_;
@@ -92,7 +91,7 @@ class StateVisitor {
     nan_allowed_ = before;
   }
 
-  /// Memory that is no part of the state.
+  /// A buffer, not part of the state.
   template <class T>
   void scratch(T& /*value*/) {}
 
@@ -113,7 +112,7 @@ class StateVisitor {
       for (const Element& element : value) (*this)(name, element);
     } else {
       value.clear();
-      // one by one: no more memory is asked for than there are bytes to fill it
+      // one by one, so that no more memory is requested than there are bytes
       for (std::size_t k = 0; k < count && self().going(); ++k) (*this)(name, value.emplace_back());
     }
   }

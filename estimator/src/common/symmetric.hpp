@@ -3,8 +3,7 @@
 
 namespace tumble {
 
-/// P <- (P + P^T) / 2, against what rounding adds from product to product; in place, since a copy would lie on the
-/// stack.
+/// P <- (P + P^T) / 2, to remove accumulated rounding errors. In place, because a copy would be on the stack.
 template <class Matrix>
 void make_symmetric(Matrix& P) {
   for (int j = 0; j < P.cols(); ++j) {

@@ -14,9 +14,9 @@ Registration::Params full_params(const LidarInertialOdometry::Params& params) {
   return out;
 }
 
-constexpr double kCoarseReach = 2.0;  // of the distance of a match: what lies there still pulls the right way
+constexpr double kCoarseReach = 2.0;  // multiple of the matching distance with useful matches
 
-/// Wider in every respect: finds the neighbourhood of the answer, not the answer.
+/// Wider bounds: finds the neighbourhood of the solution only.
 Registration::Params coarse_params(const LidarInertialOdometry::Params& params) {
   const MatchingParams& matching = params.expert.matching;
   const RegistrationStagesParams& stages = params.expert.stages;
@@ -29,11 +29,11 @@ Registration::Params coarse_params(const LidarInertialOdometry::Params& params) 
   out.expert.step_m = stages.coarse_step_m;
   out.expert.step_rad = stages.coarse_step_rad;
   out.expert.fitting_share_min = stages.coarse_fitting_share_min;
-  out.expert.agreeing_min = out.matches_min;  // there is no prior for it to agree with
+  out.expert.agreeing_min = out.matches_min;  // a coarse start has no prior to agree with
   return out;
 }
 
-/// At most `count` of the points, evenly.
+/// Selects at most `count` points, evenly.
 void thin(std::span<const SweepPoint> points, std::size_t count, std::vector<SweepPoint>& out) {
   out.clear();
   const std::size_t every = std::max<std::size_t>(1, (points.size() + count - 1) / count);
@@ -42,12 +42,12 @@ void thin(std::span<const SweepPoint> points, std::size_t count, std::vector<Swe
 
 void align(Registration& registration, const Registration::Prior& prior, const Scene& scene,
            std::span<const SweepPoint> points, SweepTrajectory& trajectory, Registration::Result& found) {
-  // trouble is none here: the samples that the scene has cover the sweep, which add_sweep has seen to
+  // no error is possible: add_sweep ensures that the samples cover the sweep
   const Status status = registration.align(prior, scene.samples, scene.end_ns, points, scene.map, trajectory, found);
   if (!status.ok()) found.verdict = RegistrationVerdict::diverged;
 }
 
-/// The prior with the iterations to begin where `found` ended.
+/// Returns the prior with `found` as initial value of the iterations.
 Registration::Prior from(const Registration::Result& found, const Registration::Prior& prior) {
   Registration::Prior out = prior;
   out.start = found.mean.state;

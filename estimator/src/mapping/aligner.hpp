@@ -9,38 +9,38 @@
 
 namespace tumble::mapping {
 
-/// What a sweep is aligned with.
+/// Input of an alignment.
 struct Scene {
   std::span<const MotionSample> samples;
   TimeNs end_ns;
-  std::span<const SweepPoint> points;  ///< chosen ones
+  std::span<const SweepPoint> points;  ///< selected points
   const VoxelMap& map;
 };
 
-/// Registers a sweep in stages. Each tells by the verdict of `found` whether it led anywhere;
-/// `trajectory` is then that of the result, else one that was tried.
+/// Registers a sweep in stages. The verdict of `found` indicates success. `trajectory` is then that of the result,
+/// otherwise one of a failed attempt.
 class Aligner {
  public:
   explicit Aligner(const LidarInertialOdometry::Params& params);
 
-  /// With all points and few iterations: what has not converged by then converges for less otherwise.
+  /// With all points and few iterations. Without convergence, the other stages continue at lower cost.
   void in_full(const Registration::Prior& prior, const Scene& scene, SweepTrajectory& trajectory,
                Registration::Result& found);
-  /// With some of the points for as long as it takes, and in full from where these lead.
+  /// With some of the points until convergence, then with all points from the result.
   void to_convergence(const Registration::Prior& prior, const Scene& scene, SweepTrajectory& trajectory,
                       Registration::Result& found);
-  /// From a start that may be far off: first coarsely and with few points, then to convergence where these lead
-  /// somewhere, so that a start in vain costs a fraction of a registration; of that one the verdict alone is told.
+  /// From a start that may be far off: first coarsely with few points, then to convergence if that succeeds. A failed
+  /// start thus costs a fraction of a registration and returns only its verdict.
   void from_afar(const Registration::Prior& start, const Registration::Prior& prior, const Scene& scene,
                  SweepTrajectory& trajectory, Registration::Result& found);
 
-  /// That tells a return's own variance.
+  /// Returns the registration that computes a return's variance.
   const Registration& registration() const { return full_; }
 
  private:
   Registration full_, subsampled_, coarse_;
   std::size_t subsample_points_, coarse_points_;
-  std::vector<SweepPoint> thinned_;  // memory
+  std::vector<SweepPoint> thinned_;
 };
 
 Registration::Params registration_params(const LidarInertialOdometry::Params& params);

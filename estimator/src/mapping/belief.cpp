@@ -9,14 +9,14 @@ namespace tumble::mapping {
 
 using Matrix = Registration::Matrix;
 
-/// The map hangs on the lidar: at the start the lidar's pose is certain by definition, and an error of its mounting is
-/// one of the IMU's pose, of gravity as seen from the map too: mapping.md (R43), (R44).
+/// The map is defined by the lidar's first pose, which is exact by definition. A mounting error is therefore an error
+/// of the IMU's pose and of gravity in the map: mapping.md (R54), (R55).
 Belief belief_at_start(const LidarInertialOdometry::Params& params, const MotionState& levelled) {
   namespace u = unknowns;
   Belief belief;
   SweepCalibration& calibration = belief.mean.calibration;
   calibration.T_IL = params.T_IL;
-  calibration.time_offset_s = 0.0;  // the given offset is applied to the stamps
+  calibration.time_offset_s = 0.0;  // the stated offset is already applied to the stamps
   calibration.gravity_W_m_s2 = Eigen::Vector3d(0.0, 0.0, -params.expert.gravity_m_s2);
   Matrix& P = belief.weight;
   u::variances(P, u::mounting_rotation).setConstant(params.mount_sigma_rad * params.mount_sigma_rad);
@@ -46,7 +46,7 @@ Belief belief_at_start(const LidarInertialOdometry::Params& params, const Motion
   return belief;
 }
 
-/// mapping.md (R12), of all unknowns.
+/// mapping.md (R11), of all unknowns.
 Matrix unknowns_at(const SweepTrajectory& trajectory, double t_s) {
   namespace u = unknowns;
   const SweepTrajectory::Transition step = trajectory.transition(t_s);
@@ -57,8 +57,8 @@ Matrix unknowns_at(const SweepTrajectory& trajectory, double t_s) {
   return F;
 }
 
-/// Blocks of whole packets, so that each sum has the order that it has in the whole product. Rows of F beyond the
-/// motion are those of the identity: mapping.md (R12).
+/// Multiplies blocks of whole SIMD packets, so that each sum has the same order as in the full product. Rows of F
+/// beyond the motion are those of the identity: mapping.md (R11).
 Matrix pose_and_mounting(const Matrix& F, const Matrix& errors) {
   constexpr int kSize = 8, kMounting = 16;
   static_assert(kMounting >= Registration::kMotion && kMounting <= Registration::kCalibration &&
@@ -71,7 +71,7 @@ Matrix pose_and_mounting(const Matrix& F, const Matrix& errors) {
   return out;
 }
 
-/// mapping.md (R42).
+/// mapping.md (R53).
 void at_end(const Belief& at_start, const SweepTrajectory& trajectory, const Matrix& end_by_start, TimeNs end_ns,
             Belief& end) {
   end.mean = at_start.mean;

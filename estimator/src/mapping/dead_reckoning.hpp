@@ -9,13 +9,13 @@
 
 namespace tumble::mapping {
 
-/// A second opinion of where the sensor is, by inertia alone: beside a place that was found again, what stands if it is
-/// none; beside one who is lost again, the place that was contradicted.
+/// Alternative pose by inertial prediction. During an unconfirmed relocalisation, the alternative is the pose without
+/// the relocalisation. After a contradicted relocalisation, the alternative is the contradicted pose.
 struct DeadReckoning {
   Border border;
   LagWindow window;
   WorldCovariance world;
-  std::uint32_t drawn_from = 0;  ///< the first of the map's sweeps that the place drew
+  std::uint32_t drawn_from = 0;  ///< first of the map's sweeps that were inserted after the relocalisation
 };
 
 }  // namespace tumble::mapping

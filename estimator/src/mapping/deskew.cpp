@@ -54,7 +54,7 @@ void compute_levers(const SweepTrajectory& trajectory, std::span<const SweepPoin
   trajectory.levers(points, levers_W_m);
 }
 
-/// mapping.md (R13).
+/// mapping.md (R12).
 void deskew(const SweepTrajectory& trajectory, std::span<const SweepPoint> points, double target_s,
             std::vector<Eigen::Vector3f>& positions_I_m) {
   compute_levers(trajectory, points, positions_I_m);

@@ -9,7 +9,7 @@
 
 namespace tumble::mapping {
 
-/// Longer windows of the IMU say nothing about what the motion was inside of them.
+/// Longer windows of the IMU do not describe the motion inside.
 inline constexpr TimeNs kGap_ns = 50'000'000;
 
 /// Rate of one window of the IMU, in IMU axes, with its standard deviation.
@@ -23,10 +23,10 @@ struct WindowRate {
   static void members(Self& s, Visitor& visit);
 };
 
-/// Appends samples from the end of `before` to the start of `after`: the rate goes from one to the other in a straight
-/// line, with the deviation of a random walk that is known at both ends; mapping.md (R100). All axes count as clipped,
-/// so that a registration which estimates the saturation deficit estimates what the line is off by. The force is not
-/// known (`bridges_gap`). Steps of 10 ms, longer ones over gaps beyond 0.64 s.
+/// Appends samples from the end of `before` to the start of `after`. The rate is interpolated linearly, with the
+/// standard deviation of a random walk that is known at both ends; mapping.md (R44). All axes count as clipped, so
+/// that a registration that estimates the saturation deficit also estimates the interpolation error. The force is
+/// unknown (`bridges_gap`). Steps of 10 ms, longer ones over gaps beyond 0.64 s.
 void bridge_gap(const InertialNoiseParams& params, const WindowRate& before, const WindowRate& after,
                 std::vector<MotionSample>& samples);
 

@@ -11,7 +11,7 @@ namespace tumble::mapping {
 
 namespace u = unknowns;
 
-/// mapping.md (R31), (R32), (R33), (R101).
+/// mapping.md (R39), (R40), (R41), (R43).
 Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& params,
                                            const SweepTrajectory& trajectory, std::span<const MotionSample> samples,
                                            unsigned deficit_axes) {
@@ -46,22 +46,22 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
       .setConstant(std::pow(params.expert.prior.sigma_m_s * span, 2) +
                    std::pow(params.expert.prior.force_share * pushed_m_s, 2) + gap_m2_s2);
   u::variances(noise, u::position).array() += gap_m2;
-  // held still: velocity is zero, and what it would have moved by does not count
+  // stationary: velocity is zero and its effect on the position is ignored
   const auto rests = [&](const MotionSample& sample) {
     return sample.at_rest || seconds(sample.from_ns - start_ns) >= trajectory.duration_s();
   };
   if (std::all_of(samples.begin(), samples.end(), rests))
     return params.expert.standstill.noise_share * params.expert.standstill.noise_share * noise;
-  u::block(noise, u::attitude) += trajectory.duration_s() * turned;  // mapping.md (R34)
+  u::block(noise, u::attitude) += trajectory.duration_s() * turned;  // mapping.md (R42)
   u::variances(noise, u::attitude).array() += std::pow(params.expert.prior.rotation_share * rotated_rad, 2);
   return noise;
 }
 
-/// mapping.md (R35).
+/// mapping.md (R45).
 Eigen::Matrix3d railed_velocity_variance(const LidarInertialOdometry::Params& params, const SweepTrajectory& trajectory,
                                          std::span<const MotionSample> samples) {
   std::size_t hint = 0;
-  Eigen::Matrix3d lasted = Eigen::Matrix3d::Zero();  // column j: how long axis j was at its rail, in W
+  Eigen::Matrix3d lasted = Eigen::Matrix3d::Zero();  // column j: duration of saturation of axis j, in W
   for (const MotionSample& sample : samples) {
     const double from = std::max(seconds(sample.from_ns - trajectory.start_ns()), 0.0);
     const double to = std::min(seconds(sample.time_ns - trajectory.start_ns()), trajectory.duration_s());
@@ -84,12 +84,17 @@ Status start_at_rest(const LidarInertialOdometry::Params& params, std::span<cons
     force += sample.f_I_m_s2;
     count += 1.0;
   }
-  force /= count;
-  if (!(force.norm() >= 1.0)) return {Trouble::degenerate, "specific_force_m_s2", force.norm(), 1.0};
-
-  state = MotionState{};
+  if (Status status = level_at_rest(params, force / count, state); !status.ok()) return status;
   state.time_ns = samples.front().from_ns;
-  if (Status status = level(force, state.q_WI); !status.ok()) return status;
+  return {};
+}
+
+Status level_at_rest(const LidarInertialOdometry::Params& params, const Eigen::Vector3d& force_I_m_s2,
+                     MotionState& state) {
+  const double force_m_s2 = force_I_m_s2.norm();
+  if (!(force_m_s2 >= 1.0)) return {Trouble::degenerate, "specific_force_m_s2", force_m_s2, 1.0};
+  state = MotionState{};
+  if (Status status = level(force_I_m_s2, state.q_WI); !status.ok()) return status;
   u::variances(state.covariance, u::tilt)
       .setConstant(params.expert.start.level_sigma_rad * params.expert.start.level_sigma_rad);
   u::variances(state.covariance, u::velocity)

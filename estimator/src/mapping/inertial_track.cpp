@@ -15,8 +15,8 @@ namespace {
 using Params = LidarInertialOdometry::Params;
 
 constexpr TimeNs kArcStep_ns = 5'000'000;
-constexpr TimeNs kArcMost_ns = 10'000'000'000;  // no flight lasts so long
-constexpr double kArcOff_rad_s = 0.5;           // beyond deviations: an impact changes more, a wrong inertia less
+constexpr TimeNs kArcMost_ns = 10'000'000'000;  // longer than any flight
+constexpr double kArcOff_rad_s = 0.5;           // in addition to deviations: impacts change the rate by more
 
 WindowRate rate_of(const MotionSample& sample) {
   return {sample.w_WI_I_rad_s, sample.rate_sigma_rad_s, sample.from_ns, sample.time_ns};
@@ -35,7 +35,7 @@ std::uint8_t railed_axes(const Params& params, const ImuSample& sample) {
 }  // namespace
 
 RestDetector::Params mapper_rest(const LidarInertialOdometry::Params& params) {
-  // what it turns by before it is heard is lost: each axis has its part of the bound
+  // rotation before detection is lost, so each axis gets a part of the bound
   return {.rate_max_rad_s = params.expert.rest.rate_rad_s,
           .rate_spread_rad_s = params.expert.rest.rate_rad_s / std::numbers::sqrt3,
           .force_min_m_s2 = std::max(params.expert.gravity_m_s2 - params.expert.rest.force_m_s2, 0.0),
@@ -60,7 +60,7 @@ Status InertialTrack::check(const ImuSample& sample) const {
 
 void InertialTrack::take(const Params& params, const ImuSample& sample, const RateState& rate) {
   const TimeNs from_ns = last_ns().value_or(sample.time_ns);
-  // the first window's length is that of the second
+  // the first window has the length of the second
   if (!border_ns_ && samples_.size() == 1) samples_[0].from_ns = 2 * from_ns - sample.time_ns;
   MotionSample next;
   next.from_ns = from_ns;
@@ -72,7 +72,7 @@ void InertialTrack::take(const Params& params, const ImuSample& sample, const Ra
   next.clipped_axes = static_cast<std::uint8_t>(rate.clipped_axes & kClipGyro);
   next.railed_axes = railed_axes(params, sample);
   const bool after_gap = next.time_ns - next.from_ns > kGap_ns;
-  // a reading is of its own window, which is as long as the one before the gap
+  // a reading refers to its own window, which is as long as the one before the gap
   if (after_gap && newest_ && !next.at_rest)
     next.from_ns = std::max(from_ns, next.time_ns - (newest_->time_ns - newest_->from_ns));
   next.bridges_gap = after_gap && next.from_ns == from_ns;
@@ -89,12 +89,13 @@ void InertialTrack::fill_gap(const Params& params, bool in_flight) {
   if (!in_flight || !fly_through(params, *before_newest_, *newest_))
     bridge_gap(params.expert.prior, *before_newest_, *newest_, samples_);
   if (undecided_rad_s_.empty()) return;
-  // one rate for each sample, and the last is of the one that is still to come
+  // one rate per sample; the last one belongs to the pending sample
   for (const MotionSample& part : std::span(samples_).subspan(first))
     undecided_rad_s_.insert(undecided_rad_s_.end() - 1, part.w_WI_I_rad_s);
 }
 
-/// Bridges the gap by the arc, if the rate at its end is the one that is read then: flight_arc.md (A12).
+/// Bridges the gap by the ballistic arc if the rate predicted at its end agrees with the next reading: flight_arc.md
+/// (A12).
 bool InertialTrack::fly_through(const Params& params, const WindowRate& before, const WindowRate& after) {
   if (after.from_ns - before.time_ns > kArcMost_ns) return false;
   const std::size_t first = samples_.size();
@@ -114,8 +115,8 @@ bool InertialTrack::fly_through(const Params& params, const WindowRate& before, 
   return true;
 }
 
-/// Now that the rates on both sides of the newest sample are known, tells whether it belongs to a flight: before a gap
-/// by the rate that flight itself would change. flight_arc.md (A3), (A4), (A5).
+/// Decides whether the newest sample belongs to a flight, with the rates on both sides of it. Before a gap, uses the
+/// rate predicted by free flight. flight_arc.md (A3), (A4), (A5).
 bool InertialTrack::tell_flight(const Params& params, const MotionSample& next, bool after_gap) {
   MotionSample& now = samples_.back();
   if (now.in_flight) return true;
@@ -138,13 +139,13 @@ void InertialTrack::listen_for_rest(const Params& params, const ImuSample& sampl
   ImuSample heard = sample;
   heard.angular_velocity_rad_s = rate.w_WI_I_rad_s;
   const bool clipped = (rate.clipped_axes & kClipGyro) != 0;
-  // while the rest at the start lasts its mean is the bias
+  // during the initial rest, its mean is the bias
   const Eigen::Vector3d bias = initial_.lasts ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : initial_.gyro_bias_rad_s;
   if (clipped) rest_ = {};
   if (!clipped && rests_.observe(heard, rest_, bias)) next.rests_since_ns = rest_.first_ns;
   if (initial_.lasts) {
     if (!initial_.first_ns) initial_.first_ns = initial_.run_ns = sample.time_ns;
-    // the mean of a run that has just begun is as noisy as its readings, and noise may begin it anew
+    // the mean of a new run is as noisy as its readings, and noise may restart the run
     if (next.rests_since_ns && seconds(*next.rests_since_ns - *initial_.first_ns) < params.expert.start.bias_rest_s)
       initial_.run_ns = next.rests_since_ns;
     initial_.lasts = next.rests_since_ns == initial_.run_ns;
@@ -161,7 +162,7 @@ void InertialTrack::listen_for_rest(const Params& params, const ImuSample& sampl
   undecided_rad_s_.clear();
 }
 
-/// What moves by the whole reading has moved from its first sample on.
+/// If a complete reading shows motion, all samples since its start count as motion, too.
 void InertialTrack::take_back_rest(std::optional<TimeNs> rests_since_ns) {
   const std::size_t count = std::min(undecided_rad_s_.size(), samples_.size());
   for (std::size_t back = 1; back <= count; ++back) {
@@ -176,6 +177,23 @@ void InertialTrack::take_back_rest(std::optional<TimeNs> rests_since_ns) {
 bool InertialTrack::rests_until(TimeNs end_ns) const {
   const auto rests = [&](const MotionSample& sample) { return sample.from_ns >= end_ns || sample.rests_since_ns; };
   return std::all_of(samples_.begin(), samples_.end(), rests);
+}
+
+bool InertialTrack::rests_between(TimeNs from_ns, TimeNs end_ns) const {
+  const std::span<const MotionSample> samples = samples_from(from_ns);
+  const auto after = [&](const MotionSample& sample) { return sample.from_ns >= end_ns; };
+  const auto end = std::find_if(samples.begin(), samples.end(), after);
+  return std::all_of(samples.begin(), end, [](const MotionSample& sample) { return bool(sample.rests_since_ns); });
+}
+
+std::span<const MotionSample> InertialTrack::samples_from(TimeNs from_ns) const {
+  const auto ended = [&](const MotionSample& sample) { return sample.time_ns <= from_ns; };
+  return {std::partition_point(samples_.begin(), samples_.end(), ended), samples_.end()};
+}
+
+std::optional<Eigen::Vector3d> InertialTrack::resting_force(TimeNs time_ns, double lasted_s) const {
+  if (!rest_.rests || seconds(time_ns - rest_.first_ns) < lasted_s) return std::nullopt;
+  return rest_.mean_force_m_s2();
 }
 
 void InertialTrack::leave_out_force(TimeNs end_ns) {

@@ -11,39 +11,47 @@
 
 namespace tumble::mapping {
 
-/// What the IMU has said since the last sweep's end: its samples, the rest at the start, gaps bridged, and flight told.
+/// Stores the IMU's samples since the last sweep's end. Detects the initial rest and flight, and bridges gaps.
 class InertialTrack {
  public:
   using Params = LidarInertialOdometry::Params;
 
   explicit InertialTrack(const Params& params);
 
-  /// `time_order` unless the sample comes after all before it.
+  /// Returns `time_order` unless the sample is later than all before.
   Status check(const ImuSample& sample) const;
   /// Adds a checked sample with its angular velocity.
   void take(const Params& params, const ImuSample& sample, const RateState& rate);
 
-  /// From the window that holds the last sweep's end on.
+  /// Starts with the window that contains the last sweep's end.
   std::span<const MotionSample> samples() const { return samples_; }
-  /// The newest of them, or the last sweep's end.
+  /// Returns the samples that end after `from_ns`.
+  std::span<const MotionSample> samples_from(TimeNs from_ns) const;
+  /// Returns the end of the last sweep; nothing before the first.
+  std::optional<TimeNs> border_ns() const { return border_ns_; }
+  /// Returns the mean specific force of the current rest, if it had lasted for `lasted_s` by `time_ns`.
+  std::optional<Eigen::Vector3d> resting_force(TimeNs time_ns, double lasted_s) const;
+  /// Returns whether the rest at the start continues.
+  bool has_not_moved() const { return initial_.lasts; }
+  /// Time of the newest sample, or of the last sweep's end.
   std::optional<TimeNs> last_ns() const;
-  /// Whether the IMU has nothing to say but gravity up to `end_ns`.
+  /// Returns whether the IMU measures only gravity up to `end_ns`.
   bool rests_until(TimeNs end_ns) const;
-  /// What the accelerometer read before then is left out, as if it had been a gap's; the rates count.
+  bool rests_between(TimeNs from_ns, TimeNs end_ns) const;
+  /// Marks the forces before `end_ns` as unknown, as in a gap; the rates remain.
   void leave_out_force(TimeNs end_ns);
-  /// Forgets what ended by then, the end of a sweep.
+  /// Deletes samples that ended by `end_ns`, the end of a sweep.
   void forget_until(TimeNs end_ns);
 
-  /// Stated once: `mapping_members.hpp`.
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
 
  private:
-  /// The rest at the start of a recording: once left it does not come back, and what it has taught stays.
+  /// The rest at the start of a recording. After its end it cannot resume, and its results remain.
   struct InitialRest {
     bool lasts = true;
-    std::optional<TimeNs> first_ns;  ///< the first sample of all
-    std::optional<TimeNs> run_ns;    ///< that of the detector's run
+    std::optional<TimeNs> first_ns;  ///< first sample of the recording
+    std::optional<TimeNs> run_ns;    ///< first sample of the detector's run
     Eigen::Vector3d gyro_bias_rad_s = Eigen::Vector3d::Zero();
     template <class Self, class Visitor>
     static void members(Self& s, Visitor& visit);
@@ -60,7 +68,7 @@ class InertialTrack {
   RestDetector rests_;
   RestDetector::State rest_;
   InitialRest initial_;
-  std::vector<Eigen::Vector3d> undecided_rad_s_;  // rates since the detector's last whole reading
+  std::vector<Eigen::Vector3d> undecided_rad_s_;  // rates since the detector's last complete reading
   std::optional<WindowRate> before_newest_, newest_;
 };
 

@@ -21,11 +21,10 @@ WindowSweep& LagWindow::enter() {
   return sweeps_.emplace_back();
 }
 
-/// mapping.md (R52).
-/// Backward pass over the window (H. Rauch, F. Tung, C. Striebel, 1965), each sweep's registration being the linear
-/// measurement that it settled on: the maximum a posteriori of all sweeps' unknowns together, to first order. What it
-/// is for is a sweep that saw little: where all see much the end error is the same within
-/// its noise (1.0 to 1.9 cm for windows of 1, 2 and 3).
+/// mapping.md (R63). Backward pass over the window (H. Rauch, F. Tung, C. Striebel, 1965). The registration of each
+/// sweep is the linear measurement to which it converged. The result is the maximum a posteriori of all sweeps'
+/// unknowns, to first order. Smoothing improves sweeps with few features. With many features everywhere, the final
+/// error does not depend on the window (1.0 to 1.9 cm for windows of 1, 2 and 3).
 void LagWindow::smooth() {
   if (sweeps_.empty()) return;
   sweeps_.back().smoothed = sweeps_.back().filtered;

@@ -14,7 +14,6 @@ namespace tumble {
 
 namespace {
 
-/// Of a sample and its rate by themselves.
 Status check(const ImuSample& sample, const RateState& rate) {
   if (const Status status = check_sample(sample); !status.ok()) return status;
   if (!rate.w_WI_I_rad_s.allFinite() || !rate.covariance_rad2_s2.allFinite()) {
@@ -102,7 +101,7 @@ Status LidarInertialOdometry::predict(std::span<const ImuSample> samples, std::s
   const mapping::MotionWindow motion{track.samples(), end_ns, resting_sweeps};
   const std::unique_ptr<const mapping::Prediction> at_start(
       new mapping::Prediction(mapping::predict(my.params, my.border, motion, trajectory, my.known)));
-  const Registration::Estimate& mean = at_start->prior.mean;  // what is known beside the last sweep is in it
+  const Registration::Estimate& mean = at_start->prior.mean;  // includes an odometer reading
   if (Status status =
           trajectory.build(mean.state, track.samples(), end_ns, mean.calibration.gravity_W_m_s2, mean.deficit_rad_s);
       !status.ok())

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "unknowns.hpp"
 
@@ -10,8 +11,8 @@ namespace tumble::mapping {
 
 namespace {
 
-/// What the trajectory is uncertain by inside of a segment, as seen at a point: between its start and its end. Its part
-/// of mapping.md (R53).
+/// Uncertainty of the trajectory between start and end of a segment, as variance of a point. Its part of mapping.md
+/// (R64).
 class PoseVariance {
  public:
   PoseVariance(const Registration::Matrix& covariance, const SweepTrajectory& trajectory)
@@ -50,20 +51,25 @@ std::size_t LocalMap::insert(const Params& params, const SweepToInsert& sweep, c
   const std::uint32_t line = scan_lines_.base(middle.q_WI * params.T_IL.linear().col(2), sweep.rings_differ);
   const double moved_m = (trajectory.base_m(trajectory.duration_s()) - trajectory.base_m(0.0)).norm();
   sight_.start(middle.p_WI_m.cast<float>(), static_cast<float>(0.5 * moved_m));
-  std::size_t added = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Eigen::Vector3f position = levers_W_m_[i] + trajectory.base_m(points[i].t_s).cast<float>();
-    sight_.add(position);
-    if (map_.is_taken(position)) continue;  // most are
-    // mapping.md (R53)
-    const double sigma_m = std::sqrt(noise.point_variance_m2(points[i]) + of_pose.at_m2(points[i]));
-    if (sigma_m > params.expert.map.sigma_max_m) continue;
-    const std::uint32_t index =
-        map_.add(position, static_cast<float>(sigma_m), number, ScanLines::line(line, points[i].ring));
-    if (index == VoxelMap::kNoPoint) continue;
-    ++added;
-    if (params.expert.window_sweeps > 1) inserted.push_back({index, points[i]});
-  }
+  const auto add = [&](double sigma_max_m) {
+    std::size_t added = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Eigen::Vector3f position = levers_W_m_[i] + trajectory.base_m(points[i].t_s).cast<float>();
+      sight_.add(position);
+      if (map_.is_taken(position)) continue;  // true for most points
+      // mapping.md (R64)
+      const double sigma_m = std::sqrt(noise.point_variance_m2(points[i]) + of_pose.at_m2(points[i]));
+      if (sigma_m > sigma_max_m) continue;
+      const std::uint32_t index =
+          map_.add(position, static_cast<float>(sigma_m), number, ScanLines::line(line, points[i].ring));
+      if (index == VoxelMap::kNoPoint) continue;
+      ++added;
+      if (params.expert.window_sweeps > 1) inserted.push_back({index, points[i]});
+    }
+    return added;
+  };
+  std::size_t added = add(params.expert.map.sigma_max_m);
+  if (empty()) added = add(std::numeric_limits<double>::infinity());  // an uncertain map is better than none
   seen_from_W_m_.push_back(middle.p_WI_m.cast<float>());
   if (sweep.sure_of_place) look_through(sight_);
   return added;

@@ -16,19 +16,19 @@ namespace tumble::mapping {
 /// A point of a sweep in the map.
 struct InsertedPoint {
   std::uint32_t index;  ///< in the map
-  SweepPoint point;     ///< by the calibration that it was inserted with
+  SweepPoint point;     ///< by the calibration at insertion
 };
 
-/// A sweep that goes into the map.
+/// A sweep to be inserted into the map.
 struct SweepToInsert {
   const SweepTrajectory& trajectory;
-  const Registration::Matrix& covariance;  ///< of its unknowns
+  const Registration::Matrix& covariance;
   std::span<const SweepPoint> points;
   bool rings_differ;
-  bool sure_of_place;  ///< what it saw through may be held against the map
+  bool sure_of_place;  ///< its free space may remove points of the map
 };
 
-/// The map about the sensor: its points, where each was seen from, and the scan lines that they lie on.
+/// The map around the sensor: its points, the sensor position at each observation, and their scan lines.
 class LocalMap {
  public:
   using Params = LidarInertialOdometry::Params;
@@ -38,42 +38,41 @@ class LocalMap {
   const VoxelMap& voxels() const { return map_; }
   bool empty() const { return map_.size() == 0; }
 
-  /// Adds the points of a sweep; `inserted` gets those that were added, appended. `noise` tells a return's own
-  /// variance. A sweep that is sure of its place is held against each point of the map: O(points of the map).
+  /// Adds the points of a sweep and appends the added ones to `inserted`. `noise` computes a return's variance. If the
+  /// sweep's pose is certain, each point of the map is checked against its free space: O(points of the map).
   std::size_t insert(const Params& params, const SweepToInsert& sweep, const Registration& noise,
                      std::vector<InsertedPoint>& inserted);
-  /// Moves points to where their sweep is now known to have seen them, with `later_s` added to their times, mapping.md
-  /// (R3).
+  /// Moves points to their refined positions, with `later_s` added to their times, mapping.md (R3).
   void move(const SweepTrajectory& trajectory, const Eigen::Isometry3d& T_IL, double later_s,
             std::span<const InsertedPoint> inserted);
 
-  /// Sweeps that gave points, by whose number each point is known.
+  /// Number of sweeps that contributed points; each point has the number of its sweep.
   std::uint32_t sweeps() const { return static_cast<std::uint32_t>(seen_from_W_m_.size()); }
-  /// Takes back what the sweeps from this number on drew. Indices have changed. O(number of points).
+  /// Removes the points of this and later sweeps. Indices change. O(number of points).
   void withdraw(std::uint32_t first_sweep);
 
-  /// Forgets what is out of reach once the sensor has moved far enough; then true, and indices have changed.
+  /// Removes distant points once the sensor has moved far enough. Returns whether points were removed; indices then
+  /// change.
   bool prune(const Params& params, const Eigen::Vector3d& p_WI_m);
 
   std::size_t bytes() const { return map_.bytes() + seen_from_W_m_.capacity() * sizeof(Eigen::Vector3f); }
   std::vector<MapPoint> with_normals(const Params& params) const;
 
-  /// Whether each point was inserted by a sweep that it knows, as all of a map that was loaded have to be.
+  /// Returns whether each point has a valid sweep number. Checks loaded maps.
   bool knows_its_sweeps() const;
-  /// Stated once: `mapping_members.hpp`.
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
 
  private:
-  /// Holds each point against how far the sweep saw.
+  /// Checks each map point against the free space of the sweep.
   void look_through(const SightGrid& sight);
 
   VoxelMap map_;
-  std::vector<Eigen::Vector3f> seen_from_W_m_;  // per sweep that gave points
+  std::vector<Eigen::Vector3f> seen_from_W_m_;  // per sweep that contributed points
   Eigen::Vector3f pruned_at_W_m_ = Eigen::Vector3f::Zero();
   ScanLines scan_lines_;
-  std::vector<Eigen::Vector3f> levers_W_m_;  // memory
-  SightGrid sight_;                          // memory
+  std::vector<Eigen::Vector3f> levers_W_m_;
+  SightGrid sight_;
 };
 
 }  // namespace tumble::mapping

@@ -9,28 +9,28 @@
 
 namespace tumble {
 
-/// Standard deviation of a range: the larger of a length and a share of the range.
+/// Standard deviation of a range: the larger of a length and a fraction of the range.
 struct RangeNoise {
   double sigma_m, share;
 };
 
-/// Returns of a sweep that nothing beside them bears out: dust, rain, snow, blades of grass, birds.
+/// Detects lone returns, which no neighbouring beam confirms: dust, rain, snow, blades of grass, birds.
 ///
-/// A surface returns many neighbouring beams. A return is borne out where one of the two before or after it on its ring
-/// lies at the same range within the noise; or the next one so that the line between both stands steeply enough against
-/// the beam to be a surface (I. Bogoslavskyi, C. Stachniss, IROS 2016); or where it lies on the line between one before
-/// and one after it, as on ground seen at a grazing angle: mapping.md (R56), (R57), (R58). Neighbours are those within
-/// the angular step of the sweep itself, so that a return amid misses stands alone. A sweep whose successive returns
-/// are too far apart to say anything of each other keeps all, and so does one of which no more than a share are alone
-/// that clear air has as well. What moves as a whole (people, cars) is no lone return.
+/// A surface returns many neighbouring beams. A return is confirmed in one of three ways. One of the two returns before
+/// or after it on its ring has the same range within noise. Or the line to the next one is steep enough against the
+/// beam to be a surface (I. Bogoslavskyi, C. Stachniss, IROS 2016). Or it is on the line between one before and one
+/// after it, as on ground at a grazing angle: mapping.md (R13), (R14), (R15). Neighbours are within the sweep's angular
+/// step, so a return among misses is alone. All returns are kept if successive returns are too far apart for this test.
+/// All returns are also kept if there are no more lone returns than in clear air. Larger moving objects (people, cars)
+/// are not lone returns.
 class LoneReturns {
  public:
-  /// Drops the lone ones from `points`, which keep their order: per ring that of firing. Returns how many there were.
-  /// O(number of points); allocates only while a sweep is larger than those before.
+  /// Removes the lone returns from `points` and returns their number. The remaining order is kept: firing order per
+  /// ring. O(number of points); allocates only for a sweep larger than those before.
   std::size_t drop(const RangeNoise& noise, std::vector<SweepPoint>& points);
 
  private:
-  /// What is asked of a return; of a ring they lie side by side.
+  /// Data of a return for these tests; contiguous per ring.
   struct Beam {
     Eigen::Vector3f x_L_m;
     float range_m;
@@ -50,8 +50,8 @@ class LoneReturns {
   bool is_borne_out(const RangeNoise& noise, std::size_t at, float reach2) const;
 
   std::vector<std::uint32_t> ring_next_, order_;
-  std::vector<Beam> beams_;                    // ring after ring, in order inside of each
-  std::vector<float> steps2_, sorted_steps2_;  // squared sines from the beam before on the ring
+  std::vector<Beam> beams_;                    // ring by ring, in order within each
+  std::vector<float> steps2_, sorted_steps2_;  // squared sines of the angle to the previous beam on the ring
   std::vector<std::uint8_t> alone_;
 };
 

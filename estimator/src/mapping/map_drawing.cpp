@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kSameLineCosine = 0.9988;  // 0.05 rad, less than the angle between two rings
 constexpr int kRingBits = 16;
-// Sweeps that saw through a point's place before it is left out: one may be wrong about an edge.
+// Sweeps that must see through a point before it is left out: a single one may be wrong about an edge.
 constexpr std::uint8_t kSeenThrough = 2;
 
 }  // namespace

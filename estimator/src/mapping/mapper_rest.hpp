@@ -6,9 +6,9 @@
 
 namespace tumble::mapping {
 
-/// What rest is to the mapper, from the first reading on: the mean rate within `rest_rate_rad_s` of the gyro's bias on
-/// each axis and its readings within 1/sqrt(3) of that of their mean, the force within `rest_force_m_s2` of gravity and
-/// of its mean. Heuristic.
+/// Returns the rest detection of the mapper, used from the first reading on. The mean rate is within `rest_rate_rad_s`
+/// of the gyro's bias on each axis, and readings within 1/sqrt(3) of that of their mean. The force is within
+/// `rest_force_m_s2` of gravity and of its mean. Heuristic.
 RestDetector::Params mapper_rest(const LidarInertialOdometry::Params& params);
 
 }  // namespace tumble::mapping

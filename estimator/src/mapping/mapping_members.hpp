@@ -7,7 +7,7 @@
 #include "odometry_members.hpp"
 #include "sweep_members.hpp"
 
-/// Members of the parts of the odometry that persist from sweep to sweep: state_visitor.hpp, README.md.
+/// Members of the odometry's parts that persist between sweeps: state_visitor.hpp, README.md.
 namespace tumble {
 
 namespace mapping {
@@ -80,7 +80,7 @@ void LocalMap::members(Self& s, Visitor& visit) {
 
 }  // namespace mapping
 
-/// But for the parameters, which are those that it is made with.
+/// Without the parameters, which are set at construction.
 template <class Self, class Visitor>
 void LidarInertialOdometry::Impl::members(Self& s, Visitor& visit) {
   visit.scratch(s.params);

@@ -10,7 +10,7 @@ namespace tumble {
 
 namespace {
 
-constexpr double kRotation = 1e-5;  // what a matrix that went through text or floats may be off a rotation by
+constexpr double kRotation = 1e-5;  // tolerance of a rotation matrix that was converted to text or floats
 
 constexpr Status not_finite(const char* field) {
   return {Trouble::non_finite, field, std::numeric_limits<double>::quiet_NaN(), 0.0};

@@ -7,12 +7,12 @@
 #include "tumble/mapping/detail/sweep_scale.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 
-/// Members of sweeps and reports, and what the mapper's Params hold beside Fields: state_visitor.hpp.
+/// Members of sweeps and reports, and members of the mapper's Params that are not Fields: state_visitor.hpp.
 namespace tumble {
 
 template <StateOf<LidarPoint> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
-  visit.with_nan("point.position_L_m", s.position_L_m);  // a miss
+  visit.with_nan("point.position_L_m", s.position_L_m);  // NaN for a miss
   visit.with_nan("point.intensity", s.intensity);
   visit("point.offset_ns", s.offset_ns);
   visit("point.ring", s.ring);
@@ -49,7 +49,7 @@ void members(Self& s, Visitor& visit) {
   visit("report.smoothed", s.smoothed);
   visit("report.inlier_share", s.inlier_share);
   visit("report.conditioning", s.conditioning);
-  visit.with_nan("report.weakest_sigma_m", s.weakest_sigma_m);  // infinite where nothing holds
+  visit.with_nan("report.weakest_sigma_m", s.weakest_sigma_m);  // infinite without constraints
   visit("report.innovation", s.innovation);
   visit("report.iterations", s.iterations);
   visit("report.lost_sweeps", s.lost_sweeps);
@@ -64,7 +64,7 @@ void members(Self& s, Visitor& visit) {
 template <StateOf<SweepScale> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("scale.scale", s.scale);
-  visit.with_nan("scale.sigma", s.sigma);  // infinite before anything tells
+  visit.with_nan("scale.sigma", s.sigma);  // infinite without observations
   visit("scale.changes", s.changes);
 }
 
@@ -76,7 +76,7 @@ void members(Self& s, Visitor& visit) {
 
 template <class Self, class Visitor>
 void SweepScaleWatch::members(Self& s, Visitor& visit) {
-  visit.scratch(s.gravity_m_s2_);  // these two are of the parameters
+  visit.scratch(s.gravity_m_s2_);
   visit.scratch(s.samples_max_);
   visit("scale.samples", s.samples_);
   visit("scale.sweeps", s.sweeps_);
@@ -86,7 +86,7 @@ void SweepScaleWatch::members(Self& s, Visitor& visit) {
 
 template <class Self, class Visitor>
 void Localisation::members(Self& s, Visitor& visit) {
-  visit.scratch(s.matched_m_);  // of the parameters
+  visit.scratch(s.matched_m_);
   visit("localisation.mapped", s.mapped_);
   visit("localisation.largest_sigma_m", s.largest_sigma_m_);
   visit("localisation.largest_innovation", s.largest_innovation_);
@@ -103,7 +103,7 @@ template <StateOf<LidarInertialOdometry::Params> Self, class Visitor>
 void others(Self& p, Visitor& visit) {
   visit("T_IL", p.T_IL);
   visit("body", p.expert.flight.body);
-  visit.scratch(p.parallel_for);  // the caller's
+  visit.scratch(p.parallel_for);
 }
 
 }  // namespace tumble

@@ -7,7 +7,7 @@ namespace tumble {
 
 namespace {
 
-/// Eigen's empty box says that there is none; any other without an inside has corners that are swapped.
+/// Eigen's empty box means no box. Any other box without an inside has swapped corners.
 template <class Visitor>
 void visit_corners_in_order(const Eigen::AlignedBox3d& box, Visitor& visit) {
   const Eigen::AlignedBox3d none;
@@ -17,7 +17,7 @@ void visit_corners_in_order(const Eigen::AlignedBox3d& box, Visitor& visit) {
   visit(box.sizes().z(), {"own_body_L largest z less the least", "m", 0.0, kUnbounded, ""});
 }
 
-/// The fields, how they have to stand to each other, and what is no field.
+/// Checks the fields, their relations, and members that are not fields.
 detail::OutOfBounds out_of_bounds(const OdometryParams& params) {
   detail::OutOfBounds found;
   detail::FindOutOfBounds visit(found);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The mapper as bytes.
+// Serialisation of the mapper.
 #include <utility>
 
 #include "../common/state_bytes.hpp"
@@ -10,10 +10,10 @@ namespace tumble {
 
 namespace {
 
-// Twice a stamp's difference from another fits into 64 bits: 2067, by a clock that counts from 1970.
+// Limit of stamps, so that twice a difference fits into 64 bits: 2067 for a clock that starts in 1970.
 constexpr TimeNs kStamp_ns = 3'070'000'000'000'000'000;
 
-/// Parameters that another run may have taught: SecondPass.
+/// Parameters that an earlier run may have estimated: SecondPass.
 template <StateOf<LidarInertialOdometry::Params> Self, class Visitor>
 void visit_taught(Self& p, Visitor& visit) {
   visit("T_IL", p.T_IL);

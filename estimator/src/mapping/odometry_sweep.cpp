@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <utility>
 #include <variant>
 
+#include "before_map.hpp"
 #include "odometry_impl.hpp"
 #include "tumble/mapping/detail/sweep_check.hpp"
 #include "unknowns.hpp"
@@ -13,13 +15,23 @@ namespace tumble {
 using mapping::Belief, mapping::InsertedPoint, mapping::MotionWindow, mapping::Placed, mapping::Prediction;
 using mapping::UpdatedSweep, mapping::WindowSweep;
 
+namespace {
+
+constexpr double kTogether_s = 0.5;       // IMU and lidar start together: what levels the attitude
+constexpr TimeNs kStep_ns = 100'000'000;  // of dead reckoning: what the inertial noise is stated for
+
+}  // namespace
+
 Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns,
                                               SweepReport& report) {
   if (Status status = check_sweep(start_ns, end_ns, returns); !status.ok()) return status;
   if (Status status = level_at_first(); !status.ok()) return status;
 
   if (std::holds_alternative<mapping::ConstantVelocity>(known)) track.leave_out_force(end_ns);
-  // where the IMU leads from the border on; an alignment bends the trajectory to where the lidar finds itself
+  if (!mapping::has_started(tracking)) {
+    if (Status status = start_map(start_ns, end_ns, returns, report); !status.ok()) return status;
+  }
+  // starts as the inertial prediction from the boundary; an alignment refines it
   SweepTrajectory& trajectory = scratch.trajectory;
   const Registration::Estimate& before = border.belief.mean;
   if (Status status = trajectory.build(before.state, track.samples(), end_ns, before.calibration.gravity_W_m_s2);
@@ -31,7 +43,7 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
   const std::unique_ptr<Prediction> prediction(
       new Prediction(mapping::predict(params, border, motion, trajectory, known)));  // 27 KiB: not on the stack
 
-  // where the lidar finds itself in the map; a sweep of which no return is of use is placed by inertia
+  // a sweep without usable returns gets the inertial prediction
   mapping::SweepPoints& points = scratch.points;
   mapping::SweepPoints::Counts counts;
   const Status points_status = points.select(params, returns, end_ns - start_ns, before.calibration,
@@ -40,7 +52,7 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
   report.points_alone = counts.alone;
   const auto placed = std::make_unique<Placed>();
   if (points_status.ok()) register_to_map(*prediction, motion, points, trajectory, report, *placed);
-  if (other && mapping::contradicts(tracking, placed->placement)) {  // anew, as lost as it was
+  if (other && mapping::contradicts(tracking, placed->placement)) {  // restart from tracking failure
     go_back_to_inertia();
     resting_sweeps = rested_sweeps;
     report = SweepReport{};
@@ -48,16 +60,16 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
   }
   report.verdict = placed->verdict;
 
-  // what stands and its motion, what it adds to the map, and what the next sweep begins from
+  // updated state and motion, map update, and state for the next sweep
   const std::unique_ptr<const Belief> start(new Belief(update(motion, *placed, *prediction)));
-  if (!placed->alignment) {  // a try that failed may have bent it
+  if (!placed->alignment) {  // a failed attempt may have changed it
     const Registration::Estimate& mean = start->mean;
     const Status status = trajectory.build(mean.state, motion.samples, motion.end_ns, mean.calibration.gravity_W_m_s2,
                                            mean.deficit_rad_s);
     if (!status.ok()) return status;
   }
   const UpdatedSweep sweep{*prediction, *start, trajectory};
-  // where the map had nothing to say the prior draws on: points that it leaves too uncertain stay out by themselves
+  // if the map had too few points, insertion follows the prior; LocalMap excludes points that are too uncertain
   std::vector<InsertedPoint> inserted;
   if (placed->verdict != SweepVerdict::rejected || placed->map_says_nothing)
     inserted = insert(sweep, points, counts.rings_differ, *placed, report);
@@ -67,7 +79,7 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
 
 Status LidarInertialOdometry::Impl::check_sweep(TimeNs start_ns, TimeNs end_ns,
                                                 std::span<const LidarPoint> returns) const {
-  const bool started = mapping::has_started(tracking);
+  const bool started = mapping::has_started(tracking) || track.border_ns();
   const std::span<const MotionSample> samples = track.samples();
   if (end_ns < start_ns) return {Trouble::time_order, "end_ns", double(end_ns), double(start_ns)};
   if (started && start_ns < border.time_ns())
@@ -77,7 +89,7 @@ Status LidarInertialOdometry::Impl::check_sweep(TimeNs start_ns, TimeNs end_ns,
   if (samples.back().time_ns < end_ns) {
     return {Trouble::too_few, "imu time_ns", double(samples.back().time_ns), double(end_ns)};
   }
-  // a clock known to be off may place the first sweep before the first sample: the rest at the start reaches back
+  // with a wrong clock, the first sweep may start before the first sample: extend the initial rest backwards
   const double early_s = seconds(samples.front().from_ns - start_ns);
   if (!started && early_s > (params.time_offset_s != 0.0 ? SweepTrajectory::kBeyond_s : 0.0)) {
     return {Trouble::too_few, "start_ns", double(start_ns), double(samples.front().from_ns)};
@@ -86,7 +98,7 @@ Status LidarInertialOdometry::Impl::check_sweep(TimeNs start_ns, TimeNs end_ns,
 }
 
 Status LidarInertialOdometry::Impl::level_at_first() {
-  if (mapping::has_started(tracking)) return {};
+  if (mapping::has_started(tracking) || track.border_ns()) return {};
   MotionState levelled;
   if (Status status = mapping::start_at_rest(params, track.samples(), levelled); !status.ok()) return status;
   border.belief = mapping::belief_at_start(params, levelled);
@@ -94,7 +106,60 @@ Status LidarInertialOdometry::Impl::level_at_first() {
   return {};
 }
 
-/// Nothing but gravity by the IMU, and no more than gravity by the attitude as it is believed.
+/// Starts the map with the first sweep that has enough points. If the sweep begins with the IMU, its start is the
+/// levelled state; otherwise it is the result of dead reckoning (mapping.md, "Start").
+Status LidarInertialOdometry::Impl::start_map(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns,
+                                              SweepReport& report) {
+  const SweepCalibration calibration = border.belief.mean.calibration;
+  mapping::SweepPoints::Counts counts;
+  const Status selected = scratch.points.select(params, returns, end_ns - start_ns, calibration, 0.0, counts);
+  report.points_used = counts.used;
+  report.points_alone = counts.alone;
+  const std::size_t points = selected.ok() ? scratch.points.all().size() : 0;
+  const bool usable = points >= params.expert.matching.least;
+  if (usable && !track.border_ns() && seconds(start_ns - border.time_ns()) <= kTogether_s) return {};
+  if (usable) {
+    const mapping::MotionPrior of_sweep = std::exchange(known, mapping::InertialPrior{});
+    if (Status status = dead_reckon(start_ns); !status.ok()) return status;
+    known = of_sweep;
+    world = mapping::world_at_first_sweep(params, border.belief);
+    border.belief = mapping::belief_at_first_sweep(params, border.belief);
+    return {};
+  }
+  if (Status status = dead_reckon(end_ns); !status.ok()) return status;
+  known = mapping::InertialPrior{};
+  if (!selected.ok()) return selected;
+  return {Trouble::too_few, "points", double(points), double(params.expert.matching.least)};
+}
+
+/// Integrates inertially to `end_ns`, without a map. A rest levels the attitude again.
+Status LidarInertialOdometry::Impl::dead_reckon(TimeNs end_ns) {
+  MotionState levelled;
+  if (!track.border_ns()) {
+    if (Status status = mapping::start_at_rest(params, track.samples(), levelled); !status.ok()) return status;
+    border.belief = mapping::belief_before_map(params, levelled);
+  }
+  if (const std::optional<Eigen::Vector3d> force = track.resting_force(end_ns, params.expert.rest.levels_s)) {
+    if (Status status = mapping::level_at_rest(params, *force, levelled); !status.ok()) return status;
+    levelled.time_ns = end_ns;
+    if (!track.has_not_moved()) {
+      mapping::unknowns::variances(levelled.covariance, mapping::unknowns::velocity)
+          .setConstant(std::pow(params.expert.standstill.creep_max_m_s, 2));
+    }
+    border = mapping::Border{.belief = mapping::belief_before_map(params, levelled)};
+  }
+  while (border.time_ns() < end_ns) {
+    const TimeNs from_ns = border.time_ns(), to_ns = std::min(end_ns, from_ns + kStep_ns);
+    const MotionWindow motion{track.samples_from(from_ns), to_ns, 0};
+    if (Status status = go_on_by_inertia(motion, track.rests_between(from_ns, to_ns), border, nullptr); !status.ok())
+      return status;
+    border.belief = mapping::without_place(border.belief, seconds(to_ns - from_ns));
+  }
+  track.forget_until(end_ns);
+  return {};
+}
+
+/// Returns whether the IMU measures only gravity, and no more than gravity by the estimated attitude.
 bool LidarInertialOdometry::Impl::rests(const mapping::InertialTrack& heard, const SweepTrajectory& motion,
                                         TimeNs end_ns) const {
   if (!heard.rests_until(end_ns)) return false;
@@ -129,12 +194,12 @@ void LidarInertialOdometry::Impl::register_to_map(const Prediction& prediction, 
   mapping::judge(params, tracking, scene.points.size(), prior_trusted, attempt, placed);
 }
 
-/// What is believed of the sweep's start and all that goes on. Of a body that is lost and rests, what was predicted is
-/// put right first: the window goes on from it, too.
+/// Returns the state at the sweep's start. After tracking failure at rest, first corrects the prediction, because the
+/// window uses it, too.
 Belief LidarInertialOdometry::Impl::update(const MotionWindow& motion, const Placed& placed,
                                            Prediction& prediction) const {
   if (placed.alignment) return mapping::posterior(prediction, *placed.alignment);
-  // the inertial prior stands; an IMU at rest stops the drift of its velocity
+  // the inertial prior remains; an IMU at rest stops its velocity drift
   if (mapping::is_lost(tracking)) stop_at_rest(motion, border, prediction);
   return mapping::posterior(prediction);
 }
@@ -161,8 +226,8 @@ std::vector<InsertedPoint> LidarInertialOdometry::Impl::insert(const UpdatedSwee
   return inserted;
 }
 
-/// What the sweep leaves behind. The window joins the sweep to the last one by the border that there was: it enters
-/// before border_after() replaces that.
+/// Updates the persistent state after a sweep. The window links the sweep to the last one by the old boundary, so the
+/// sweep enters it before border_after() replaces the boundary.
 void LidarInertialOdometry::Impl::carry_on(const UpdatedSweep& sweep, const Placed& placed, const MotionWindow& motion,
                                            std::vector<InsertedPoint> inserted, SweepReport& report) {
   const Registration::Result* aligned = placed.alignment ? &*placed.alignment : nullptr;
@@ -179,7 +244,7 @@ void LidarInertialOdometry::Impl::carry_on(const UpdatedSweep& sweep, const Plac
     window.smooth();
     window.move_inserted(map);
   }
-  // no later sweep refines it: it leaves with the next one
+  // no later sweep refines it; it leaves with the next one
   if (window.is_full()) report.smoothed = poses_of(window.sweeps().front());
   mapping::border_after(params, sweep.start, motion, sweep.trajectory, aligned, border);
   report.pose = border.belief.mean.state.pose();
@@ -188,7 +253,7 @@ void LidarInertialOdometry::Impl::carry_on(const UpdatedSweep& sweep, const Plac
   forget_until(motion.end_ns);
 }
 
-/// What the sweep adds to the map is off by what the pose was: by so much of it the map moves where the robot is.
+/// Points of the sweep have the error of its pose, which adds to the map's error where the robot is.
 void LidarInertialOdometry::Impl::part_from_world(const UpdatedSweep& sweep, const SweepReport& report) {
   const double inserted_share =
       report.points_used == 0 ? 0.0 : double(report.map_points_added) / double(report.points_used);
@@ -196,20 +261,21 @@ void LidarInertialOdometry::Impl::part_from_world(const UpdatedSweep& sweep, con
                       border.belief.mean.calibration.T_IL.translation());
 }
 
-/// All that was told of the time up to the border has been used.
+/// All inputs up to the boundary have been used.
 void LidarInertialOdometry::Impl::forget_until(TimeNs end_ns) {
   known = mapping::InertialPrior{};
   track.forget_until(end_ns);
-  if (mapping::is_to_be_borne_out(tracking)) return;  // what it drew may be taken back: by numbers that pruning changes
+  if (mapping::is_to_be_borne_out(tracking))
+    return;  // withdrawing its points needs their sweep numbers, which pruning changes
   if (map.prune(params, border.belief.mean.state.p_WI_m)) window.forget_inserted();
 }
 
-/// Where there is a second opinion it goes on by inertia: beside a place found again, what stands without it; beside
-/// one who is lost again, the place that was contradicted.
+/// Propagates the alternative pose by inertial prediction. This pose is the one without an unconfirmed relocalisation,
+/// or a contradicted one after tracking failed again.
 void LidarInertialOdometry::Impl::carry_on_other(const MotionWindow& motion, bool doubted_before) {
   const bool doubted = mapping::is_to_be_borne_out(tracking);
   if (doubted && !doubted_before) {
-    mapping::DeadReckoning& from_here = other.emplace();  // in its place: too large for the stack
+    mapping::DeadReckoning& from_here = other.emplace();  // constructed in place: too large for the stack
     from_here.border = border;
     from_here.window = window;
     from_here.window.forget_inserted();
@@ -218,27 +284,36 @@ void LidarInertialOdometry::Impl::carry_on_other(const MotionWindow& motion, boo
   }
   if (!doubted && !mapping::is_lost(tracking)) other.reset();
   if (!other) return;
-  mapping::Border& alone = other->border;
-  const Registration::Estimate& before = alone.belief.mean;
-  SweepTrajectory trajectory;
-  Status status = trajectory.build(before.state, motion.samples, motion.end_ns, before.calibration.gravity_W_m_s2);
-  if (!status.ok()) return other.reset();
-  const std::unique_ptr<Prediction> prediction(
-      new Prediction(mapping::predict(params, alone, motion, trajectory, known)));
-  stop_at_rest(motion, alone, *prediction);
-  const std::unique_ptr<const Belief> start(new Belief(mapping::posterior(*prediction)));
-  const Registration::Estimate& mean = start->mean;
-  status =
-      trajectory.build(mean.state, motion.samples, motion.end_ns, mean.calibration.gravity_W_m_s2, mean.deficit_rad_s);
-  if (!status.ok()) return other.reset();
-  enter_window({*prediction, *start, trajectory}, motion, alone, other->window);
-  mapping::border_after(params, *start, motion, trajectory, nullptr, alone);
+  const bool rests = std::holds_alternative<mapping::InertialPrior>(known) && track.rests_until(motion.end_ns);
+  if (!go_on_by_inertia(motion, rests, other->border, &other->window).ok()) other.reset();
 }
 
-/// The place found again was none: what it drew is taken from the map, and inertia stands. A little off it is one to
-/// search from.
+/// From a border to a sweep's end without its points. `rests`: the velocity is known to be 0. The sweep enters the
+/// window, if there is one.
+Status LidarInertialOdometry::Impl::go_on_by_inertia(const MotionWindow& motion, bool rests, mapping::Border& at,
+                                                     mapping::LagWindow* into) const {
+  const Registration::Estimate& before = at.belief.mean;
+  SweepTrajectory trajectory;
+  if (Status status = trajectory.build(before.state, motion.samples, motion.end_ns, before.calibration.gravity_W_m_s2);
+      !status.ok())
+    return status;
+  const std::unique_ptr<Prediction> prediction(new Prediction(mapping::predict(params, at, motion, trajectory, known)));
+  if (rests) mapping::predict_rest(params, at, *prediction);
+  const std::unique_ptr<const Belief> start(new Belief(mapping::posterior(*prediction)));
+  const Registration::Estimate& mean = start->mean;
+  if (Status status = trajectory.build(mean.state, motion.samples, motion.end_ns, mean.calibration.gravity_W_m_s2,
+                                       mean.deficit_rad_s);
+      !status.ok())
+    return status;
+  if (into != nullptr) enter_window({*prediction, *start, trajectory}, motion, at, *into);
+  mapping::border_after(params, *start, motion, trajectory, nullptr, at);
+  return {};
+}
+
+/// Reverts a contradicted relocalisation: removes its points from the map and returns to inertial prediction. The
+/// contradicted pose remains as a start of the search.
 void LidarInertialOdometry::Impl::go_back_to_inertia() {
-  map.withdraw(std::exchange(other->drawn_from, 0));  // numbers change as the map is pruned
+  map.withdraw(std::exchange(other->drawn_from, 0));  // pruning changes sweep numbers
   std::swap(border, other->border);
   std::swap(window, other->window);
   other->window.forget_inserted();

@@ -9,22 +9,22 @@
 
 namespace tumble::mapping {
 
-/// Columns of up to `Rows` numbers, and the sum of their outer products: to the bit what
-/// SelfAdjointView<Lower>::rankUpdate makes of them. That holds its blocks by value, twice as much as the columns: 86
-/// KiB of stack for 128 of 28 numbers. Here they lie beside the columns, and all of it on the heap; hence Eigen's
-/// kernel by its own name.
+/// Computes a sum of outer products of columns of up to `Rows` numbers. The result equals
+/// SelfAdjointView<Lower>::rankUpdate bit for bit. Eigen's function stores its blocks by value: 86 KiB of stack for 128
+/// columns of 28 numbers. This class stores the blocks on the heap and therefore calls Eigen's kernel directly.
 template <int Rows, int Columns>
 class OuterProducts {
  public:
   using Matrix = Eigen::Matrix<double, Rows, Rows>;
 
   static std::unique_ptr<OuterProducts> make() { return std::unique_ptr<OuterProducts>(new OuterProducts); }
-  OuterProducts(const OuterProducts&) = delete;  // the blocks know where they lie
+  OuterProducts(const OuterProducts&) = delete;  // the blocks contain addresses of this object
   OuterProducts& operator=(const OuterProducts&) = delete;
 
   Eigen::Matrix<double, Rows, Columns> columns;
 
-  /// Adds those of the first `count` columns, of their first `size` numbers, to the lower triangle of `sum`.
+  /// Adds the outer products of the first `count` columns, with their first `size` numbers, to the lower triangle of
+  /// `sum`.
   void add_to(int size, int count, Matrix& sum) {
     namespace e = Eigen::internal;
     e::general_matrix_matrix_triangular_product<Eigen::Index, double, Eigen::ColMajor, false, double, Eigen::RowMajor,
@@ -43,7 +43,7 @@ class OuterProducts {
   Blocks blocks_{Rows, Rows, Columns, 1, false};
 };
 
-/// Memory that several threads take in turns: as many as work at a time are made.
+/// Pool of buffers for threads; grows to the number of concurrent users.
 template <class Work>
 class Spare {
  public:

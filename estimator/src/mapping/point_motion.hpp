@@ -11,17 +11,16 @@
 
 namespace tumble::mapping {
 
-/// What the unknowns of a sweep move one of its points by; asked for one direction after the other.
+/// Derivative of a sweep's point by the unknowns, one direction at a time.
 class PointMotion {
  public:
   PointMotion(const SweepTrajectory& trajectory, const SweepCalibration& calibration, const SweepPoint& point,
               std::size_t& hint);
 
-  /// Derivative of the point's position along a direction of the world by all unknowns: mapping.md (R15), which is
-  /// linear in the direction.
+  /// Computes the derivative of the point's position along a direction of the world by all unknowns: mapping.md (R17).
   void along(const Eigen::Vector3d& direction_W, SweepUnknowns::Vector& derivative) const;
 
-  /// u of SweepTrajectory::base_m, in W.
+  /// Returns u of SweepTrajectory::base_m, in W.
   const Eigen::Vector3d& lever_m() const { return lever_; }
 
  private:
@@ -29,7 +28,7 @@ class PointMotion {
   bool clipped_;
   SweepTrajectory::Instant now_;
   Eigen::Vector3d turned_, lever_, from_lidar_I_, velocity_m_s_;
-  SweepTrajectory::DeficitDerivative by_deficit_;  // where an axis clips
+  SweepTrajectory::DeficitDerivative by_deficit_;  // used if an axis clips
 };
 
 }  // namespace tumble::mapping

@@ -19,8 +19,7 @@ namespace {
 namespace u = unknowns;
 using Params = LidarInertialOdometry::Params;
 
-/// The deficit of a clipped axis that is on the rail at the border goes on from where it was, and forgets as time goes:
-/// mapping.md (R38).
+/// Continues the deficit of an axis that is saturated at the boundary, with exponential decay: mapping.md (R48).
 void carry_deficit(const Params& params, const Border& border, const SweepTrajectory& trajectory, Prediction& next) {
   constexpr int kLast = SweepTrajectory::kKnots - 1;
   u::rows(next.by_last, u::deficit).setZero();
@@ -39,20 +38,20 @@ void carry_deficit(const Params& params, const Border& border, const SweepTrajec
   }
 }
 
-/// Largest standard deviation that the rate method reports of the axis while clipped inside of the segment, at least
-/// the parameter's.
+/// Largest standard deviation that the rate method reports for the axis while clipped within the segment, at least the
+/// parameter's value.
 double deficit_sigma(const Params& params, const MotionWindow& window, const SweepTrajectory& trajectory, int axis) {
   double sigma = params.expert.rails.deficit_sigma_min_rad_s;
   for (const MotionSample& sample : window.samples) {
-    // those after the segment wait for the next one
+    // later samples belong to the next segment
     if (seconds(sample.from_ns - trajectory.start_ns()) >= trajectory.duration_s()) break;
     if (sample.clipped_axes >> axis & 1) sigma = std::max(sigma, sample.rate_sigma_rad_s[axis]);
   }
   return sigma;
 }
 
-/// Knots as samples of a process that forgets: of the reported standard deviation, correlated from knot to knot,
-/// mapping.md (R36), (R37), (R39): the last where the first knot is carried.
+/// Knots are samples of a first-order Gauss-Markov process with the reported standard deviation, mapping.md (R46),
+/// (R47), (R49). The last one applies if the first knot continues from the last sweep.
 void add_deficit_noise(const Params& params, const MotionWindow& window, const SweepTrajectory& trajectory,
                        Prediction& next) {
   if (!params.expert.rails.estimate_deficit) return;
@@ -79,7 +78,7 @@ double knot_correlation(const Params& params, const SweepTrajectory& trajectory)
   return std::exp(-trajectory.duration_s() / (SweepTrajectory::kKnots - 1) / params.expert.rails.deficit_time_s);
 }
 
-/// mapping.md (R29).
+/// mapping.md (R32).
 void Prediction::compose(const Belief& at_border) {
   sandwich(by_last, at_border.weight, prior.covariance);
   sandwich(by_last, at_border.error, errors);
@@ -95,7 +94,7 @@ void Prediction::zero_velocity_update(double sigma_m_s) {
   u::variances(noise, u::velocity).setConstant(sigma_m_s * sigma_m_s);
 }
 
-/// mapping.md (R30).
+/// mapping.md (R33).
 void impose(const KnownVelocity& known, Prediction& prediction) {
   prediction.zero_velocity_update(known.sigma_m_s);
   const Eigen::Vector3d v_WI_m_s = prediction.prior.mean.state.q_WI * known.v_WI_I_m_s;
@@ -110,7 +109,7 @@ Prediction predict(const Params& params, const Border& border, const MotionWindo
   next.prior.mean.calibration = border.belief.mean.calibration;
   carry_deficit(params, border, trajectory, next);
   if (window.samples.front().at_rest) next.zero_velocity_update(params.expert.standstill.start_sigma_m_s);
-  // surfaces that hold the sensor tell a slow drive from a rest by themselves
+  // without this, a slow drive with well constrained sweeps would count as rest
   const bool creeps = border.belief.mean.state.v_WI_m_s.norm() < params.expert.standstill.creep_max_m_s;
   if (window.resting_sweeps >= params.expert.standstill.sweeps_min && !border.held && creeps)
     next.zero_velocity_update(params.expert.standstill.sigma_m_s);
@@ -119,8 +118,7 @@ Prediction predict(const Params& params, const Border& border, const MotionWindo
   MotionNoise within = inertial_noise(params, trajectory, window.samples, axes);
   const Eigen::Matrix3d railed_m2_s2 = railed_velocity_variance(params, trajectory, window.samples);
   u::block(next.noise, u::motion) += within;
-  // a force that comes late in a segment is not in the velocity that the segment is fitted with: the next one hears of
-  // it as well
+  // a force late in a segment hardly changes the fitted velocity, so it is also added to the next segment
   u::block(next.noise, u::velocity) += border.railed_velocity_m2_s2 + railed_m2_s2;
   u::block(within, u::velocity) += railed_m2_s2;
   add_deficit_noise(params, window, trajectory, next);
@@ -153,10 +151,10 @@ Belief posterior(const Prediction& prediction) {
 
 namespace {
 
-/// The share of the prior's errors that the registration keeps: of mapping.md (R41). Its stack is not its caller's.
+/// Computes the factor of the prior's errors in mapping.md (R52). A separate function to limit the stack.
 [[gnu::noinline]] void weigh_prior(const Prediction& prediction, const Registration::Result& aligned,
                                    Registration::Matrix& out) {
-  // what is no information corrects nothing
+  // errors in variables are not information and correct nothing
   Registration::Matrix kept = Registration::Matrix::Identity();
   dense::solve_semidefinite(invertible(prediction.prior.covariance), kept);
   kept += aligned.errors_in_variables_information;
@@ -165,9 +163,8 @@ namespace {
 
 }  // namespace
 
-/// What the unknowns are off by after the registration, which weighed prior and surfaces by what it made of them: the
-/// errors of the prior and the pull of the surfaces, whose score_covariance is measured, through the same normal
-/// equations: mapping.md (R41).
+/// Computes the errors of the unknowns after the registration: mapping.md (R52). The errors of the prior and the
+/// gradient of the surfaces, with the measured score_covariance, pass through the same normal equations.
 Belief posterior(const Prediction& prediction, const Registration::Result& aligned) {
   Belief start{aligned.mean, aligned.covariance, Registration::Matrix::Zero()};
   const auto from_prior = std::make_unique<Registration::Matrix>();

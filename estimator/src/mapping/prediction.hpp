@@ -8,69 +8,69 @@
 
 namespace tumble::mapping {
 
-/// What a sweep leaves to the next: all that is carried over the border between the two.
+/// State at the boundary of two sweeps: everything that the next sweep needs.
 struct Border {
-  Belief belief;                                                         ///< there
-  Registration::Matrix end_by_start = Registration::Matrix::Identity();  ///< of its unknowns by those of the last sweep
-  /// Magnitude of the saturation deficit's share there, on axes on the rail; 0 where the last sweep was not aligned.
+  Belief belief;                                                         ///< at the boundary
+  Registration::Matrix end_by_start = Registration::Matrix::Identity();  ///< derivative by the last start
+  /// |s_j| of the saturation deficit at the boundary, on saturated axes; 0 if the last sweep was not aligned.
   Eigen::Vector3d deficit_share = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d railed_velocity_m2_s2 = Eigen::Matrix3d::Zero();  ///< variance from the last sweep's rails, W
-  bool held = false;  ///< the last sweep's surfaces held the sensor in all directions
+  Eigen::Matrix3d railed_velocity_m2_s2 = Eigen::Matrix3d::Zero();  ///< variance from the last sweep's saturation, W
+  bool held = false;  ///< the last sweep was constrained in all directions
 
   TimeNs time_ns() const { return belief.mean.state.time_ns; }
 };
 
-/// The motion from the border to a sweep's end, as the IMU tells it.
+/// Motion from the boundary to a sweep's end, measured by the IMU.
 struct MotionWindow {
-  std::span<const MotionSample> samples;  ///< from the border on, past the end too
+  std::span<const MotionSample> samples;  ///< from the boundary on, also beyond the end
   TimeNs end_ns = 0;
-  int resting_sweeps = 0;  ///< in a row, by the IMU, up to this one
+  int resting_sweeps = 0;  ///< consecutive sweeps at rest by the IMU, including this one
 };
 
-/// What the sweeps so far say of the next one's unknowns.
+/// Prediction of the next sweep's unknowns.
 struct Prediction {
   Registration::Prior prior;
-  Registration::Matrix by_last = Registration::Matrix::Identity();  ///< of its means by the unknowns at the border
-  Registration::Matrix noise = Registration::Matrix::Zero();        ///< that arises in between
-  Registration::Matrix errors = Registration::Matrix::Zero();       ///< covariance of the means' errors, as reported
+  Registration::Matrix by_last = Registration::Matrix::Identity();  ///< derivative by the unknowns at the boundary
+  Registration::Matrix noise = Registration::Matrix::Zero();        ///< process noise
+  Registration::Matrix errors = Registration::Matrix::Zero();       ///< covariance of the mean's errors, as reported
 
-  /// From the weight and the errors of what is believed at the border, once all else is known.
+  /// Computes weight and errors from those at the boundary, after all other members are set.
   void compose(const Belief& at_border);
-  /// Known to be at rest: velocity zero, and no longer correlated with the rest. Before compose().
+  /// Sets the velocity to zero and decorrelates it, for a robot known to be at rest. Call before compose().
   void zero_velocity_update(double sigma_m_s);
 };
 
-/// Predicts the unknowns of a sweep; `trajectory` is what the IMU makes of the belief at the border.
+/// Predicts the unknowns of a sweep; `trajectory` is the inertial motion from the boundary's state.
 Prediction predict(const LidarInertialOdometry::Params& params, const Border& border, const MotionWindow& window,
                    const SweepTrajectory& trajectory, const MotionPrior& known);
 
-/// Of a lost sensor whose IMU rests: that it has not moved, which stops the drift of its velocity.
+/// After tracking failure with the IMU at rest: assumes no motion, which stops the velocity drift.
 void predict_rest(const LidarInertialOdometry::Params& params, const Border& border, Prediction& prediction);
 
-/// Whether the prior alone is sure enough to draw by; clipped axes count in full, also where their deficit is
-/// estimated.
+/// Returns whether the prior alone is accurate enough to insert points. Clipped axes have full weight, even if their
+/// deficit is estimated.
 bool prior_is_trusted(const LidarInertialOdometry::Params& params, const Border& border, const MotionWindow& window,
                       const SweepTrajectory& trajectory);
 
-/// What stands for a sweep that was not aligned: the prediction.
+/// Posterior of a sweep without alignment: the prediction.
 Belief posterior(const Prediction& prediction);
-/// What stands for one that was: mapping.md (R41).
+/// Posterior of an aligned sweep: mapping.md (R52).
 Belief posterior(const Prediction& prediction, const Registration::Result& aligned);
 
-/// See SweepReport::innovation; mapping.md (R51).
+/// See SweepReport::innovation; mapping.md (R62).
 double innovation(const Prediction& prediction, const Registration::Estimate& aligned);
 
-/// Whether a place is where the prediction has it: within its covariance, and no further off than surfaces are matched,
-/// beyond which whichever is nearest fits. `innovation` is that of above. mapping.md (R120).
+/// Returns whether a pose agrees with the prediction: within its covariance and within the matching distance, beyond
+/// which any nearby surface may match. `innovation` is the function's result above. mapping.md (R67).
 bool is_expected(const LidarInertialOdometry::Params& params, const Prediction& prediction,
                  const Registration::Estimate& aligned, double innovation);
 
-/// The border at the end of a sweep that moved along `trajectory`, by what stands for it at its start. `alignment`
-/// is null where there is none.
+/// Computes the boundary at the end of a sweep with the motion `trajectory`, from its posterior at the start.
+/// `alignment` may be null.
 void border_after(const LidarInertialOdometry::Params& params, const Belief& start, const MotionWindow& window,
                   const SweepTrajectory& trajectory, const Registration::Result* alignment, Border& border);
 
-/// Of the saturation deficit from knot to knot: mapping.md (R36).
+/// Correlation of the saturation deficit between adjacent knots: mapping.md (R46).
 double knot_correlation(const LidarInertialOdometry::Params& params, const SweepTrajectory& trajectory);
 
 }  // namespace tumble::mapping

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What an odometer tells of a sweep, against what is predicted of it: mapping.md, section 3.
+// Update of a sweep's prediction by an odometer reading: mapping.md, section 3.
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <memory>
@@ -24,26 +24,25 @@ using Covariance = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMos
 template <int Values>
 using OfMotion = Eigen::Matrix<double, Values, kMotion>;
 
-constexpr int kIterations = 6;     // of which the first two or three change anything
+constexpr int kIterations = 6;     // usually two or three are enough
 constexpr double kSettled = 1e-9;  // m, rad, m/s, rad/s
 
-/// Where the unknowns are taken to stand, from where they are predicted: what the border left, and the noise since.
+/// Current unknowns relative to the prediction: those at the boundary, and the noise since.
 struct Offsets {
   Registration::Vector start = Registration::Vector::Zero();
   Eigen::Matrix<double, kMotion, 1> noise = Eigen::Matrix<double, kMotion, 1>::Zero();
 };
 
-/// A reading and what it is expected to be.
 struct Expected {
   Rows<kUnknowns> by_start;
   Rows<kMotion> by_noise;
-  Values off;  ///< the reading, less what is expected of it
+  Values off;  ///< innovation: the reading minus its prediction
   Covariance variance;
 };
 
-/// The IMU at an instant of the sweep.
+/// State of the IMU at a time within the sweep.
 struct Moment {
-  double noise_share = 0.0;  ///< of the sweep's, that has arisen by then
+  double noise_share = 0.0;  ///< fraction of the sweep's noise up to this time
   Eigen::Quaterniond q_WI;
   Eigen::Vector3d p_WI_m, v_WI_m_s;
   Eigen::Matrix<double, kMotion, kUnknowns> by_start;
@@ -58,7 +57,8 @@ class Sweep {
     return time_ns >= predicted_.state.time_ns - beyond_ns && time_ns <= window_.end_ns + beyond_ns;
   }
 
-  /// At a time that it holds; the noise grows in proportion to the time, as its deviations do. mapping.md (R107).
+  /// Evaluates the motion at a time within the sweep. The noise's standard deviations grow in proportion to time.
+  /// mapping.md (R34).
   Moment at(TimeNs time_ns, const Offsets& offsets) const {
     Moment out;
     const double t_s = seconds(time_ns - predicted_.state.time_ns);
@@ -70,7 +70,7 @@ class Sweep {
     Registration::Estimate start = predicted_;
     start.add(moved);
     SweepTrajectory trajectory;
-    // no trouble: the window's samples cover it, which add_sweep has seen to
+    // no error is possible: add_sweep ensures that the samples cover the window
     (void)trajectory.build(start.state, window_.samples, window_.end_ns, start.calibration.gravity_W_m_s2,
                            start.deficit_rad_s);
     std::size_t hint = 0;
@@ -90,7 +90,7 @@ class Sweep {
   const MotionWindow& window_;
 };
 
-/// `by_moment`: of the reading by errors of the motion then.
+/// `by_moment`: derivative of the reading by errors of the motion at that time.
 template <int Size>
 void add(const OfMotion<Size>& by_moment, const Moment& moment, Expected& out) {
   const Eigen::Matrix<double, Size, kUnknowns> by_start = by_moment * moment.by_start;
@@ -104,7 +104,7 @@ Expected nothing() {
           Covariance::Zero(Size, Size)};
 }
 
-/// mapping.md (R108).
+/// mapping.md (R35).
 Expected expect(const VelocityReading& reading, const Sweep& sweep, const Offsets& offsets) {
   Expected out = nothing<3>();
   const Moment now = sweep.at(reading.time_ns, offsets);
@@ -118,7 +118,7 @@ Expected expect(const VelocityReading& reading, const Sweep& sweep, const Offset
   return out;
 }
 
-/// mapping.md (R109).
+/// mapping.md (R36).
 Expected expect(const MotionReading& reading, const Sweep& sweep, const Offsets& offsets) {
   Expected out = nothing<kMost>();
   const Moment from = sweep.at(reading.from_ns, offsets), to = sweep.at(reading.to_ns, offsets);
@@ -149,16 +149,16 @@ bool holds(const Sweep& sweep, const OdometerReading& reading) {
 template <int Size>
 using Gain = Eigen::Matrix<double, Size, Eigen::Dynamic, 0, Size, kMost>;
 
-/// What an update works in: not on the stack, which sandwich() needs for itself.
+/// Buffers of an update, on the heap because sandwich() needs the stack.
 struct Work {
-  Matrix at_start, before, left;  ///< covariance at the start, of it the noise; what the gains leave of errors
+  Matrix at_start, before, left;  ///< covariance at the start, the part due to noise; factor of the remaining errors
   Offsets offsets;
   Expected expected;
-  Gain<kUnknowns> by_start;  ///< on what the border left
-  Gain<kMotion> by_noise;    ///< on the noise since
+  Gain<kUnknowns> by_start;  ///< for the unknowns at the boundary
+  Gain<kMotion> by_noise;    ///< for the noise since
 };
 
-/// Gains, of what is expected where the offsets are: mapping.md (R110).
+/// Computes the gains at the current offsets: mapping.md (R37).
 bool find_gains(const MotionNoise& within, Work& work) {
   const Expected& expected = work.expected;
   work.by_start = work.at_start * expected.by_start.transpose();
@@ -172,7 +172,7 @@ bool find_gains(const MotionNoise& within, Work& work) {
   return true;
 }
 
-/// Iterates to where the reading and what is predicted leave the unknowns; false where they leave them nowhere.
+/// Iterates to the optimum of reading and prediction; returns false without a solution.
 [[gnu::noinline]] bool settle(const OdometerReading& reading, const Sweep& sweep, const MotionNoise& within,
                               Work& work) {
   for (int iteration = 0; iteration < kIterations; ++iteration) {
@@ -190,19 +190,19 @@ bool find_gains(const MotionNoise& within, Work& work) {
   return true;
 }
 
-/// What stands, and what the gains leave of the border's errors: mapping.md (R111).
+/// Applies the update, and its effect on the boundary's errors: mapping.md (R38).
 [[gnu::noinline]] void move(Work& work, Prediction& prediction) {
   Registration::Vector moved = work.offsets.start;
   u::segment(moved, u::motion) += work.offsets.noise;
   prediction.prior.mean.add(moved);
-  work.by_start.topRows<kMotion>() += work.by_noise;  // from here on of the whole
+  work.by_start.topRows<kMotion>() += work.by_noise;  // from here on, of the sum
   const Rows<kUnknowns> by_last = work.expected.by_start * prediction.by_last;
   prediction.by_last.noalias() -= work.by_start * by_last;
   work.left.setIdentity();
   work.left.noalias() -= work.by_start * work.expected.by_start;
 }
 
-/// The noise that arises within, as far as the gains leave it, and that of the reading: mapping.md (R111).
+/// Adds the noise within the sweep, reduced by the gains, and that of the reading: mapping.md (R38).
 [[gnu::noinline]] void add_noise(const MotionNoise& within, Work& work, Prediction& prediction) {
   const Gain<kUnknowns>& K = work.by_start;
   Eigen::Matrix<double, kUnknowns, kMotion> left = -K * work.expected.by_noise;
@@ -221,9 +221,9 @@ void weigh_reading(const OdometerReading& reading, const Border& border, const M
   const Sweep sweep(prediction.prior.mean, window);
   if (!holds(sweep, reading)) return;
   const auto work = std::make_unique<Work>();
-  // weighed as the registration weighs: by C, mapping.md section 6
+  // weighted like the registration: by C, mapping.md section 6
   sandwich(prediction.by_last, border.belief.weight, work->at_start);
-  Matrix& before = work->before;  // the noise that was there at the start: of the deficit, of rails before
+  Matrix& before = work->before;  // noise at the start: of the deficit, and of earlier saturation
   before = prediction.noise;
   u::block(before, u::motion) -= within;
   work->at_start += before;

@@ -27,8 +27,8 @@ Matrix information_of(const Matrix& covariance) {
   return dense::Cholesky(positive).inverse<Matrix>();
 }
 
-/// Pulls the estimate towards the prior: adds its information and gradient to normal equations over all unknowns, those
-/// terms of mapping.md (R20), (R21) that hold the prior.
+/// Adds the prior's information and gradient to the normal equations over all unknowns: the prior's terms of mapping.md
+/// (R22), (R23).
 void add_prior(const Registration::Prior& prior, const Matrix& information, const Registration::Estimate& now,
                Matrix& H, Vector& g) {
   const auto held = std::make_unique<std::array<Matrix, 3>>();
@@ -42,7 +42,7 @@ void add_prior(const Registration::Prior& prior, const Matrix& information, cons
   g += J.transpose() * (information * away);
 }
 
-/// Whether the motion is within what the prior says it may be off by: mapping.md (R59).
+/// Returns whether the motion is within the prior's uncertainty: mapping.md (R25).
 bool agrees(const Registration::Prior& prior, const Registration::Estimate& now) {
   constexpr int kMotion = Registration::kMotion;
   const Vector moved = now.minus(prior.mean);
@@ -87,32 +87,29 @@ Registration::Registration(const Params& params) : params_(params) {
   require_within("plane_neighbours_min", params.expert.plane.neighbours_min, 3, params.neighbours);
 }
 
-/// What stays the same from iteration to iteration.
 struct Registration::Problem {
   const Prior& prior;
   std::span<const MotionSample> samples;
   TimeNs end_ns;
-  std::span<const SweepPoint> points;  ///< placed by the prior's calibration
+  std::span<const SweepPoint> points;  ///< by the prior's calibration
   const VoxelMap& map;
   Unknowns unknowns{prior.covariance};
   Matrix information = information_of(prior.covariance);
   std::size_t matches_needed = 0;
 
-  /// The trajectory of an estimate.
   Status build(const Estimate& of, SweepTrajectory& trajectory) const {
     return trajectory.build(of.state, samples, end_ns, of.calibration.gravity_W_m_s2, of.deficit_rad_s);
   }
 };
 
-/// What an iteration hands to the next.
 struct Registration::Descent {
   Estimate now;
-  std::span<const SweepPoint> points;  ///< placed by its calibration
-  Sums sum;                            ///< over the matches
-  Matrix H = Matrix::Zero();           ///< normal matrix, the prior's included
+  std::span<const SweepPoint> points;  ///< by the current calibration
+  Sums sum;
+  Matrix H = Matrix::Zero();  ///< normal matrix, including the prior
   double kernel_m = 0.0;
   bool converged = false;
-  RegistrationVerdict verdict = RegistrationVerdict::converged;  ///< any other ends it
+  RegistrationVerdict verdict = RegistrationVerdict::converged;  ///< any other value stops the iterations
 };
 
 Status Registration::align(const Prior& prior, std::span<const MotionSample> samples, TimeNs end_ns,
@@ -122,7 +119,7 @@ Status Registration::align(const Prior& prior, std::span<const MotionSample> sam
   Problem& problem = *posed;
   problem.matches_needed = std::max(params_.matches_min, static_cast<std::size_t>(params_.expert.matched_share_min *
                                                                                   static_cast<double>(points.size())));
-  std::destroy_at(&result);  // made anew where it lies: it is 22 KiB
+  std::destroy_at(&result);  // reconstructed in place: it is 22 KiB
   std::construct_at(&result);
   result.mean = prior.mean;
   result.covariance = prior.covariance;
@@ -145,7 +142,6 @@ Status Registration::align(const Prior& prior, std::span<const MotionSample> sam
   return problem.build(prior.mean, trajectory);
 }
 
-/// One step of Gauss-Newton.
 Status Registration::iterate(const Problem& problem, Descent& at, SweepTrajectory& trajectory, Result& result) {
   const Estimate& mean = problem.prior.mean;
   if (problem.unknowns.calibration && result.iterations > 1) {
@@ -168,7 +164,7 @@ Status Registration::iterate(const Problem& problem, Descent& at, SweepTrajector
   add_prior(problem.prior, problem.information, at.now, at.H, g);
   problem.unknowns.hold(at.H, g);
   dense::solve_semidefinite_vector(at.H, g);
-  const Vector step = -g;  // mapping.md (R21)
+  const Vector step = -g;  // mapping.md (R23)
   if (!step.allFinite()) {
     at.verdict = RegistrationVerdict::diverged;
     return {};
@@ -183,9 +179,8 @@ Status Registration::iterate(const Problem& problem, Descent& at, SweepTrajector
   return {};
 }
 
-/// Whether the end of a descent is believed.
 RegistrationVerdict Registration::judge(const Problem& problem, const Descent& at) const {
-  // a false minimum: most matches lie off their planes
+  // at a false minimum, most matches are far from their planes
   const bool fits =
       static_cast<double>(at.sum.inliers) >= params_.expert.fitting_share_min * static_cast<double>(at.sum.matches);
   if (!at.converged || !fits) return RegistrationVerdict::diverged;
@@ -193,9 +188,9 @@ RegistrationVerdict Registration::judge(const Problem& problem, const Descent& a
   return RegistrationVerdict::converged;
 }
 
-/// Mean, covariance and what the matches tell about both, of a descent that is believed.
+/// Computes mean, covariance and diagnostics of an accepted descent.
 Status Registration::conclude(const Problem& problem, const Descent& at, SweepTrajectory& trajectory, Result& result) {
-  Matrix posterior = Matrix::Identity();  // mapping.md (R22)
+  Matrix posterior = Matrix::Identity();  // mapping.md (R24)
   dense::solve_semidefinite(at.H, posterior);
   result.covariance = 0.5 * (posterior + posterior.transpose());
   problem.unknowns.clear_held(result.covariance);
@@ -208,7 +203,7 @@ Status Registration::conclude(const Problem& problem, const Descent& at, SweepTr
   return {};
 }
 
-/// mapping.md (R27), (R28).
+/// mapping.md (R30), (R31).
 void Registration::describe_shape(std::span<const SweepPoint> points, double kernel_m, const Sums& sum,
                                   Result& result) const {
   Eigen::Matrix<double, 6, 6> shape = Eigen::Matrix<double, 6, 6>::Zero();  // robustly weighted, without variances

@@ -73,14 +73,14 @@ void Registration::Sums::add(const Sums& other) {
   inliers += other.inliers;
 }
 
-/// Range and skew part of mapping.md (R16).
+/// Range and skew part of mapping.md (R18).
 double Registration::point_variance_m2(const SweepPoint& point) const {
   const double range = std::max(params_.range_sigma_m, params_.range_sigma_share * point.range_m);
   const double skew = params_.skew_sigma_m_s * point.sweep_t_s;
   return range * range + skew * skew;
 }
 
-/// mapping.md (R14) and (R15), the distance and its derivative.
+/// mapping.md (R16) and (R17), the distance and its derivative.
 double Registration::residual(const SweepTrajectory& trajectory, const SweepCalibration& calibration,
                               const SweepPoint& point, const PlaneFit& plane, std::size_t& hint, Vector& derivative) {
   const Eigen::Vector3d n = plane.normal_W.cast<double>();
@@ -96,7 +96,7 @@ void Registration::find_match(const VoxelMap& map, std::size_t point, Neighbours
   if (match.searched) {
     const float moved2 = (positions_[point] - match.searched_at_W_m).squaredNorm();
     if (moved2 <= rematch2) return;
-    // those that were nearest are still no farther than that, so that none of the new ones is; a hair more for rounding
+    // the former neighbours are within this radius, so the new ones are, too; a small margin covers rounding
     radius_m = std::min(radius_m, kRounding * (match.reach_m + std::sqrt(moved2)));
   }
   match.searched = true;
@@ -111,11 +111,11 @@ void Registration::find_match(const VoxelMap& map, std::size_t point, Neighbours
     const float sigma = map.sigma_m(found.index[k]);
     variance += sigma * sigma;
   }
-  // the map's part of mapping.md (R16)
+  // the map's part of mapping.md (R18)
   match.map_variance_m2 = variance / static_cast<float>(found.count) + match.plane.thickness2_m2;
 }
 
-/// What a match counts for: its information, as far as it fits (D. Geman, D. McClure, 1987); mapping.md (R17), (R19).
+/// Computes the information of a match with its robust weight (D. Geman, D. McClure, 1987); mapping.md (R19), (R21).
 Registration::Weight Registration::weigh(const SweepPoint& point, const Match& match, double distance_m,
                                          double kernel_m) const {
   const double variance = point_variance_m2(point) + match.map_variance_m2;
@@ -124,8 +124,7 @@ Registration::Weight Registration::weigh(const SweepPoint& point, const Match& m
   return {variance, robust, robust * params_.expert.correlation_discount / variance};
 }
 
-/// Where the points lie in the world by this trajectory, the planes that they belong to, and how far they are from
-/// them: mapping.md (R3), (R14).
+/// Computes the points' positions by this trajectory, their planes, and the distances: mapping.md (R3), (R16).
 void Registration::match_points(const SweepTrajectory& trajectory, std::span<const SweepPoint> points,
                                 const VoxelMap& map) {
   levers_.resize(points.size());
@@ -143,7 +142,7 @@ void Registration::match_points(const SweepTrajectory& trajectory, std::span<con
   });
 }
 
-/// mapping.md (R18).
+/// mapping.md (R20).
 double Registration::kernel_width_m() {
   sorted_.clear();
   for (std::size_t i = 0; i < matches_.size(); ++i) {
@@ -152,15 +151,15 @@ double Registration::kernel_width_m() {
   if (sorted_.empty()) return params_.expert.kernel_min_m;
   const auto middle = sorted_.begin() + static_cast<std::ptrdiff_t>(sorted_.size() / 2);
   std::nth_element(sorted_.begin(), middle, sorted_.end());
-  // three standard deviations of a normal distribution with this median of the absolute value
+  // three standard deviations of a normal distribution with this median absolute value
   return std::max(params_.expert.kernel_min_m, 3.0 * 1.4826 * static_cast<double>(*middle));
 }
 
-/// Sums over the points of mapping.md (R21).
+/// Sums over the points of mapping.md (R23).
 void Registration::accumulate_block(std::span<const SweepPoint> points, std::size_t block,
                                     const SweepTrajectory& trajectory, const SweepCalibration& calibration,
                                     const Unknowns& unknowns, double kernel_m, Products& products, Sums& sum) {
-  // a column per match: derivatives by the free unknowns, times the square root of the weight; and the distance, so too
+  // a column per match: derivatives by the free unknowns and the distance, both times the square root of the weight
   auto& rows = products.columns;
   Eigen::Matrix<double, static_cast<int>(kBlock), 1> weighted;
   const bool rigid = !unknowns.deficit && !unknowns.calibration;
@@ -211,8 +210,8 @@ void Registration::accumulate(std::span<const SweepPoint> points, const SweepTra
   sum.H = lower.selfadjointView<Eigen::Lower>();
 }
 
-/// mapping.md (R25), (R26), of all that is free: of the motion alone it would hold what only motion and calibration
-/// together leave open, as an attitude that a turned mounting makes up for, and (R41) would grow there without bound.
+/// mapping.md (R28), (R29), for all free unknowns. For the motion alone, it would constrain unobservable combinations
+/// of motion and calibration, for example attitude and mounting rotation. (R52) would grow there without bound.
 struct Registration::NoiseOfNormals {
   const Unknowns& unknowns;
   using Products = mapping::OuterProducts<kUnknowns, 2 * static_cast<int>(kBlock)>;
@@ -250,7 +249,7 @@ struct Registration::NoiseOfNormals {
   }
 };
 
-/// mapping.md (R23).
+/// mapping.md (R26).
 struct Registration::Pulls {
   SpatialHash& cluster_of;
   std::vector<Vector>& pulls;
@@ -277,7 +276,7 @@ struct Registration::Pulls {
   }
 };
 
-/// One look at each match where the result has put its point.
+/// Evaluates each match once at the result.
 void Registration::describe_errors(std::span<const SweepPoint> points, const SweepTrajectory& trajectory,
                                    const SweepCalibration& calibration, const Unknowns& unknowns, double kernel_m,
                                    Result& result) {

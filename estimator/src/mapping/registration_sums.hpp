@@ -8,18 +8,18 @@
 
 namespace tumble {
 
-/// Which of the unknowns are estimated, and where they stand in the compact sums.
+/// The free unknowns and their indices in the compact sums.
 struct Registration::Unknowns {
-  std::array<int, kUnknowns> free{};  ///< their numbers, ascending
+  std::array<int, kUnknowns> free{};  ///< their indices, ascending
   int count = 0;
   bool deficit = false, calibration = false;
 
-  /// Motion always; of the rest what has a variance.
+  /// The motion is always free; other unknowns are free if they have a variance.
   explicit Unknowns(const Matrix& covariance);
 
-  /// The sums as normal equations over all unknowns, rows of the held ones 0.
+  /// Expands the sums to normal equations over all unknowns; rows of fixed ones are 0.
   void expand(const Sums& sum, Matrix& H, Vector& g) const;
-  /// Cuts the held ones off: their step is 0.
+  /// Removes the fixed unknowns: their step is 0.
   void hold(Matrix& H, Vector& g) const;
   void cut_held(Matrix& M) const;
   void clear_held(Matrix& covariance) const;

@@ -14,29 +14,29 @@ namespace {
 
 using Params = LidarInertialOdometry::Params;
 
-// Of deficit_try_rad_s: closely where most deficits lie, then once more beyond.
+// Multiples of deficit_try_rad_s: densely where most deficits are, then one larger value.
 constexpr double kDeficitTries[] = {1.0, 2.0, 3.0, 5.0};
-constexpr double kDeficitSigmas = 5.0;  // a deficit of so many deviations is not tried
+constexpr double kDeficitSigmas = 5.0;  // deficits beyond this many standard deviations are not tried
 
-constexpr int kStartsPerRound = 12;   // six axes, two ways
-constexpr double kStartSigmas = 1.5;  // of the prior: how far a start is moved, where that is within reach
+constexpr int kStartsPerRound = 12;   // six axes, two directions
+constexpr double kStartSigmas = 1.5;  // distance of a start in standard deviations of the prior, if within reach
 
 bool converged(const Registration::Result& found) {
   return found.verdict == RegistrationVerdict::converged;
 }
 
-/// Whether the surfaces fit that it matched. mapping.md (R121).
+/// Returns whether the matched surfaces fit. mapping.md (R68).
 bool fits(const Params& params, const Registration::Result& found) {
   return double(found.inliers) >= params.expert.tracking.borne_out_share * double(found.matches);
 }
 
-/// Registers; where that fails and the rate may be short on a clipped axis, tries again from larger saturation
-/// deficits, since a rail that is left behind within one sweep may put the start a whole radian off.
+/// Registers the sweep. If this fails and a clipped axis may have a deficit, tries larger saturation deficits. Reason:
+/// saturation that ends within one sweep may rotate the start by a radian.
 void track(const Params& params, const Registration::Prior& prior, const Scene& scene, Aligner& aligner,
            SweepTrajectory& trajectory, Registration::Result& found) {
   aligner.in_full(prior, scene, trajectory, found);
   int iterations = found.iterations, tries = 0;
-  // one that ran beyond its bound would do so again
+  // an attempt that exceeded its bound would do so again
   const bool out_of_bounds = found.correction_m > params.expert.matching.correction_max_m ||
                              found.correction_rad > params.expert.matching.correction_max_rad;
   if (found.verdict == RegistrationVerdict::diverged && !out_of_bounds) {
@@ -59,8 +59,8 @@ void track(const Params& params, const Registration::Prior& prior, const Scene& 
   found.iterations = iterations;
 }
 
-/// Looks for the way back: from the prior and from starts around it, up to a place that its surfaces fit; else that of
-/// which most points do. A search goes on with the next sweep where this one ended, so that no sweep costs too much.
+/// Searches for the pose from the prior and from starts around it, until the surfaces fit; otherwise returns the pose
+/// with most inliers. The search continues with the next sweep, to limit the cost per sweep.
 void search(const Params& params, const Whereabouts& from, const Scene& scene, Aligner& aligner,
             SweepTrajectory& trajectory, Registration::Result& found) {
   const RelocalizationParams& starts = params.expert.search;
@@ -77,7 +77,7 @@ void search(const Params& params, const Whereabouts& from, const Scene& scene, A
   };
   std::unique_ptr<Best> best;
   aligner.from_afar(prior, prior, scene, trajectory, found);
-  const RegistrationVerdict verdict = found.verdict;  // of the sweep where nothing is found
+  const RegistrationVerdict verdict = found.verdict;  // of the sweep if nothing is found
   const int moved = starts.starts_per_sweep - 1;
   for (int k = 0; k < moved && !(converged(found) && fits(params, found)); ++k) {
     if (converged(found) && (!best || found.inliers > best->found.inliers))

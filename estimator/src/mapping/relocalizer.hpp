@@ -6,44 +6,45 @@
 #include "aligner.hpp"
 #include "tracking.hpp"
 
-/// Where the registration is to begin: owns all restarts.
+/// Choice of the registration's starts; owns all restarts.
 namespace tumble::mapping {
 
 struct Attempt {
-  bool too_few_matches = false;  ///< why there is none: the map had nothing to say
+  bool too_few_matches = false;  ///< reason without an alignment: too few map points
   int iterations = 0;
-  double inlier_share = 0.0;  ///< of the points of the last registration
+  double inlier_share = 0.0;  ///< fraction of the points of the last registration
 };
 
-/// Where a sweep may have begun.
+/// Candidates for the start of a sweep.
 struct Whereabouts {
   const TrackingState& tracking;
   const Registration::Prior& prior;
-  /// By a place that this sweep has contradicted: a little off it is one to search from. Null: none.
+  /// State by a relocalisation that this sweep contradicted, as a start of the search. Null: none.
   const MotionState* contradicted = nullptr;
 };
 
-/// Aligns a sweep by all means that its tracking state allows. `trajectory` is the alignment's, or one that was tried;
-/// `alignment` is that of the sweep's start, empty where none was found.
+/// Aligns a sweep by all means that its tracking state allows. `trajectory` is that of the alignment, or of a failed
+/// attempt. `alignment` is that of the sweep's start, empty if none was found.
 Attempt attempt(const LidarInertialOdometry::Params& params, const Whereabouts& from, const Scene& scene,
                 Aligner& aligner, SweepTrajectory& trajectory, std::optional<Registration::Result>& alignment);
 
-/// How a sweep lies in the map.
+/// Result of registering a sweep to the map.
 struct Placed {
   SweepVerdict verdict = SweepVerdict::rejected;
-  bool expected = true;  ///< of the alignment: where the sweeps before lead to
+  bool expected = true;  ///< the alignment agrees with the inertial prediction
   Placement placement = Placement::not_tried;
-  bool map_says_nothing = false;                  ///< the sweep has points, but the map too few of them
+  bool map_says_nothing = false;                  ///< the sweep has points, but the map has too few nearby
   std::optional<Registration::Result> alignment;  ///< of its start
 };
 
-/// What an attempt with so many points comes to, whose alignment, and whether that was expected, `placed` has already.
-/// Where the map had nothing to say, or after enough searches in vain, the motion goes on by inertia as `degenerate`.
+/// Sets the verdict of an attempt with `points` points. `placed` already contains the alignment and whether it was
+/// expected. If the map had too few points, or after enough failed searches, the motion continues by inertial
+/// prediction as `degenerate`.
 void judge(const LidarInertialOdometry::Params& params, const TrackingState& before, std::size_t points,
            bool prior_trusted, const Attempt& attempt, Placed& placed);
 
-/// Start number `index` of a search: the prior itself, then moved along each axis by what it may be off by, nearer ones
-/// first, mapping.md (R54).
+/// Computes start number `index` of a search: the prior itself, then shifts along each axis by its uncertainty, closest
+/// first, mapping.md (R66).
 void move_start(const RelocalizationParams& params, int index, Registration::Prior& prior);
 
 }  // namespace tumble::mapping

@@ -3,11 +3,11 @@
 
 #include <utility>
 
-/// Cosine and sine of half a small angle by their series: c = s = 1, then for each pair, with h the half angle squared,
-/// c = 1 - h first c and s = 1 - h second s, which is sin(x) / x.
+/// Cosine and sine of half a small angle by their series. Start with c = s = 1. For each pair, with h the half angle
+/// squared, c = 1 - h first c and s = 1 - h second s. The result s is sin(x) / x.
 namespace tumble::rotation_series {
 
-/// Of the whole angle. Beyond it more terms would be needed.
+/// Maximum whole angle, squared; larger angles would need more terms.
 inline constexpr double kAngle2_rad2 = 1.0;
 /// Ratios of successive terms of cos and of sin(x) / x, last first.
 inline constexpr std::pair<double, double> kRatios[] = {

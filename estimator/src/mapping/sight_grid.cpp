@@ -9,12 +9,12 @@ namespace tumble::mapping {
 
 namespace {
 
-// Ranges over the sensor's way to each side from which on returns, which are sorted in by their direction from one
-// place, are off by less than the bins that are asked beside: 0.1 rad.
+// Minimum ratio of range to sensor motion on each side. Returns are binned by their direction from one position. Above
+// this ratio, the error of the direction is below the bins that are checked: 0.1 rad.
 constexpr float kMovedToRange = 10.0f;
-constexpr int kEmptyMost = 4;  // of nine bins: rings lie wider apart than bins
-// How far beyond a point all returns lie that saw through it: what a float of the ground between two sweeps' poses
-// and a return's own noise may amount to, and what the ground falls away within a bin.
+constexpr int kEmptyMost = 4;  // of nine bins; rings are further apart than bins
+// Margin by which all returns must be beyond a point. The margin covers errors of the sweeps' relative pose, a return's
+// noise, and the slope of the ground within a bin.
 constexpr float kBeyond_m = 0.3f, kBeyondShare = 0.03f;
 constexpr float kDeviations = 3.0f;
 
@@ -26,7 +26,7 @@ void SightGrid::start(const Eigen::Vector3f& from_W_m, float moved_m) {
   nearest_m_.assign(std::size_t{6} * kBins * kBins, std::numeric_limits<float>::infinity());
 }
 
-/// None of the place itself, and of what is not finite.
+/// Empty for the position itself and for non-finite values.
 std::optional<SightGrid::Direction> SightGrid::direction(const Eigen::Vector3f& lever_m) {
   Eigen::Index axis = 0;
   const float along = lever_m.cwiseAbs().maxCoeff(&axis);
@@ -46,7 +46,7 @@ void SightGrid::add(const Eigen::Vector3f& return_W_m) {
   nearest_m = std::min(nearest_m, lever_m.norm());
 }
 
-/// The range that all returns about a direction reach; 0 where too few returned, or the cube ends.
+/// Smallest range of the returns around a direction; 0 with too few returns or at the edge of the cube.
 float SightGrid::free_m(const Direction& towards) const {
   float nearest_m = std::numeric_limits<float>::infinity();
   int empty = 0;
@@ -64,7 +64,7 @@ float SightGrid::free_m(const Direction& towards) const {
   return nearest_m;
 }
 
-/// mapping.md (R122).
+/// mapping.md (R65).
 SightGrid::Verdict SightGrid::verdict(const Eigen::Vector3f& point_W_m, float sigma_m) const {
   const Eigen::Vector3f lever_m = point_W_m - from_W_m_;
   const float range_m = lever_m.norm();
@@ -73,7 +73,7 @@ SightGrid::Verdict SightGrid::verdict(const Eigen::Vector3f& point_W_m, float si
   if (!towards) return Verdict::unknown;
   const float beyond_m = kBeyond_m + kBeyondShare * range_m + kDeviations * sigma_m;
   const float there_m = nearest_m_[towards->bin()];
-  if (there_m > range_m + beyond_m)  // of all but few points this says enough
+  if (there_m > range_m + beyond_m)  // sufficient for most points
     return free_m(*towards) > range_m + beyond_m ? Verdict::seen_through : Verdict::unknown;
   return there_m > range_m - beyond_m ? Verdict::seen : Verdict::unknown;
 }

@@ -7,17 +7,17 @@
 
 namespace tumble::mapping {
 
-/// How far a sweep saw in each direction: the nearest return per bin of a cube of directions about one place, axes of
-/// the world. What stands nearer than all returns about its direction is not there now, mapping.md (R122): free space.
-/// A direction about which little returned says nothing, nor does one at an edge of the cube.
+/// Free space of a sweep: the nearest return per direction, in bins of a cube around one position, axes of the world. A
+/// point closer than all returns around its direction is no longer there, mapping.md (R65). Directions with few
+/// returns, and those at an edge of the cube, give no information.
 class SightGrid {
  public:
-  /// Looks from here on from a place out of which a sweep saw whose sensor moved by so much on each side of it.
+  /// Sets the ray origin for the following points, and how far the sensor moved around it during the sweep.
   void start(const Eigen::Vector3f& from_W_m, float moved_m);
   void add(const Eigen::Vector3f& return_W_m);
 
   enum class Verdict { unknown, seen, seen_through };
-  /// What the sweep says of a point of the map whose place is known so well. O(1).
+  /// Checks a map point, with the standard deviation of its position. O(1).
   Verdict verdict(const Eigen::Vector3f& point_W_m, float sigma_m) const;
 
  private:
@@ -31,7 +31,7 @@ class SightGrid {
 
   Eigen::Vector3f from_W_m_ = Eigen::Vector3f::Zero();
   float least_m_ = 0.0f;
-  std::vector<float> nearest_m_;  // infinity where nothing returned
+  std::vector<float> nearest_m_;  // infinity without a return
 };
 
 }  // namespace tumble::mapping

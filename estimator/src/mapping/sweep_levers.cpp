@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What SweepTrajectory::at says of each point of a sweep, several at a time: the same operations in the same order,
-// which Eigen's quaternions have on a processor with packets of two doubles.
+// SweepTrajectory::at for several points of a sweep at a time. The operations and their order equal those of Eigen's
+// quaternions on a processor with packets of two doubles.
 #include <algorithm>
 #include <limits>
 
@@ -16,7 +16,7 @@ constexpr int kLanes = 8;
 constexpr double kForever_s = std::numeric_limits<double>::infinity();
 using Lane = double[kLanes];
 
-/// Of points in one interval: seconds since its start, positions in I, and what comes of them.
+/// Points in one interval: seconds since its start, positions in I, and results.
 struct Lanes {
   int count = 0;
   alignas(16) Lane s{}, x{}, y{}, z{};
@@ -79,10 +79,10 @@ void SweepTrajectory::levers(std::span<const SweepPoint> points, std::span<Eigen
       const double s = p.s[l], x = p.x[l], y = p.y[l], z = p.z[l];
       const double half = 0.5 * s * p.sinc[l], bx = half * w.x(), by = half * w.y(), bz = half * w.z();
       const double bw = p.cosine[l];
-      // the product of both turns
+      // product of both rotations
       const double qx = (aw * bx + ay * bz) - (az * by - ax * bw), qy = (aw * by + ay * bw) + (az * bx - ax * bz);
       const double qz = (aw * bz - ay * bx) + (az * bw + ax * by), qw = (aw * bw - ay * by) - (az * bz + ax * bx);
-      // the point turned by it
+      // rotated point
       double tx = qy * z - qz * y, ty = qz * x - qx * z, tz = qx * y - qy * x;
       tx += tx;
       ty += ty;

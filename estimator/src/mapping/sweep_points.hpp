@@ -11,8 +11,7 @@
 
 namespace tumble::mapping {
 
-/// The returns of a sweep that are used, and those of them that are registered. Memory: holds one sweep, nothing of
-/// those before.
+/// Usable returns of a sweep, and the subset to be registered. Stores only the current sweep.
 class SweepPoints {
  public:
   using Params = LidarInertialOdometry::Params;
@@ -20,15 +19,14 @@ class SweepPoints {
   explicit SweepPoints(const Params& params);
 
   struct Counts {
-    std::size_t used = 0;   ///< finite, in range, not the robot's own
-    std::size_t alone = 0;  ///< of these, dropped since nothing beside them bears them out
+    std::size_t used = 0;   ///< finite, in range, not on the robot itself
+    std::size_t alone = 0;  ///< of these, lone returns that were dropped
     bool rings_differ = false;
   };
-  /// Takes a sweep in, `start_s` after the start of its trajectory. What makes it useless is trouble, see
-  /// check_selection.
+  /// Processes a sweep that starts `start_s` after its trajectory. Returns the errors of check_selection.
   Status select(const Params& params, std::span<const LidarPoint> returns, TimeNs span_ns,
                 const SweepCalibration& calibration, double start_s, Counts& counts);
-  /// Chooses those to register, one per cube in the world, by the motion as predicted.
+  /// Selects the points to register by the predicted motion, one per cube in the world.
   void choose(const Params& params, const SweepTrajectory& predicted);
   void move(const SweepCalibration& calibration, double later_s) { apply_calibration(calibration, later_s, all_); }
 

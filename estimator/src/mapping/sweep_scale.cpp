@@ -15,18 +15,18 @@ namespace tumble {
 namespace {
 
 constexpr double kLeast = 0.02, kScaleDeviations = 5.0;
-// The mapper's prior is that of the IMU: over 0.1 s ranges that are 10 % long come out as 1.02 to 1.03, over 0.4 s as
-// 1.08, and good ones as 0.998 to 1.006.
+// The mapper's prior comes from the IMU and hides scale errors over short spans. Ranges that are 10 % too long give
+// 1.02 to 1.03 over 0.1 s, and 1.08 over 0.4 s. Correct ranges give 0.998 to 1.006.
 constexpr double kSpan_s = 0.4;
-constexpr double kChange_m_s = 0.5;  // a change of velocity that is smaller tells less than its noise
+constexpr double kChange_m_s = 0.5;  // smaller changes of velocity are dominated by noise
 constexpr std::size_t kChangesMin = 5, kChangesMax = 1000;
-constexpr std::size_t kSpanMax = 64;  // sweeps, of a lidar that is watched
+constexpr std::size_t kSpanMax = 64;  // maximum number of buffered sweeps
 constexpr int kIterations = 10;
-constexpr double kHuber = 1.5, kPerMedian = 1.4826;  // deviations; of a normal distribution by its median deviation
+constexpr double kHuber = 1.5, kPerMedian = 1.4826;  // standard deviations; per median absolute deviation
 
 using Change = SweepScaleWatch::Change;
 
-/// Sums of the IMU along the run's attitudes.
+/// Integrals of the IMU along the run's attitudes.
 class FeltMotion {
  public:
   template <class Sweeps>
@@ -36,8 +36,8 @@ class FeltMotion {
       attitudes_.insert(attitudes_.end(), sweep.trajectory.begin(), sweep.trajectory.end());
   }
 
-  /// Mean velocity from `middle_ns` to `to_ns` less that from `from_ns` to `middle_ns`; none where a force was hidden
-  /// or lies in a gap.
+  /// Mean velocity from `middle_ns` to `to_ns` minus that from `from_ns` to `middle_ns`. Empty if a force is saturated
+  /// or in a gap.
   std::optional<Eigen::Vector3d> change(TimeNs from_ns, TimeNs middle_ns, TimeNs to_ns) const {
     if (attitudes_.empty()) return std::nullopt;
     const auto later = [](const ImuSample& sample, TimeNs time_ns) { return sample.time_ns <= time_ns; };
@@ -74,7 +74,7 @@ class FeltMotion {
   std::vector<PoseState> attitudes_;
 };
 
-/// Whether surfaces say where a sweep was, in some directions at least.
+/// Returns whether surfaces constrain the sweep in some direction.
 bool is_placed(const SweepReport& sweep) {
   return sweep.verdict == SweepVerdict::registered || sweep.verdict == SweepVerdict::degenerate;
 }
@@ -87,7 +87,7 @@ std::size_t sweeps_in(double span_s, const Sweeps& sweeps) {
   return static_cast<std::size_t>(std::clamp(std::round(count), 1.0, static_cast<double>(sweeps.size())));
 }
 
-/// Over the two spans that end with sweep `last`; none where it cannot be told or is too small.
+/// Over the two spans that end with sweep `last`; empty if unknown or too small.
 template <class Sweeps>
 std::optional<Change> change_until(std::size_t last, std::size_t span, const Sweeps& sweeps, const FeltMotion& felt) {
   for (std::size_t k = last - 2 * span; k <= last; ++k) {
@@ -121,7 +121,7 @@ SweepScale fit(const Changes& changes) {
       residual += weight * weight * off[k] * off[k] * changes[k].by_imu_m_s.squaredNorm() / 3.0;
     }
     out.scale = together / squared;
-    out.sigma = std::sqrt(residual) / squared;  // as the residuals are spread, whatever their size: White, 1980
+    out.sigma = std::sqrt(residual) / squared;  // heteroscedasticity-consistent: White, 1980
   }
   return out;
 }

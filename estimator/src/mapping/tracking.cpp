@@ -5,7 +5,7 @@ namespace tumble::mapping {
 
 namespace {
 
-constexpr int kAgreeing = 2;  // sweeps that bear a place out: one alone may fit by chance what it was found by
+constexpr int kAgreeing = 2;  // sweeps that confirm a relocalisation: a single one may fit by chance
 
 bool is_found(Placement placement) {
   return placement == Placement::found || placement == Placement::doubtful;
@@ -27,7 +27,6 @@ bool contradicts(const TrackingState& before, Placement placement) {
   return is_to_be_borne_out(before) && placement != Placement::found;
 }
 
-/// A start more has led nowhere.
 Lost given_up(const TrackingState& found_again) {
   const FoundAgain* found = std::get_if<FoundAgain>(&found_again);
   if (found == nullptr) return {};

@@ -5,51 +5,50 @@
 
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 
-/// Where the sensor stands to its map, and how a sweep changes that.
+/// Tracking state of the sensor relative to the map, and its transitions.
 namespace tumble::mapping {
 
 struct WaitingForStart {};
 
-/// In the map. A sweep may find no place there and still pass, by a trusted prior or because the search was given up.
+/// Tracking. A sweep without registration may still be accepted, by a certain prior or after the search was abandoned.
 struct Tracking {
-  int failed_searches = 0;  ///< sweeps in a row that had points and found no place
+  int failed_searches = 0;  ///< consecutive sweeps with points but without registration
 };
 
 struct Lost {
-  int sweeps = 1;  ///< rejected in a row
+  int sweeps = 1;  ///< consecutive rejected sweeps
   int failed_searches = 0;
 };
 
-/// A search found a place that nothing has borne out yet: the motion by inertia goes on beside it (DeadReckoning), and
-/// is gone back to where a sweep contradicts the place. mapping.md (R120), (R121).
+/// An unconfirmed relocalisation. Inertial prediction continues in parallel (DeadReckoning) and replaces it if a sweep
+/// contradicts it. mapping.md (R67), (R68).
 struct FoundAgain {
-  int after_sweeps = 0;  ///< that were lost
+  int after_sweeps = 0;  ///< rejected sweeps before it
   int failed_searches = 0;
-  int agreeing = 0;  ///< sweeps since
+  int agreeing = 0;  ///< confirming sweeps since
 };
 
 using TrackingState = std::variant<WaitingForStart, Tracking, Lost, FoundAgain>;
 
-/// What a sweep came to.
+/// Result of a sweep.
 enum class Placement : std::uint8_t {
   not_tried,  ///< no points, or no map yet
   failed,
-  doubtful,  ///< found, but a search did so where inertia does not have it, or surfaces do not fit that are to bear it
-             ///< out
+  doubtful,  ///< found by a search against the inertial prediction, or surfaces fit too badly to confirm
   found,
 };
 
 TrackingState after_sweep(const TrackingState& before, Placement placement, SweepVerdict verdict);
 
-/// Whether a sweep that came to this says that the place found again is none.
+/// Returns whether a sweep with this result contradicts the relocalisation.
 bool contradicts(const TrackingState& before, Placement placement);
-/// As it is once the place found again is given up.
+/// Returns the state after a relocalisation is reverted.
 Lost given_up(const TrackingState& found_again);
 
 bool has_started(const TrackingState& state);
 bool is_lost(const TrackingState& state);
 bool is_to_be_borne_out(const TrackingState& state);
-int lost_sweeps(const TrackingState& state);      ///< 0 unless lost
-int failed_searches(const TrackingState& state);  ///< in a row
+int lost_sweeps(const TrackingState& state);      ///< 0 unless tracking failed
+int failed_searches(const TrackingState& state);  ///< consecutive
 
 }  // namespace tumble::mapping

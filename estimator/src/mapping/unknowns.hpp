@@ -3,8 +3,8 @@
 
 #include "tumble/mapping/registration.hpp"
 
-/// Names for the blocks of a vector or a matrix over the unknowns of a sweep, or over the first of them:
-/// docs/maths/mapping.md has the list. `rows(F, velocity)` in place of an index, `segment(step, velocity)` of a vector.
+/// Names for the blocks of a vector or a matrix over all or the first unknowns of a sweep, as listed in
+/// docs/maths/mapping.md. Use `rows(F, velocity)` instead of an index, `segment(step, velocity)` for a vector.
 namespace tumble::mapping::unknowns {
 
 template <int First, int Size>
@@ -25,14 +25,14 @@ inline constexpr Block<Registration::kCalibration + 3, 3> mounting_translation;
 inline constexpr Block<Registration::kCalibration + 6, 1> clock;
 inline constexpr Block<Registration::kCalibration + 7, 3> gravity;
 
-/// Variance given to an unknown whose prior claims none, so that the prior can be inverted.
+/// Variance of an unknown whose prior is exact, so that the prior can be inverted.
 inline constexpr double kLeastVariance = 1e-12;
-/// Up to which a sweep's motion agrees with its prior, its squared distance in deviations: chi-square of the nine
-/// unknowns of a motion exceeds it once in twenty. mapping.md (R59), (R99).
+/// Bound of the squared Mahalanobis distance at which a sweep's motion agrees with its prior: the 95 % quantile of
+/// chi-square with nine degrees of freedom. mapping.md (R25), (R71).
 inline constexpr double kAgrees = 16.9;
 static_assert(SweepUnknowns::kMotion == 9);
 
-/// Place of an axis of the saturation deficit at a knot.
+/// Index of an axis of the saturation deficit at a knot.
 constexpr int deficit_at(int axis, int knot) {
   return Registration::kDeficit + 3 * knot + axis;
 }
@@ -57,7 +57,6 @@ auto block(Matrix& m, Block<Row, Rows>, Block<Column, Columns>) {
   return m.template block<Rows, Columns>(Row, Column);
 }
 
-/// On the diagonal: the block by itself.
 template <class Matrix, int First, int Size>
 auto block(Matrix& m, Block<First, Size> of) {
   return block(m, of, of);

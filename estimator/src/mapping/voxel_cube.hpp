@@ -5,7 +5,6 @@
 
 namespace tumble::mapping {
 
-/// The cube of a grid that a point lies in.
 inline Eigen::Vector3i cube_of(const Eigen::Vector3f& p, float cubes_per_m) {
   return (p * cubes_per_m).array().floor().cast<int>();
 }

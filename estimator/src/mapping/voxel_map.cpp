@@ -16,11 +16,10 @@ using mapping::cube_of;
 
 namespace {
 
-// coordinates of an empty place: so far that no search radius reaches it
+// coordinates of a free slot, beyond any search radius
 constexpr float kFar = 1e18f;
 constexpr int kReachMax = 8;  // cells searched to each side
 
-/// Inserts a candidate into the k best so far, nearest first.
 inline void keep(float distance2, std::uint32_t index, int k, Neighbours& best) {
   int place = best.count < k ? best.count++ : k - 1;
   while (place > 0 && best.distance2_m2[place - 1] > distance2) {
@@ -32,8 +31,8 @@ inline void keep(float distance2, std::uint32_t index, int k, Neighbours& best) 
   best.index[place] = index;
 }
 
-/// Squared distance from a query to the slabs of cells at -reach..reach along one axis; `fraction` is the query's place
-/// inside of its own cell, in cells.
+/// Squared distance from a query to the slabs of cells at -reach..reach along one axis. `fraction` is the query's
+/// position within its cell, in cells.
 void slab_distances(float fraction, float voxel_m, int reach, float* distance2) {
   for (int d = -reach; d <= reach; ++d) {
     const float cells = d > 0 ? static_cast<float>(d) - fraction : d < 0 ? fraction - static_cast<float>(d + 1) : 0.0f;
@@ -41,11 +40,11 @@ void slab_distances(float fraction, float voxel_m, int reach, float* distance2) 
   }
 }
 
-// of comparisons the compiler makes single ones, one after the other
+// explicit vectors, because compilers do not vectorise these comparisons
 using Floats [[gnu::vector_size(16)]] = float;
 using Ints [[gnu::vector_size(16)]] = std::int32_t;
 
-/// A bit for each value of a chunk that is not beyond the limit: without a branch for each.
+/// Returns a bit mask of the values of a chunk within the limit, without branches.
 inline std::uint32_t within(float limit, const Floats (&values)[4]) {
   constexpr Ints kFirst = {1, 2, 4, 8};
   const Floats limits = {limit, limit, limit, limit};
@@ -80,7 +79,7 @@ inline Eigen::Vector3i VoxelMap::Group::of(const Eigen::Vector3i& cell) {
   return {cell.x() >> kBits, cell.y() >> kBits, cell.z() >> kBits};
 }
 
-/// The cells that a search may visit, row by row: their groups are looked up once, when first asked for.
+/// The cells of a search, row by row. Groups of cells are looked up once, at first use.
 class VoxelMap::Rows {
  public:
   Rows(const VoxelMap& map, const Eigen::Vector3i& cell, int reach) : map_(map), first_x_(cell.x() - reach) {
@@ -89,7 +88,7 @@ class VoxelMap::Rows {
     groups_.fill(kUnasked);
   }
 
-  /// A bit for each cell of a row, from the least x on: whether it holds points.
+  /// Bit mask of the occupied cells of a row, from the smallest x on.
   std::uint32_t occupied(int y, int z) {
     const Eigen::Vector3i away = Group::of({first_x_, y, z}) - low_;
     std::uint32_t bits = 0;
@@ -101,14 +100,13 @@ class VoxelMap::Rows {
     return bits >> (first_x_ & Group::kMask);
   }
 
-  /// Of a cell that is occupied.
   std::uint32_t first_chunk(const Eigen::Vector3i& cell) {
     return map_.groups_[group_of(Group::of(cell) - low_)].first[Group::place_of(cell)];
   }
 
  private:
   static constexpr int kAcross =
-      (2 * kReachMax + Group::kMask) / (Group::kMask + 1) + 1;  // groups along an axis, at most
+      (2 * kReachMax + Group::kMask) / (Group::kMask + 1) + 1;  // maximum number of groups along an axis
   static constexpr std::uint32_t kUnasked = SpatialHash::kAbsent - 1;
 
   std::uint32_t group_of(const Eigen::Vector3i& away) {
@@ -119,11 +117,11 @@ class VoxelMap::Rows {
 
   const VoxelMap& map_;
   int first_x_, across_;
-  Eigen::Vector3i low_;  // the group of the least cell
+  Eigen::Vector3i low_;  // group of the lowest cell
   std::array<std::uint32_t, kAcross * kAcross * kAcross> groups_;
 };
 
-/// The first chunk of a cell, to be set: it counts as occupied from here on.
+/// Returns the first chunk of a cell for writing; marks the cell as occupied.
 std::uint32_t& VoxelMap::first_of(const Eigen::Vector3i& cell) {
   const std::uint32_t group =
       groups_of_.insert(SpatialHash::key(Group::of(cell)), static_cast<std::uint32_t>(groups_.size()));
@@ -132,7 +130,7 @@ std::uint32_t& VoxelMap::first_of(const Eigen::Vector3i& cell) {
   return groups_[group].first[Group::place_of(cell)];
 }
 
-/// An empty one before the first of a cell.
+/// Inserts an empty chunk before the first one of a cell.
 std::uint32_t VoxelMap::new_chunk(std::uint32_t& first) {
   Chunk chunk;
   chunk.x.fill(kFar);
@@ -149,7 +147,7 @@ std::uint32_t VoxelMap::new_chunk(std::uint32_t& first) {
   return first;
 }
 
-/// One margin for cells and cubes of the spacing; also false for NaN.
+/// Uses one margin for cells and cubes of the spacing; also false for NaN.
 bool VoxelMap::has_room_for(const Eigen::Vector3f& position) const {
   return (position * cubes_per_m_).cwiseAbs().maxCoeff() < static_cast<float>(SpatialHash::kLimit - 2);
 }
@@ -167,7 +165,7 @@ std::uint32_t VoxelMap::add(const Eigen::Vector3f& position, float sigma_m, std:
 }
 
 std::uint32_t VoxelMap::put(const Eigen::Vector3f& position, float sigma_m, std::uint32_t sweep, std::uint32_t line) {
-  // the newest chunk of a cell stands first and is the only one with room
+  // the newest chunk of a cell is the first and the only one with free slots
   std::uint32_t& first = first_of(cube_of(position, cells_per_m_));
   if (first == kNone || chunks_[first].count == kChunk) new_chunk(first);
   Chunk& chunk = chunks_[first];
@@ -233,7 +231,7 @@ void VoxelMap::keep_before(std::uint32_t first_sweep) {
   for (std::uint32_t index = 0; index < index_end(); ++index) {
     if (!exists(index) || sweep_[index] >= first_sweep) continue;
     const Eigen::Vector3f position = position_W_m(index);
-    // two that were moved into one cube both stay
+    // two points that were moved into one cube both remain
     if (params_.spacing_m > 0.0) kept.taken_.add(SpatialHash::key(cube_of(position, cubes_per_m_)));
     const std::uint32_t now = kept.put(position, sigma_m_[index], sweep_[index], line_[index]);
     kept.seen_through_[now] = seen_through_[index];
@@ -247,7 +245,7 @@ std::size_t VoxelMap::bytes() const {
          seen_through_.capacity();
 }
 
-/// Takes the points of a cell's chunks that are among the k nearest so far; `worst2` is what they must not be beyond.
+/// Adds the points of a cell's chunks to the k nearest so far; `worst2` is the current bound.
 void VoxelMap::search(std::uint32_t first, const Eigen::Vector3f& query, int k, float& worst2,
                       Neighbours& found) const {
   for (std::uint32_t c = first; c != kNone; c = chunks_[c].next) {
@@ -259,7 +257,7 @@ void VoxelMap::search(std::uint32_t first, const Eigen::Vector3f& query, int k, 
     }
     Floats four[kChunk / 4];
     std::memcpy(four, distance2, sizeof(four));
-    // free places lie beyond any limit
+    // free slots are beyond any limit
     for (std::uint32_t near = within(worst2, four); near != 0; near &= near - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(near));
       if (distance2[i] > worst2 || (found.count == k && distance2[i] == worst2)) continue;

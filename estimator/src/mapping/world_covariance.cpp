@@ -12,7 +12,7 @@ namespace {
 
 using Pose = WorldCovariance::Pose;
 
-/// Covariance of (error of the pose) - by_mounting (error of the mounting): mapping.md (R46).
+/// Covariance of (error of the pose) - by_mounting (error of the mounting): mapping.md (R57).
 Pose less_mounting(const Registration::Matrix& joint, const Pose& by_mounting) {
   Eigen::Matrix<double, 6, Registration::kUnknowns> G = Eigen::Matrix<double, 6, Registration::kUnknowns>::Zero();
   unknowns::columns(G, unknowns::pose).setIdentity();
@@ -23,9 +23,9 @@ Pose less_mounting(const Registration::Matrix& joint, const Pose& by_mounting) {
 
 }  // namespace
 
-/// Added what the map is off by here, and the tilt of the start: mapping.md (R47).
+/// Adds the map's error at this position, and the tilt of the start: mapping.md (R58).
 Pose WorldCovariance::in_world(const Registration::Matrix& joint, const Eigen::Vector3d& p_WI_m) const {
-  // a map that is turned about the start moves what is far from it: mapping.md (R45)
+  // rotation of the map about the start moves distant points: mapping.md (R56)
   Pose start = start_by_mounting_;
   start.topRows<3>() -= so3::hat(p_WI_m) * start_by_mounting_.bottomRows<3>();
   Eigen::Matrix<double, 6, 2> by_tilt = Eigen::Matrix<double, 6, 2>::Zero();
@@ -37,15 +37,15 @@ Pose WorldCovariance::in_world(const Registration::Matrix& joint, const Eigen::V
   return P;
 }
 
-/// mapping.md (R50).
+/// mapping.md (R61).
 void WorldCovariance::add_drift(double weakest_sigma_m, const Eigen::Matrix<double, 6, 1>& weakest_direction) {
   const double sigma_m = params_.drift_share * std::min(weakest_sigma_m, params_.drift_sigma_max_m);
   const Eigen::Vector3d direction = weakest_direction.head<3>();
   drift_m2_ += (sigma_m * sigma_m) * direction * direction.transpose();
 }
 
-/// By the lidar's pose in the map in the middle of the sweep, which is what draws it: an error of the mounting is none
-/// of the map, and at its ends a sweep is known less well than as a whole. mapping.md (R48), (R49).
+/// Uses the lidar's pose in the map in the middle of the sweep: mapping.md (R59), (R60). An error of the mounting is
+/// not an error of the map, and at its ends a sweep is less certain than on average.
 void WorldCovariance::add_insertion(double inserted_share, const SweepTrajectory& trajectory,
                                     const Registration::Matrix& errors, const Eigen::Vector3d& p_IL_m) {
   const double middle_s = 0.5 * trajectory.duration_s();

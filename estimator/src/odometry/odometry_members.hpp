@@ -4,17 +4,17 @@
 #include <array>
 #include <string_view>
 
+#include "../common/outlier_filter_members.hpp"
 #include "../common/sample_clock_members.hpp"
 #include "../common/state_params.hpp"
 #include "pass_members.hpp"
 #include "tumble/odometry/tumbling_odometry.hpp"
 
-/// Members of TumblingOdometry: state_visitor.hpp.
 namespace tumble {
 
 namespace odometry {
 
-/// What add_sweep names in a Status, so that one which was saved has a text that stays.
+/// Field names that add_sweep puts in a Status. A loaded Status needs a pointer to a static string.
 inline constexpr std::array<const char*, 13> kSweepFields = {"",
                                                              "end_ns",
                                                              "start_ns",
@@ -44,7 +44,7 @@ void members(Self& s, Visitor& visit) {
   visit("status.field", field, 0.0, odometry::kSweepFields.size() - 1.0);
   if constexpr (!std::is_const_v<Self>)
     s.field = odometry::kSweepFields[std::min(field, odometry::kSweepFields.size() - 1)];
-  visit.scratch(s.field);  // visited by its number
+  visit.scratch(s.field);  // visited by its index
   visit.with_nan("status.value", s.value);
   visit.with_nan("status.bound", s.bound);
 }
@@ -72,8 +72,10 @@ void members(Self& s, Visitor& visit) {
 
 template <class Self, class Visitor>
 void TumblingOdometry::members(Self& s, Visitor& visit) {
-  visit.scratch(s.params_);  // held to those that are saved
-  visit.scratch(s.clock_);   // made of them
+  visit.scratch(s.params_);  // must equal the saved ones
+  visit.scratch(s.filter_);  // derived from the parameters
+  visit("outliers", s.outliers_);
+  visit.scratch(s.clock_);
   visit("stamps", s.stamps_);
   visit("pass", s.pass_);
   visit("again", s.again_);
@@ -82,6 +84,7 @@ void TumblingOdometry::members(Self& s, Visitor& visit) {
   visit("registered_ns", s.registered_ns_);
   visit("gaps", s.gaps_);
   visit("dropped_sweeps", s.dropped_sweeps_);
+  visit("early_sweeps", s.early_sweeps_);
   visit("waiting", s.waiting_);
   visit("readings", s.readings_);
   visit("done", s.done_);

@@ -9,15 +9,16 @@ namespace tumble {
 
 namespace {
 
-constexpr double kRoom_s = 2.0;  // of samples that memory is kept for: more than the longest gap of a lidar
+constexpr double kLeastGravity_m_s2 = 1e-3;
+constexpr double kRoom_s = 2.0;  // duration of preallocated sample memory: more than the longest gap of a lidar
 
 std::size_t samples_in(double time_s, const RegimeStream::Params& rate) {
   return static_cast<std::size_t>(std::ceil(time_s / rate.rate.period_s)) + 16;
 }
 
-/// What the stream does not know of a clipped axis, its deviation being beyond what the mapper believes at most, goes
-/// to the mapper as the reading it is, a bound: the registration estimates what is missing. A rig that is not learnt
-/// yet may extrapolate a push by tens of rad/s, and says so.
+/// For a clipped axis that is too uncertain for the mapper, passes the gyro's reading as a bound. The registration then
+/// estimates the deficit. Reason: with an uncertain calibration, the stream may extrapolate an impact by tens of rad/s,
+/// with a correspondingly large standard deviation.
 RateState for_the_mapper(const RateState& rate, const ImuSample& sample, double sigma_max_rad_s) {
   RateState out = rate;
   for (int axis = 0; axis < 3; ++axis) {
@@ -31,7 +32,7 @@ RateState for_the_mapper(const RateState& rate, const ImuSample& sample, double 
   return out;
 }
 
-/// Samples as the stream came to see them, with the forces told that a rail hid; asked for in order of time.
+/// Samples as RateStream classified them, with saturated forces flagged. Must be queried in time order.
 class SeenByTheStream {
  public:
   SeenByTheStream(std::span<const ImuSample> samples, const RateStream::State& state)
@@ -75,7 +76,8 @@ OdometryPass::OdometryPass(const RegimeStream::Params& rate, const LidarInertial
       scale_(mapping.expert.gravity_m_s2, samples_in(kRoom_s, rate)),
       localisation_(mapping.expert.matching.distance_m),
       rate_sigma_max_rad_s_(mapping.expert.prior.rate_sigma_max_rad_s),
-      time_offset_s_(mapping.time_offset_s) {
+      time_offset_s_(mapping.time_offset_s),
+      gravity_({.gravity_m_s2 = std::max(mapping.expert.gravity_m_s2, kLeastGravity_m_s2)}) {
   pending_.samples.reserve(samples_in(std::max(rate.rate.lag_s, kRoom_s), rate));
 }
 
@@ -83,6 +85,7 @@ Status OdometryPass::add_imu(const ImuSample& sample) {
   std::optional<RateState> rate;
   if (const Status status = rates_.push(sample, rate_state_, rate); !status.ok()) return status;
   pending_.push(sample);
+  gravity_.step(sample, gravity_state_);
   if (rate && (!smoothed_ || rate->time_ns > smoothed_->time_ns)) take_rate(*rate);
   return {};
 }
@@ -112,7 +115,7 @@ std::optional<TimeNs> OdometryPass::covering_ns(TimeNs end_ns) const {
 Status OdometryPass::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points,
                                const std::optional<OdometerReading>& reading,
                                LidarInertialOdometry::SweepReport& report) {
-  if (reading) (void)mapper_.add_reading(*reading);  // no trouble: it was checked when it came
+  if (reading) (void)mapper_.add_reading(*reading);  // no error is possible: add() checked it
   const Status status = mapper_.add_sweep(start_ns, end_ns, points, report);
   if (report.trajectory.empty()) return status;
   scale_.add(report);
@@ -154,7 +157,7 @@ void OdometryPass::flush_until(TimeNs time_ns) {
 
 void OdometryPass::begin_rates(const RegimeStream::Params& rate) {
   rates_ = RegimeStream(rate);
-  const FrozenAxes::State frozen = rate_state_.rate.frozen;  // an axis may stay frozen
+  const FrozenAxes::State frozen = rate_state_.rate.frozen;  // an axis may remain frozen
   const FlightSense::State sense = rate_state_.rate.sense;
   rate_state_ = rates_.start();
   rate_state_.rate.frozen = frozen;

@@ -5,17 +5,18 @@
 #include <vector>
 
 #include "../attitude/regime_stream_members.hpp"
+#include "../attitude/rest_gravity_members.hpp"
 #include "../mapping/odometry_members.hpp"
 #include "tumble/odometry/detail/odometry_pass.hpp"
 #include "tumble/odometry/detail/second_pass.hpp"
 #include "tumble/odometry/detail/waiting_input.hpp"
 
-/// Members of the two passes of TumblingOdometry: state_visitor.hpp.
+/// Members of the two passes of TumblingOdometry, visited as state_visitor.hpp describes.
 namespace tumble {
 
 namespace odometry {
 
-/// Parameters of the rates that a run itself may have taught.
+/// Parameters of the rates that may come from an earlier run.
 template <StateOf<RegimeStream::Params> Self, class Visitor>
 void visit_taught(Self& p, Visitor& visit) {
   visit("calibration", p.rate.model.calibration);
@@ -25,7 +26,7 @@ void visit_taught(Self& p, Visitor& visit) {
 
 }  // namespace odometry
 
-/// Those that still count.
+/// Only the samples that are still in use.
 template <class Self, class Visitor>
 void OdometryPass::Queue::members(Self& s, Visitor& visit) {
   if constexpr (std::is_const_v<Self>) {
@@ -53,12 +54,14 @@ void OdometryPass::members(Self& s, Visitor& visit) {
   visit("pass.mapper", s.mapper_);
   visit("pass.scale", s.scale_);
   visit("pass.localisation", s.localisation_);
-  visit.scratch(s.rate_sigma_max_rad_s_);                    // of the parameters
-  visit("pass.time_offset_s", s.time_offset_s_, -1.0, 1.0);  // as the mapper's parameter
+  visit.scratch(s.rate_sigma_max_rad_s_);
+  visit("pass.time_offset_s", s.time_offset_s_, -1.0, 1.0);  // same bounds as the mapper's parameter
   visit("pass.pending", s.pending_);
   visit("pass.smoothed", s.smoothed_);
   visit("pass.told_ns", s.told_ns_);
   visit("pass.refused_samples", s.refused_samples_);
+  visit.scratch(s.gravity_);  // of the parameters
+  visit("pass.gravity", s.gravity_state_);
 }
 
 template <class Self, class Visitor>
@@ -79,7 +82,7 @@ void SecondPass::Sweep::members(Self& s, Visitor& visit) {
 
 template <class Self, class Visitor>
 void SecondPass::members(Self& s, Visitor& visit) {
-  visit.scratch(s.params_);  // these three are of the parameters
+  visit.scratch(s.params_);
   visit.scratch(s.rate_);
   visit.scratch(s.mapping_);
   visit("again.wanted", s.wanted_);
@@ -95,7 +98,7 @@ void SecondPass::members(Self& s, Visitor& visit) {
     s.pass_.reset();
     if (under_way && visit.going()) s.pass_.emplace(s.lagging_rate(), s.mapping_);
   }
-  // of the same members as the first, which stand in the layout by that
+  // has the members of the first pass, which the layout already contains
   if (s.pass_ && !Visitor::kDescribes) visit("again.pass", *s.pass_);
   visit.scratch(s.pass_);
   visit("again.next_sample", s.next_sample_, 0.0, double(s.samples_.all().size()));

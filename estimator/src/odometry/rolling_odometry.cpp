@@ -3,12 +3,13 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace tumble {
 
 namespace {
 
-constexpr std::size_t kRecoveringUnits = 3;  // so many IMUs tell a rate beyond the range
+constexpr std::size_t kRecoveringUnits = 3;  // number of IMUs needed to recover a rate beyond the range
 constexpr double kRecoveredSigma_rad_s = 1.0;
 
 constexpr std::array<std::array<const char*, 6>, ImuMerge::kImus> kFrozenFields = {
@@ -33,7 +34,7 @@ constexpr std::array<std::array<const char*, 6>, ImuMerge::kImus> kFrozenFields 
        "seconds for which unit 4's accel y repeats one reading",
        "seconds for which unit 4's accel z repeats one reading"}}}};
 
-// Of the radius the door's own counts; the smoother's has no default.
+// Checks the radius of RollingOdometry; the smoother's has no default.
 void require_stated(RollingOdometry::Params params) {
   params.expert.rolling.filter.radius_m = params.radius_m;
   require_fields(params);
@@ -87,6 +88,30 @@ std::vector<FrozenAxes> watches_of(const RollingOdometry::Params& params) {
   return out;
 }
 
+std::vector<OutlierFilter> filters_of(const RollingOdometry::Params& params) {
+  std::vector<OutlierFilter> out;
+  for (const RollingOdometry::Unit& unit : params.units) {
+    out.emplace_back(OutlierFilter::Params{.gyro_range_rad_s = unit.sheet.gyro_range_rad_s,
+                                           .accel_range_m_s2 = unit.sheet.accel_range_m_s2,
+                                           .period_s = 1.0 / unit.sheet.rate_hz});
+  }
+  return out;
+}
+
+ImuSample at_time(TimeNs time_ns, ImuSample sample) {
+  sample.time_ns = time_ns;
+  return sample;
+}
+
+/// Makes a sample that of a unit which has nothing to say.
+void leave_out(ImuSample& sample) {
+  sample.angular_velocity_rad_s.setConstant(std::numeric_limits<double>::quiet_NaN());
+}
+
+bool any_reading(std::span<const ImuSample> samples) {
+  return std::any_of(samples.begin(), samples.end(), [](const ImuSample& sample) { return check_sample(sample).ok(); });
+}
+
 RollingOdometry::Pose as_pose(const RollingEstimate& estimate) {
   RollingOdometry::Pose out;
   out.pose = {estimate.time_ns, estimate.p_WG_m, estimate.q_WI, estimate.v_WG_m_s, estimate.covariance};
@@ -110,7 +135,9 @@ RollingOdometry::RollingOdometry(const Params& params, const ImuMerge::Params& m
       merged_state_(std::make_unique<ImuMerge::State>()),
       state_(std::make_unique<RollingSmoother::State>()),
       rails_state_(rails_.start()),
+      filters_(filters_of(params)),
       watches_(watches_of(params)),
+      gravity_({.gravity_m_s2 = params.gravity_m_s2}),
       live_(params.lag_s <= 0.0) {}
 
 RollingOdometry::RollingOdometry(const RollingOdometry& other)
@@ -124,8 +151,13 @@ RollingOdometry::RollingOdometry(const RollingOdometry& other)
       merged_state_(std::make_unique<ImuMerge::State>()),
       state_(std::make_unique<RollingSmoother::State>(*other.state_)),
       rails_state_(other.rails_state_),
+      filters_(other.filters_),
+      outliers_(other.outliers_),
+      held_(other.held_),
       watches_(other.watches_),
       frozen_(other.frozen_),
+      gravity_(other.gravity_),
+      gravity_state_(other.gravity_state_),
       done_(other.done_),
       taken_(other.taken_),
       live_(other.live_),
@@ -137,20 +169,60 @@ RollingOdometry& RollingOdometry::operator=(const RollingOdometry& other) {
 
 Status RollingOdometry::add_imus(std::span<const ImuSample> samples) {
   if (finished_) return {Trouble::out_of_range, "samples after finish()", 1.0, 0.0};
-  std::optional<ImuSample> merged;
   if (samples.size() != params_.units.size())
     return {Trouble::too_few, "samples", double(samples.size()), double(params_.units.size())};
+  // a time that does not rise, and units without any reading: add_inliers() returns what is wrong
+  if (!any_reading(samples) || (stamps_.stamp_ns && samples.front().time_ns <= *stamps_.stamp_ns))
+    return add_inliers(samples);
+  if (const Status status = add_held(samples); !status.ok()) return status;
+  UnitRails::Samples judged;
+  std::copy(samples.begin(), samples.end(), judged.begin());
+  bool holds = false;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    if (!check_sample(samples[k]).ok()) continue;
+    if (!filters_[k].keeps_back(at_time(samples.front().time_ns, samples[k]), outliers_[k])) continue;
+    if (outliers_[k].held) {
+      holds = true;
+    } else {
+      leave_out(judged[k]);
+    }
+  }
+  if (holds) held_ = judged;
+  const std::span<const ImuSample> inliers = std::span(judged).first(samples.size());
+  return holds || !any_reading(inliers) ? Status{} : add_inliers(inliers);
+}
+
+/// Adds the samples that are held, but for readings that the next samples do not confirm.
+Status RollingOdometry::add_held(std::span<const ImuSample> next) {
+  if (!held_) return {};
+  for (std::size_t k = 0; k < next.size(); ++k) {
+    if (!outliers_[k].held) continue;
+    const bool follows = check_sample(next[k]).ok();
+    const bool confirmed = follows && filters_[k].settle(at_time(next.front().time_ns, next[k]), outliers_[k]);
+    if (!follows) OutlierFilter::finish(outliers_[k]);
+    if (!confirmed) leave_out((*held_)[k]);
+  }
+  const UnitRails::Samples held = *std::exchange(held_, std::nullopt);
+  const std::span<const ImuSample> inliers = std::span(held).first(next.size());
+  return any_reading(inliers) ? add_inliers(inliers) : Status{};
+}
+
+Status RollingOdometry::add_inliers(std::span<const ImuSample> samples) {
+  std::optional<ImuSample> merged;
   SampleClock::State stamps = stamps_;
   TimeNs time_ns = 0;
   if (Status status = clock_.push(samples.front().time_ns, stamps, time_ns); !status.ok()) return status;
   UnitRails::Samples flagged;
   rails_.flag(samples, rails_state_, flagged);
   flagged.front().time_ns = time_ns;
-  *merged_state_ = *merge_state_;  // all take the sample, or none
+  *merged_state_ = *merge_state_;  // all parts accept the sample, or none
   Frozen frozen = frozen_;
   for (std::size_t k = 0; k < samples.size(); ++k) watches_[k].step(samples[k], frozen[k]);
   const std::span<ImuSample> judged = std::span(flagged).first(samples.size());
-  if (Status status = leave_out_frozen(frozen, judged); !status.ok()) return status;
+  if (Status status = leave_out_frozen(frozen, judged); !status.ok()) {
+    frozen_ = frozen;  // for doubt()
+    return status;
+  }
   if (Status status = merge_.step(judged, *merged_state_, merged); !status.ok()) return status;
   if (Status status = merge_.verdict(*merged_state_); !status.ok()) return status;
   if (merged) {
@@ -159,28 +231,45 @@ Status RollingOdometry::add_imus(std::span<const ImuSample> samples) {
   merge_state_.swap(merged_state_);
   stamps_ = stamps;
   frozen_ = frozen;
+  for (std::size_t k = 0; k < samples.size(); ++k) gravity_.step(samples[k], gravity_state_[k]);
   rails_.observe(samples, rails_state_);
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    if (check_sample(samples[k]).ok()) OutlierFilter::pass(at_time(samples.front().time_ns, samples[k]), outliers_[k]);
+  }
   return {};
 }
 
-/// Gives NaN for what a unit reads of which an axis has frozen, and trouble where that leaves nobody.
+std::size_t RollingOdometry::rejected_readings() const {
+  std::size_t out = 0;
+  for (const OutlierFilter::State& unit : outliers_) out += unit.rejected;
+  return out;
+}
+
+/// Sets the readings of frozen units to NaN. Returns an error if no unit remains.
 Status RollingOdometry::leave_out_frozen(const Frozen& states, std::span<ImuSample> samples) const {
   bool any = false, heard = false;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     const bool finite = check_sample(samples[k]).ok();
     const bool frozen = finite && !watches_[k].verdict(states[k]).ok();
-    if (frozen) samples[k].angular_velocity_rad_s.setConstant(std::numeric_limits<double>::quiet_NaN());
+    if (frozen) leave_out(samples[k]);
     any = any || frozen;
     heard = heard || (finite && !frozen);
   }
-  return any && !heard ? doubt(states) : Status{};
+  return any && !heard ? frozen_axis(states) : Status{};
 }
 
 std::optional<double> RollingOdometry::mended_jitter_s() const {
   return clock_.mends(stamps_) ? SampleClock::jitter_s(stamps_) : std::nullopt;
 }
 
-Status RollingOdometry::doubt(const Frozen& frozen) const {
+Status RollingOdometry::doubt() const {
+  Status status = frozen_axis(frozen_);
+  for (std::size_t unit = 0; unit < watches_.size() && status.ok(); ++unit)
+    status = gravity_.size_verdict(gravity_state_[unit]);
+  return status;
+}
+
+Status RollingOdometry::frozen_axis(const Frozen& frozen) const {
   for (std::size_t unit = 0; unit < watches_.size(); ++unit) {
     Status status = watches_[unit].verdict(frozen[unit]);
     if (status.ok()) continue;
@@ -200,7 +289,7 @@ std::optional<RollingOdometry::Pose> RollingOdometry::newest() const {
 std::optional<RollingOdometry::Pose> RollingOdometry::take() {
   if (taken_ == done_.size()) return std::nullopt;
   const Pose out = as_pose(done_[taken_++]);
-  if (taken_ == done_.size()) {  // memory is kept
+  if (taken_ == done_.size()) {
     done_.clear();
     taken_ = 0;
   }
@@ -208,6 +297,8 @@ std::optional<RollingOdometry::Pose> RollingOdometry::take() {
 }
 
 void RollingOdometry::finish() {
+  for (OutlierFilter::State& unit : outliers_) OutlierFilter::finish(unit);
+  held_.reset();
   if (!live_ && !finished_) smoother_.finish(*state_, done_);
   finished_ = true;
 }
@@ -218,6 +309,9 @@ void RollingOdometry::reset() {
   state_ = std::make_unique<RollingSmoother::State>();
   rails_state_ = rails_.start();
   frozen_ = {};
+  outliers_ = {};
+  held_.reset();
+  gravity_state_ = {};
   finished_ = false;
 }
 

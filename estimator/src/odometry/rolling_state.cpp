@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// RollingOdometry as bytes.
+// Serialisation of RollingOdometry.
 #include "../angular_velocity/frozen_members.hpp"
 #include "../attitude/imu_merge_members.hpp"
+#include "../attitude/rest_gravity_members.hpp"
+#include "../common/outlier_filter_members.hpp"
 #include "../common/sample_clock_members.hpp"
 #include "../common/state_params.hpp"
 #include "../rolling/rolling_members.hpp"
@@ -31,7 +33,7 @@ void others(Self& p, Visitor& visit) {
 
 template <class Self, class Visitor>
 void RollingOdometry::members(Self& s, Visitor& visit) {
-  visit.scratch(s.params_);  // held to those that are saved; these three are made of them
+  visit.scratch(s.params_);  // must equal the saved ones; the next three are derived from them
   visit.scratch(s.clock_);
   visit.scratch(s.merge_);
   visit.scratch(s.smoother_);
@@ -41,8 +43,13 @@ void RollingOdometry::members(Self& s, Visitor& visit) {
   visit.scratch(s.merged_state_);
   visit("rolling", *s.state_);
   visit("rails", s.rails_state_);
-  visit.scratch(s.watches_);  // of the parameters
+  visit.scratch(s.filters_);  // derived from the parameters
+  visit("outliers", s.outliers_);
+  visit.with_nan("held", s.held_);
+  visit.scratch(s.watches_);
   visit("frozen", s.frozen_);
+  visit.scratch(s.gravity_);  // of the parameters
+  visit("gravity", s.gravity_state_);
   if constexpr (std::is_const_v<Self>) {
     const std::vector<RollingEstimate> waiting(s.done_.begin() + static_cast<std::ptrdiff_t>(s.taken_), s.done_.end());
     visit("done", waiting);
@@ -69,7 +76,7 @@ Status RollingOdometry::load(std::span<const std::byte> bytes) {
 }
 
 Status RollingOdometry::saved_params(std::span<const std::byte> bytes, Params& params) {
-  Params read;  // two things have no default
+  Params read;  // two parameters have no default
   read.radius_m = 1.0;
   read.units.emplace_back();
   const RollingOdometry any(read);

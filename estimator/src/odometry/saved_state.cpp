@@ -12,7 +12,6 @@ namespace {
 constexpr std::string_view kMagic = "tumblest";
 constexpr std::size_t kChecksumAt = 32;
 
-/// The header but for the checksum.
 std::vector<std::byte> header(SavedKind kind, std::uint64_t layout, std::uint64_t size) {
   std::vector<std::byte> out;
   StateWriter write(out);

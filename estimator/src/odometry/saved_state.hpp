@@ -11,20 +11,20 @@
 #include "../common/state_layout.hpp"
 #include "../common/state_params.hpp"
 
-/// States of the doors and of streams as bytes that somebody keeps. Numbers are little-endian.
+/// Serialisation of complete odometry objects and of stream states. Numbers are little-endian.
 ///
 /// | bytes | |
 /// | --- | --- |
 /// | 0 | "tumblest" |
 /// | 8 | version of the format, 4 bytes |
-/// | 12 | of which class: SavedKind, 4 bytes |
-/// | 16 | digest of names, widths and order of all that follows (StateLayout) |
+/// | 12 | class: SavedKind, 4 bytes |
+/// | 16 | digest of names, widths and order of all members (StateLayout) |
 /// | 24 | number of bytes from 40 on |
 /// | 32 | checksum of all other bytes |
 /// | 40 | the parameters, then the state, as StateWriter writes them |
 ///
-/// A state is for the same build of the library's states: whatever is added to one changes the digest, and what means
-/// something else than before without it the version.
+/// A saved state can only be loaded by a library with the same state layout. An added member changes the digest. A
+/// member whose meaning changes without a change of layout requires a new version.
 namespace tumble::odometry {
 
 enum class SavedKind : std::uint32_t {
@@ -40,13 +40,13 @@ enum class SavedKind : std::uint32_t {
 inline constexpr std::uint32_t kSavedVersion = 1;
 inline constexpr std::size_t kSavedHeader = 40;
 
-/// Fills the header of bytes whose first kSavedHeader are free.
+/// Fills the header of `bytes`, whose first kSavedHeader bytes are reserved.
 void seal(SavedKind kind, std::uint64_t layout, std::vector<std::byte>& bytes);
-/// Checks the header and gives what follows it.
+/// Checks the header and returns the bytes after it.
 Status open(SavedKind kind, std::uint64_t layout, std::span<const std::byte> bytes,
             std::span<const std::byte>& payload);
 
-/// `whole`: a door, or the state of a stream.
+/// `whole`: an odometry object, or the state of a stream.
 template <class Whole, class Params>
 std::uint64_t layout_of(const Whole& whole, const Params& params) {
   StateLayout layout;
@@ -65,7 +65,7 @@ std::vector<std::byte> save(SavedKind kind, const Whole& whole, const Params& pa
   return bytes;
 }
 
-/// Into one that was made anew of these parameters; on trouble it is of no use.
+/// Loads into an object that was created with the same parameters. On error it must be discarded.
 template <class Whole, class Params>
 Status load(SavedKind kind, std::span<const std::byte> bytes, const Params& params, Whole& whole) {
   std::span<const std::byte> payload;
@@ -80,7 +80,7 @@ Status load(SavedKind kind, std::span<const std::byte> bytes, const Params& para
   return in.status();
 }
 
-/// The parameters alone. `params`: any that are valid, of which `whole` was made; on trouble they are as they were.
+/// Reads only the parameters. `params`: any valid ones, with which `whole` was created; unchanged on error.
 template <class Whole, class Params>
 Status load_params(SavedKind kind, std::span<const std::byte> bytes, const Whole& whole, Params& params) {
   std::span<const std::byte> payload;

@@ -12,11 +12,11 @@ namespace tumble {
 
 namespace {
 
-constexpr double kBefore_s = 0.1;       // samples before the first sweep that is remembered: clocks may differ
-constexpr std::size_t kMoreShare = 20;  // so many sweeps in all allow the second pass to reject one more than the first
-constexpr std::size_t kTellsShare = 5;  // a calibration learnt with more than one in so many sweeps rejected is none
+constexpr double kBefore_s = 0.1;       // samples before the first buffered sweep, because clocks may differ
+constexpr std::size_t kMoreShare = 20;  // per this many sweeps, the second pass may reject one more than the first
+constexpr std::size_t kTellsShare = 5;  // with more than one rejected sweep in this many, the calibration is not used
 
-/// Rails as the stream has learnt them, doubted as much as the rest.
+/// Starts with the saturation levels that the stream detected, with the same inflation as the calibration.
 void start_from_rails(const KnownRails& known, double inflation, RateStream::Params& params) {
   params.expert.planes.known = known.planes;
   params.expert.accel_planes.known = known.accel_planes;
@@ -47,7 +47,7 @@ void SecondPass::give_up() {
   pass_.reset();
   sweeps_.clear();
   samples_ = {};
-  next_sample_ = next_sweep_ = 0;  // of what is no more: a state that says otherwise is refused
+  next_sample_ = next_sweep_ = 0;  // refer to cleared buffers; check_state() requires 0
 }
 
 void SecondPass::remember(const ImuSample& sample) {
@@ -57,7 +57,7 @@ void SecondPass::remember(const ImuSample& sample) {
     const TimeNs from_ns = sample.time_ns - static_cast<TimeNs>(1e9 * params_.rest_s);
     while (!sweeps_.empty() && sweeps_.front().start_ns < from_ns) sweeps_.pop_front();
     samples_.drop_until(from_ns - static_cast<TimeNs>(1e9 * kBefore_s));
-  } else if (seconds(sample.time_ns - *moves_ns_) > params_.remembered_s) {
+  } else if (seconds(sample.time_ns - counts_from_ns()) > params_.remembered_s) {
     give_up();
     return;
   }
@@ -79,9 +79,13 @@ bool SecondPass::first_is_lost() const {
          seconds(sweeps_.back().end_ns - last->end_ns) >= params_.lost_s;
 }
 
+TimeNs SecondPass::counts_from_ns() const {
+  return sweeps_.empty() ? *moves_ns_ : std::max(*moves_ns_, sweeps_.front().start_ns);
+}
+
 bool SecondPass::is_due() const {
   if (!wanted_ || !moves_ns_ || sweeps_.empty()) return false;
-  return seconds(sweeps_.back().end_ns - *moves_ns_) >= params_.after_s || first_is_lost();
+  return seconds(sweeps_.back().end_ns - counts_from_ns()) >= params_.after_s || first_is_lost();
 }
 
 RegimeStream::Params SecondPass::lagging_rate() const {
@@ -116,12 +120,12 @@ bool SecondPass::begin(const OdometryPass& first) {
   const RegimeStream::Params rate = learnt_rate(first);
   const LidarInertialOdometry::Params mapping = learnt_mapping(first);
   if (!check_calibration(*rate.rate.model.calibration).ok() || !check_odometry_params(mapping).ok()) {
-    give_up();  // what was learnt is beyond what can be
+    give_up();  // the estimated calibration is out of bounds
     return false;
   }
   pass_.emplace(rate, mapping);
   next_sample_ = next_sweep_ = rejected_ = 0;
-  early_ = seconds(sweeps_.back().end_ns - *moves_ns_) < params_.after_s;
+  early_ = seconds(sweeps_.back().end_ns - counts_from_ns()) < params_.after_s;
   return true;
 }
 
@@ -140,7 +144,7 @@ void SecondPass::complete(OdometryPass& first) {
 }
 
 void SecondPass::run(OdometryPass& first, std::size_t sweeps) {
-  // what has not the whole lag ahead of it waits for nothing: the rest goes at once
+  // At the end of the buffer, samples without the whole lag ahead are processed immediately.
   bool tail = false;
   for (std::size_t taken = 0; tail || taken < sweeps; ++taken) {
     if (next_sweep_ == sweeps_.size()) {
@@ -156,7 +160,7 @@ void SecondPass::run(OdometryPass& first, std::size_t sweeps) {
       tail = true;
       pass_->flush_until(std::max(first.smoothed_rate()->time_ns, pass_->needed_ns(sweep.end_ns)));
     }
-    if (!pass_->covers(sweep.end_ns)) {  // the clocks differ by more than the first pass knew: with the next one
+    if (!pass_->covers(sweep.end_ns)) {  // the clocks differ by more than assumed: continue with the next sweep
       --next_sweep_;
       return;
     }
@@ -175,7 +179,7 @@ void SecondPass::take_over(OdometryPass& first) {
   if (rejected_ <= rejected_by_first_ + sweeps_.size() / kMoreShare && (!lost_ || first_lost)) {
     first.take_map(std::move(*pass_));
     taken_ = true;
-    // an early one is the first of the one that follows
+    // an early pass serves as first pass of the regular one
     rejected_by_first_ = rejected_;
     if (!lost_) newest = SweepVerdict::registered;
   }

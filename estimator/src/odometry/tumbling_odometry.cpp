@@ -11,10 +11,10 @@ namespace tumble {
 
 namespace {
 
-// Of the horizontal part of gravity: what the levelling leaves, and a world that is not quite level.
+// Standard deviation of gravity's horizontal part, after levelling in a world that is not exactly level.
 constexpr double kGravitySigma_m_s2 = 0.03;
 
-/// Points fired at `from_ns` and later, their times counted from there.
+/// Returns the points fired at `from_ns` or later, with times relative to it.
 std::vector<LidarPoint> points_from(TimeNs from_ns, TimeNs start_ns, std::span<const LidarPoint> points) {
   std::vector<LidarPoint> out;
   out.reserve(points.size());
@@ -25,6 +25,13 @@ std::vector<LidarPoint> points_from(TimeNs from_ns, TimeNs start_ns, std::span<c
     out.push_back(point);
   }
   return out;
+}
+
+/// Drops the sweeps that ended by then and returns how many.
+std::size_t drop_until(TimeNs time_ns, std::deque<WaitingSweep>& sweeps) {
+  std::size_t dropped = 0;
+  for (; !sweeps.empty() && sweeps.front().end_ns <= time_ns; sweeps.pop_front()) ++dropped;
+  return dropped;
 }
 
 RegimeStream::Params rate_params(const TumblingOdometry::Params& params) {
@@ -44,6 +51,13 @@ RegimeStream::Params rate_params(const TumblingOdometry::Params& params) {
   return out;
 }
 
+OutlierFilter::Params outlier_params(const TumblingOdometry::Params& params) {
+  return {.gyro_range_rad_s = params.imu.gyro_range_rad_s,
+          .accel_range_m_s2 = params.imu.accel_range_m_s2,
+          .period_s = 1.0 / params.imu.rate_hz,
+          .gap_max_s = params.expert.rate.rate.gap_max_s};
+}
+
 LidarInertialOdometry::Params mapper_params(const TumblingOdometry::Params& params) {
   LidarInertialOdometry::Params out = params.expert.mapping;
   out.T_IL = params.T_IL;
@@ -58,9 +72,11 @@ LidarInertialOdometry::Params mapper_params(const TumblingOdometry::Params& para
   return out;
 }
 
-constexpr double kSilent_s = 1.0;       // a lidar that says nothing for so long is made up for
-constexpr double kAhead_s = 1.0;        // a sweep that ends so much after the newest sample has a stamp that is wrong
-constexpr double kSweepsMax_hz = 20.0;  // of the lidars that there are: so many a second wait for the lag
+// Largest stamp of a sweep, 100 years: differences of stamps then fit into 64 bits.
+constexpr TimeNs kStampMax_ns = 3'155'760'000'000'000'000;
+constexpr double kSilent_s = 1.0;       // silence of the lidar after which empty sweeps are inserted
+constexpr double kAhead_s = 1.0;        // maximum time by which a sweep may end after the newest sample
+constexpr double kSweepsMax_hz = 20.0;  // highest sweep rate of lidars: determines how many sweeps wait for the lag
 
 }  // namespace
 
@@ -79,11 +95,23 @@ OdometryParams TumblingExpertParams::mapping_defaults() {
 
 TumblingOdometry::TumblingOdometry(const Params& params)
     : params_(params),
+      filter_(outlier_params(params)),
       clock_(params.expert.stamps),
       pass_(rate_params(params), mapper_params(params)),
       again_(params.expert.again, rate_params(params), mapper_params(params)) {}
 
 Status TumblingOdometry::add_imu(const ImuSample& sample) {
+  if (sample.time_ns < -kStampMax_ns || sample.time_ns > kStampMax_ns)
+    return {Trouble::out_of_range, "time_ns", double(sample.time_ns), double(kStampMax_ns)};
+  const bool in_order = outliers_.count == 0 || sample.time_ns > outliers_.passed.back().time_ns;
+  if (!in_order || !check_sample(sample).ok()) return take_in(sample);  // which returns what is wrong
+  if (const std::optional<ImuSample> confirmed = filter_.settle(sample, outliers_)) {
+    if (const Status status = add_inlier(*confirmed); !status.ok()) return status;
+  }
+  return filter_.keeps_back(sample, outliers_) ? Status{} : add_inlier(sample);
+}
+
+Status TumblingOdometry::add_inlier(const ImuSample& sample) {
   const Status status = take_in(sample);
   if (status.trouble != Trouble::gap) return status;
   const double gap_max_s = params_.expert.rate.rate.gap_max_s;
@@ -99,27 +127,38 @@ Status TumblingOdometry::add_imu(const ImuSample& sample) {
 }
 
 Status TumblingOdometry::take_in(const ImuSample& sample) {
-  SampleClock::State stamps = stamps_;  // one that is refused has no part in the clock
+  SampleClock::State stamps = stamps_;  // a rejected sample must not change the clock
   ImuSample timed = sample;
   if (const Status status = clock_.push(sample.time_ns, stamps, timed.time_ns); !status.ok()) return status;
   if (const Status status = pass_.add_imu(timed); !status.ok()) return status;
   stamps_ = stamps;
+  OutlierFilter::pass(sample, outliers_);
   again_.remember(timed);
   newest_ns_ = timed.time_ns;
   after_gap_.reset();
-  if (!registered_ns_) registered_ns_ = timed.time_ns;
+  if (!registered_ns_) {
+    registered_ns_ = timed.time_ns;
+    early_sweeps_ += drop_until(timed.time_ns, waiting_);
+  }
   register_covered();
   return {};
 }
 
 Status TumblingOdometry::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points) {
   if (end_ns < start_ns) return {Trouble::time_order, "end_ns", double(end_ns), double(start_ns)};
+  if (start_ns < -kStampMax_ns) return {Trouble::out_of_range, "start_ns", double(start_ns), double(-kStampMax_ns)};
+  if (end_ns > kStampMax_ns) return {Trouble::out_of_range, "end_ns", double(end_ns), double(kStampMax_ns)};
   const TimeNs from_ns = std::max(start_ns, sweep_end_ns_.value_or(start_ns));
   if (from_ns > start_ns && from_ns - start_ns > (end_ns - start_ns) / 2)
     return {Trouble::time_order, "start_ns", double(start_ns), double(from_ns)};
   const TimeNs latest_ns = newest_ns_.value_or(end_ns) + static_cast<TimeNs>(1e9 * kAhead_s);
   if (end_ns > latest_ns) return {Trouble::out_of_range, "end_ns", double(end_ns), double(latest_ns)};
+  if (registered_ns_ && end_ns <= *registered_ns_) {
+    ++early_sweeps_;
+    return {};
+  }
   const std::size_t most = params_.expert.sweeps_max + static_cast<std::size_t>(kSweepsMax_hz * params_.lag_s);
+  if (waiting_.size() >= most && !newest_ns_) early_sweeps_ += drop_until(waiting_.front().end_ns, waiting_);
   if (waiting_.size() >= most)
     return {Trouble::out_of_range, "sweeps waiting", double(waiting_.size() + 1), double(most)};
   if (const Status status = mapping::check_offsets(end_ns - start_ns, points); !status.ok()) return status;
@@ -160,6 +199,7 @@ std::optional<double> TumblingOdometry::mended_jitter_s() const {
 Status TumblingOdometry::doubt() const {
   const Status of_imu = pass_.rates().rate().doubt(pass_.rate_state().rate);
   if (!of_imu.ok()) return of_imu;
+  if (const Status of_force = pass_.force_at_rest(); !of_force.ok()) return of_force;
   const Status of_ranges = pass_.sweep_scale().verdict();
   if (!of_ranges.ok()) return of_ranges;
   const Status of_localisation = pass_.localisation().verdict();
@@ -167,7 +207,8 @@ Status TumblingOdometry::doubt() const {
 }
 
 void TumblingOdometry::finish() {
-  if (!newest_rate()) return;  // nothing since the last time
+  OutlierFilter::finish(outliers_);
+  if (!newest_rate()) return;  // no samples since the last call
   flush_all();
   again_.complete(pass_);
   begin_rates();
@@ -183,12 +224,13 @@ void TumblingOdometry::register_sweep(TimeNs start_ns, TimeNs end_ns, std::vecto
       readings_.take(pass_.needed_ns(*registered_ns_), pass_.needed_ns(end_ns));
   out.status = pass_.add_sweep(start_ns, end_ns, points, reading, out.report);
   registered_ns_ = end_ns;
+  if (out.report.trajectory.empty()) return;
   again_.remember(start_ns, end_ns, std::move(points), reading, out.report.verdict);
   again_.advance(pass_);
 }
 
-/// Whether the sweep would be more than lag_s old with the sample after the newest one, while the sample that covers it
-/// has all of the lag ahead of it but a period: one after a gap has not.
+/// Returns whether the sweep would be more than lag_s old at the sample after the newest one. In addition, the covering
+/// sample must have the whole lag ahead of it except one period, which is not the case after a gap.
 bool TumblingOdometry::is_due(TimeNs end_ns) const {
   const std::optional<TimeNs> covering_ns = pass_.covering_ns(end_ns);
   if (!covering_ns) return false;
@@ -200,7 +242,7 @@ bool TumblingOdometry::is_due(TimeNs end_ns) const {
 void TumblingOdometry::register_covered() {
   while (!waiting_.empty()) {
     const TimeNs end_ns = waiting_.front().end_ns;
-    // the sample that covers it ends up to a period later: its rate is given out so much sooner
+    // the covering sample ends up to one period later, so its rate is reported this much earlier
     if (!pass_.covers(end_ns) && is_due(end_ns)) pass_.flush_until(pass_.needed_ns(end_ns));
     if (!pass_.covers(end_ns)) break;
     WaitingSweep sweep = std::move(waiting_.front());
@@ -211,6 +253,7 @@ void TumblingOdometry::register_covered() {
   if (!waiting_.empty() || !covered_ns) return;
   if (seconds(*covered_ns - *registered_ns_) > kSilent_s) {
     register_sweep(*covered_ns, *covered_ns, {});
+    if (done_.back().report.trajectory.empty()) done_.pop_back();  // no sweep has started the map
     sweep_end_ns_ = *covered_ns;
   }
 }
@@ -228,7 +271,7 @@ void TumblingOdometry::begin_anew() {
 
 void TumblingOdometry::begin_rates() {
   RegimeStream::Params params = rate_params(params_);
-  // where what was learnt is beyond what can be: from what was given
+  // if the estimated calibration is out of bounds, restart from the stated one
   if (const RigCalibration learnt = rig(); check_calibration(learnt).ok()) params.rate.model.calibration = learnt;
   pass_.begin_rates(params);
 }

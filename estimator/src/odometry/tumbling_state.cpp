@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// TumblingOdometry as bytes.
+// Serialisation of TumblingOdometry.
 #include <memory>
 
 #include "odometry_members.hpp"
@@ -22,7 +22,7 @@ Status OdometryPass::check_state() const {
   const TimeNs newest_ns = window.back().observation.sample.time_ns;
   if (told_ns_ && *told_ns_ > newest_ns)
     return {Trouble::out_of_range, "pass.told_ns", double(*told_ns_), double(newest_ns)};
-  if (pending_.all().empty()) {  // all were given out, as at the end of the second pass's samples
+  if (pending_.all().empty()) {  // all were reported, as after the second pass
     const bool complete = smoothed_ && smoothed_->time_ns == newest_ns && told_ns_ == newest_ns;
     return complete ? Status{} : missing("pass.pending");
   }

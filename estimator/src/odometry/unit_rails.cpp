@@ -7,8 +7,8 @@ namespace tumble {
 
 namespace {
 
-constexpr int kReadings = 512;               // that are kept of each triad: some seconds at the extremes
-constexpr double kStatedMax_rad_s = 1000.0;  // beyond it a range is none, to RailDetector
+constexpr int kReadings = 512;               // stored readings per triad: some seconds at the extremes
+constexpr double kStatedMax_rad_s = 1000.0;  // RailDetector ignores larger ranges
 
 RailWatch::Params watch_params(const ImuSheet& sheet) {
   RailWatch::Params out;
@@ -51,7 +51,7 @@ void UnitRails::observe(std::span<const ImuSample> samples, State& state) const 
     RailWatch::State& rails = state[k].rails;
     units_[k].watch.observe(samples[k], rails);
     units_[k].watch.upright_rails().classify(samples[k],
-                                             rails.known.upright_rails);  // carries what is clipped just now
+                                             rails.known.upright_rails);  // contains the hysteresis
     state[k].before = samples[k];
   }
 }

@@ -11,17 +11,17 @@
 
 namespace tumble::rolling {
 
-/// The smoother's last pass over stored samples: one Kalman filter with the modes decided, and the way back.
+/// The smoother's final pass over stored samples: one Kalman filter with fixed modes, then the backward pass.
 ///
-/// What the way back needs of a node is more than 10 KiB, so it is not kept: nodes are cut into segments, the filter
-/// at the beginning of each and the adjoint at its end are kept, and the records of one segment are computed anew when
-/// they are needed, to the same bits. A window of one segment is gone over once, a longer one three times. It holds
-/// four filters of 13 KiB by value: it is no object for the stack.
+/// The backward pass needs more than 10 KiB per node. Nodes are therefore cut into segments, and only the filter at the
+/// start of each segment and the adjoint at its end are stored. The records of one segment are recomputed when needed,
+/// bit for bit. A window of one segment is processed once, a longer one three times. The object contains four filters
+/// of 13 KiB, so do not put it on the stack.
 class LastPass {
  public:
-  static constexpr std::size_t kSegment = 128;  ///< nodes; 1.6 MiB of records, 0.2 KiB of kept states for each node
+  static constexpr std::size_t kSegment = 128;  ///< nodes; 1.6 MiB of records, 0.2 KiB of stored states per node
 
-  /// The filter and where in the samples it is, between two nodes.
+  /// The filter and its position in the samples, between two nodes.
   struct Checkpoint {
     PathFilter filter;
     Readings::Cursor reading;
@@ -29,30 +29,30 @@ class LastPass {
   struct Distance {
     double distance_m = 0.0, sigma_m = 0.0;
   };
-  /// What is known of one sample.
+  /// Smoothed result at one sample.
   struct Smoothed {
     const SamplePoint& point;
-    const RollingNominal& nominal;  ///< at the node before
-    Reported error;                 ///< of the point
-    const NodeRecord* node;         ///< the one whose covariance counts; none where the window has no node
-    std::size_t index;              ///< its place among the window's
+    const RollingNominal& nominal;
+    Reported error;          ///< of the sample
+    const NodeRecord* node;  ///< the node whose covariance applies; null if the window has no node
+    std::size_t index;
   };
 
-  /// All that is given has to outlive the pass. `distance`, when known, is measured at the end of the samples.
-  /// `segment`: nodes whose records are held at a time; it changes nothing else.
+  /// All arguments must outlive the pass. `distance`, if known, is measured at the end of the samples. `segment`:
+  /// number of nodes whose records are stored at a time; affects only memory and computing time.
   LastPass(const RollingParams& params, std::span<const ImuSample> samples, std::span<const PathNode> path,
            std::optional<Distance> distance, std::size_t segment = kSegment);
 
-  /// Forward from `start` and back. `cut` is the number of nodes after which cut() is.
+  /// Runs forward from `start`, and backward. `cut` is the number of nodes after which cut() is taken.
   void run(const Checkpoint& start, std::size_t cut);
 
   std::size_t nodes() const { return horizontal_m2_.size(); }
-  /// Smoothed variance of the IMU's horizontal position at each node.
+  /// Returns the smoothed variance of the IMU's horizontal position at each node.
   std::span<const double> horizontal_m2() const { return horizontal_m2_; }
   const Checkpoint& cut() const { return cut_; }
   const PathFilter& end() const { return end_.filter; }
 
-  /// Calls `take` for each sample before the node `until`, in the order of time.
+  /// Calls `take` for each sample before the node `until`, in time order.
   void give(std::size_t until, const std::function<void(const Smoothed&)>& take);
 
  private:
@@ -72,19 +72,19 @@ class LastPass {
   std::span<const ImuSample> samples_;
   std::span<const PathNode> path_;
   std::optional<Distance> distance_;
-  std::size_t length_;      ///< of a segment
-  std::vector<Kept> kept_;  ///< one for each segment
+  std::size_t length_;
+  std::vector<Kept> kept_;
   std::vector<double> horizontal_m2_;
   std::size_t cut_after_ = 0;
   Checkpoint cut_, end_;
-  Checkpoint again_;  ///< in a segment that is gone over again
-  Adjoint adjoint_;   ///< on the way back
-  // of the segment that is loaded
+  Checkpoint again_;  ///< in a segment that is recomputed
+  Adjoint adjoint_;   ///< of the backward pass
+  // index of the loaded segment
   std::size_t loaded_ = 0;
   std::vector<NodeRecord> records_;
   std::vector<SamplePoint> points_;
   Reported smoothed_start_ = Reported::Zero();
-  Reported moved_at_end_ = Reported::Zero();  ///< by the distance
+  Reported moved_at_end_ = Reported::Zero();  ///< due to the distance
 };
 
 }  // namespace tumble::rolling

@@ -5,26 +5,26 @@
 
 #include "rolling_node.hpp"
 
-/// What no contact tells: the heading. A sphere whose run is turned about the vertical as a whole reads the same. A
-/// linear filter that is far off in heading learns of it all the same, from one update to the next, since each takes
-/// its derivatives elsewhere: rolling.md (R37) to (R39).
+/// Prevents false information about the heading, which contact does not determine. A whole run rotated about the
+/// vertical gives the same readings. A linearised filter with a large heading error still gains false information,
+/// because the linearisation points of successive updates differ: rolling.md (R34) to (R36).
 namespace tumble::rolling {
 
-/// From this deviation of the heading on; below, what is learnt by mistake is of its square.
+/// Standard deviation of the heading above which this correction is applied; the false information is quadratic in it.
 inline constexpr double kLostHeading_rad = 0.1;
 
 inline bool lost_heading(const Covariance& P) {
   return P(kAttitude + 2, kAttitude + 2) > squared(kLostHeading_rad);
 }
 
-/// Takes out of the derivative of the contact velocity what a turn of the whole run makes of it: nothing, where the
-/// contact stands still. (R38)
+/// Removes the effect of a rotation of the whole run from the derivative of the contact velocity. The true effect is
+/// zero while the contact point does not move. (R35)
 inline void blind_to_heading(Contact& c) {
   c.H.col(kAttitude + 2) -= Eigen::Vector3d::UnitZ().cross(c.u_W_m_s);
 }
 
-/// What a turn of the whole run about the vertical adds to velocity, position and slope beyond what it did before the
-/// nominal was moved by `x`. (R39)
+/// Returns the change of the effect of a rotation about the vertical on velocity, position and slope, when the nominal
+/// moves by `x`. (R36)
 inline Vector turned_by_heading(const Vector& x) {
   const auto turned = [](const auto& v) { return Eigen::Vector2d(-v.y(), v.x()); };
   Vector out = Vector::Zero();
@@ -34,13 +34,13 @@ inline Vector turned_by_heading(const Vector& x) {
   return out;
 }
 
-/// Errors about the nominal before it was moved, as errors about that after: P <- T P T^T. (R39)
+/// Transforms the covariance of errors about the old nominal to the new one: P <- T P T^T. (R36)
 inline void move_errors(const Vector& turned, Covariance& P) {
   P += (turned * P.row(kAttitude + 2)).eval();
   P += (P.col(kAttitude + 2) * turned.transpose()).eval();
 }
 
-/// The same of one error.
+/// Same for one error.
 inline void move_error(const Vector& turned, Vector& x) {
   x += x[kAttitude + 2] * turned;
 }

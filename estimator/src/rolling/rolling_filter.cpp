@@ -15,7 +15,7 @@ namespace tumble {
 namespace {
 
 constexpr double kSlowRateTau_s = 0.3;
-constexpr double kSpinSigmas = 4.0;  // sigmas by which a rate at rest is no bias
+constexpr double kSpinSigmas = 4.0;  // a rate at rest above this many sigmas is not a bias
 
 static_assert(RollingFilter::kStates == rolling::kStates);
 
@@ -62,7 +62,7 @@ void RollingFilter::start(const ImuSample& sample, const Eigen::Quaterniond& q_W
 void RollingFilter::take_average(State& state, Listener listener) const {
   const ImuAverage reading = state.average;
   state.average = {};
-  // a node closes one reading late, because the rate at its end lies between two readings
+  // a node closes one reading late because the rate at its end is between two readings
   if (state.sums.node_s >= params_.expert.node_s - 0.5 * reading.length_s) {
     close_node(reading.mean.angular_velocity_rad_s, state);
     listener.call(listener.to, state);
@@ -112,7 +112,7 @@ void RollingFilter::close_node(const Eigen::Vector3d& next_rate_rad_s, State& st
   }
   state.position_covariance_m2 =
       state.hypotheses[0].P.block<3, 3>(rolling::kPosition, rolling::kPosition) + position_spread(state);
-  // what they disagree in about the past is where they are
+  // their disagreement about the past is a spread of the current position
   if (state.at_rest && state.count == 1) {
     state.hypotheses[0].P.block<3, 3>(rolling::kPosition, rolling::kPosition) += state.pruned_spread_m2;
     state.position_covariance_m2 += state.pruned_spread_m2;
@@ -127,21 +127,21 @@ void RollingFilter::close_node(const Eigen::Vector3d& next_rate_rad_s, State& st
 
 void RollingFilter::detect_rest(State& state) const {
   const double h = state.sums.node_s;
-  if (state.sums.gap_s > 0.0) {  // two readings are not the rest that may have been between them
+  if (state.sums.gap_s > 0.0) {  // two readings do not show rest between them
     state.rest = {};
     state.at_rest = state.spins_in_place = false;
     return;
   }
   const Eigen::Vector3d w_mean = state.sums.w_I_rad / h + state.nominal.gyro_bias_rad_s;
-  const TimeNs from_ns = state.rest.last_mean_ns;  // nodes follow each other
+  const TimeNs from_ns = state.rest.last_mean_ns;  // nodes are contiguous
   state.at_rest = rests_.observe_mean(w_mean, state.sums.f_I_m_s / h, from_ns, from_ns + std::llround(1e9 * h),
                                       state.nominal.gyro_bias_rad_s, state.rest);
   state.slow_rate_rad_s += -std::expm1(-h / kSlowRateTau_s) * (w_mean - state.slow_rate_rad_s);
   state.spins_in_place = state.at_rest && spins_in_place(state);
 }
 
-/// Whether a sphere that stands still turns about its contact: so slowly that only what is known of the bias tells.
-/// rolling.md (R28).
+/// Returns whether a sphere at rest rotates slowly about its contact, by comparison with the known bias. rolling.md
+/// (R29).
 bool RollingFilter::spins_in_place(const State& state) const {
   const double averaged = params_.expert.node_s / (2.0 * kSlowRateTau_s);
   const Hypothesis& best = state.hypotheses[0];
@@ -152,8 +152,8 @@ bool RollingFilter::spins_in_place(const State& state) const {
   return (off.square() > kSpinSigmas * kSpinSigmas * variance).any();
 }
 
-/// What the other hypotheses add to the position's covariance about the best one: sum of w d d^T over the sum of w,
-/// rolling.md (R26).
+/// Contribution of the other hypotheses to the position's covariance about the best one: sum of w d d^T over the sum of
+/// w, rolling.md (R27).
 Eigen::Matrix3d RollingFilter::position_spread(const State& state) {
   const Eigen::Vector3d best = state.hypotheses[0].x.segment<3>(rolling::kPosition);
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
@@ -175,7 +175,6 @@ void RollingFilter::call_uncertain(State& state) const {
   state.uncertain = event && variance_m2 - state.before_event_m2 > squared(params_.expert.modes.uncertain_m);
 }
 
-/// Probabilities of slip and bump over all hypotheses.
 void RollingFilter::weigh_events(State& state) {
   double slipping = 0.0, hopping = 0.0, total = 0.0;
   for (int k = 0; k < state.count; ++k) {
@@ -189,7 +188,7 @@ void RollingFilter::weigh_events(State& state) {
   state.bump_probability = hopping / total;
 }
 
-/// Whether the position that is given out stands still until the next node.
+/// Decides whether the reported position is constant until the next node.
 void RollingFilter::hold(State& state) const {
   const bool quiet = seconds(state.rest.quiet_ns) >= std::min(rolling::kHeldAfter_s, params_.expert.rest.rest_s) &&
                      !slips(state.hypotheses[0].mode);
@@ -202,7 +201,8 @@ void RollingFilter::hold(State& state) const {
   state.held = stands;
 }
 
-/// Moves the errors of the best hypothesis into the nominal trajectory and constants; the others are held about it.
+/// Moves the errors of the best hypothesis into the nominal trajectory and constants; the others are expressed relative
+/// to it.
 void RollingFilter::rebase(bool lost_heading, State& state) const {
   const Vector x = state.hypotheses[0].x, turned = rolling::turned_by_heading(x);
   rolling::rebase(x, state.nominal);

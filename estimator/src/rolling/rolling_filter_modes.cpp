@@ -18,17 +18,18 @@ namespace tumble {
 
 namespace {
 
-constexpr double kDropped = -120.0;   // log weight below the best at which a hypothesis is given up
-constexpr double kRestFloor = -60.0;  // least log likelihood of a node at rest: one bad node must not decide
-constexpr double kLongAgo_s = 1.0;    // after so long in one mode it does not matter when it began
-// change of u per node, horizontal; a plateau as narrow as grip, or each plateau would look like grip
+constexpr double kDropped = -120.0;   // log weight relative to the best below which a hypothesis is pruned
+constexpr double kRestFloor = -60.0;  // minimum log likelihood at rest: a single bad node must not decide
+constexpr double kLongAgo_s = 1.0;    // time in one mode after which its start no longer matters
+// horizontal change of u per node; the plateau component is as narrow as grip, otherwise each plateau would be
+// classified as grip
 constexpr double kPlateau_m_s = 0.004, kSteady_m_s = 0.01, kJump_m_s = 0.08, kPlateauShare = 0.4, kSteadyShare = 0.35;
-constexpr double kRise_m_s = 0.03, kHit_m_s = 0.3, kRiseShare = 0.7;  // and vertical, on a bump
+constexpr double kRise_m_s = 0.03, kHit_m_s = 0.3, kRiseShare = 0.7;  // vertical change of u per node, on a bump
 constexpr std::int64_t kAgesApart = 4;
-// Places kept for hypotheses that deny the best one's last change of mode: a slip whose spin is held looks like grip
-// until it ends, and by then a hundred variants of the last few nodes are better.
+// Minimum number of hypotheses that do not contain the best one's last mode change. Reason: a slip with constant spin
+// looks like grip until it ends, when a hundred variants of the last nodes are more probable.
 constexpr std::size_t kDoubters = 6;
-constexpr double kRoughCost = 0.2;  // per node: less than what a slope leaves over there, more than grip on a plane
+constexpr double kRoughCost = 0.2;  // per node: less than the residual of a slope, more than that of grip on a plane
 constexpr double kInclineAfterBump = 4.0;  // the foot of a ramp is a bump
 constexpr RollingMode kModes[] = {RollingMode::grip, RollingMode::slip, RollingMode::bump, RollingMode::incline,
                                   RollingMode::rough};
@@ -38,7 +39,7 @@ double log_normal(double value, double variance) {
   return -0.5 * (value * value / variance + std::log(2.0 * std::numbers::pi * variance));
 }
 
-/// log density of a rise or fall of u per node on a bump: rolling over it, or hitting it. m1 of rolling.md (R24).
+/// Log density of a vertical change of u per node on a bump: rolling over it, or hitting it. m1 of rolling.md (R25).
 double log_rise(double change) {
   const auto density = [&](double sigma) {
     return std::exp(-0.5 * change * change / (sigma * sigma)) / (sigma * std::sqrt(2.0 * std::numbers::pi));
@@ -46,8 +47,8 @@ double log_rise(double change) {
   return std::log(kRiseShare * density(kRise_m_s) + (1.0 - kRiseShare) * density(kHit_m_s) + 1e-300);
 }
 
-/// log density of a change of u per node, horizontal, with squared length `square`: a plateau, a drift, or a jump.
-/// m2 of rolling.md (R23).
+/// Log density of a horizontal change of u per node with squared length `square`: plateau, drift or jump. m2 of
+/// rolling.md (R24).
 double log_change(double square) {
   double density = 0.0;
   for (const auto& [share, sigma] : {std::pair(kPlateauShare, kPlateau_m_s), std::pair(kSteadyShare, kSteady_m_s),
@@ -57,7 +58,7 @@ double log_change(double square) {
   return std::log(density + 1e-300);
 }
 
-/// log density of a contact that stands still, by the hypothesis `h` should it enter `mode`: rolling.md (R22).
+/// Log density of a stationary contact point, for hypothesis `h` in mode `mode`: rolling.md (R23).
 double log_still(const rolling::Contact& c, const RollingFilter::Hypothesis& h, RollingMode mode,
                  const RollingParams& params) {
   RollingFilter::Vector x = h.x;
@@ -79,7 +80,7 @@ double log_still(const rolling::Contact& c, const RollingFilter::Hypothesis& h, 
   Eigen::LLT<Eigen::Matrix3d> factor;
   double log_det = 0.0, cost = 0.0;
   if (mode == RollingMode::rough) {
-    // ups and downs last many nodes: each must not be charged with their width anew
+    // roughness lasts many nodes, which must not be penalised for its width each time
     log_det = log_det_with(rolling::contact_variance(params, c, RollingMode::grip), factor);
     cost = kRoughCost;
   }
@@ -89,7 +90,8 @@ double log_still(const rolling::Contact& c, const RollingFilter::Hypothesis& h, 
   return -cost - 0.5 * (square + log_det + 3.0 * std::log(2.0 * std::numbers::pi));
 }
 
-/// log density of a contact velocity `u` that moves, by its change since the last node: rolling.md (R23), (R24).
+/// Log density of a moving contact point, by the change of its velocity `u` since the last node: rolling.md (R24),
+/// (R25).
 double log_moving(const rolling::Contact& c, const RollingFilter::Hypothesis& h, RollingMode mode,
                   const Eigen::Vector3d& u, const RollingParams& params) {
   const Eigen::Vector3d change = u - h.u_W_m_s;
@@ -99,7 +101,7 @@ double log_moving(const rolling::Contact& c, const RollingFilter::Hypothesis& h,
   return horizontal + log_normal(u.z(), vertical);
 }
 
-/// rolling.md (R21).
+/// rolling.md (R22).
 double log_transition(const RollingParams& params, RollingMode from, RollingMode to, double h_s) {
   const auto& modes = params.expert.modes;
   const auto rate = [&](RollingMode a, RollingMode b) {
@@ -119,7 +121,6 @@ double log_transition(const RollingParams& params, RollingMode from, RollingMode
   return -leaving * h_s;
 }
 
-/// A hypothesis and a mode in which it may be after the node.
 struct Candidate {
   double log_weight = 0.0;
   int parent = 0;
@@ -128,7 +129,7 @@ struct Candidate {
 };
 using Candidates = std::array<Candidate, kRollingModes * RollingFilter::kHypotheses>;
 
-/// All of them, the likeliest first, in `out`.
+/// Returns all candidates in `out`, the most probable first.
 std::span<const Candidate> propose(const RollingParams& params, const rolling::Contact& c,
                                    const RollingFilter::State& state, Candidates& out) {
   const double node_s = state.sums.node_s;
@@ -143,7 +144,7 @@ std::span<const Candidate> propose(const RollingParams& params, const rolling::C
       const bool bound = slips(h.mode) && state.node - h.switched_node < shortest;
       if (mode != h.mode && bound) continue;
       if (too_fast && !slips(mode)) continue;
-      double likelihood = 0.0;  // a gap speaks for no mode
+      double likelihood = 0.0;  // a gap is no evidence of a mode
       if (!in_gap) likelihood = slips(mode) ? log_moving(c, h, mode, u, params) : log_still(c, h, mode, params);
       const double impact = mode == RollingMode::bump
                                 ? 0.0
@@ -152,14 +153,14 @@ std::span<const Candidate> propose(const RollingParams& params, const rolling::C
                       mode == h.mode ? h.switched_node : state.node};
     }
   }
-  // std::stable_sort would allocate; ties go by origin, so that the order is one
+  // std::stable_sort would allocate; ties are ordered by origin, so the order is unique
   std::sort(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(total), [](const Candidate& a, const Candidate& b) {
     return std::tuple(-a.log_weight, a.parent, a.mode) < std::tuple(-b.log_weight, b.parent, b.mode);
   });
   return {out.data(), total};
 }
 
-/// Two beginnings of the same mode are one the sooner, the longer they are past: the first node of those that are one.
+/// Returns the start node after merging. Two starts of the same mode merge the sooner, the older they are.
 std::int64_t beginning(std::int64_t switched_node, std::int64_t node, double node_s) {
   const auto long_ago = static_cast<std::int64_t>(kLongAgo_s / node_s);
   const std::int64_t age = std::min(node - switched_node, long_ago);
@@ -173,7 +174,7 @@ struct Kept {
   std::size_t count = 0;
 };
 
-/// Those that go on, of candidates in order: the likeliest of each mode and beginning, kDoubters places being kept.
+/// Selects the candidates that remain: the most probable of each mode and start, with kDoubters reserved.
 Kept keep(std::span<const Candidate> candidates, std::int64_t node, double node_s) {
   Kept kept;
   for (const Candidate& candidate : candidates) {
@@ -192,15 +193,15 @@ Kept keep(std::span<const Candidate> candidates, std::int64_t node, double node_
 
 using Origins = std::array<std::size_t, RollingFilter::kHypotheses>;
 
-/// The first `count` become copies of those that `from` names, in place: a second set would be 420 KiB of stack.
+/// Replaces the first `count` by copies of those in `from`, in place: a second array would be 420 KiB of stack.
 void rearrange(const Origins& from, std::size_t count, std::span<RollingFilter::Hypothesis> all) {
-  std::array<int, RollingFilter::kHypotheses> readers{};  // of each place, that have not read it yet
+  std::array<int, RollingFilter::kHypotheses> readers{};  // number of pending readers of each slot
   std::array<bool, RollingFilter::kHypotheses> waits{};
   for (std::size_t k = 0; k < count; ++k) {
     waits[k] = from[k] != k;
     readers[from[k]] += waits[k] ? 1 : 0;
   }
-  // a place that nobody reads any more may be written, and sets the one free that it was written from
+  // a slot without readers can be overwritten, which may free its source
   for (std::size_t first = 0; first < count; ++first) {
     for (std::size_t k = first; k < count && waits[k] && readers[k] == 0; k = from[k]) {
       all[k] = all[from[k]];
@@ -208,7 +209,7 @@ void rearrange(const Origins& from, std::size_t count, std::span<RollingFilter::
       --readers[from[k]];
     }
   }
-  // what is left stands in rings
+  // the remaining slots form cycles
   for (std::size_t first = 0; first < count; ++first) {
     if (!waits[first]) continue;
     const RollingFilter::Hypothesis kept = all[first];
@@ -224,7 +225,7 @@ void rearrange(const Origins& from, std::size_t count, std::span<RollingFilter::
 
 }  // namespace
 
-/// rolling.md (R25).
+/// rolling.md (R26).
 void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, bool lost_heading, State& state) const {
   rolling::Contact c = rolling::contact(params_, state.nominal, rate_I_rad_s, state.sums);
   if (lost_heading) rolling::blind_to_heading(c);
@@ -251,7 +252,7 @@ void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, bool lost_
   keep_first(kept.count, state);
 }
 
-/// What is not in use is blank, so that equal estimates are equal states.
+/// Clears unused hypotheses, so that equal estimates are equal states.
 void RollingFilter::keep_first(std::size_t count, State& state) {
   const auto begin = state.hypotheses.begin();
   const auto first = begin + static_cast<std::ptrdiff_t>(count);
@@ -259,14 +260,14 @@ void RollingFilter::keep_first(std::size_t count, State& state) {
   state.count = static_cast<int>(count);
 }
 
-/// Every hypothesis stands still, and its contact grips: rolling.md (R27).
+/// Updates every hypothesis with rest and grip: rolling.md (R28).
 void RollingFilter::correct_at_rest(State& state) const {
   for (int k = 0; k < state.count; ++k) {
     Hypothesis& h = state.hypotheses[static_cast<std::size_t>(k)];
     double likelihood = 0.0;
     rolling::rest_rows(params_, state.sums, state.nominal, state.spins_in_place,
                        [&](int index, double measured, double variance) {
-                         if (index < rolling::kPosition)  // a velocity: what a bias tells is no evidence of a mode
+                         if (index < rolling::kPosition)  // a velocity; a bias is no evidence of a mode
                            likelihood += log_normal(measured - h.x[index], h.P(index, index) + variance);
                          rolling::update(index, measured, variance, h.x, h.P);
                        });
@@ -285,7 +286,7 @@ void RollingFilter::correct_at_rest(State& state) const {
     return std::tuple(-state.hypotheses[a].log_weight, a) < std::tuple(-state.hypotheses[b].log_weight, b);
   });
   rearrange(order, count, state.hypotheses);
-  // they agree about the present, so after a while one is enough
+  // they agree about the present, so one is sufficient after a while
   const bool rested = seconds(state.rest.quiet_ns) > kLongAgo_s;
   if (rested && state.count > 1) state.pruned_spread_m2 = position_spread(state);
   const double best = state.hypotheses[0].log_weight;

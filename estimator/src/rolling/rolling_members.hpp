@@ -4,7 +4,6 @@
 #include "../angular_velocity/rails_members.hpp"
 #include "tumble/rolling/rolling_smoother.hpp"
 
-/// Members of the states of RollingFilter and RollingSmoother: state_visitor.hpp.
 namespace tumble {
 
 template <StateOf<RollingNominal> Self, class Visitor>

@@ -12,7 +12,7 @@ namespace tumble::rolling {
 
 namespace {
 
-constexpr double kSteepest = 0.95;  // of the sine of a slope: keeps the normal upward
+constexpr double kSteepest = 0.95;  // maximum sine of a slope, so that the normal points up
 constexpr double kLevelSlopeSigma = 1e-3;
 
 double upward(const Eigen::Vector2d& slope) {
@@ -23,35 +23,35 @@ Eigen::Vector3d normal(const Eigen::Vector2d& slope) {
   return {slope.x(), slope.y(), upward(slope)};
 }
 
-constexpr double kUsual_m_s2 = 3.0;                   // what a force differs from gravity by, without an impact
-constexpr double kOffCentre_m = 0.02;                 // of an IMU: makes forces in fast turns
-constexpr double kHiddenFrom = 0.3, kHiddenTo = 0.6;  // of the accelerometer's range
-constexpr double kForceTilt_rad = 0.35;               // of the direction of a force in motion
-constexpr double kLostTilt_rad = kForceTilt_rad;      // a tilt less sure than that of a force is levelled by one
-constexpr double kDoubtfulTilt_rad = 0.1;             // and at rest, where the force is gravity, from here on
+constexpr double kUsual_m_s2 = 3.0;                   // difference of a force from gravity without an impact
+constexpr double kOffCentre_m = 0.02;                 // of an IMU: explains forces in fast rotation
+constexpr double kHiddenFrom = 0.3, kHiddenTo = 0.6;  // as fractions of the accelerometer's range
+constexpr double kForceTilt_rad = 0.35;               // direction error of a force in motion
+constexpr double kLostTilt_rad = kForceTilt_rad;      // a tilt with a larger standard deviation is levelled by a force
+constexpr double kDoubtfulTilt_rad = 0.1;             // same at rest, where the force is gravity
 constexpr double kRestTilt_rad = 5e-3;
-// of gravity: a force that differs by more shows a push or a fast turn, not the vertical
+// as a fraction of gravity: larger differences are a push or a fast rotation
 constexpr double kPush = 0.15;
 constexpr double kLostSpeed_m_s = 1.0;
-constexpr double kRecoveredTau_s = 0.1;  // a recovered rate stays off for so long: what it is off by is no noise
-constexpr double kFastRate_rad_s = 6.0;  // a force turns too far within a node to level by, and is not gravity
+constexpr double kRecoveredTau_s = 0.1;  // correlation time of the error of a recovered rate
+constexpr double kFastRate_rad_s = 6.0;  // at higher rates, a node's force rotates too far to level by
 constexpr double kUnsureSpeed_m_s = 0.1, kSpeedWindow_s = 1.0;
 constexpr double kStartTilt_rad = 0.15;  // of a start in motion: a push of 1.5 m/s^2
-// of a gap: a sphere that turned slower than this on both sides was not pushed about in between, but for a little
+// a sphere with smaller rates on both sides of a gap was hardly pushed during it
 constexpr double kGapRate_rad_s = 1.0, kGapStill_rad_s2 = 0.5;
-constexpr double kGapTurned = 0.5;  // of what a rolling sphere's velocity changes by with its rate, in a gap
-constexpr double kGapStep = 0.15;   // of a change of rate times the gap's length: when in it the change came
+constexpr double kGapTurned = 0.5;  // in a gap, as a fraction of the rolling velocity's change
+constexpr double kGapStep = 0.15;   // uncertain time of a rate change within a gap, as a fraction of the gap
 
 }  // namespace
 
-/// rolling.md (R17), (R18).
+/// rolling.md (R18), (R19).
 Eigen::Vector3d contact_variance(const RollingParams& params, const Contact& c, RollingMode mode) {
   const double rough =
       mode == RollingMode::rough ? squared(params.expert.contact.rough_share * c.rolling_speed_m_s) : 0.0;
   return {c.grip_variance, c.grip_variance, squared(params.expert.contact.vertical_sigma_m_s) + rough + c.gap_variance};
 }
 
-/// rolling.md (R16).
+/// rolling.md (R17).
 Eigen::Vector3d Contact::velocity(const Vector& x) const {
   const Eigen::Vector2d change = x.segment<2>(kSlope);
   const double curved = upward(slope + change) - upward(slope) + slope.dot(change) / upward(slope);
@@ -75,11 +75,11 @@ RollingNominal start_nominal(const RollingParams& params, const Eigen::Quaternio
   return nominal;
 }
 
-/// Of the states in the order of rolling.md (R1).
+/// Prior of the states in the order of rolling.md (R1).
 void set_prior(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s, Covariance& P) {
   P.setZero();
   auto prior = P.diagonal();
-  // the force of a sphere that is pushed is not gravity, and one that turns may slip by as much as it turns
+  // the force on a pushed sphere is not gravity, and a rotating sphere may slip by its full speed
   const bool moves = starts_in_motion(params, rate_I_rad_s);
   const double tilt = moves ? kStartTilt_rad : 0.0, velocity = moves ? params.radius_m * rate_I_rad_s.norm() : 0.0;
   // the heading defines the world's x axis
@@ -97,13 +97,12 @@ void set_prior(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s,
 
 namespace {
 
-/// A force of which some axes met the accelerometer's rail.
 struct RailedForce {
   Eigen::Vector3d force_m_s2 = Eigen::Vector3d::Zero();
-  Eigen::Vector3d least_m_s2 = Eigen::Vector3d::Zero();  ///< those of its components that may have been more
+  Eigen::Vector3d least_m_s2 = Eigen::Vector3d::Zero();  ///< components for which the reading is a lower bound
 };
 
-/// What it is at least, and more where keeping the centre's velocity takes more. rolling.md (R7a).
+/// Returns the reading, or the force that keeps the centre's velocity constant if it is larger. rolling.md (R8).
 RailedForce railed_force(const ImuSample& sample, const Eigen::Vector3d& read_m_s2, const Eigen::Vector3d& kept_m_s2) {
   int largest = 0;
   sample.specific_force_m_s2.cwiseAbs().maxCoeff(&largest);
@@ -123,7 +122,7 @@ RailedForce railed_force(const ImuSample& sample, const Eigen::Vector3d& read_m_
 
 }  // namespace
 
-/// rolling.md (R2) to (R8).
+/// rolling.md (R2) to (R9).
 void integrate(const RollingParams& params, const ImuAverage& reading, RollingNominal& nominal, RollingSums& sums,
                Force known) {
   const ImuSample& sample = reading.mean;
@@ -133,7 +132,7 @@ void integrate(const RollingParams& params, const ImuAverage& reading, RollingNo
   const Eigen::Vector3d w = w_raw - nominal.gyro_bias_rad_s - nominal.gyro_scale * w_raw;
   Eigen::Vector3d f =
       f_raw - nominal.accel_bias_m_s2 - nominal.accel_scale * f_raw - nominal.accel_delay_s * w.cross(f_raw);
-  // the mean of a force that turns in the sensor over the window is shorter across the axis by (|w| dt)^2 / 24:
+  // the mean over the window of a force rotating in the sensor is reduced across the axis by (|w| dt)^2 / 24:
   // rolling.md (R4)
   f -= dt_s * dt_s / 24.0 * w.cross(w.cross(f));
   const Eigen::Quaterniond half = so3::exp(0.5 * dt_s * w);
@@ -148,9 +147,9 @@ void integrate(const RollingParams& params, const ImuAverage& reading, RollingNo
   const bool railed =
       (sample.device_clip_flags & kClipAccel) != 0 || reading.force_peak_m_s2 >= params.accel_range_m_s2;
   const Eigen::Vector3d arm = params.lever_arm_m + nominal.lever_arm_error_m;
-  const Eigen::Vector3d change_rad_s = w_raw - nominal.last_rate_I_rad_s;  // the angular acceleration times dt_s
+  const Eigen::Vector3d change_rad_s = w_raw - nominal.last_rate_I_rad_s;  // angular acceleration times dt_s
   nominal.last_rate_I_rad_s = w_raw;
-  // a force that is turned by a rate that is not known says nothing: the velocity of the centre is kept, (R7)
+  // a force rotated by an unknown rate gives no information: the centre's velocity is kept, (R7)
   const Eigen::Vector3d keeps_centre = R_T * w.cross(w.cross(arm)) + q_mid * change_rad_s.cross(arm);
   const Eigen::Vector3d fallen = dt_s * gravity * Eigen::Vector3d::UnitZ();
   Eigen::Vector3d least = Eigen::Vector3d::Zero();
@@ -164,7 +163,7 @@ void integrate(const RollingParams& params, const ImuAverage& reading, RollingNo
   nominal.v_WI_m_s += gained;
   sums.R_s += R_T;
   for (int axis = 0; axis < 3; ++axis) sums.R_w.middleCols<3>(3 * axis) += w_raw[axis] * R_T;
-  if (!unturned) {  // else no error of the force or of the attitude gets into the velocity
+  if (!unturned) {  // otherwise no error of force or attitude affects the velocity
     sums.f_W_m_s += R_T * f;
     for (int axis = 0; axis < 3; ++axis) sums.R_f.middleCols<3>(3 * axis) += f_raw[axis] * R_T;
     sums.R_wxf += R_T * w.cross(f_raw);
@@ -208,16 +207,16 @@ ImuAverage gap_piece(const RollingParams& params, const ImuSample& before, const
   const Eigen::Vector3d change = after.angular_velocity_rad_s - before.angular_velocity_rad_s;
   ImuSample sample = after;
   sample.angular_velocity_rad_s = before.angular_velocity_rad_s + share * change;
-  sample.device_clip_flags = 0;  // those of the reading after it are not of the gap
+  sample.device_clip_flags = 0;  // flags of the reading after the gap do not apply to the gap
   const double turning = std::max(before.angular_velocity_rad_s.norm(), after.angular_velocity_rad_s.norm());
   const double acceleration =
       kGapStill_rad_s2 + params.expert.gap.gap_acceleration_rad_s2 * std::min(1.0, turning / kGapRate_rad_s);
-  // a parabola between two known rates encloses a T^3 / 12: rolling.md (R30)
+  // a parabola between two known rates has the integral a T^3 / 12: rolling.md (R31)
   const double off_rad = acceleration * gap_s * gap_s * gap_s / 12.0 + kGapStep * change.norm() * gap_s;
   doubt.rad2 = off_rad * off_rad / pieces;
-  // rolling.md (R31)
-  doubt.rate_rad2_s = squared(off_rad / gap_s) * gap_s;  // of all pieces in one direction, hence once for each piece
-  doubt.speed_m2_s2 = squared(kGapTurned * params.radius_m * change.norm()) / pieces;  // rolling.md (R31a)
+  // rolling.md (R32)
+  doubt.rate_rad2_s = squared(off_rad / gap_s) * gap_s;  // common to all pieces, hence a factor gap_s
+  doubt.speed_m2_s2 = squared(kGapTurned * params.radius_m * change.norm()) / pieces;  // rolling.md (R33)
   ImuAverage piece;
   piece.add(sample, gap_s / pieces);
   return piece;
@@ -232,7 +231,7 @@ void integrate_gap(const RollingParams& params, const ImuAverage& piece, const G
   sums.gap_speed_m2_s2 += doubt.speed_m2_s2;
 }
 
-/// rolling.md (R9).
+/// rolling.md (R10).
 Moving transition(const RollingSums& sums) {
   Moving B = Moving::Zero();
   B.block<3, 3>(kAttitude, kGyroBias) = -sums.R_s;
@@ -246,7 +245,7 @@ Moving transition(const RollingSums& sums) {
   return B;
 }
 
-/// rolling.md (R10) to (R13).
+/// rolling.md (R11) to (R14).
 void predict(const RollingParams& params, const RollingSums& sums, const Moving& B, Vector& x, Covariance& P) {
   const double h = sums.node_s;
   x.head<9>() += (B * x).eval();
@@ -272,7 +271,7 @@ void predict(const RollingParams& params, const RollingSums& sums, const Moving&
   diagonal.segment<3>(kAccelBias).array() += squared(params.expert.noise.accel_bias_walk_m_s2_sqrts) * h;
 }
 
-/// rolling.md (R14), (R15), and the variance of (R17).
+/// rolling.md (R15), (R16), and the variance of (R18).
 Contact contact(const RollingParams& params, const RollingNominal& nominal, const Eigen::Vector3d& rate_I_rad_s,
                 const RollingSums& sums) {
   const Eigen::Matrix3d R = nominal.q_WI.toRotationMatrix();
@@ -286,7 +285,7 @@ Contact contact(const RollingParams& params, const RollingNominal& nominal, cons
   out.u_W_m_s = nominal.v_WI_m_s + reach * w_W;
   out.H.setZero();
   out.H.middleCols<3>(kVelocity).setIdentity();
-  // an attitude error turns w and the arm, but not the normal
+  // an attitude error rotates w and the arm, but not the normal
   out.H.middleCols<3>(kAttitude) = so3::hat(w_W.cross(arm_W)) - r * so3::hat(n) * so3::hat(w_W);
   out.H.middleCols<3>(kGyroBias) = -reach * R;
   for (int axis = 0; axis < 3; ++axis) {
@@ -301,7 +300,7 @@ Contact contact(const RollingParams& params, const RollingNominal& nominal, cons
   out.rolling_speed_m_s = r * w_W.cross(n).norm();
   out.grip_variance =
       squared(params.expert.contact.grip_sigma_m_s) + squared(params.expert.contact.grip_sigma_share * r * w_W.norm());
-  // a flag counts whatever the rate reads: a rail may lie below the range
+  // a flag counts at any rate, because saturation may occur below the range
   const bool beyond = rate_I_rad_s.cwiseAbs().maxCoeff() >= params.gyro_range_rad_s || sums.recovered_s > 0.0;
   const bool recovered = params.expert.rails.recovered_rate_sigma_rad_s > 0.0;
   if (sums.rate_clipped_s > 0.0 || (beyond && !recovered)) {
@@ -310,13 +309,13 @@ Contact contact(const RollingParams& params, const RollingNominal& nominal, cons
     out.grip_variance += squared(r * params.expert.rails.recovered_rate_sigma_rad_s);
   }
   if (sums.gap_s > 0.0) {
-    out.gap_variance = squared(r) * sums.gap_rate_rad2_s / sums.node_s;  // rolling.md (R31)
+    out.gap_variance = squared(r) * sums.gap_rate_rad2_s / sums.node_s;  // rolling.md (R32)
     out.grip_variance += out.gap_variance;
   }
   return out;
 }
 
-/// rolling.md (R19).
+/// rolling.md (R20).
 std::optional<double> lost_velocity_variance(const RollingParams& params, double node_s, const Covariance& P) {
   if (P(kVelocity, kVelocity) + P(kVelocity + 1, kVelocity + 1) < squared(kUnsureSpeed_m_s)) return std::nullopt;
   return squared(params.expert.contact.speed_sigma_m_s) * kSpeedWindow_s / node_s;
@@ -326,13 +325,13 @@ bool forgets_slope(RollingMode from, RollingMode to) {
   return from != to && !slips(to);
 }
 
-/// rolling.md (R20).
+/// rolling.md (R21).
 void change_floor(const RollingParams& params, RollingMode from, RollingMode to, double h_s,
                   const RollingNominal& nominal, Vector& x, Covariance& P) {
   if (from == RollingMode::incline && to == from) {
     P.diagonal().segment<2>(kSlope).array() += squared(params.expert.contact.slope_walk_sqrts) * h_s;
   }
-  // what rolls over ups and downs goes less far than it turns, by as much as they are steep
+  // on a rough floor, the sphere travels less than it rotates, depending on the steepness
   if (to == RollingMode::rough) P(kRadius, kRadius) += squared(params.expert.contact.rough_radius_walk_m_sqrts) * h_s;
   if (!forgets_slope(from, to)) return;
   P.middleRows<2>(kSlope).setZero();
@@ -342,7 +341,7 @@ void change_floor(const RollingParams& params, RollingMode from, RollingMode to,
   x.segment<2>(kSlope) = -nominal.slope;
 }
 
-/// rolling.md (R29).
+/// rolling.md (R30).
 bool reset_tilt(const RollingParams& params, const RollingSums& sums, bool at_rest, RollingNominal& nominal,
                 Covariance& P) {
   if (sums.force_clipped_s >= sums.node_s) return false;
@@ -360,7 +359,7 @@ bool reset_tilt(const RollingParams& params, const RollingSums& sums, bool at_re
   P.leftCols<6>().setZero();
   const double tilt_sigma_rad = at_rest ? std::max(params.expert.prior.tilt_sigma_rad, kRestTilt_rad) : kForceTilt_rad;
   P.diagonal().segment<2>(kAttitude).setConstant(squared(tilt_sigma_rad));
-  P(kAttitude + 2, kAttitude + 2) = squared(kLostSpeed_m_s);  // as good as unknown, and small enough to be linear in
+  P(kAttitude + 2, kAttitude + 2) = squared(kLostSpeed_m_s);  // practically unknown, and small enough for linearisation
   P.diagonal().segment<3>(kVelocity).setConstant(
       squared(at_rest ? params.expert.contact.rest_velocity_sigma_m_s : kLostSpeed_m_s));
   return true;

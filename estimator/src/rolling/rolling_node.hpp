@@ -11,7 +11,7 @@
 
 namespace tumble::rolling {
 
-/// Error state: attitude (W), velocity and position of the IMU (W), then constants; first index of each part.
+/// First index of each part of the error state: attitude (W), velocity and position of the IMU (W), then constants.
 inline constexpr int kAttitude = 0, kVelocity = 3, kPosition = 6, kGyroBias = 9, kAccelBias = 12, kAccelScale = 15,
                      kGyroScale = 24, kDelay = 33, kLeverArm = 34, kSlope = 37, kRadius = 39;
 inline constexpr int kStates = 40;
@@ -21,7 +21,7 @@ using Row = Eigen::Matrix<double, 1, kStates>;
 using Covariance = Eigen::Matrix<double, kStates, kStates>;
 using Moving = Eigen::Matrix<double, 9, kStates>;
 
-/// Quiet for so long, and no faster: it stands still, and so does the position that is given out.
+/// The sphere is at rest, and the reported position constant, after this time without motion and below this speed.
 inline constexpr double kHeldAfter_s = 0.1, kHeldSpeed_m_s = 0.02;
 
 /// Contact velocity of the nominal trajectory and its derivative by the error state.
@@ -29,79 +29,75 @@ struct Contact {
   Eigen::Vector3d u_W_m_s;
   Eigen::Matrix<double, 3, kStates> H;
   double grip_variance = 0.0;
-  double gap_variance = 0.0;       ///< more, in every direction
-  double rolling_speed_m_s = 0.0;  ///< of the centre, should it grip
-  Eigen::Vector3d lift_W;          ///< change of u for a change of the normal's third component
+  double gap_variance = 0.0;       ///< additional, in every direction
+  double rolling_speed_m_s = 0.0;  ///< of the centre, assuming grip
+  Eigen::Vector3d lift_W;          ///< derivative of u by the normal's third component
   Eigen::Vector2d slope;           ///< nominal
 
-  /// Contact velocity for an error `x`: linear but for the length of the normal.
+  /// Returns the contact velocity for an error `x`, which is linear except for the length of the normal.
   Eigen::Vector3d velocity(const Vector& x) const;
 };
 
-/// Of the contact velocity while the contact stands still; slipping, its vertical part alone counts.
+/// Returns the variance of a stationary contact point's velocity; when slipping, only its vertical component is used.
 Eigen::Vector3d contact_variance(const RollingParams& params, const Contact& c, RollingMode mode);
 
-/// Whether the first reading was taken in motion.
 bool starts_in_motion(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s);
 
-/// Levelled (or given) attitude, centre at the origin, at rest; in motion it rolls.
+/// Returns the initial state: levelled or stated attitude, centre at the origin, at rest, or rolling if in motion.
 RollingNominal start_nominal(const RollingParams& params, const Eigen::Quaterniond& q_WI,
                              const Eigen::Vector3d& rate_I_rad_s);
 void set_prior(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s, Covariance& P);
 
-/// Whether the force of a reading was read at all, if only up to its rail; in a gap it was not.
+/// Whether a force was measured, at least up to saturation. In a gap it is unknown.
 enum class Force { read, unknown };
 
-/// Takes averaged readings into the nominal trajectory and the sums.
 void integrate(const RollingParams& params, const ImuAverage& reading, RollingNominal& nominal, RollingSums& sums,
                Force known = Force::read);
 
-/// The nominal trajectory carried on by readings that are not taken yet.
+/// Returns the nominal trajectory extrapolated by readings that are not yet processed.
 RollingNominal carried_on(const RollingParams& params, const ImuAverage& reading, const RollingNominal& nominal);
 
-/// Pieces that a gap is bridged in.
 int gap_pieces(const RollingParams& params, double gap_s);
 
-/// Piece k of a gap between two readings: the rate between theirs, no force. `doubt` gets what it may be off by.
+/// Uncertainty of a piece of a gap, with interpolated rate and without force.
 struct GapDoubt {
   double rad2 = 0.0, rate_rad2_s = 0.0, speed_m2_s2 = 0.0;
 };
 ImuAverage gap_piece(const RollingParams& params, const ImuSample& before, const ImuSample& after, double gap_s, int k,
                      GapDoubt& doubt);
 
-/// Takes a piece of a gap.
 void integrate_gap(const RollingParams& params, const ImuAverage& piece, const GapDoubt& doubt, RollingNominal& nominal,
                    RollingSums& sums);
 
-/// Transition of the error over the node: x <- x + (B x on top).
+/// Returns the transition of the error over the node: x <- x + (B x on top).
 Moving transition(const RollingSums& sums);
 void predict(const RollingParams& params, const RollingSums& sums, const Moving& B, Vector& x, Covariance& P);
 
 /// `rate_I_rad_s` is the raw reading at the node.
-/// `sums` are those of the node: what a gap in it makes of the rate counts as noise of the contact.
+/// `sums` are those of the node; the rate's uncertainty in a gap adds to the noise of the contact.
 Contact contact(const RollingParams& params, const RollingNominal& nominal, const Eigen::Vector3d& rate_I_rad_s,
                 const RollingSums& sums);
 
-/// What a change of mode does to the floor's slope: it walks while the slope lasts, and becomes level or unknown when
-/// the contact stands still anew. `h_s` is the length of the node.
+/// Applies a change of mode to the floor's slope. The slope is a random walk while it lasts, and becomes level or
+/// unknown when the contact point stops again. `h_s` is the length of the node.
 void change_floor(const RollingParams& params, RollingMode from, RollingMode to, double h_s,
                   const RollingNominal& nominal, Vector& x, Covariance& P);
 
-/// Variance of the zero that the velocity is taken for at a node, where it is lost; none where it is known.
+/// Returns the variance of the pseudo-measurement of zero velocity at a node with unknown velocity; empty otherwise.
 std::optional<double> lost_velocity_variance(const RollingParams& params, double node_s, const Covariance& P);
 
-/// Whether the slope is forgotten on this change: what is known of it before says nothing about it after.
+/// Returns whether this mode change makes the slope unknown.
 bool forgets_slope(RollingMode from, RollingMode to);
 
-/// After clipping the attitude may be lost: levels it anew by the node's mean force, at rest or not, and forgets the
-/// velocity. False when there was no need, or the node's force tells nothing.
+/// Levels a tilt that was lost during clipping, by the node's mean force, at rest or not, and resets the velocity.
+/// Returns false if not needed, or if the node's force is not usable.
 bool reset_tilt(const RollingParams& params, const RollingSums& sums, bool at_rest, RollingNominal& nominal,
                 Covariance& P);
 
 /// Kalman update by a scalar row: measurement = row x + noise.
 void update(const Row& row, double measured, double variance, Vector& x, Covariance& P);
 
-/// The same for a row that picks one state.
+/// Same for a row that selects one state.
 void update(int index, double measured, double variance, Vector& x, Covariance& P);
 
 /// Moves the error `x` into the nominal trajectory and constants.

@@ -13,9 +13,9 @@ namespace tumble {
 
 namespace {
 
-// Samples and nodes for which storage is set aside at most: of a longer lag it grows as the run does.
+// Limit of preallocated samples and nodes; for a longer lag, memory grows with the run.
 constexpr std::size_t kSetAsideMost = 1'000'000;
-constexpr std::size_t kBeyondStorage = 4;  // samples that a run may have, by those that storage is set aside for
+constexpr std::size_t kBeyondStorage = 4;  // maximum number of samples, as a multiple of those with preallocated memory
 
 RollingParams quieter(RollingParams params, double share) {
   params.expert.contact.grip_sigma_m_s *= share;
@@ -25,7 +25,7 @@ RollingParams quieter(RollingParams params, double share) {
   return params;
 }
 
-/// The one of two modes that says less about the contact.
+/// Returns the one of two modes that constrains the contact less.
 RollingMode looser(RollingMode a, RollingMode b) {
   const auto rank = [](RollingMode mode) {
     if (slips(mode)) return mode == RollingMode::bump ? 3 : 2;
@@ -39,12 +39,11 @@ bool equal(const ImuSample& a, const ImuSample& b) {
          a.specific_force_m_s2 == b.specific_force_m_s2;
 }
 
-/// The last pass is quieter than it believes, for the estimate's sake; what it states of itself is not.
+/// Ratio of the reported variance to that of the final pass, which uses reduced process noise.
 double stated(const RollingSmoother::Params& params) {
   return 1.0 / (params.path_noise * params.path_noise);
 }
 
-/// After the first sample.
 rolling::Readings::Cursor start_cursor(const ImuSample& sample) {
   rolling::Readings::Cursor cursor;
   cursor.time_ns = sample.time_ns;
@@ -53,7 +52,7 @@ rolling::Readings::Cursor start_cursor(const ImuSample& sample) {
   return cursor;
 }
 
-/// Covariance of (centre, attitude) from that of the reported states: rolling.md (R35).
+/// Covariance of (centre, attitude) from that of the reported states: rolling.md (R40).
 Eigen::Matrix<double, 6, 6> pose_covariance(const rolling::NodeRecord& node, const Eigen::Vector3d& arm_W) {
   Eigen::Matrix<double, 6, rolling::kReported> J = Eigen::Matrix<double, 6, rolling::kReported>::Zero();
   J.block<3, 3>(0, 0) = so3::hat(arm_W);
@@ -63,7 +62,7 @@ Eigen::Matrix<double, 6, 6> pose_covariance(const rolling::NodeRecord& node, con
   return J * node.smoothed_P * J.transpose();
 }
 
-/// The position that is given out stands still while the sphere does.
+/// Keeps the reported position constant while the sphere is at rest.
 void hold(const rolling::PathNode& node, RollingSmoother::Committed& committed, RollingEstimate& estimate) {
   const bool stands = node.stands && !slips(node.mode) && estimate.v_WG_m_s.norm() < rolling::kHeldSpeed_m_s;
   if (stands && !committed.held) committed.held_p_WG_m = estimate.p_WG_m;
@@ -75,7 +74,7 @@ RollingSmoother::Take appending(std::vector<RollingEstimate>& out) {
   return [&out](const RollingEstimate& estimate) { out.push_back(estimate); };
 }
 
-/// Where the last pass begins: at the committed node, or with the first sample.
+/// Start of the final pass: the committed node, or the first sample.
 void start_window(const RollingParams& filter, const RollingParams& path, const RollingSmoother::State& state,
                   rolling::LastPass::Checkpoint& start) {
   const RollingSmoother::Committed& last = state.committed;
@@ -89,13 +88,12 @@ void start_window(const RollingParams& filter, const RollingParams& path, const 
   }
   const ImuSample& sample = state.samples[0];
   Eigen::Quaterniond q_WI = filter.q_WI_start.value_or(Eigen::Quaterniond::Identity());
-  if (!filter.q_WI_start) (void)level(sample.specific_force_m_s2, q_WI);  // went well in the filter
+  if (!filter.q_WI_start) (void)level(sample.specific_force_m_s2, q_WI);  // succeeded in the filter before
   start.filter.nominal = rolling::start_nominal(path, q_WI, sample.angular_velocity_rad_s);
   rolling::set_prior(path, sample.angular_velocity_rad_s, start.filter.P);
   start.reading = start_cursor(sample);
 }
 
-/// Which nodes lie in events whose position became uncertain.
 struct Events {
   std::vector<bool> uncertain;
   double committed_m2 = 0.0;  ///< RollingSmoother::Committed::event_variance_m2 after the node `emitted`
@@ -183,7 +181,7 @@ Status RollingSmoother::check_state(const State& state) const {
   const Committed& committed = state.committed;
   for (std::size_t k = committed.started ? 0 : 1; k < state.samples.size(); ++k) {
     const TimeNs before_ns = k > 0 ? state.samples[k - 1].time_ns : committed.last_time_ns;
-    // a node may lie within a gap: the sample after it comes later than that
+    // a node may be within a gap, so the sample after it is later
     const TimeNs from_ns = k == 0 && committed.gap_piece > 0 ? committed.gap_start_ns : before_ns;
     const Status status = check_follows(state.samples[k].time_ns, from_ns, filter.expert.gap.gap_max_s);
     if (!status.ok()) return status;
@@ -253,13 +251,13 @@ void RollingSmoother::finish(std::span<const RollingMode> known, State& state, c
   run_window(path, path.nodes.size() + 1, state, take);
 }
 
-/// Modes of the hypothesis that is best now, back to the committed node.
+/// Returns the modes of the currently most probable hypothesis, back to the committed node.
 RollingSmoother::Path RollingSmoother::best_path(const State& state) const {
   Path path;
   path.nodes.resize(state.steps.size());
   const double stands_after_s = std::min(rolling::kHeldAfter_s, params_.filter.expert.rest.rest_s);
   std::size_t which = 0;
-  double lasts_s = 0.0;  // of the quiet that a node lies in
+  double lasts_s = 0.0;  // duration of the rest that contains a node
   for (std::size_t n = path.nodes.size(); n-- > 0;) {
     const Step& step = state.steps[n];
     rolling::PathNode& node = path.nodes[n];
@@ -300,7 +298,7 @@ void RollingSmoother::run_window(const Path& path, std::size_t emitted, State& s
 
   if (emitted <= pass.nodes()) {
     const auto& [filter, cursor] = pass.cut();
-    Committed& last = state.committed;  // what it holds stays
+    Committed& last = state.committed;  // its constant position remains
     last.nominal = filter.nominal;
     last.P = filter.P;
     last.mode = filter.mode;
@@ -314,7 +312,7 @@ void RollingSmoother::run_window(const Path& path, std::size_t emitted, State& s
     state.samples.erase(state.samples.begin(), state.samples.begin() + static_cast<std::ptrdiff_t>(cursor.next));
     state.steps.erase(state.steps.begin(), state.steps.begin() + static_cast<std::ptrdiff_t>(emitted));
   } else {
-    state.committed.gap_piece = 0;  // no gap is left to go on within
+    state.committed.gap_piece = 0;  // no gap continues
     state.samples.clear();
     state.steps.clear();
   }

@@ -13,10 +13,10 @@ namespace tumble::rolling {
 namespace {
 
 constexpr double kBelievedSigmas = 5.0;
-constexpr double kNoDirection_m = 0.05;  // between two places nearer than this
+constexpr double kNoDirection_m = 0.05;  // minimum distance of two positions with a defined direction
 
-/// A measurement further off than kBelievedSigmas is taken for a coarser one, by as much: linear corrections as large
-/// as that would bend the whole run: rolling.md (R32).
+/// Reduces the weight of a measurement beyond kBelievedSigmas, because large linear corrections would distort the whole
+/// run: rolling.md (R37).
 void measure(const Row& H, double measured, double variance, NodeRecord& record, Vector& x, Covariance& P) {
   const auto k = static_cast<std::size_t>(record.rows++);
   const Vector PHt = P * H.transpose();
@@ -38,7 +38,7 @@ Reported reported(const Vector& x) {
   return out;
 }
 
-/// The adjoint behind a move of the nominal, as that before it: T^T lambda, T^T Lambda T. rolling.md (R39)
+/// Transforms the adjoint after a move of the nominal to that before it: T^T lambda, T^T Lambda T. rolling.md (R36)
 void move_back(const Vector& turned, Adjoint& adjoint) {
   constexpr int kHeading = kAttitude + 2;
   adjoint.lambda[kHeading] += turned.dot(adjoint.lambda);
@@ -141,7 +141,7 @@ Reported error_before_update(const NodeRecord& node) {
   return node.lost_heading ? Reported(error - node.smoothed[kAttitude + 2] * reported(node.turned)) : error;
 }
 
-/// rolling.md (R36).
+/// rolling.md (R41).
 Reported measure_distance(const RollingParams& params, double distance_m, double sigma_m, NodeRecord& last,
                           PathFilter& filter) {
   const RollingNominal& nominal = filter.nominal;
@@ -166,7 +166,7 @@ Reported measure_distance(const RollingParams& params, double distance_m, double
   return reported(x);
 }
 
-/// rolling.md (R33), (R34).
+/// rolling.md (R38), (R39).
 void smooth_back(Adjoint& adjoint, std::span<NodeRecord> nodes) {
   auto& [lambda, Lambda] = adjoint;
   for (std::size_t n = nodes.size(); n-- > 0;) {
@@ -184,7 +184,7 @@ void smooth_back(Adjoint& adjoint, std::span<NodeRecord> nodes) {
       lambda -= H.transpose() * (K.dot(lambda) + node.innovation[k] / node.variance[k]);
       const Row seen = H * (K.dot(through) + 1.0 / node.variance[k]);
       Lambda += H.transpose().lazyProduct(seen) - H.transpose().lazyProduct(through.transpose()) -
-                through.lazyProduct(H);  // not one matrix of 13 KiB for each of them
+                through.lazyProduct(H);  // avoids a temporary matrix of 13 KiB for each
     }
     if (node.forgets_slope) {
       lambda.segment<2>(kSlope).setZero();

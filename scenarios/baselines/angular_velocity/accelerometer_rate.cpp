@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 using RateAndAcceleration = Eigen::Matrix<double, 6, 1>;
 using RateCovariance = Eigen::Matrix<double, 6, 6>;
 
-constexpr int kIterations = 4;  // of an update: the centripetal force is quadratic in the rate
+constexpr int kIterations = 4;  // iterations of an update: the centripetal force is quadratic in the rate
 
 struct AccelerometerFilter {
   RateAndAcceleration x = RateAndAcceleration::Zero();
@@ -36,7 +36,7 @@ struct AccelerometerFilter {
 
   void measure_axis(int j, double reading, double variance) { x += component_update(j, reading - x[j], variance, P); }
 
-  // iterated: the last linearisation stands where the update ends
+  // Iterated update; the covariance uses the last linearisation.
   void measure_difference(const Vector3d& p_I_m, const Vector3d& difference, double variance) {
     const RigConstants rig{.lever_arm_m = p_I_m};
     const RateAndAcceleration before = x;
@@ -93,7 +93,7 @@ Status AccelerometerRate::estimate(std::span<const ImuSample> samples,
     }
     for (int j = 0; j < 3; ++j) {
       double low = -params_.rate_max_rad_s, high = params_.rate_max_rad_s;
-      // a clipped reading still says on which side the truth lies
+      // a clipped reading still bounds the rate on one side
       if ((clippings[k].gyro >> j & 1) != 0 && reading[j] > 0.0) low = std::min(reading[j], high);
       if ((clippings[k].gyro >> j & 1) != 0 && reading[j] < 0.0) high = std::max(reading[j], low);
       filter.x[j] = std::clamp(filter.x[j], low, high);

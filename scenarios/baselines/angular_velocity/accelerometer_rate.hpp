@@ -13,33 +13,36 @@
 
 namespace tumble::baselines {
 
-/// Rates from several accelerometers at known positions: the gyro-free inertial system, as an extended Kalman filter.
+/// Estimates angular rates from several accelerometers at known positions (gyro-free inertial system), by an extended
+/// Kalman filter.
 ///
-/// State: rate and angular acceleration, driven by white jerk. Measured: the difference of the specific force at each
-/// auxiliary IMU and at the primary, alpha x p + w x (w x p), which holds in flight, in contact and at rest alike; and
-/// the gyro's axes that are not clipped (`use_gyro`), the strongest form of the family: the accelerometers then carry
-/// only what the rail hides. Made for long rotation at high rates with a wide spread of accelerometers (projectiles,
-/// vehicles): centripetal force grows with the square of the rate, so that slow motion drowns in noise and
-/// misalignment.
+/// - State: rate and angular acceleration, driven by white jerk.
+/// - Measurements: the difference of the specific force between each auxiliary IMU and the primary, alpha x p + w x (w
+///   x p). It is valid in flight, contact and rest. The unclipped gyro axes are also used (`use_gyro`), so that the
+///   accelerometers only need to supply clipped axes.
+/// - Designed for long fast rotation and widely spaced accelerometers (projectiles, vehicles). Centripetal force grows
+///   with the squared rate, so slow motion is lost in noise and misalignment.
+/// - Not modelled: free flight, bias and misalignment of the accelerometers, correlation between the auxiliary IMUs'
+///   differences.
 ///
-/// With one auxiliary IMU the rate about the line between the two shows only through its products with the others;
-/// without any the filter bridges clipped readings by smoothness alone. What it does not model: free flight, bias and
-/// misalignment of the accelerometers, correlation between the auxiliary IMUs' differences.
+/// With one auxiliary IMU, the rate about the line between both only appears in products with the other axes. Without
+/// any, the filter bridges clipped readings by smoothness only.
 class AccelerometerRate {
  public:
   struct Params {
     RailDetector::Params rails = {};
-    bool tilted_rails = false;  ///< judge by tilted planes too (ClippingFinder); published by axis alone
+    bool tilted_rails = false;  ///< also detects tilted saturation planes (ClippingFinder); the published method only
+                                ///< checks single axes
     bool use_gyro = true;
     double gyro_noise_density = 5.236e-4;  ///< [rad/s/sqrt(Hz)]
-    double accel_noise_density = 1.5e-3;   ///< the worst of the accelerometers [m/s^2/sqrt(Hz)]
-    double accel_floor_m_s2 = 0.05;        ///< bias of a difference, one standard deviation
-    double accel_scale_error = 2e-3;       ///< scale and misalignment, as a share of the force
+    double accel_noise_density = 1.5e-3;   ///< largest of the accelerometers [m/s^2/sqrt(Hz)]
+    double accel_floor_m_s2 = 0.05;        ///< standard deviation of a difference's bias
+    double accel_scale_error = 2e-3;       ///< scale and misalignment, relative to the force
     double jerk_psd = 1e7;                 ///< density of the white angular jerk [rad^2/s^5]
-    double rate_max_rad_s = 50.0;          ///< no answer lies beyond
+    double rate_max_rad_s = 50.0;          ///< bound of the result
     double gap_max_s = 1.0;
 
-    /// Every number of it, stated once.
+    /// Describes every parameter once.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("rails_", p.rails);
@@ -64,11 +67,11 @@ class AccelerometerRate {
     }
   };
 
-  /// Throws InvalidParams on a parameter outside of its bound.
+  /// Throws InvalidParams for a parameter out of bounds.
   explicit AccelerometerRate(const Params& params);
 
-  /// One RateState per sample. On trouble (`empty`, `too_few`: less than two samples, or an auxiliary IMU with another
-  /// number of samples, `non_finite`, `time_order`, `gap`) nothing is written. O(N times auxiliary IMUs).
+  /// Computes one RateState per sample. On error, `out` is unchanged: `empty`, `too_few` (less than two samples, or
+  /// another number in an auxiliary IMU), `non_finite`, `time_order`, `gap`. O(N times auxiliary IMUs).
   Status estimate(std::span<const ImuSample> samples, std::span<const AuxiliaryAccelerometer> auxiliary_imus,
                   std::vector<RateState>& out) const;
 

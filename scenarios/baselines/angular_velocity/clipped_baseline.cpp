@@ -14,13 +14,13 @@ namespace tumble::baselines {
 
 namespace {
 
-// One axis of a recording: what was read, what of it is clipped, what comes out.
+// Input and output of one axis.
 struct Axis {
   std::span<const ImuSample> samples;
-  std::vector<bool> clipped;    ///< at the rail or beyond it
-  std::vector<bool> overflown;  ///< of these, the readings that say nothing
+  std::vector<bool> clipped;    ///< saturated
+  std::vector<bool> overflown;  ///< saturated, with readings that carry no information
   int index = 0;
-  double variance = 0.0;  ///< of a free reading
+  double variance = 0.0;  ///< variance of an unclipped reading
 
   double time_s(std::size_t k) const { return seconds(samples[k].time_ns - samples.front().time_ns); }
   double reading(std::size_t k) const { return samples[k].angular_velocity_rad_s[index]; }
@@ -30,14 +30,14 @@ struct Value {
   double rate = 0.0, variance = 0.0;
 };
 
-// Cubic of Hermite between two samples with given slopes.
+// Cubic Hermite polynomial between two samples with given slopes.
 double cubic(double share, double span_s, double from, double slope_from, double to, double slope_to) {
   const double u = share, u2 = u * u, u3 = u2 * u;
   return (2.0 * u3 - 3.0 * u2 + 1.0) * from + (u3 - 2.0 * u2 + u) * span_s * slope_from + (3.0 * u2 - 2.0 * u3) * to +
          (u3 - u2) * span_s * slope_to;
 }
 
-// Slope of the free readings that end at k (step -1) or begin there (step +1); 0 where there is but one.
+// Returns the slope of the unclipped readings that end at k (step -1) or start there (step +1); 0 if there is only one.
 double slope_at(const Axis& axis, std::size_t k, int step) {
   if (step < 0 ? k == 0 : k + 1 == axis.samples.size()) return 0.0;
   const std::size_t other = step < 0 ? k - 1 : k + 1;
@@ -61,7 +61,7 @@ std::vector<Value> interpolate(const Axis& axis) {
       const double span_s = axis.time_s(b) - axis.time_s(a), share = (axis.time_s(k) - axis.time_s(a)) / span_s;
       out[k].rate =
           cubic(share, span_s, axis.reading(a), slope_at(axis, a, -1), axis.reading(b), slope_at(axis, b, +1));
-      // a cubic has no variance of its own: it is trusted as far as it departs from the reading
+      // A cubic has no variance: use its distance from the reading as standard deviation.
       const double departure = out[k].rate - axis.reading(k);
       out[k].variance = axis.variance + departure * departure;
     }
@@ -70,7 +70,7 @@ std::vector<Value> interpolate(const Axis& axis) {
   return out;
 }
 
-// A rate that is a random walk.
+// Rate modelled as a random walk.
 struct RandomWalk {
   static constexpr int kSize = 1;
   using Matrix = Eigen::Matrix<double, 1, 1>;
@@ -81,8 +81,8 @@ struct RandomWalk {
   Matrix noise(double dt_s, const Matrix&) const { return Matrix(psd * dt_s); }
 };
 
-// A rate whose snap is white and that stays bounded in the long run: the stationary process with the Matern 5/2
-// covariance, state rate, acceleration, jerk (Hartikainen and Saerkkae 2010, section 4).
+// Rate with white snap that is bounded in the long run: the stationary process with Matern 5/2 covariance and state
+// rate, acceleration, jerk (Hartikainen and Saerkkae 2010, section 4).
 struct BoundedJerk {
   static constexpr int kSize = 3;
   using Matrix = Eigen::Matrix3d;
@@ -97,7 +97,7 @@ struct BoundedJerk {
     P << variance, 0.0, -middle, 0.0, middle, 0.0, -middle, 0.0, lambda * lambda * lambda * lambda * variance;
     return P;
   }
-  // exp(A t) of the auxiliary IMU matrix A, whose three eigenvalues are -lambda
+  // exp(A t) of the companion matrix A, whose three eigenvalues are -lambda
   Matrix transition(double dt_s) const {
     Matrix N;
     N << lambda, 1.0, 0.0, 0.0, lambda, 1.0, -lambda * lambda * lambda, -3.0 * lambda * lambda, -2.0 * lambda;
@@ -106,7 +106,7 @@ struct BoundedJerk {
   Matrix noise(double, const Matrix& F) const { return start() - F * start() * F.transpose(); }
 };
 
-// One axis as a linear process. Clipped readings are left out but for `bounds`, one Gaussian factor per sample.
+// One axis as a linear process. Uses no clipped readings except `bounds`, one Gaussian factor per sample.
 template <typename Process>
 class Chain {
  public:
@@ -128,10 +128,10 @@ class Chain {
     }
   }
 
-  // With all readings up to the sample.
+  // Estimates from all readings up to the sample.
   std::vector<Value> filtered() const { return values(after_); }
 
-  // With all readings (Rauch, Tung and Striebel 1965).
+  // Estimates from all readings (Rauch, Tung and Striebel 1965).
   std::vector<Value> smoothed() const {
     std::vector<Moment> out = after_;
     for (std::size_t k = out.size() - 1; k-- > 0;) {
@@ -174,8 +174,8 @@ class Chain {
   std::vector<Moment> after_;
 };
 
-// The most likely curve that passes no clipped reading on the wrong side: hard bounds where the smoothed curve violates
-// them, found in rounds. The variance is that of the curve without bounds, cut at the reading.
+// Computes the most likely curve that respects all clipped readings as bounds. Rounds of smoothing add hard bounds
+// where the curve violates them. The variance is that of the unbounded curve, truncated at the reading.
 std::vector<Value> smooth_with_bounds(const Axis& axis, const ClippedBaseline::Params& params) {
   constexpr int kRounds = 8;
   const BoundedJerk process(params.snap_psd, params.rate_sigma_rad_s);

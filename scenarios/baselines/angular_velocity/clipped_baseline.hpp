@@ -12,45 +12,45 @@
 
 namespace tumble::baselines {
 
-/// What can be done about clipped rates with the gyro alone: three models of how a rate goes on while it is not seen.
+/// Handles clipped rates with the gyro only, by three models of the unseen rate.
 ///
-/// Each axis stands by itself. Readings at the rail are left out; the answer is held between the reading that was
-/// clipped and a largest rate. The accelerometer is not used.
+/// Each axis is independent. Saturated readings are not used; the result lies between the clipped reading and a maximum
+/// rate. The accelerometer is not used.
 ///
-/// - `interpolate`: a cubic over each clipped gap that meets value and slope on both sides. Made for gaps that are
-///   short beside the motion: a brush against the rail.
-/// - `reject`: a causal Kalman filter whose rate is a random walk, so that it stands still over a gap. What Point-LIO
-///   does with saturated rows while nothing else (no lidar) speaks: made for gaps shorter than the time between two
-///   corrections by another sensor.
-/// - `constant_jerk`: a smoother whose jerk is a random walk (white noise on snap) over short times and whose rate is
-///   bounded in the long run: the stationary process of Matern 5/2 with deviation `rate_sigma_rad_s`. A clipped reading
-///   is a hard bound that the curve leans on instead of being cut there. Works for swings that pass the rail without
-///   impacts and for gaps up to about 2 / lambda, lambda = (3 psd / (16 sigma^2))^(1/5), 0.15 s; over longer ones it
-///   falls back towards the rail, with the variance of a curve that is known to lie beyond it.
+/// - `interpolate`: a cubic over each gap that matches value and slope on both sides. For gaps that are short compared
+///   with the motion.
+/// - `reject`: a causal Kalman filter with a random-walk rate, hence constant over a gap. This is how Point-LIO handles
+///   saturated readings between lidar corrections. For gaps shorter than the time between corrections by another
+///   sensor.
+/// - `constant_jerk`: a smoother with white snap over short times and bounded rate in the long run: the stationary
+///   Matern 5/2 process with deviation `rate_sigma_rad_s`. Clipped readings are hard bounds during smoothing instead of
+///   truncating the result. For swings without impacts and gaps up to about 2 / lambda, lambda = (3 psd / (16
+///   sigma^2))^(1/5), 0.15 s. In longer gaps it returns towards the saturation level, with the variance of a curve
+///   beyond it.
 ///
-/// Where a gap begins or ends with an impact its slope is carried into the gap, and both smooth ones leave the truth:
-/// on tumbles of the rig their means are worse than the clipped reading.
-///
-/// What none of them models: impacts inside of a gap, and the coupling of the axes of a tumbling body.
+/// If a gap starts or ends with an impact, its slope misleads both smooth models: on tumbles of the rig their mean
+/// error exceeds that of the clipped reading. Not modelled: impacts within a gap, and the coupling of a tumbling body's
+/// axes.
 class ClippedBaseline {
  public:
   enum class Kind { interpolate, reject, constant_jerk };
   struct Params {
     Kind kind = Kind::interpolate;
     RailDetector::Params rails = {};
-    bool tilted_rails = false;  ///< judge by tilted planes too (ClippingFinder); published by axis alone
+    bool tilted_rails = false;  ///< also detects tilted saturation planes (ClippingFinder); the published method only
+                                ///< checks single axes
     /// Noise density of the gyro [rad/s/sqrt(Hz)].
     double gyro_noise_density = 5.236e-4;
     /// Density of the white angular acceleration of `reject` [rad^2/s^3].
     double acceleration_psd = 1e3;
     /// Density of the white angular snap of `constant_jerk` [rad^2/s^7].
     double snap_psd = 1e9;
-    /// How fast the body turns as a rule, one axis, `constant_jerk` [rad/s].
+    /// Typical rate of one axis for `constant_jerk` [rad/s].
     double rate_sigma_rad_s = 20.0;
-    double rate_max_rad_s = 50.0;  ///< no answer to a gap lies beyond
-    double gap_max_s = 1.0;        ///< longest time between samples before the run is refused
+    double rate_max_rad_s = 50.0;  ///< bound of the result in a gap
+    double gap_max_s = 1.0;        ///< longest accepted time between samples
 
-    /// Every number of it, stated once.
+    /// Describes every parameter once.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("rails_", p.rails);
@@ -72,11 +72,11 @@ class ClippedBaseline {
     }
   };
 
-  /// Throws InvalidParams on a parameter outside of its bound.
+  /// Throws InvalidParams for a parameter out of bounds.
   explicit ClippedBaseline(const Params& params);
 
-  /// One RateState per sample. On trouble (`empty`, `too_few`: less than two samples, `non_finite`, `time_order`,
-  /// `gap`) nothing is written. O(N).
+  /// Computes one RateState per sample. On error, `out` is unchanged: `empty`, `too_few` (less than two samples),
+  /// `non_finite`, `time_order`, `gap`. O(N).
   Status estimate(std::span<const ImuSample> samples, std::vector<RateState>& out) const;
 
  private:

@@ -21,9 +21,9 @@ constexpr int kStateSize = 12, kRate = 0, kAcceleration = 3, kField = 6, kIron =
 using Vector = Eigen::Matrix<double, kStateSize, 1>;
 using Matrix = Eigen::Matrix<double, kStateSize, kStateSize>;
 
-// The field is kept in units of 10 uT, so that the covariance is of one order.
+// The field has units of 10 uT, so that the covariance is well scaled.
 constexpr double kUnitT = 1e-5;
-// Disturbance grows no further than this, in power.
+// Bound of the disturbance factor on the variance.
 constexpr double kDisturbedMax = 1e4;
 
 struct FieldFilter {
@@ -32,7 +32,7 @@ struct FieldFilter {
 
   void predict(double dt_s, double jerk_psd, double field_psd) {
     const Vector3d w = x.segment<3>(kRate), alpha = x.segment<3>(kAcceleration), b = x.segment<3>(kField);
-    // readings are means over windows: between their middles the body turns by the rate half-way
+    // Readings are means over windows: between their centres the body rotates by the rate in between.
     const Matrix3d turn = so3::exp(-dt_s * (w + 0.5 * dt_s * alpha)).toRotationMatrix();
     const Vector3d turned = turn * b;
     Matrix F = Matrix::Identity(), Q = Matrix::Zero();
@@ -62,7 +62,7 @@ struct FieldFilter {
   }
 };
 
-// What the first reading says: the sum of field and hard iron is known, its parts are not.
+// Initialises from the first reading: only the sum of field and hard iron is known.
 void start_field(const Vector3d& reading, double noise, double iron, FieldFilter& filter) {
   filter.x.segment<3>(kField) = reading;
   filter.P.block<3, 3>(kField, kField).diagonal().setConstant(noise * noise + iron * iron);
@@ -116,7 +116,7 @@ Status MagnetometerRate::estimate(std::span<const ImuSample> samples, std::span<
     }
     for (int j = 0; j < 3; ++j) {
       double low = -params_.rate_max_rad_s, high = params_.rate_max_rad_s;
-      // a clipped reading still says on which side the truth lies
+      // a clipped reading still bounds the rate on one side
       if ((clippings[k].gyro >> j & 1) != 0 && reading[j] > 0.0) low = std::min(reading[j], high);
       if ((clippings[k].gyro >> j & 1) != 0 && reading[j] < 0.0) high = std::max(reading[j], low);
       filter.x[j] = std::clamp(filter.x[j], low, high);

@@ -13,34 +13,37 @@
 
 namespace tumble::baselines {
 
-/// Rates from the turning of the magnetic field: an extended Kalman filter over gyro and magnetometer.
+/// Estimates angular rates from the rotation of the magnetic field: an extended Kalman filter over gyro and
+/// magnetometer.
 ///
-/// State: rate, angular acceleration (white jerk), the field in IMU axes, which turns against the body
-/// (b' = -w x b), and the sensor's hard iron. Measured: the gyro's free axes and the magnetometer. The field's own
-/// change along the path (iron nearby) is process noise, which grows where its length is not the Earth's: the adaptive
-/// part of Tan's family. Made for bodies that spin fast about an axis across the field, in the open (shells, balls):
-/// the rate about the field itself does not show, and follows from smoothness alone; steel at arm's length looks like
-/// rotation.
+/// - State: rate, angular acceleration (white jerk), the field in IMU axes with b' = -w x b, and the sensor's hard
+///   iron.
+/// - Measurements: unclipped gyro axes and the magnetometer.
+/// - Field changes along the path (nearby iron) are process noise. The noise increases if the field strength differs
+///   from the Earth's: the adaptive part of Tan's method.
+/// - Designed for bodies in the open that spin fast about an axis across the field (shells, balls). The rate about the
+///   field is not observable and follows from smoothness only. Nearby steel resembles rotation.
+/// - Not modelled: bandwidth and delay of the magnetometer, soft iron, forces, and the loss of field strength by
+///   averaging over a window ((w dt)^2 / 24, 0.1 % at 15 rad/s and 100 Hz).
 ///
-/// What it does not model: bandwidth and delay of the magnetometer, the loss of length by averaging over a window
-/// ((w dt)^2 / 24, 0.1 % at 15 rad/s and 100 Hz), soft iron, forces. Without magnetometer the filter bridges clipped
-/// readings by smoothness alone.
+/// Without magnetometer the filter bridges clipped readings by smoothness only.
 class MagnetometerRate {
  public:
   struct Params {
     RailDetector::Params rails = {};
-    bool tilted_rails = false;             ///< judge by tilted planes too (ClippingFinder); published by axis alone
+    bool tilted_rails = false;             ///< also detects tilted saturation planes (ClippingFinder); the published
+                                           ///< method only checks single axes
     double gyro_noise_density = 5.236e-4;  ///< [rad/s/sqrt(Hz)]
-    double field_noise_t = 5e-8;           ///< of one reading, one standard deviation [T]
-    double hard_iron_t = 1e-6;             ///< offset of the sensor, one standard deviation [T]
-    double earth_field_t = 0.0;            ///< length of the undisturbed field [T]; 0: unknown
+    double field_noise_t = 5e-8;           ///< standard deviation of one reading [T]
+    double hard_iron_t = 1e-6;             ///< standard deviation of the sensor's offset [T]
+    double earth_field_t = 0.0;            ///< undisturbed field strength [T]; 0: unknown
     double disturbance_t_sqrt_s = 1e-6;    ///< change of the field along the path [T/sqrt(s)]
-    double disturbed_share = 0.02;         ///< deviation of length, as a share, that doubles it in power
+    double disturbed_share = 0.02;         ///< relative deviation of the field strength that doubles the noise power
     double jerk_psd = 1e7;                 ///< density of the white angular jerk [rad^2/s^5]
-    double rate_max_rad_s = 50.0;          ///< no answer lies beyond
+    double rate_max_rad_s = 50.0;          ///< bound of the result
     double gap_max_s = 1.0;
 
-    /// Every number of it, stated once.
+    /// Describes every parameter once.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("rails_", p.rails);
@@ -66,12 +69,12 @@ class MagnetometerRate {
     }
   };
 
-  /// Throws InvalidParams on a parameter outside of its bound.
+  /// Throws InvalidParams for a parameter out of bounds.
   explicit MagnetometerRate(const Params& params);
 
-  /// One RateState per sample. `field_I_t`: a reading per sample, NaN where there is none; or empty: no magnetometer.
-  /// On trouble (`empty`, `too_few`: less than two samples, or fields in another number, `non_finite`, `time_order`,
-  /// `gap`) nothing is written. O(N).
+  /// Computes one RateState per sample. `field_I_t`: one reading per sample, NaN if missing; empty without
+  /// magnetometer. On error, `out` is unchanged: `empty`, `too_few` (less than two samples, or another number of
+  /// fields), `non_finite`, `time_order`, `gap`. O(N).
   Status estimate(std::span<const ImuSample> samples, std::span<const Eigen::Vector3d> field_I_t,
                   std::vector<RateState>& out) const;
 

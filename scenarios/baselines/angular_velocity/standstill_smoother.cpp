@@ -46,7 +46,7 @@ struct Belief {
 };
 
 struct Step {
-  Belief before, after;  // of the readings of this sample
+  Belief before, after;  // before and after the update with this sample
   ErrorCovariance transition = ErrorCovariance::Identity();
 };
 
@@ -55,8 +55,8 @@ struct Noise {
   double gyro_variance = 0.0, accel_variance = 0.0;
 };
 
-// The rate of one axis: white jerk over short times, bounded in the long run. The stationary process with the Matern
-// 3/2 covariance, state rate and acceleration.
+// Rate of one axis with white jerk over short times, bounded in the long run: the stationary Matern 3/2 process with
+// state rate and acceleration.
 struct BoundedAcceleration {
   double lambda = 1.0, variance = 1.0;
 
@@ -74,15 +74,14 @@ struct BoundedAcceleration {
 void predict(const StandstillSmoother::Params& p, const BoundedAcceleration& process, const Noise& noise,
              const ImuSample& sample, double dt_s, Belief& belief, ErrorCovariance& F) {
   Navigation& n = belief.mean;
-  // the force is a mean over the sample's window, which ends where the step ends
-  // rates are means over windows too: the body turns by that of the window that ends here
+  // Force and rate are means over the sample's window, which ends with the step.
   const Eigen::Matrix2d motion = process.transition(dt_s);
   const Vector3d turn = dt_s * (motion(0, 0) * n.rate_rad_s + motion(0, 1) * n.acceleration_rad_s2);
   const Eigen::Quaterniond middle = n.q_WI * so3::exp(0.5 * turn);
   const Vector3d force_W = middle * sample.specific_force_m_s2;
   const Matrix3d R = middle.toRotationMatrix();
   F.setIdentity();
-  const Matrix3d arm = -0.5 * dt_s * so3::hat(force_W) * R;  // of a turn on the velocity, per window
+  const Matrix3d arm = -0.5 * dt_s * so3::hat(force_W) * R;  // effect of a rotation on the velocity within a window
   for (int i = 0; i < 2; ++i) {
     F.block<3, 3>(0, 6 + 3 * i) = dt_s * motion(0, i) * R;
     F.block<3, 3>(3, 6 + 3 * i) = dt_s * motion(0, i) * arm;
@@ -103,7 +102,7 @@ void predict(const StandstillSmoother::Params& p, const BoundedAcceleration& pro
   belief.covariance = (F * belief.covariance * F.transpose() + Q).eval();
 }
 
-// One scalar reading: residual = row * error + noise.
+// Processes one scalar measurement: residual = row * error + noise.
 void measure(const Eigen::Matrix<double, 1, kErrorSize>& row, double residual, double variance, Belief& belief) {
   belief.mean.add(scalar_update(row, residual, variance, belief.covariance));
 }
@@ -114,7 +113,7 @@ void measure_component(int index, double residual, double variance, Belief& beli
   measure(row, residual, variance, belief);
 }
 
-// A clipped rate lies at its reading or beyond, and below the largest.
+// Applies a clipped reading as a bound, together with the maximum rate.
 void hold(const StandstillSmoother::Params& p, double reading, int axis, Belief& belief) {
   constexpr double kSoftness = 0.05;  // rad/s
   const double side = std::copysign(1.0, reading), rate = side * belief.mean.rate_rad_s[axis];
@@ -123,8 +122,7 @@ void hold(const StandstillSmoother::Params& p, double reading, int axis, Belief&
   if (held != rate) measure_component(6 + axis, side * (held - rate), kSoftness * kSoftness, belief);
 }
 
-// Whether what gravity and standstill say of a body that has come to rest lies beyond what the linear filter can spread
-// over the way there.
+// Returns true if tilt or velocity error at rest exceeds what the linear filter can distribute over the motion before.
 bool is_lost(const StandstillSmoother::Params& p, const ImuSample& sample, const Belief& belief) {
   const Vector3d up = belief.mean.q_WI * sample.specific_force_m_s2.normalized();
   if (std::atan2(up.head<2>().norm(), up.z()) > p.tilt_max_rad) return true;
@@ -134,7 +132,7 @@ bool is_lost(const StandstillSmoother::Params& p, const ImuSample& sample, const
   return v.dot(spread.ldlt().solve(v)) > p.velocity_gate * p.velocity_gate;
 }
 
-// Attitude and velocity start anew and take nothing back to what lies before; the rate goes on.
+// Restarts attitude and velocity without correlation to the past; the rate continues.
 void start_anew(const ImuSample& sample, Belief& belief, ErrorCovariance& F) {
   constexpr double kAnyTilt = 10.0, kAnyVelocity = 1e4;  // variances
   Navigation& n = belief.mean;
@@ -150,10 +148,10 @@ void start_anew(const ImuSample& sample, Belief& belief, ErrorCovariance& F) {
 void measure_rest(const StandstillSmoother::Params& p, const ImuSample& sample, Belief& belief) {
   const double still = p.rest_velocity_sigma_m_s * p.rest_velocity_sigma_m_s;
   for (int j = 0; j < 3; ++j) measure_component(3 + j, -belief.mean.v_W_m_s[j], still, belief);
-  // gravity: the horizontal part of the force in the world is the tilt
+  // gravity: the horizontal force in the world measures the tilt
   const double tilt_sigma = p.rest_force_m_s2 / p.gravity_m_s2;
   const Vector3d up = (belief.mean.q_WI * sample.specific_force_m_s2).normalized();
-  const double tilt[2] = {up.y(), -up.x()};  // small rotation that takes `up` to the vertical
+  const double tilt[2] = {up.y(), -up.x()};  // small rotation from `up` to the vertical
   for (int j = 0; j < 2; ++j) measure_component(j, tilt[j], tilt_sigma * tilt_sigma, belief);
 }
 
@@ -172,7 +170,7 @@ std::vector<bool> standstills(const StandstillSmoother::Params& p, std::span<con
   return rest;
 }
 
-// Rauch-Tung-Striebel: what the next sample learnt from its future, carried to this one.
+// Rauch-Tung-Striebel step from the next sample to this one.
 void smooth(const Step& next, Belief& now, const Belief& next_smoothed) {
   const ErrorCovariance& ahead = next.before.covariance;
   const ErrorCovariance gain = ahead.ldlt().solve(next.transition * now.covariance).transpose();

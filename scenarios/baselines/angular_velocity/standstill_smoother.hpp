@@ -12,39 +12,41 @@
 
 namespace tumble::baselines {
 
-/// Rates between standstills: an inertial navigation filter that knows velocity and rate to be zero at rest, smoothed
-/// backwards, so that what was lost to the rail between two rests is spread over the clipped samples in between.
+/// Angular rates between standstills: an inertial navigation filter with zero-velocity and zero-rate updates at rest,
+/// smoothed backwards. The rotation lost to saturation between two rests is distributed over the clipped samples.
 ///
-/// Error state: attitude, velocity, rate and angular acceleration (12), strapdown integration of the specific force,
-/// angular jerk that is white over short times with a rate that is bounded in the long run (Matern 3/2); measured: free
-/// gyro axes, clipped ones as bounds, and at standstill velocity 0, rate 0 and the direction of gravity. Forward
-/// extended Kalman filter, backward Rauch-Tung-Striebel pass. The zero-velocity smoothers of foot-mounted and
-/// hand-moved inertial sensors (Dang and Suh); made for motions of a second or two that begin and end at rest and clip
-/// a few samples, where velocity and tilt at the end have one plausible cause. A turn that was lost by more than a
-/// linear filter can spread shows at the next standstill, by tilt or by velocity: then attitude and velocity start anew
-/// and the rates in between are left to bounds and smoothness, as in a tumble of several turns. What it does not model:
-/// specific force that clips, a lever arm, sensor bias.
+/// Error state (12): attitude, velocity, rate, angular acceleration. Strapdown integration of the specific force; white
+/// angular jerk over short times with a bounded rate (Matern 3/2). Measurements: unclipped gyro axes, clipped ones as
+/// bounds, and at standstill zero velocity, zero rate and the direction of gravity. Forward extended Kalman filter,
+/// backward Rauch-Tung-Striebel pass.
+///
+/// Based on zero-velocity smoothers for foot-mounted and hand-moved sensors (Dang and Suh). Designed for motions of one
+/// or two seconds between rests with few clipped samples. If tilt or velocity at the next standstill shows a larger
+/// error than a linear filter can distribute, attitude and velocity restart. The rates in between then follow from
+/// bounds and smoothness, as in a tumble of several turns. Not modelled: clipped specific force, a lever arm, sensor
+/// bias.
 class StandstillSmoother {
  public:
   struct Params {
     RailDetector::Params rails = {};
-    bool tilted_rails = false;  ///< judge by tilted planes too (ClippingFinder); published by axis alone
+    bool tilted_rails = false;  ///< also detects tilted saturation planes (ClippingFinder); the published method only
+                                ///< checks single axes
     double gravity_m_s2 = 9.80665;
     double gyro_noise_density = 5.236e-4;   ///< [rad/s/sqrt(Hz)]
     double accel_noise_density = 5.9e-4;    ///< [m/s^2/sqrt(Hz)]
-    double accel_error_m_s2 = 0.05;         ///< scale and bias of the force, taken as noise per sample
+    double accel_error_m_s2 = 0.05;         ///< scale and bias errors of the force, modelled as noise per sample
     double jerk_psd = 1e5;                  ///< density of the white angular jerk [rad^2/s^5]
-    double rest_rate_rad_s = 0.1;           ///< rest: rates below this ...
-    double rest_force_m_s2 = 0.3;           ///< ... and force within this of gravity ...
-    double rest_s = 0.2;                    ///< ... for so long
-    double rest_velocity_sigma_m_s = 0.01;  ///< of "standing still"
-    double rate_sigma_rad_s = 20.0;         ///< how fast the body turns as a rule, one axis
-    double tilt_max_rad = 0.5;              ///< at a standstill; beyond this a turn was lost
-    double velocity_gate = 5.0;             ///< likewise of the velocity, in standard deviations
-    double rate_max_rad_s = 50.0;           ///< no answer lies beyond
+    double rest_rate_rad_s = 0.1;           ///< rest: rates below this,
+    double rest_force_m_s2 = 0.3;           ///< and force within this of gravity,
+    double rest_s = 0.2;                    ///< for this duration
+    double rest_velocity_sigma_m_s = 0.01;  ///< standard deviation of the zero velocity
+    double rate_sigma_rad_s = 20.0;         ///< typical rate of one axis
+    double tilt_max_rad = 0.5;              ///< at a standstill; a larger tilt indicates lost rotation
+    double velocity_gate = 5.0;             ///< same for the velocity, in standard deviations
+    double rate_max_rad_s = 50.0;           ///< bound of the result
     double gap_max_s = 1.0;
 
-    /// Every number of it, stated once.
+    /// Describes every parameter once.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("rails_", p.rails);
@@ -76,11 +78,11 @@ class StandstillSmoother {
     }
   };
 
-  /// Throws InvalidParams on a parameter outside of its bound.
+  /// Throws InvalidParams for a parameter out of bounds.
   explicit StandstillSmoother(const Params& params);
 
-  /// One RateState per sample; free axes are returned as read. On trouble (`empty`, `too_few`: less than two samples,
-  /// `non_finite`, `time_order`, `gap`) nothing is written. O(N) in time and memory.
+  /// Computes one RateState per sample; unclipped axes are unchanged. On error, `out` is unchanged: `empty`, `too_few`
+  /// (less than two samples), `non_finite`, `time_order`, `gap`. O(N) in time and memory.
   Status estimate(std::span<const ImuSample> samples, std::vector<RateState>& out) const;
 
  private:

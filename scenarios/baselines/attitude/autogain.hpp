@@ -10,41 +10,42 @@
 
 namespace tumble::baselines {
 
-/// How Autogain maps a rate to the factor that decides between gyro-led and accelerometer-led correction.
+/// How Autogain maps a rate to the factor that selects between gyro-led and accelerometer-led correction.
 enum class AutogainProfile : std::uint8_t {
   paper,     ///< eq 2: 0 up to `lower`, (|w_k| - lower)^2 / (upper - lower)^2, 1 from `upper`
-  code2021,  ///< the authors' file of 2021: min(1, (w_k / 2)^2); below 0.1 the gains, not the factors, see 0
-  smooth,    ///< smoothstep of the rate's norm between the same bounds: no kink, no dependence on the mounting
+  code2021,  ///< the authors' code of 2021: min(1, (w_k / 2)^2); below 0.1 the gains, but not the factors, use 0
+  smooth,    ///< smoothstep of the rate's norm between the same bounds; continuous and independent of the mounting
 };
 
 /// Factors and gains of one sample.
 struct AutogainGains {
   Eigen::Vector3d factor = Eigen::Vector3d::Zero();  ///< f_x, f_y, f_z (eq 2); all equal in the smooth profile
-  double beta = 0.0;                                 ///< eq 3, as the gains see it
+  double beta = 0.0;                                 ///< eq 3, as used by the gains
   double madgwick_rad_s = 0.0;                       ///< gamma (eq 4): gain of the Madgwick step
   double slerp_share = 0.0;                          ///< alpha (eq 5): share of the complementary step
 };
 
-/// The attitude part of the published filter for a rolling sphere (Zevering et al., IEEE MFI 2021, eqs 2-5).
-/// A Madgwick step whose gain grows with the rate, then a complementary step whose share falls with it. It trusts the
-/// accelerometer where the body turns slowly, whatever its acceleration. No bias, no heading reference.
+/// Attitude part of the published filter for a rolling sphere (Zevering et al., IEEE MFI 2021, eqs 2-5). Applies a
+/// Madgwick step whose gain grows with the rate, then a complementary step whose share falls with it. During slow
+/// rotation it relies on the accelerometer even if the body accelerates. Estimates neither bias nor heading.
 class Autogain {
  public:
   struct Params {
     AutogainProfile profile = AutogainProfile::paper;
     double gain_rad_s = 0.2;   ///< capital Theta: the Madgwick gain at full rate
-    double tau_s = 0.396;      ///< of the complementary step at rest: 0.02 (Theta / 10) per sample at 125 Hz
-    double lower_rad_s = 0.1;  ///< not read by code2021
-    double upper_rad_s = 2.1;  ///< beyond lower_rad_s; not read by code2021
-    /// The complementary step as in the authors' code, whose guard against gimbal lock is always true: the target keeps
-    /// the current roll, so that roll is never corrected. For comparison with their recordings.
+    double tau_s = 0.396;      ///< time constant of the complementary step at rest: 0.02 (Theta / 10) per sample at 125
+                               ///< Hz
+    double lower_rad_s = 0.1;  ///< unused by code2021
+    double upper_rad_s = 2.1;  ///< above lower_rad_s; unused by code2021
+    /// Complementary step as in the authors' code, whose check for gimbal lock is always true. The target keeps the
+    /// current roll, so roll is never corrected. For comparison with their recordings.
     bool roll_error_2021 = false;
-    /// The complementary step as the smallest rotation instead of a target in roll, pitch and yaw; the smooth
-    /// profile's.
+    /// Complementary step as the smallest rotation instead of a target in roll, pitch and yaw; used by the smooth
+    /// profile.
     bool tilt_form = false;
     double gap_max_s = 1.0;
 
-    /// Every number of it, stated once.
+    /// Describes every parameter once.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.profile,
@@ -76,11 +77,11 @@ class Autogain {
 
   explicit Autogain(const Params& params);
 
-  /// The first sample levels the attitude (yaw 0); each later one integrates and corrects. A force below 1e-6 m/s^2
-  /// integrates the gyro alone. On trouble the state is unchanged. O(1), no allocation.
+  /// Processes a sample. The first sample levels the attitude (yaw 0); later ones integrate and correct. A force below
+  /// 1e-6 m/s^2 integrates the gyro only. On error the state is unchanged. O(1), no allocation.
   Status step(const ImuSample& sample, State& state) const;
 
-  /// Factors and gains for a rate in sensor axes and a sample period.
+  /// Returns factors and gains for a rate in sensor axes and a sample period.
   AutogainGains gains(const Eigen::Vector3d& w_I_rad_s, double dt_s) const;
 
  private:

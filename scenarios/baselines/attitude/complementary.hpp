@@ -9,15 +9,16 @@
 
 namespace tumble::baselines {
 
-/// Attitude by the complementary filter: the gyro integrated exactly, then a share 1 - exp(-dt / tau) of the smallest
-/// rotation that levels the measured specific force. Quiet at rest; believes accelerations longer than tau. No bias.
+/// Attitude by the complementary filter: integrates the gyro exactly, then applies a share 1 - exp(-dt / tau) of the
+/// smallest rotation that levels the specific force. Steady at rest, but accelerations longer than tau cause errors.
+/// Estimates no bias.
 class Complementary {
  public:
   struct Params {
     double tau_s = 0.396;  ///< 0.02 per sample at 125 Hz, as published for the sphere
     double gap_max_s = 1.0;
 
-    /// Every number of it, stated once.
+    /// Describes every parameter once.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.tau_s,
@@ -37,8 +38,8 @@ class Complementary {
 
   explicit Complementary(const Params& params);
 
-  /// The first sample levels the attitude (yaw 0); each later one integrates and corrects. A force below 1e-6 m/s^2
-  /// integrates the gyro alone. On trouble the state is unchanged. O(1), no allocation.
+  /// Processes a sample. The first sample levels the attitude (yaw 0); later ones integrate and correct. A force below
+  /// 1e-6 m/s^2 integrates the gyro only. On error the state is unchanged. O(1), no allocation.
   Status step(const ImuSample& sample, State& state) const;
 
  private:

@@ -33,7 +33,7 @@ Status Eskf::step(const ImuSample& sample, State& state) const {
 void Eskf::start(State& state) const {
   const double tilt = params_.tilt_sigma_start_rad * params_.tilt_sigma_start_rad;
   const double bias = params_.bias_sigma_start_rad_s * params_.bias_sigma_start_rad_s;
-  // the heading is the definition of the world's x axis, so it starts without error
+  // The initial heading defines the world's x axis and thus has no error.
   state.covariance.diagonal() << tilt, tilt, 0.0, bias, bias, bias;
   state.started = true;
 }
@@ -52,8 +52,8 @@ void Eskf::predict(const Eigen::Vector3d& rate_rad_s, double dt_s, State& state)
 }
 
 void Eskf::correct(const Eigen::Vector3d& f_I_m_s2, double dt_s, State& state) const {
-  // linear in the force: its mean over a bounded motion is gravity, that of the direction of the force is not.
-  // The vertical component says nothing of the attitude.
+  // The measurement is linear in the force: its mean over a bounded motion is gravity, while the mean of its direction
+  // is biased. The vertical component has no information about attitude.
   const Eigen::Vector3d up_W = state.q_WI * f_I_m_s2 / params_.gravity_m_s2;
   const Eigen::Vector2d innovation(up_W.y(), -up_W.x());
   const double sigma = params_.acceleration_noise_m_s2_sqrts / params_.gravity_m_s2;

@@ -9,12 +9,13 @@
 
 namespace tumble::baselines {
 
-/// Attitude by an error-state Kalman filter: attitude error (world axes) and gyro bias, six states, the specific force
-/// as a measurement of "up" (textbook form, e.g. J. Sola, arXiv 1711.02508, sections 5-7, with the error in world
-/// axes). The body's acceleration enters as white noise of zero mean on the force, and the force is used as it is:
-/// neither made a unit vector nor weighted by how far its length is from gravity, for both leave a mean that is not
-/// zero (measured on fast translations: 12 deg instead of 0.8). A real acceleration is not white; the vertical bias
-/// drifts at rest.
+/// Attitude by an error-state Kalman filter with six states: attitude error (world axes) and gyro bias. The specific
+/// force measures the up direction (textbook form, e.g. J. Sola, arXiv 1711.02508, sections 5-7, with the error in
+/// world axes).
+///
+/// Body acceleration is modelled as zero-mean white noise on the force. The force is neither normalised nor weighted by
+/// its norm, because both bias the mean (measured for fast translations: 12 deg instead of 0.8). Real accelerations are
+/// not white, and the vertical bias drifts at rest.
 class Eskf {
  public:
   using Covariance = Eigen::Matrix<double, 6, 6>;
@@ -28,7 +29,7 @@ class Eskf {
     double acceleration_noise_m_s2_sqrts = 0.5;  ///< density: sigma of the mean over 1 s
     double gap_max_s = 1.0;
 
-    /// Every number of it, stated once.
+    /// Describes every parameter once.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-12, 100.0, "strength of gravity"});
@@ -58,8 +59,8 @@ class Eskf {
 
   explicit Eskf(const Params& params);
 
-  /// The first sample levels the attitude (yaw 0); each later one predicts and corrects. A force below 1e-6 m/s^2
-  /// predicts alone. On trouble the state is unchanged. O(1), no allocation.
+  /// Processes a sample. The first sample levels the attitude (yaw 0); later ones predict and correct. A force below
+  /// 1e-6 m/s^2 only predicts. On error the state is unchanged. O(1), no allocation.
   Status step(const ImuSample& sample, State& state) const;
 
  private:

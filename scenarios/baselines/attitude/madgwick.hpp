@@ -9,17 +9,19 @@
 
 namespace tumble::baselines {
 
-/// Attitude by Madgwick's gradient filter, gyro and accelerometer (S. Madgwick, internal report, 2010, eqs 25-33).
-/// q' = q/2 (x) (0, w) - gain * s/|s|, s the gradient of the tilt error; explicit step and normalisation, as published.
-/// A step without a usable gradient (|s| or |f| ~ 0) integrates the gyro alone. No bias, no heading reference; the
-/// correction has a fixed speed of 2 gain rad/s, so it chatters at rest and believes accelerations.
+/// Attitude by Madgwick's gradient filter from gyro and accelerometer (S. Madgwick, internal report, 2010, eqs 25-33).
+/// q' = q/2 (x) (0, w) - gain * s/|s|, where s is the gradient of the tilt error; explicit step and normalisation, as
+/// published. Without a usable gradient (|s| or |f| ~ 0) only the gyro is integrated.
+///
+/// Estimates neither bias nor heading. The correction has a fixed speed of 2 gain rad/s, so it oscillates at rest and
+/// follows accelerations.
 class Madgwick {
  public:
   struct Params {
-    double gain_rad_s = 0.033;  ///< quaternion rate of the correction. sqrt(3/4) x gyro error per axis
+    double gain_rad_s = 0.033;  ///< quaternion rate of the correction: sqrt(3/4) x gyro error per axis
     double gap_max_s = 1.0;
 
-    /// Every number of it, stated once.
+    /// Describes every parameter once.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.gain_rad_s, {"gain_rad_s", "rad/s", 0.0, 10.0,
@@ -39,8 +41,8 @@ class Madgwick {
 
   explicit Madgwick(const Params& params);
 
-  /// The first sample levels the attitude (yaw 0); each later one integrates and corrects.
-  /// On trouble the state is unchanged. O(1), no allocation.
+  /// Processes a sample. The first sample levels the attitude (yaw 0); later ones integrate and correct. On error the
+  /// state is unchanged. O(1), no allocation.
   Status step(const ImuSample& sample, State& state) const;
 
  private:

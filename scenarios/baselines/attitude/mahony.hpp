@@ -9,9 +9,9 @@
 
 namespace tumble::baselines {
 
-/// Attitude by the explicit complementary filter on SO(3), gyro and accelerometer (R. Mahony, T. Hamel, J.-M. Pflimlin,
-/// IEEE TAC 53(5), 2008, eq 32): rate w + kp e + integral of ki e, with e = f/|f| x R^T z in sensor axes.
-/// The integral takes up the gyro's bias, and accelerations that last. No heading reference.
+/// Attitude by the explicit complementary filter on SO(3) from gyro and accelerometer (R. Mahony, T. Hamel, J.-M.
+/// Pflimlin, IEEE TAC 53(5), 2008, eq 32): rate w + kp e + integral of ki e, with e = f/|f| x R^T z in sensor axes. The
+/// integral estimates the gyro bias, but also follows lasting accelerations. Estimates no heading.
 class Mahony {
  public:
   struct Params {
@@ -19,7 +19,7 @@ class Mahony {
     double integral_rad_s2 = 0.001;   ///< ki
     double gap_max_s = 1.0;
 
-    /// Every number of it, stated once.
+    /// Describes every parameter once.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.proportional_rad_s, {"proportional_rad_s", "rad/s", 0.0, 100.0,
@@ -40,8 +40,8 @@ class Mahony {
 
   explicit Mahony(const Params& params);
 
-  /// The first sample levels the attitude (yaw 0); each later one integrates and corrects. A force below 1e-6 m/s^2
-  /// leaves gyro and integral alone at work. On trouble the state is unchanged. O(1), no allocation.
+  /// Processes a sample. The first sample levels the attitude (yaw 0); later ones integrate and correct. A force below
+  /// 1e-6 m/s^2 only applies gyro and integral. On error the state is unchanged. O(1), no allocation.
   Status step(const ImuSample& sample, State& state) const;
 
  private:

@@ -15,8 +15,8 @@ namespace tumble::baselines {
 
 namespace {
 
-constexpr TimeNs kStep_ns = 50'000;  // points closer in time than this share an instant
-constexpr double kGate = 81.0;       // a point is taken while gate * r^2 < range, the authors' rule
+constexpr TimeNs kStep_ns = 50'000;  // points closer in time than this are processed together
+constexpr double kGate = 81.0;       // accepts a point if gate * r^2 < range, the authors' rule
 constexpr double kStartSigma_rad = 0.01, kStartSigma_m_s = 0.05, kStartSigma_rad_s = 0.1, kStartSigma_m_s2 = 0.5;
 
 }  // namespace
@@ -45,7 +45,7 @@ Status PointwiseFilter::add_imu(const ImuSample& sample, unsigned clipped) {
   return {};
 }
 
-/// Random walk of rate and force over a time, in one step.
+/// Predicts to a time in one step, with random walks of rate and force.
 void PointwiseFilter::advance(TimeNs to_ns) {
   const double dt = seconds(to_ns - time_ns_);
   if (!(dt > 0.0)) return;
@@ -67,7 +67,7 @@ void PointwiseFilter::advance(TimeNs to_ns) {
   P_.diagonal().segment<3>(12).array() += dt * params_.force_walk_m_s2_sqrt_s * params_.force_walk_m_s2_sqrt_s;
 }
 
-/// One scalar: residual = measured - expected, `row` its derivative by the state's errors.
+/// Processes one scalar: residual = measured - expected; `row` is its derivative with respect to the errors.
 void PointwiseFilter::update(const Vector& row, double residual, double variance) {
   if (!(row.dot(P_ * row) + variance > 0.0)) return;
   const Vector step = scalar_update(row, residual, variance, P_);
@@ -92,7 +92,7 @@ void PointwiseFilter::take(const Reading& reading) {
   }
 }
 
-/// mapping.md (R14), (R15): the first two rows, within an instant.
+/// mapping.md (R16), (R17): the first two rows, within an instant.
 bool PointwiseFilter::take(const SweepPoint& point) {
   const Eigen::Vector3d lever = q_WI_ * point.x_I_m.cast<double>();
   const Eigen::Vector3d position = p_m_ + lever;
@@ -122,7 +122,7 @@ PoseState PointwiseFilter::pose() const {
   return pose;
 }
 
-/// Everything of the sweep in order of time: points, IMU readings, and the instants at which poses are told.
+/// Processes the sweep in order of time: points, IMU readings, and output poses.
 void PointwiseFilter::take_points(TimeNs start_ns, TimeNs end_ns, LidarInertialOdometry::SweepReport& report) {
   std::vector<char> updates(points_.size(), 0);
   for (const std::uint32_t index : chosen_) updates[index] = 1;
@@ -142,7 +142,8 @@ void PointwiseFilter::take_points(TimeNs start_ns, TimeNs end_ns, LidarInertialO
       positions_m_[order[next]] = (p_m_ + q_WI_ * point.x_I_m.cast<double>()).cast<float>();
     }
   };
-  // a window's reading is taken at its middle; the pose is told at its end, which is before the next one's middle
+  // A reading is applied at the middle of its window. Its pose is output at the end, before the middle of the next
+  // window.
   const auto tell = [&](TimeNs at_ns) {
     if (at_ns <= start_ns || at_ns > end_ns) return;
     take_until(at_ns);

@@ -17,13 +17,13 @@
 
 namespace tumble::baselines {
 
-/// Lidar-inertial filter that takes each point at its own instant (the family of Point-LIO, He et al., 2023): the
-/// motion is a random walk of angular velocity and specific force, the IMU a measurement of both, a point one of its
-/// distance to a plane of the map. Readings on a clipped axis are left out; nothing else is known of them.
+/// Lidar-inertial filter that processes each point at its own time (the method of Point-LIO, He et al., 2023). Angular
+/// velocity and specific force are random walks that the IMU measures; each point measures its distance to a plane of
+/// the map. Readings of clipped axes are ignored.
 ///
 /// State errors: (position, attitude in W, velocity in W, angular velocity, specific force), the last two in IMU axes.
-/// IMU readings count at the middle of their window. Not modelled: biases (subtract what is known), gravity, mounting
-/// and clock as states, iteration of an update.
+/// IMU readings are applied at the middle of their window. Not modelled: biases (subtract known ones), gravity,
+/// mounting and clock as states, iterated updates.
 class PointwiseFilter {
  public:
   struct Params {
@@ -31,21 +31,21 @@ class PointwiseFilter {
     double gravity_m_s2 = 9.80665;
     double range_min_m = 0.3;
     double range_max_m = 100.0;
-    Eigen::AlignedBox3d own_body_L;  ///< returns inside are the robot's own; an empty box keeps all
-    double sweep_voxel_m = 0.25;     ///< one point per voxel of a sweep, as measured, updates the state
+    Eigen::AlignedBox3d own_body_L;  ///< returns inside belong to the robot; an empty box keeps all
+    double sweep_voxel_m = 0.25;     ///< one original point per voxel of a sweep updates the state
     double map_voxel_m = 0.5;
     double map_spacing_m = 0.1;
-    int neighbours = 8;  ///< of the plane fit
+    int neighbours = 8;  ///< for the plane fit
     double match_distance_m = 1.0;
     /// Densities of the random walks; the square roots of the authors' 1000 and 500.
     double rate_walk_rad_s_sqrt_s = 31.6;
     double force_walk_m_s2_sqrt_s = 22.4;
-    double gyro_sigma_rad_s = 0.02;  ///< of one reading
-    double accel_sigma_m_s2 = 0.1;   ///< of one reading
+    double gyro_sigma_rad_s = 0.02;  ///< per reading
+    double accel_sigma_m_s2 = 0.1;   ///< per reading
     double plane_sigma_m = 0.03;     ///< of a point's distance
-    std::size_t updates_min = 50;    ///< points accepted; fewer reject a sweep
+    std::size_t updates_min = 50;    ///< accepted points; a sweep with fewer is rejected
 
-    /// Every number of it, stated once.
+    /// Describes every parameter once.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 0.0, 100.0, "strength of gravity"});
@@ -79,13 +79,14 @@ class PointwiseFilter {
   };
   static constexpr int kErrors = 15;
 
-  /// `q_WI` at rest at the start, origin of W.
+  /// `q_WI`: attitude at the initial rest. The position is the origin of W.
   PointwiseFilter(const Params& params, const Eigen::Quaterniond& q_WI);
 
-  /// In time order; bit j of `clipped`: gyro axis j, bit 3 + j: accelerometer axis j. `time_order`, `non_finite`.
+  /// Adds a sample in time order. Bit j of `clipped`: gyro axis j, bit 3 + j: accelerometer axis j. Errors:
+  /// `time_order`, `non_finite`.
   Status add_imu(const ImuSample& sample, unsigned clipped);
 
-  /// Once IMU samples reach its end. Troubles as those of LidarInertialOdometry::add_sweep.
+  /// Processes a sweep; requires IMU samples up to its end. Errors as in LidarInertialOdometry::add_sweep.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points,
                    LidarInertialOdometry::SweepReport& report);
 
@@ -116,7 +117,7 @@ class PointwiseFilter {
   Matrix P_ = Matrix::Zero();
   std::deque<Reading> readings_;
   TimeNs last_imu_ns_ = 0;
-  TimeNs window_end_ns_ = 0;  // of the last reading taken
+  TimeNs window_end_ns_ = 0;  // of the last processed reading
   bool has_imu_ = false;
   VoxelMap map_;
   std::vector<Eigen::Vector3f> seen_from_W_m_;

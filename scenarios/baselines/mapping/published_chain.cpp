@@ -16,7 +16,7 @@ namespace {
 
 using Sweep = PublishedChain::Sweep;
 
-/// What a voxel of a sweep holds.
+/// Content of a voxel of a sweep.
 struct SweepCell {
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
   double time_s = 0.0, skew_variance = 0.0;
@@ -27,10 +27,9 @@ TimeNs rounded_offset(const LidarPoint& point, TimeNs step_ns) {
   return static_cast<TimeNs>(point.offset_ns) / step_ns * step_ns;
 }
 
-/// The time whose pose the registration asks for: the start of the sweep; of one whose points are all of one instant,
-/// as triage's are, that instant. Were they moved to a start that they are far from, an error of the velocity would
-/// come back as one of position and be fed back as one of velocity: v' = v_true + (v - v'') from sweep to sweep, whose
-/// root -1.6 runs away. Points over the whole sweep halve that term: roots 0.5 and -1.
+/// Returns the time of the registered pose: the start of the sweep, or the points' time if it is common to all, as in
+/// triage. Moving such points far to the start would feed velocity errors back with v' = v_true + (v - v''), which is
+/// unstable (root -1.6). Points spread over the sweep halve that term: roots 0.5 and -1.
 TimeNs registered_at(const Sweep& sweep, TimeNs step_ns) {
   if (sweep.points.empty()) return sweep.start_ns;
   const auto [first, last] = std::minmax_element(
@@ -39,7 +38,7 @@ TimeNs registered_at(const Sweep& sweep, TimeNs step_ns) {
   return sweep.start_ns + rounded_offset(*first, step_ns);
 }
 
-/// Returns that are none of the robot itself, and neither too near nor too far.
+/// Accepts returns that do not hit the robot and are within the range limits.
 class SweepBounds {
  public:
   explicit SweepBounds(const PublishedChain::Params& params)
@@ -76,7 +75,7 @@ std::vector<TrimmedIcp::Point> means_of(std::span<const SweepCell> cells, double
   return points;
 }
 
-/// Returns of a sweep in the lidar's axes at `at_ns`, voxelised, with their variances.
+/// Returns the sweep deskewed to the lidar's axes at `at_ns`, voxelised, with variances.
 std::vector<TrimmedIcp::Point> deskewed(const Sweep& sweep, TimeNs at_ns, const PublishedImuOdometry& odometry,
                                         const PublishedChain::Params& params) {
   const double rate = params.skew_sigma_m_s;
@@ -184,7 +183,7 @@ bool PublishedChain::registers(const Sweep& sweep, TimeNs at_ns, std::span<const
   return true;
 }
 
-/// Compared with the old map only, not with each other.
+/// New points are compared with the old map only.
 void PublishedChain::extend(std::span<const TrimmedIcp::Point> points, const Eigen::Isometry3d& T_WL,
                             SweepReport& report) {
   const Eigen::Isometry3f move = T_WL.cast<float>();
@@ -217,7 +216,7 @@ void PublishedChain::tell_poses(const Sweep& sweep, SweepReport& report) {
   if (report.trajectory.empty()) report.trajectory.push_back(report.pose);
 }
 
-/// The mean velocity since the last registered sweep goes back to the odometry.
+/// Feeds the mean velocity since the last registered sweep back to the odometry.
 void PublishedChain::feed_back(TimeNs at_ns) {
   const Eigen::Vector3d here_m = (T_map_odom_ * odometry_.pose(at_ns)).translation();
   if (registered_ns_ && at_ns > *registered_ns_) {

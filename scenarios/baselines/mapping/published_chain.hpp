@@ -16,16 +16,16 @@
 
 namespace tumble::baselines {
 
-/// The published mapping chain behind a rate method (Deschenes et al., ICRA 2024, with the constants of the authors'
-/// launch files): Madgwick's attitude, accelerometer odometry whose velocity the registration feeds back, deskewing to
-/// the start of the sweep (of one that was cast at an instant: to that), time weighting, trimmed point-to-plane
-/// registration of voxelised points, a map that grows where it is empty. The chain's own errors are parameters, as
-/// launched.
+/// The published mapping chain after a rate method (Deschenes et al., ICRA 2024, with the constants of the authors'
+/// launch files). Steps: Madgwick's attitude; accelerometer odometry with velocity feedback from registration;
+/// deskewing to the start of the sweep (or to the common time of its points); time weighting; trimmed point-to-plane
+/// registration of voxelised points; a map that grows where it is empty. The chain's errors can be set by parameters,
+/// with the launched values as default.
 class PublishedChain {
  public:
   struct Params {
     Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< lidar in IMU axes
-    Eigen::AlignedBox3d own_body_L;  ///< returns inside are the robot's own; an empty box keeps all
+    Eigen::AlignedBox3d own_body_L;  ///< returns inside belong to the robot; an empty box keeps all
     double skew_sigma_m_s = 0.25;
     TrimmedIcp::Params icp;
     bool late_velocity = true, voxel_averages_time = true, abort_ends_mapping = false;
@@ -81,17 +81,17 @@ class PublishedChain {
     std::span<const LidarPoint> points;
   };
 
-  /// Those of a whole recording: `rates`, one for each of the samples, take the place of the gyro. `samples` must
-  /// outlive it.
+  /// Takes samples and rates of a whole recording: `rates`, one per sample, replace the gyro. `samples` must outlive
+  /// this object.
   PublishedChain(const Params& params, std::span<const ImuSample> samples, std::span<const RateState> rates);
 
-  /// Whether the samples reach over the end of a sweep.
+  /// Returns true if the samples extend beyond the end of the sweep.
   bool covers(const Sweep& sweep) const;
-  /// Places a sweep that is covered, later than any before. Trouble: `out_of_range` of an offset beyond its end, when
-  /// nothing was done; `empty`, `degenerate` (points all of one time), `too_few` (none in range), when the odometry
-  /// goes on alone.
+  /// Registers a covered sweep, later than all before. Errors: `out_of_range` for an offset beyond its end, without any
+  /// change; `empty`, `degenerate` (all points have one time) and `too_few` (in range), where only the odometry
+  /// continues.
   Status add(const Sweep& sweep, SweepReport& report);
-  /// With normals that look towards where each point was seen from.
+  /// Returns the map with normals that point to the sensor.
   std::vector<MapPoint> map() const;
 
  private:
@@ -106,10 +106,9 @@ class PublishedChain {
   TrimmedIcp icp_;
   VoxelMap map_{{0.5, 0.0}};
   std::vector<Eigen::Vector3f> seen_from_;
-  Eigen::Isometry3d T_map_odom_ =
-      Eigen::Isometry3d::Identity();  ///< what lies between the map's frame and the odometry's
+  Eigen::Isometry3d T_map_odom_ = Eigen::Isometry3d::Identity();  ///< transform between the frames of map and odometry
   bool dead_ = false;
-  std::optional<TimeNs> registered_ns_;  ///< when the last sweep was registered, and where
+  std::optional<TimeNs> registered_ns_;  ///< time and pose of the last registered sweep
   Eigen::Vector3d registered_m_ = Eigen::Vector3d::Zero();
 };
 

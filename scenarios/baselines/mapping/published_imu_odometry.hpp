@@ -11,32 +11,33 @@
 
 namespace tumble::baselines {
 
-/// Attitude by Madgwick's filter and position by the accelerometer, in a frame of its own ("odom"): what the published
-/// chain (PublishedChain) deskews by and starts its registration from. Not moved until a velocity was fed back.
+/// Attitude by Madgwick's filter and position from the accelerometer, in its own frame ("odom"). The published chain
+/// (PublishedChain) uses it for deskewing and as registration prior. The position is constant until the first velocity
+/// feedback.
 class PublishedImuOdometry {
  public:
-  /// `rates`, one for each sample, take the place of what the gyro reads. `samples` must outlive it.
+  /// `rates`, one per sample, replace the gyro. `samples` must outlive this object.
   PublishedImuOdometry(double madgwick_gain_rad_s, std::span<const ImuSample> samples,
                        std::span<const RateState> rates);
 
   /// Integrates up to the sample at or after `to_ns`.
   void advance(TimeNs to_ns);
-  /// Velocity by registration, valid at `time_ns`: what the accelerometer has added since is added again.
+  /// Sets the registered velocity, valid at `time_ns`, and adds the later accelerometer increments again.
   void feed_back(const Eigen::Vector3d& velocity_m_s, TimeNs time_ns);
 
-  /// Pose of the IMU, linear and slerp between samples, constant before the first.
+  /// Returns the pose of the IMU, linear and slerp between samples, constant before the first.
   Eigen::Isometry3d pose(TimeNs time_ns) const;
-  /// As it was believed when the sample was integrated, nearest at or after the time.
+  /// Returns the velocity as integrated, before later feedback, at the first sample at or after the time.
   const Eigen::Vector3d& velocity_m_s(TimeNs time_ns) const;
 
  private:
-  /// The first of the samples integrated so far at or after the time; of later times the last.
+  /// Returns the first integrated sample at or after the time, or the last one.
   std::size_t sample_at(TimeNs time_ns) const;
   Eigen::Vector3d acceleration_m_s2(std::size_t k) const;
 
   std::span<const ImuSample> samples_;
   std::vector<Eigen::Quaterniond> attitude_;
-  std::vector<Eigen::Vector3d> p_m_, v_m_s_;  // of the samples integrated so far
+  std::vector<Eigen::Vector3d> p_m_, v_m_s_;  // of the integrated samples
   std::vector<std::pair<TimeNs, Eigen::Vector3d>> changes_;
   Eigen::Vector3d velocity_m_s_ = Eigen::Vector3d::Zero();
   double gravity_m_s2_ = 0.0;

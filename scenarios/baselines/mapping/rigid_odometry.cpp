@@ -66,7 +66,7 @@ Status RigidOdometry::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const 
   return status;
 }
 
-/// Positions of the deskewed points in the world.
+/// Computes the world positions of the deskewed points.
 void RigidOdometry::place(const Eigen::Isometry3d& T_WI) {
   const Eigen::Isometry3f T = T_WI.cast<float>();
   positions_m_.resize(points_.size());
@@ -80,7 +80,7 @@ void RigidOdometry::register_points(SweepReport& report) {
   for (const std::uint32_t index : chosen_index_) chosen_.push_back(points_[index]);
   report.points_registered = chosen_.size();
 
-  // all points belong to the end of the sweep: a segment of no length
+  // all points belong to the sweep's end: a segment of zero length
   MotionSample instant;
   instant.from_ns = predicted_.time_ns - 1;
   instant.time_ns = predicted_.time_ns;
@@ -92,7 +92,7 @@ void RigidOdometry::register_points(SweepReport& report) {
   report.inlier_share = result.points == 0 ? 0.0 : double(result.inliers) / double(result.points);
   if (!status.ok()) return;
   if (result.verdict == RegistrationVerdict::too_few && chosen_.size() >= params_.registration.matches_min) {
-    report.verdict = SweepVerdict::degenerate;  // nothing to hold on to: the motion model stands
+    report.verdict = SweepVerdict::degenerate;  // no constraints: keep the motion model
   }
   if (result.verdict != RegistrationVerdict::converged) return;
   state_ = result.mean.state;
@@ -116,7 +116,7 @@ void RigidOdometry::extend_map(bool rings_differ, SweepReport& report) {
   seen_from_W_m_.push_back(T_WI.translation().cast<float>());
 }
 
-/// Poses inside of the sweep: the model's, moved as a rigid body by what the registration corrected.
+/// Reports the model's poses within the sweep, moved rigidly by the registration's correction.
 void RigidOdometry::describe(const SweepTrajectory& trajectory, SweepReport& report) const {
   const Eigen::Isometry3d correction = pose_of(state_) * pose_of(predicted_).inverse(Eigen::Isometry);
   const Eigen::Quaterniond turned(correction.linear());

@@ -16,27 +16,27 @@
 
 namespace tumble::baselines {
 
-/// Scan-to-map odometry under a motion that the caller believes in: the sweep is deskewed once, to its end, and its
-/// pose at the end corrected as a rigid body. The family of most lidar odometries; what differs between them is the
-/// motion model, which is the caller's (`Motion`), and what a caller makes of the result.
+/// Scan-to-map odometry with a motion model of the caller. Deskews a sweep once, to its end, and corrects its end pose
+/// as a rigid body, like most lidar odometries. These differ in the motion model (`Motion`) and in the use of the
+/// result, which are up to the caller.
 ///
-/// Not modelled: errors of the motion inside of the sweep, of the mounting, of the clocks; recovery after a loss.
+/// Not modelled: errors of the motion within the sweep, the mounting and the clocks; recovery after tracking failure.
 class RigidOdometry {
  public:
   struct Params {
-    Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< lidar in the axes whose motion is given
+    Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< lidar in the axes of the given motion
     double range_min_m = 0.3;
     double range_max_m = 100.0;
-    Eigen::AlignedBox3d own_body_L;  ///< returns inside are the robot's own; an empty box keeps all
+    Eigen::AlignedBox3d own_body_L;  ///< returns inside belong to the robot; an empty box keeps all
     double sweep_voxel_m = 0.25;     ///< one point per voxel of a sweep is registered
     double map_voxel_m = 0.5;
     double map_spacing_m = 0.1;
-    /// Whether a sweep that could not be registered still extends the map at the pose believed, as most peers do.
+    /// Inserts unregistered sweeps into the map at the predicted pose, as most published methods do.
     bool extend_always = true;
     double degenerate_sigma_m = 0.15;  ///< as in LidarInertialOdometry
     Registration::Params registration;
 
-    /// Every number of it, stated once.
+    /// Describes every parameter once.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.range_min_m, {"range_min_m", "m", 0.0, 10.0, "returns nearer than this are dropped"});
@@ -58,21 +58,21 @@ class RigidOdometry {
     }
   };
 
-  /// Motion over a segment as a model expects it, and how sure it is of the state at the end of it.
+  /// Predicted motion over a segment, with the uncertainty at its end.
   struct Motion {
     MotionState start;                  ///< time_ns at or before the sweep's start
-    std::vector<MotionSample> samples;  ///< reach from the start to the sweep's end
-    double gravity_m_s2 = 0.0;          ///< of the samples' specific force
+    std::vector<MotionSample> samples;  ///< from the start to the sweep's end
+    double gravity_m_s2 = 0.0;          ///< gravity in the samples' specific force
     Eigen::Matrix<double, 9, 9> end_covariance = Eigen::Matrix<double, 9, 9>::Zero();
   };
 
   explicit RigidOdometry(const Params& params);
 
-  /// Registers a sweep of points fired in [start_ns, end_ns]. Troubles as those of LidarInertialOdometry::add_sweep.
+  /// Registers a sweep with points in [start_ns, end_ns]. Errors as in LidarInertialOdometry::add_sweep.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points, const Motion& motion,
                    LidarInertialOdometry::SweepReport& report);
 
-  /// At the end of the last sweep: as the motion model had it, and as registered, with its covariance.
+  /// Return the state at the end of the last sweep: as predicted, and as registered with its covariance.
   const MotionState& predicted() const { return predicted_; }
   const MotionState& state() const { return state_; }
 

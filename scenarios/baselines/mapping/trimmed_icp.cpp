@@ -19,7 +19,8 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 Vector6 solve(const Matrix6& H, const Vector6& g) {
   const Eigen::LLT<Matrix6> factor(H);
   if (factor.info() == Eigen::Success) return factor.solve(-g);
-  return H.completeOrthogonalDecomposition().solve(-g);  // of least norm where the surfaces leave directions free
+  return H.completeOrthogonalDecomposition().solve(-g);  // minimum-norm solution where surfaces leave directions
+                                                         // unconstrained
 }
 
 }  // namespace
@@ -58,7 +59,7 @@ const TrimmedIcp::Normal& TrimmedIcp::normal(const VoxelMap& map, std::uint32_t 
   entry.known = true;
   Neighbours found;
   map.nearest(map.position_W_m(index), params_.normal_neighbours, static_cast<float>(params_.match_distance_m), found);
-  // the original takes the least eigenvector of any neighbourhood, however little it is a plane
+  // the original accepts the smallest eigenvector of any neighbourhood, planar or not
   PlaneBounds any;
   any.neighbours_min = 3;
   any.collinear_share = 0.0;

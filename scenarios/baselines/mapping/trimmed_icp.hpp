@@ -14,31 +14,31 @@
 
 namespace tumble::baselines {
 
-/// The registration of the published chain: point-to-plane with k matches per point, matches trimmed to a share that
-/// the data choose (D. Chetverikov et al., 2005; J. Phillips et al., 2007, with lambda), the rest weighted by the
-/// inverse of both points' variances, small-angle normal equations.
+/// Registration of the published chain: point-to-plane with k matches per point. Matches are trimmed to a share chosen
+/// from the data (D. Chetverikov et al., 2005; J. Phillips et al., 2007, with lambda) and weighted by the inverse
+/// variances of both points. Solves small-angle normal equations.
 ///
-/// It hands back a pose and says nothing of how well it is determined; a corridor looks like a success. Registration is
-/// the one that knows. Cost per iteration: points times k.
+/// Returns a pose without a measure of its observability; a corridor appears as success. LidarInertialOdometry
+/// estimates this. Cost per iteration: points times k.
 class TrimmedIcp {
  public:
   struct Params {
     int neighbours = 8;  ///< matches per point
     double match_distance_m = 1.0;
-    int normal_neighbours = 20;  ///< of the map's normals
-    double trim_min = 0.5;       ///< least share of matches kept
+    int normal_neighbours = 20;  ///< for the map's normals
+    double trim_min = 0.5;       ///< smallest share of matches to keep
     double trim_max = 0.7;
     double trim_lambda = 2.35;
-    /// A known error of the original: shares are taken of all slots though unmatched ones are missing from the sorted
-    /// list. There it read past its end; here the index stops at the end.
+    /// Known error of the original: shares refer to all slots, although unmatched ones are missing from the sorted
+    /// list. The original read beyond the list's end; here the index stops at the end.
     bool count_unmatched_slots = false;
     int iterations_max = 40;
-    double step_m = 0.01;  ///< both means over two increments must fall below their bound
+    double step_m = 0.01;  ///< both means over two increments must be below their bound
     double step_rad = 0.001;
     double correction_max_m = 15.0;
     double correction_max_rad = 1.1;
 
-    /// Every number of it, stated once.
+    /// Describes every parameter once.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.neighbours, {"neighbours", "1", 1, 32, "number of matches per point"});
@@ -61,11 +61,11 @@ class TrimmedIcp {
   };
   struct Point {
     Eigen::Vector3f position_m;
-    float variance_m2 = 0.0f;  ///< along its ray and from what is left of the skew
+    float variance_m2 = 0.0f;  ///< along its ray, and from residual distortion
   };
   struct Result {
     RegistrationVerdict verdict = RegistrationVerdict::too_few;
-    Eigen::Isometry3d T = Eigen::Isometry3d::Identity();  ///< the prior unless converged
+    Eigen::Isometry3d T = Eigen::Isometry3d::Identity();  ///< the prior if not converged
     int iterations = 0;
     std::size_t matched_slots = 0;
     double kept_share = 0.0;  ///< of the matched slots
@@ -73,15 +73,15 @@ class TrimmedIcp {
 
   explicit TrimmedIcp(const Params& params);
 
-  /// Takes `points` to `map` from `prior`. Running out of iterations is no failure, as in the original; no matches, and
-  /// a correction beyond its bound, are.
+  /// Aligns `points` to `map`, starting from `prior`. Reaching the iteration limit is not an error, as in the original.
+  /// No matches, or a correction beyond its bound, are errors.
   Result align(std::span<const Point> points, const Eigen::Isometry3d& prior, const VoxelMap& map);
 
-  /// Share of the sorted squared distances to keep: minimises sum(d^2 up to f) / (f n f^(2 lambda)) over f in
-  /// [trim_min, trim_max], n = `slots`.
+  /// Returns the share of the sorted squared distances to keep: minimises sum(d^2 up to f) / (f n f^(2 lambda)) over f
+  /// in [trim_min, trim_max], n = `slots`.
   static std::size_t trim(std::span<const float> sorted_d2, std::size_t slots, const Params& params);
 
-  /// Call after the map has changed: normals are computed where they are asked for, and kept.
+  /// Must be called after the map changed, because normals are computed on demand and cached.
   void forget_normals() { normals_.clear(); }
 
  private:

@@ -13,7 +13,8 @@ namespace tumble::baselines {
 
 namespace {
 
-/// Eq 8: each axis scaled by the larger factor of the two others, for it moves when the sphere turns about those.
+/// Eq 8: scales each axis by the larger factor of the other two, because rotation about those moves the sphere along
+/// it.
 Eigen::Vector3d coupling(const Eigen::Vector3d& factor) {
   return {std::max(factor.y(), factor.z()), std::max(factor.x(), factor.z()), std::max(factor.x(), factor.y())};
 }
@@ -46,14 +47,14 @@ Eigen::Vector3d AutogainFusion::accelerated(const ImuSample& sample, const Eigen
                                             State& state) const {
   const double length = sample.specific_force_m_s2.norm();
   const double unit = params_.direction_only ? std::max(length, kForceMin_m_s2) : params_.gravity_m_s2;
-  // the force is a mean over the window, so gravity is taken from it as the body stood in its middle
+  // the force is a mean over the window, so gravity is subtracted at the attitude in its middle
   const Eigen::Quaterniond q_mid = q_WI * so3::exp(-0.5 * dt_s * sample.angular_velocity_rad_s);
   const Eigen::Vector3d up_I = q_mid.conjugate() * Eigen::Vector3d::UnitZ();
   const Eigen::Vector3d linear_g = sample.specific_force_m_s2 / unit - up_I;
   const Eigen::Vector3d a_I = (params_.direction_only ? 1.0 : params_.gravity_m_s2) * linear_g;
   const Eigen::Vector3d scale = coupling(autogain_.gains(sample.angular_velocity_rad_s, dt_s).factor);
 
-  // the coupling acts in sensor axes whatever frame the integral is kept in
+  // the coupling acts in sensor axes, whichever frame the integral uses
   const Eigen::Quaterniond q = params_.integrate_in_body ? Eigen::Quaterniond::Identity() : q_WI;
   state.v_integral_m_s += dt_s * (params_.integrate_in_body ? a_I : q_mid * a_I);
   const Eigen::Vector3d gated_I = scale.cwiseProduct(q.conjugate() * state.v_integral_m_s);
@@ -61,7 +62,7 @@ Eigen::Vector3d AutogainFusion::accelerated(const ImuSample& sample, const Eigen
   return q_WI * gated_I;
 }
 
-/// Eqs 12 and 13: limits, the share of the climb, and the weighted sum.
+/// Eqs 12 and 13: limits, the vertical share, and the weighted sum.
 Eigen::Vector3d AutogainFusion::fuse(const Eigen::Vector3d& v_acc_W, const Eigen::Vector3d& v_rot_W) const {
   Eigen::Vector2d acc = v_acc_W.head<2>(), rot = v_rot_W.head<2>();
   const double speed = rot.norm();

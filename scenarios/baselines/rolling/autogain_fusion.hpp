@@ -10,11 +10,10 @@
 
 namespace tumble::baselines {
 
-/// Position of a rolling sphere by the published fusion of rolling with the integrated accelerometer (Zevering et al.,
-/// IEEE MFI 2021, eqs 6-13), flat floor. The integral of the acceleration, gated by the rates and limited to a little
-/// more than the rolling velocity, is averaged with the rolling velocity: its sign decides alone, so a sphere that
-/// rolls without slip loses up to half of its path. Kept to compare with; the switches name what paper, code and sense
-/// differ in.
+/// Estimates the position of a rolling sphere on a flat floor by fusing rolling with the integrated accelerometer
+/// (Zevering et al., IEEE MFI 2021, eqs 6-13). The acceleration integral is gated by the rates, limited to slightly
+/// more than the rolling velocity, and averaged with it. Only its sign matters, so a sphere that rolls without slip
+/// loses up to half of its path. For comparison; the options select between the paper's and the code's variants.
 class AutogainFusion {
  public:
   struct Params {
@@ -23,19 +22,21 @@ class AutogainFusion {
     double limiter = 1.2;              ///< |v_acc| to this times |v_rot|; 1.1 in the code
     double rotation_weight = 0.5;      ///< eq 13
     double acceleration_weight = 0.5;  ///< eq 13
-    Autogain::Params autogain = {};    ///< for the factors of eq 2 alone
+    Autogain::Params autogain = {};    ///< only for the factors of eq 2
 
-    // Errata. The defaults are the paper's equations as printed.
-    bool integrate_in_body = true;    ///< eq 7 in the turning frame, without w x v; false integrates in W
-    bool direction_only = false;      ///< the code's: f made a unit vector before gravity is removed, and never times g
-    bool recursive_coupling = false;  ///< the code's: eq 8 scales the integral itself, each sample
+    // Options for differences between paper and code. The defaults are the paper's equations as printed.
+    bool integrate_in_body = true;    ///< eq 7 in the rotating frame, without w x v; false integrates in W
+    bool direction_only = false;      ///< as in the code: normalises f before subtracting gravity, without multiplying
+                                      ///< by g
+    bool recursive_coupling = false;  ///< as in the code: eq 8 scales the integral itself at each sample
     bool limit_per_axis = true;       ///< limits along the world's axes; false limits the horizontal vector
-    bool shrink_per_axis = true;      ///< eq 12 takes v_z^2 from each axis; false once from the horizontal vector
-    bool vertical_by_norm = false;    ///< the code's limit of |v_z|: the norm of v_rot; false the mean of its two sizes
+    bool shrink_per_axis = true;      ///< eq 12 subtracts v_z^2 from each axis; false once from the horizontal vector
+    bool vertical_by_norm = false;    ///< as in the code: limits |v_z| by the norm of v_rot; false by the mean of both
+                                      ///< sizes
 
     double gap_max_s = 1.0;
 
-    /// Every number of it, stated once.
+    /// Describes every parameter once.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.radius_m, {"radius_m", "m", 1e-9, 10.0, "radius of the sphere"});
@@ -72,8 +73,8 @@ class AutogainFusion {
   };
   struct State {
     Eigen::Vector3d p_WG_m = Eigen::Vector3d::Zero();
-    Eigen::Vector3d v_WG_m_s = Eigen::Vector3d::Zero();        ///< fused, of the last sample
-    Eigen::Vector3d v_integral_m_s = Eigen::Vector3d::Zero();  ///< in I, or in W when not integrate_in_body
+    Eigen::Vector3d v_WG_m_s = Eigen::Vector3d::Zero();        ///< fused velocity at the last sample
+    Eigen::Vector3d v_integral_m_s = Eigen::Vector3d::Zero();  ///< in I, or in W if not integrate_in_body
     TimeNs last_time_ns = 0;
     bool started = false;
     bool operator==(const State&) const = default;
@@ -81,7 +82,7 @@ class AutogainFusion {
 
   explicit AutogainFusion(const Params& params);
 
-  /// Advances to the sample's time; `q_WI` is the attitude at the end of its window. On trouble the state is unchanged.
+  /// Processes a sample; `q_WI` is the attitude at the end of its window. On error the state is unchanged.
   Status step(const ImuSample& sample, const Eigen::Quaterniond& q_WI, State& state) const;
 
  private:

@@ -11,36 +11,36 @@
 
 namespace tumble::baselines {
 
-/// Position of a rolling sphere with an observer of the contact velocity u, flat floor: v = r w x n + u.
+/// Position of a rolling sphere on a flat floor with an observer of the contact velocity u: v = r w x n + u.
 ///
-/// While the sphere grips, the centre's acceleration is r w' x n; the difference e of the two, both taken over the same
-/// window of 11 samples, opens an event when it is large and is integrated to u until it is small and u has come back.
-/// e of the last 25 samples is integrated back, so that a slide which starts before it is seen is not lost. An event
-/// that ends has its linear drift removed; one that lasts too long is undone. The window is made for about 125 Hz.
+/// Without slip, the centre's acceleration is r w' x n. The difference e to the measured acceleration, both over a
+/// window of 11 samples, starts an event if it is large. It is integrated to u until e is small and u has returned. At
+/// the start, e of the last 25 samples is integrated too, because a slide starts before its detection. At the end of an
+/// event its linear drift is removed; an event that lasts too long is undone. The window is designed for about 125 Hz.
 ///
-/// What it does not model: a tilt that changes inside an event, impacts, slopes. Ideal signals flatter it: on simulated
-/// physics it is hardly better than rolling alone, and is kept to compare with.
+/// Not modelled: tilt changes within an event, impacts, slopes. Ideal signals make it look better than it is: on
+/// simulated physics it hardly improves on rolling alone. For comparison.
 class SlipObserver {
  public:
-  static constexpr int kWindow = 11;   ///< samples over which acceleration and rate are fitted; delay of half of it
-  static constexpr int kHistory = 25;  ///< samples over which an event is integrated back
+  static constexpr int kWindow = 11;   ///< samples for fitting acceleration and rate; the delay is half of this
+  static constexpr int kHistory = 25;  ///< samples integrated when an event starts
 
   struct Params {
     double radius_m = 0.145;
     double gravity_m_s2 = 9.80665;
     Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< from centre to IMU, sensor axes
-    double open_m_s2 = 0.5;                                 ///< |e| that opens an event
+    double open_m_s2 = 0.5;                                 ///< |e| that starts an event
     double quiet_m_s2 = 0.25;                               ///< |e| below which an event may end
-    double quiet_time_s = 0.12;                             ///< for so long
+    double quiet_time_s = 0.12;                             ///< required duration
     double closing_speed_m_s = 0.08;                        ///< |u| below which an event may end
-    double timeout_s = 2.0;                                 ///< an event longer than this is undone
-    double ignore_time_s = 1.0;       ///< quiet for so long after a time-out before the next event
-    double closed_decay_per_s = 8.0;  ///< of u while closed
-    double bias_tau_s = 1.0;          ///< of e's mean while closed and quiet (tilt, accelerometer bias)
-    double blend_tau_s = 0.25;        ///< in which a correction of the position enters
+    double timeout_s = 2.0;                                 ///< longer events are undone
+    double ignore_time_s = 1.0;                             ///< required quiet time after a time-out
+    double closed_decay_per_s = 8.0;                        ///< decay of u outside events
+    double bias_tau_s = 1.0;    ///< time constant of e's mean in quiet phases (tilt, accelerometer bias)
+    double blend_tau_s = 0.25;  ///< time constant for applying a position correction
     double gap_max_s = 1.0;
 
-    /// Every number of it, stated once.
+    /// Describes every parameter once.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.radius_m, {"radius_m", "m", 1e-9, 10.0, "radius of the sphere"});
@@ -69,9 +69,9 @@ class SlipObserver {
     Eigen::Vector2d v_WG_m_s = Eigen::Vector2d::Zero();
     Eigen::Vector2d u_W_m_s = Eigen::Vector2d::Zero();    ///< contact velocity
     Eigen::Vector2d bias_m_s2 = Eigen::Vector2d::Zero();  ///< mean of e
-    Eigen::Vector2d pending_m = Eigen::Vector2d::Zero();  ///< correction still to be blended in
-    Eigen::Vector2d event_m = Eigen::Vector2d::Zero();    ///< displacement that u has made in this event
-    std::array<Eigen::Vector2d, kWindow> a_W_m_s2{};      ///< rings; the newest at (count - 1) mod size
+    Eigen::Vector2d pending_m = Eigen::Vector2d::Zero();  ///< correction not yet applied
+    Eigen::Vector2d event_m = Eigen::Vector2d::Zero();    ///< displacement due to u in this event
+    std::array<Eigen::Vector2d, kWindow> a_W_m_s2{};      ///< ring buffers; the newest is at (count - 1) mod size
     std::array<Eigen::Vector2d, kWindow> roll_W_m_s{};    ///< r w x n
     std::array<double, kWindow> dt_s{};
     std::array<Eigen::Vector2d, kHistory> e_W_m_s2{};
@@ -79,7 +79,7 @@ class SlipObserver {
     Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero();
     std::int64_t count = 0, residuals = 0;
     double event_s = 0.0, quiet_s = 0.0;
-    bool open = false;      ///< a slip or slide is going on
+    bool open = false;      ///< during a slip or slide
     bool ignoring = false;  ///< after a time-out
     TimeNs last_time_ns = 0;
     bool started = false;
@@ -89,8 +89,8 @@ class SlipObserver {
 
   explicit SlipObserver(const Params& params);
 
-  /// Advances to the sample's time; `q_WI` is the attitude at the end of its window. On trouble the state is unchanged.
-  /// O(kWindow), no allocation.
+  /// Processes a sample; `q_WI` is the attitude at the end of its window. On error the state is unchanged. O(kWindow),
+  /// no allocation.
   Status step(const ImuSample& sample, const Eigen::Quaterniond& q_WI, State& state) const;
 
  private:

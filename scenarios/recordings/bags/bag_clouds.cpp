@@ -33,7 +33,7 @@ struct ReadType {
   void (*take)(const ros::PointCloud2&, std::size_t, std::size_t, std::vector<double>&);
 };
 
-/// By the number of the type; of others nothing is known.
+/// Returns the type for its number; null if unknown.
 const ReadType* type_of(std::uint8_t datatype) {
   static const ReadType known[] = {{1, take_column<std::int8_t>},  {1, take_column<std::uint8_t>},
                                    {2, take_column<std::int16_t>}, {2, take_column<std::uint16_t>},
@@ -48,7 +48,7 @@ bool is_livox_type(const std::string& type) {
   return type == ros::kLivoxRos1 || type == "livox_ros_driver2/CustomMsg" || type == "livox_interfaces/CustomMsg";
 }
 
-// the layout is held against the data first
+// Checks the layout against the data first.
 Cloud cloud_of(const ros::PointCloud2& message, const std::string& where) {
   if (message.is_bigendian != 0)
     throw BadInput(where + ": points are big-endian; only little-endian points are supported");
@@ -63,7 +63,7 @@ Cloud cloud_of(const ros::PointCloud2& message, const std::string& where) {
   out.points = std::size_t{message.width} * message.height;
   for (const ros::PointField& field : message.fields) {
     const ReadType* type = type_of(field.datatype);
-    if (type == nullptr || field.count > 1) continue;  // 0: some drivers leave it so, and mean one
+    if (type == nullptr || field.count > 1) continue;  // count 0: some drivers mean one
     if (std::uint64_t{field.offset} + type->bytes > message.point_step) {
       throw BadInput(fmt::format("{}: field '{}' at byte {} lies outside its point of {} bytes", where, field.name,
                                  field.offset, message.point_step));

@@ -18,7 +18,7 @@ std::array<double, kCount> array_of(const Vector& vector) {
   return out;
 }
 
-/// White noise of one sample: density squared times the bandwidth of the output rate.
+/// Variance of one sample: density squared times the bandwidth of the output rate.
 std::array<double, 9> covariance_of(double density_sqrt_hz, std::int64_t period_ns) {
   const double variance = density_sqrt_hz * density_sqrt_hz / (static_cast<double>(period_ns) * 1e-9);
   return {variance, 0, 0, 0, variance, 0, 0, 0, variance};
@@ -29,7 +29,7 @@ struct NamedType {
   ros::PointField::Type type;
 };
 
-/// A cloud of so many points with these fields of four bytes behind each other, its data empty.
+/// Creates a cloud of `points` zero points with consecutive 4-byte fields.
 ros::PointCloud2 empty_cloud(std::initializer_list<NamedType> fields, std::size_t points, const ros::Header& header) {
   ros::PointCloud2 out;
   out.header = header;
@@ -94,7 +94,7 @@ ros::Odometry odometry_message(const BagTrack::Pose& pose, const std::string& ch
   out.child_frame_id = child;
   out.position = array_of<3>(pose.p_WB_m);
   out.orientation_xyzw = array_of<4>(pose.q_WB.coeffs());
-  out.pose_covariance = array_of<36>(pose.covariance);  // symmetric: rows and columns are one
+  out.pose_covariance = array_of<36>(pose.covariance);  // row order equals column order: the matrix is symmetric
   out.linear_velocity = array_of<3>(pose.v_WB_B_m_s);
   out.angular_velocity = array_of<3>(pose.w_WB_B_rad_s);
   return out;

@@ -7,14 +7,14 @@
 #include "scenarios/recordings/bags/bag.hpp"
 #include "scenarios/recordings/bags/ros_messages.hpp"
 
-/// Readings, poses and points of estimates as messages; bag.hpp says what each holds, sweep_messages.hpp has the
-/// lidar's. Private to scenarios/recordings/bags.
+/// Converts readings, poses and points of estimates to messages, as described in bag.hpp; lidars: sweep_messages.hpp.
+/// Private to scenarios/recordings/bags.
 namespace tumble::scenarios {
 
 ros::Header header_of(std::int64_t stamp_ns, const std::string& frame);
 ros::Clock clock_message(std::int64_t stamp_ns);
 
-/// Sample `i` of an IMU.
+/// Returns sample `i` of an IMU.
 ros::Imu imu_message(const sim::ImuRecord& imu, std::size_t i, const ros::Header& header);
 
 ros::PointCloud2 cloud_message(const BagCloud& cloud, const ros::Header& header);

@@ -16,7 +16,7 @@ namespace {
 constexpr const char* kOdometry = "nav_msgs/Odometry";
 constexpr const char* kPoseStamped = "geometry_msgs/PoseStamped";
 
-/// Poses, and the frame whose they are by their messages; "" where those do not say.
+/// Poses and the frame named by their messages; "" if none is named.
 struct NamedPoses {
   std::vector<ReferencePose> poses;
   std::string frame;
@@ -48,8 +48,8 @@ NamedPoses reference_poses(const OpenedBag& bag, const std::string& topic, Stamp
       fmt::format("{}: topic '{}' is of type {}, must be {} or {}", bag.place, topic, type, kOdometry, kPoseStamped));
 }
 
-/// Whose poses they are: by the one who imports them, else by the messages, where the bag places the frame that they
-/// name.
+/// Returns the mounting of the reference frame: the user's choice, else the frame named by the messages, if the bag
+/// contains its transform.
 Eigen::Isometry3d pose_of_reference(const std::string& topic, const std::string& frame, const SensorPlaces& places,
                                     const BagReading& reading, Imported& out) {
   const Eigen::Isometry3d body = Eigen::Isometry3d::Identity();

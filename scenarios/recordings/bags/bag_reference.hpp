@@ -8,9 +8,9 @@
 /// Private to scenarios/recordings/bags.
 namespace tumble::scenarios {
 
-/// Makes the poses of `reading.reference_topic` (Odometry or PoseStamped) the truth of the recording. Whose they are is
-/// what the one who imports them says, else, by an Odometry's child_frame_id, the frame that they are of, where the bag
-/// places it. Throws BadInput with topic and message.
+/// Uses the poses of `reading.reference_topic` (Odometry or PoseStamped) as the truth of the recording. Their frame is
+/// chosen by the user, or else is an Odometry's child_frame_id if the bag contains its transform. Throws BadInput with
+/// topic and message.
 void attach_reference(const OpenedBag& bag, const SensorPlaces& places, const BagReading& reading, Imported& out);
 
 }  // namespace tumble::scenarios

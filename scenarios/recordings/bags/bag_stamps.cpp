@@ -16,9 +16,9 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr std::int64_t kSaid_ns = 1'000'000;
-/// A header that is later than its record by more was written by another clock.
+/// A header that is later than its record by more belongs to another clock.
 constexpr std::int64_t kAhead_ns = 10'000'000;
-/// What messages usually wait for each other; beyond it the clocks drift or stamps are no times of measuring.
+/// Largest normal delay between messages; beyond it the clocks drift, or stamps are not measurement times.
 constexpr std::int64_t kSteady_ns = 500'000'000;
 
 std::string seconds_text(std::int64_t time_ns) {
@@ -27,17 +27,17 @@ std::string seconds_text(std::int64_t time_ns) {
   return text.data();
 }
 
-/// The last that a header can state.
+/// The last time that a header can hold.
 constexpr std::int64_t kLast_ns = 4294967295 * kSecond_ns;
 
-/// From one stamp to another; those of hostile messages lie anywhere.
+/// Returns the difference of two stamps without overflow.
 std::int64_t between(std::int64_t from_ns, std::int64_t to_ns) {
   std::int64_t step_ns = 0;
   if (!__builtin_sub_overflow(to_ns, from_ns, &step_ns)) return step_ns;
   return to_ns > from_ns ? std::numeric_limits<std::int64_t>::max() : std::numeric_limits<std::int64_t>::min();
 }
 
-/// What a stamp does after the one before.
+/// Describes the change from the previous stamp.
 std::string course(std::int64_t before_ns, std::int64_t now_ns) {
   if (now_ns > before_ns) return "increases by " + seconds_text(between(before_ns, now_ns));
   if (now_ns < before_ns) return "decreases by " + seconds_text(between(now_ns, before_ns));

@@ -19,15 +19,15 @@ constexpr std::int64_t kOrigin_ns = 1000000000ll * 1000000000ll;
 constexpr std::int64_t kTruthStep_ns = 5000000, kClockStep_ns = 10000000;
 constexpr const char *kWorld = "world", *kBody = "body";
 
-/// What is to be written, and when a listener would have it: a sweep when it is over.
+/// An item to write, at the time when a listener would receive it: a sweep at its end.
 struct Event {
   enum Kind { imu, sweep, truth, pose, cloud };
   std::int64_t time_ns;
   Kind kind;
-  std::size_t of, index;  ///< of which sensor or track, and its reading
+  std::size_t of, index;  ///< index of the sensor or track, and of its reading
 };
 
-/// The truth thinned, without the instants that a reference does not know.
+/// Adds the thinned truth, without times that a reference does not know.
 void add_truth(const StoredTruth& truth, std::vector<Event>& events) {
   constexpr std::size_t kSegment = 16384;
   const auto step = static_cast<std::size_t>(std::max<std::int64_t>(kTruthStep_ns / truth.period_ns, 1));
@@ -77,7 +77,7 @@ std::vector<Event> events_of(const sim::Sensors& sensors, std::size_t imus, std:
   return events;
 }
 
-/// The first reading of each IMU, in the order of the sensors.
+/// Returns the first reading of each IMU, in the order of the sensors.
 std::vector<Event> first_readings(std::size_t imus, const std::vector<Event>& events) {
   std::vector<Event> first;
   for (std::size_t s = 0; s < imus; ++s) {
@@ -88,7 +88,7 @@ std::vector<Event> first_readings(std::size_t imus, const std::vector<Event>& ev
   return first;
 }
 
-/// Under which names a sensor stands in a bag.
+/// Names of a sensor in a bag.
 struct SensorNames {
   std::string topic, frame;
 };
@@ -107,7 +107,7 @@ std::vector<SensorNames> names_of_lidars(const sim::Sensors& sensors, const std:
   return out;
 }
 
-/// A recording on its way into a bag.
+/// Writes a recording to a bag.
 class Export {
  public:
   Export(const sim::Sensors& sensors, const BagWriting& writing, BagWriter& bag)
@@ -142,7 +142,8 @@ class Export {
     return origin_ns_ + time_ns;
   }
 
-  /// A reader takes the first IMU of a bag for the primary one, and another one's first reading may be earlier.
+  /// Writes the primary IMU first. Readers treat a bag's first IMU as primary, but another IMU's first reading may be
+  /// earlier.
   void begin_with_imus(std::vector<Event>& events) {
     const std::vector<Event> first = first_readings(imus_.size(), events);
     const auto earlier = [](const Event& a, const Event& b) { return a.time_ns < b.time_ns; };
@@ -196,7 +197,7 @@ class Export {
         return write_pose(pose_of(*writing_.truth, event.index), "truth", body_, stamp);
       case Event::pose: {
         const BagTrack& track = writing_.tracks[event.of];
-        // the truth moves the body, without it the first track
+        // the truth moves the body; without it, the first track does
         const bool body = event.of == 0 && writing_.truth == nullptr;
         return write_pose(track.poses[event.index], track.name, body ? body_ : track.name, stamp);
       }
@@ -211,7 +212,7 @@ class Export {
     bag_.write("/tf", stamp, ros::TFMessage{{transform_message(pose.p_WB_m, pose.q_WB, child, header)}});
   }
 
-  /// Whether there is one shows when it is made.
+  /// Empty clouds are detected only when they are created.
   void write_cloud(const Event& event) {
     const BagTrack& track = writing_.tracks[event.of];
     const BagCloud cloud = track.cloud(track, event.index);
@@ -225,9 +226,9 @@ class Export {
   const BagWriting& writing_;
   BagWriter& bag_;
   std::int64_t origin_ns_;
-  std::vector<SensorNames> imus_, lidars_;  ///< of those sensors that are written, the first ones
-  std::string body_;                        ///< its frame
-  std::optional<std::int64_t> tick_ns_;     ///< the clock's last one
+  std::vector<SensorNames> imus_, lidars_;  ///< of the written sensors, which come first
+  std::string body_;                        ///< frame of the body
+  std::optional<std::int64_t> tick_ns_;     ///< last message of the clock
 };
 
 void write_bag(const sim::Sensors& sensors, const BagWriting& writing, BagWriter& bag) {

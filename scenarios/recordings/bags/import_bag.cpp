@@ -28,9 +28,9 @@ constexpr const char* kCloud = "sensor_msgs/PointCloud2";
 constexpr const char *kTransforms = "tf2_msgs/TFMessage", *kOldTransforms = "tf/tfMessage";
 constexpr const char* kStaticTopic = "/tf_static";
 constexpr const char* kNoMessage = ": the topic is declared but has no messages; it is left out";
-/// What the stamps of a message may differ by before it is said.
+/// Differences between header and record stamps above this are noted.
 constexpr double kClocksApart_s = 1e-3;
-/// Points that come so much later than their record are said: less is what clocks of hosts differ by.
+/// Points later than their record by more are noted; smaller differences are normal between hosts' clocks.
 constexpr double kAhead_s = 0.01;
 
 bool is_imu_type(const std::string& type) {
@@ -40,7 +40,7 @@ bool is_cloud_type(const std::string& type) {
   return type == kCloud || is_livox_type(type);
 }
 
-/// A topic as the name of a sensor: "/imu/data" is imu_data, "/lidar/points" lidar.
+/// Converts a topic to a sensor name: "/imu/data" to imu_data, "/lidar/points" to lidar.
 std::string sensor_name(std::string topic) {
   while (topic.starts_with('/')) topic.erase(0, 1);
   if (topic.ends_with("/points")) topic.resize(topic.size() - 7);
@@ -60,7 +60,7 @@ StaticFrames read_frames(const OpenedBag& bag) {
   return frames;
 }
 
-/// The unit of the specific force, which is put in m/s^2 where nobody stated one and the readings are in g.
+/// Returns the unit of the specific force. If none was stated and the readings are in g, converts them to m/s^2.
 AccelUnit take_in_g(const std::string& topic, const BagReading& reading, sim::ImuRecord& imu,
                     std::vector<std::string>& notes) {
   if (reading.accel_unit || !is_in_g(imu)) return reading.accel_unit.value_or(AccelUnit::m_s2);
@@ -99,10 +99,10 @@ sim::ImuRecord read_imu(const OpenedBag& bag, SensorPlaces& places, const std::s
     before = message;
   });
   const std::string where = bag.place + ": topic " + topic;
-  if (imu.time_ns.empty() && reading.imu_topics.empty()) return imu;  // declared, and never recorded
+  if (imu.time_ns.empty() && reading.imu_topics.empty()) return imu;  // the topic has no messages
   const AccelUnit accel_unit = take_in_g(topic, reading, imu, notes);
   finish_readings(where, accel_unit, imu);
-  // messages are in rad/s by their definition, and not every driver keeps to it
+  // Messages should be in rad/s by definition, but not every driver complies.
   const std::string evened = even_out_stamps(imu);
   const std::string units = rates_text(where, imu, reading.gyro_unit);
   for (const std::string& remark : {evened, gaps_text(imu), units, stamps.remark(), repeats_text(repeated)}) {
@@ -112,21 +112,21 @@ sim::ImuRecord read_imu(const OpenedBag& bag, SensorPlaces& places, const std::s
   return imu;
 }
 
-/// What is known of a topic's clouds before their points are read.
+/// Information about a topic's clouds from a first pass without reading points.
 struct CloudHeaders {
-  std::vector<std::int64_t> stamps;  ///< of the starts of the sweeps
-  std::int64_t period_ns = 0;        ///< given, or the median step of the stamps
-  std::vector<bool> repeats;         ///< of each message: it is the one before once more
+  std::vector<std::int64_t> stamps;  ///< sweep starts
+  std::int64_t period_ns = 0;        ///< stated, or the median step of the stamps
+  std::vector<bool> repeats;         ///< per message: true for a duplicate of the previous one
   std::string remark;
-  bool follow_records = true;  ///< the records lie after the stamps, of one clock by all that is seen
+  bool follow_records = true;  ///< the records appear to use the same clock and lie after the stamps
   std::string frame;
-  /// Nobody named the topic, and its points lie in no sensor's frame: a map, or points that somebody has moved there.
+  /// Returns true if the topic was not chosen and its frame is not a sensor's: a map, or points already transformed.
   bool left_out(const BagReading& reading) const {
     return reading.lidar_topics.empty() && (frame == "world" || frame == "map" || frame == "odom");
   }
 };
 
-/// Calls `take(message, origin)` for each cloud of the topic, of whichever type they are.
+/// Calls `take(message, origin)` for each cloud of the topic, of either type.
 template <class Take>
 void read_clouds(const OpenedBag& bag, const std::string& topic, Take&& take) {
   if (is_livox_type(bag.topic(topic).type)) return bag.read<ros::LivoxCustomMsg>(topic, take);
@@ -139,7 +139,7 @@ CloudHeaders read_headers(const OpenedBag& bag, const std::string& topic, const 
   std::uint64_t before = 0;
   read_clouds(bag, topic, [&](const auto& message, const MessageOrigin& origin) {
     out.frame = without_slash(message.header.frame_id);
-    if (out.left_out(reading)) return;  // a map may well stand still
+    if (out.left_out(reading)) return;  // a map may have constant stamps
     const std::uint64_t now = content_of(message);
     out.repeats.push_back(stamps.repeats(stamp_of(message.header)) && now == before);
     before = now;
@@ -161,8 +161,8 @@ CloudHeaders read_headers(const OpenedBag& bag, const std::string& topic, const 
   return out;
 }
 
-/// Nobody records what was not measured yet: points that lie after their own record were counted from another instant
-/// than the stamp.
+/// Points later than their own record cannot have been measured yet: their times were counted from another start than
+/// the stamp.
 void note_points_to_come(const std::string& topic, const BuiltSweeps& built, const std::vector<std::int64_t>& records,
                          std::vector<std::string>& notes) {
   std::vector<double> ahead_s;
@@ -210,7 +210,7 @@ BuiltSweeps read_lidar(const OpenedBag& bag, SensorPlaces& places, const std::st
   return built;
 }
 
-/// What a lidar sent, before its driver made points of it.
+/// Notes topics with raw lidar packets.
 void note_packets(const OpenedBag& bag, std::vector<std::string>& notes) {
   for (const BagTopic& topic : bag.topics) {
     const auto has = [&](const char* word) { return topic.type.find(word) != std::string::npos; };
@@ -221,7 +221,7 @@ void note_packets(const OpenedBag& bag, std::vector<std::string>& notes) {
   }
 }
 
-/// Sensors that never saw the same moment have no common clock, or nothing in common.
+/// Throws if the sensors do not overlap in time, and thus have no common clock.
 void require_one_clock(const sim::Sensors& sensors, bool by_headers, const std::filesystem::path& path) {
   struct Span {
     std::string name;
@@ -247,7 +247,7 @@ void require_one_clock(const sim::Sensors& sensors, bool by_headers, const std::
   }
 }
 
-/// What is wrong with a topic that nobody named, and how to do without it where there are others.
+/// Rethrows an error of an automatically chosen topic, with advice how to skip it if there are others.
 [[noreturn]] void fail_of_several(const BadInput& error, const char* option) {
   throw BadInput(std::string(error.what()) + " (" + option + " selects which topics are read)");
 }

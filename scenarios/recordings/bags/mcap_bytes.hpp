@@ -13,13 +13,13 @@
 
 #include "scenarios/recordings/bags/mcap_records.hpp"
 
-/// Records of MCAP files to bytes and back. Private to scenarios/recordings/bags.
+/// Encodes and decodes records of MCAP files. Private to scenarios/recordings/bags.
 namespace tumble::scenarios::mcap {
 
 inline constexpr std::string_view kMagic("\x89MCAP0\r\n", 8);
 inline constexpr std::uint64_t kHeadBytes = 9;  ///< of a record: kind and length
 
-/// Content that ends before its fields do.
+/// Record content that ends before its fields do.
 struct BadRecord : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -42,7 +42,7 @@ class Put {
   std::string bytes;
 };
 
-/// Takes fields off the front of bytes; trusts no length. Throws BadRecord.
+/// Takes fields from the front of a byte range with bounds checks. Throws BadRecord.
 class Take {
  public:
   explicit Take(std::string_view bytes) : left(bytes) {}
@@ -85,7 +85,7 @@ class Take {
   }
 };
 
-/// A whole record; `tail` is what follows its fields.
+/// Encodes a whole record; `tail` follows its fields.
 template <class Record>
 std::string to_bytes(Record record, std::string_view tail = {}) {
   Put content, out;
@@ -95,7 +95,7 @@ std::string to_bytes(Record record, std::string_view tail = {}) {
   return std::move(out.bytes.append(content.bytes).append(tail));
 }
 
-/// A record by its content; fields that a later version adds at its end are left alone. Throws BadRecord.
+/// Decodes a record from its content; ignores fields that later versions append. Throws BadRecord.
 template <class Record>
 Record from_bytes(std::string_view content) {
   Record record;

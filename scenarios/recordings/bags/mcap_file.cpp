@@ -15,9 +15,9 @@ namespace tumble::scenarios::mcap {
 
 namespace {
 
-/// Of a chunk, packed and not, of a record outside of chunks, and of the summary.
+/// Largest chunk, compressed or not, record outside chunks, and summary.
 constexpr std::uint64_t kBytesMax = 1u << 28;
-/// Records outside of chunks are read by so many bytes.
+/// Block size for reading records outside chunks.
 constexpr std::uint64_t kLooseBytes = 1u << 22;
 constexpr std::uint64_t kFooterBytes = kHeadBytes + 20, kDataEndBytes = kHeadBytes + 4;
 
@@ -25,7 +25,7 @@ std::string in_bytes(std::uint64_t bytes) {
   return std::to_string(bytes) + " bytes";
 }
 
-/// What a chunk's record and its index both state.
+/// Compares the data in a chunk's record and in its index.
 bool agree(const ChunkIndex& a, const ChunkIndex& b) {
   return a.message_start_time == b.message_start_time && a.message_end_time == b.message_end_time &&
          a.chunk_start_offset == b.chunk_start_offset && a.chunk_length == b.chunk_length &&
@@ -80,7 +80,7 @@ Record File::record_in(std::string_view records, std::uint64_t place, std::uint6
   return out;
 }
 
-/// Magic, header, footer and the end of the data.
+/// Reads magic, header, footer and the end of the data.
 void File::open_ends() {
   if (bytes_ < kMagic.size() || text(0, kMagic.size()) != kMagic)
     fail(0, "does not begin with the magic bytes of MCAP 0: not an MCAP file");
@@ -154,7 +154,7 @@ void File::read_summary() {
   take_indexed(std::move(chunks));
 }
 
-/// The offsets must name groups of one kind each.
+/// Each offset must point to a group of one kind.
 void File::check_groups(std::string_view summary, std::string_view groups) const {
   const std::uint64_t groups_at = footer_.summary_offset_start;
   walk(groups, groups_at, [&](const Record& record) {
@@ -172,7 +172,7 @@ void File::check_groups(std::string_view summary, std::string_view groups) const
   });
 }
 
-/// Chunks by their index: whole where it lists all of them. A file that lists none is scanned.
+/// Uses the chunk index if it is complete. A file without index is scanned.
 void File::take_indexed(std::vector<ChunkIndex> chunks) {
   if (chunks.empty()) return;
   std::sort(chunks.begin(), chunks.end(),
@@ -191,13 +191,13 @@ void File::take_indexed(std::vector<ChunkIndex> chunks) {
     }
     free = at + each.chunk_length + each.message_index_length;
     for (const auto& [channel, place] : each.message_index_offsets) {
-      if (!channels_.contains(channel)) return segments_.clear();  // the summary does not repeat them: scan
+      if (!channels_.contains(channel)) return segments_.clear();  // the summary does not repeat the channels: scan
       if (place < at + each.chunk_length || place >= free)
         fail(place, fmt::format("is named as an index of the chunk at byte {}, but does not follow that chunk", at));
     }
     segments_.push_back({at, each.chunk_length, each.message_start_time, each.message_end_time, each});
   }
-  // messages outside of chunks are in no index: none may be missing
+  // Messages outside chunks are not indexed; scan if any are missing.
   if (!statistics_ || channels_.empty()) segments_.clear();
 }
 
@@ -247,9 +247,9 @@ std::optional<MessageIndex> File::index_of(const Segment& segment, std::uint16_t
   return index;
 }
 
-/// What the chunk's own record states, as an index would.
+/// Returns the data of the chunk's own record, in the form of an index.
 ChunkIndex File::head_of_chunk(std::uint64_t at, std::uint64_t bytes, std::uint32_t* crc) {
-  constexpr std::uint64_t kMost = kHeadBytes + 8 + 8 + 8 + 4 + 4 + 64 + 8;  // with the name of a packing
+  constexpr std::uint64_t kMost = kHeadBytes + 8 + 8 + 8 + 4 + 4 + 64 + 8;  // including the name of the compression
   std::string head = text(at, std::min(bytes, kMost));
   if (head.size() < kHeadBytes || static_cast<std::uint8_t>(head[0]) != kChunk)
     fail(at, "is not a chunk: the file is damaged");

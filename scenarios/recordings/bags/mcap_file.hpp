@@ -13,22 +13,22 @@
 #include "scenarios/recordings/bags/mcap_bytes.hpp"
 #include "scenarios/recordings/bags/mcap_records.hpp"
 
-/// An MCAP file by its chunks. Nothing in it is trusted: every length, place, time and checksum is held against the
-/// file before it is used. Private to scenarios/recordings/bags.
+/// Reads an MCAP file chunk by chunk. Validates every length, position, time and checksum before use. Private to
+/// scenarios/recordings/bags.
 namespace tumble::scenarios::mcap {
 
-/// Records that lie together: a chunk, or some that stand outside of any.
+/// Consecutive records: a chunk, or records outside chunks.
 struct Segment {
-  std::uint64_t at = 0, bytes = 0;  ///< in the file, heads included
+  std::uint64_t at = 0, bytes = 0;  ///< position in the file, including record heads
   std::uint64_t first_ns = 0, last_ns = 0;
-  std::optional<ChunkIndex> chunk;  ///< of a chunk; its index is complete where the file has a summary
-  /// Whether messages of the channel may be in it.
+  std::optional<ChunkIndex> chunk;  ///< for a chunk; its index is complete if the file has a summary
+  /// Returns true if it may contain messages of the channel.
   bool may_hold(std::uint16_t channel) const {
     return !chunk || chunk->message_index_offsets.empty() || chunk->message_index_offsets.contains(channel);
   }
 };
 
-/// One record: its kind, where its head lies in what was walked, and its content.
+/// One record: its kind, the position of its head, and its content.
 struct Record {
   std::uint8_t op = 0;
   std::uint64_t at = 0;
@@ -37,24 +37,24 @@ struct Record {
 
 class File {
  public:
-  /// Reads the summary where there is one, else the whole file once. The checksum of the data section, where it is
-  /// stated, is computed too: O(bytes of the file), in memory some MiB and the summary. Throws BadInput with the
-  /// offset: no MCAP, truncated, damaged, of packings other than none, lz4 and zstd, a chunk or record beyond 256 MiB.
+  /// Reads the summary if present, else scans the file. Also computes the checksum of the data section if one is
+  /// stated: O(bytes of the file); memory holds some MiB and the summary. Throws BadInput with the offset: not MCAP,
+  /// truncated, damaged, compression other than none, lz4 or zstd, or a chunk or record larger than 256 MiB.
   explicit File(const std::filesystem::path& path);
 
   const std::map<std::uint16_t, Schema>& schemas() const { return schemas_; }
   const std::map<std::uint16_t, Channel>& channels() const { return channels_; }
-  /// In the order of their first messages.
+  /// Segments in the order of their first messages.
   const std::vector<Segment>& segments() const { return segments_; }
-  /// Messages of a channel that the file says it has; nothing where it does not say.
+  /// Returns the stated number of messages of a channel; empty if not stated.
   std::optional<std::uint64_t> stated_messages(std::uint16_t channel) const;
 
-  /// The records of a segment, unpacked and held to its checksum.
+  /// Returns the uncompressed records of a segment after checking its checksum.
   std::string records(const Segment& segment);
-  /// Where the index behind the segment's chunk says that messages of the channel lie; nothing where there is none.
+  /// Returns the message index of the channel after the segment's chunk; empty if there is none.
   std::optional<MessageIndex> index_of(const Segment& segment, std::uint16_t channel);
 
-  /// Calls `take(record)` for each of `records`, which stand at `at` in the file when they were not packed.
+  /// Calls `take(record)` for each of `records`; `at` is their position in the file if not compressed.
   template <class Call>
   void walk(std::string_view records, std::uint64_t at, Call&& take) const {
     for (std::uint64_t place = 0; place < records.size();) {
@@ -63,7 +63,7 @@ class File {
       place += kHeadBytes + record.content.size();
     }
   }
-  /// The content as a record of this kind; throws BadInput with the offset.
+  /// Decodes the content; throws BadInput with the offset.
   template <class Content>
   Content as(const Record& record, std::uint64_t at) const {
     try {
@@ -72,7 +72,7 @@ class File {
       fail(at, "a record of kind " + std::to_string(record.op) + " " + error.what());
     }
   }
-  /// Takes note of a schema or channel that stands at `at`; one that is known must be the same.
+  /// Registers a schema or channel found at `at`; a repeated one must be identical.
   void add(Schema schema, std::uint64_t at);
   void add(Channel channel, std::uint64_t at);
   [[noreturn]] void fail(std::uint64_t at, const std::string& what) const;

@@ -16,10 +16,10 @@ namespace mcap {
 
 namespace {
 
-/// Messages that wait because later chunks may hold earlier ones.
+/// Limit for messages that wait because later chunks may contain earlier ones.
 constexpr std::uint64_t kWaitingMax = 1u << 30;
 
-/// How messages and their types are written.
+/// Returns true for CDR messages, false for ROS 1 encoding.
 bool is_cdr(const Channel& channel, const Schema& schema) {
   return channel.message_encoding == "cdr" && (schema.encoding == "ros2msg" || schema.encoding == "ros2idl");
 }
@@ -27,7 +27,7 @@ bool is_ros1(const Channel& channel, const Schema& schema) {
   return channel.message_encoding == "ros1" && schema.encoding == "ros1msg";
 }
 
-/// Messages of one topic of one file in order of time, a chunk in memory and what overlaps it.
+/// Iterates over one topic of one file by time; memory holds one chunk and those that overlap it.
 class TopicWalk {
  public:
   TopicWalk(File& file, std::set<std::uint16_t> channels, const BagReader::Take& take)
@@ -75,7 +75,7 @@ class TopicWalk {
                                        segment.first_ns, segment.last_ns));
   }
 
-  /// The index behind the chunk names the messages that are there, and no others.
+  /// Checks that the index after the chunk lists exactly its messages.
   void require_indexed(const Segment& segment, std::uint16_t channel,
                        std::vector<std::pair<std::uint64_t, std::uint64_t>>& found) {
     std::optional<MessageIndex> index = file_.index_of(segment, channel);
@@ -103,7 +103,7 @@ class TopicWalk {
     while (!waiting_.empty() && waiting_.begin()->first < time_ns) give_first();
   }
   void give_first() {
-    // a time beyond int64 is none of ROS': it is as late as can be
+    // Times beyond int64 are invalid in ROS; clamp them.
     const std::uint64_t time_ns = std::min<std::uint64_t>(waiting_.begin()->first, INT64_MAX);
     ros::Bytes bytes = std::move(waiting_.begin()->second);
     waiting_bytes_ -= bytes.size();
@@ -114,7 +114,7 @@ class TopicWalk {
   File& file_;
   std::set<std::uint16_t> channels_;
   const BagReader::Take& take_;
-  std::multimap<std::uint64_t, ros::Bytes> waiting_;  ///< of equal times in the order of the file
+  std::multimap<std::uint64_t, ros::Bytes> waiting_;  ///< equal times keep the order of the file
   std::uint64_t waiting_bytes_ = 0;
   std::map<std::uint16_t, std::uint64_t> counts_;
 };
@@ -167,7 +167,7 @@ class McapReader : public BagReader {
     return channel.schema_id == 0 ? none : file.schemas().at(channel.schema_id);
   }
 
-  /// By ROS 1's name; of what is no message of ROS with its encoding, which no type that is read has.
+  /// Returns ROS 1's type name, or the type with its encoding if it is not a ROS message, which no reader matches.
   static std::string type_of(const File& file, const Channel& channel) {
     const Schema& schema = schema_of(file, channel);
     if (is_cdr(channel, schema)) return ros1_type(schema.name);

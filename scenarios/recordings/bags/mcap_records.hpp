@@ -7,10 +7,9 @@
 #include <utility>
 #include <vector>
 
-/// Records of MCAP files (mcap.dev/spec, version 0), and the one list of each one's fields in the order of the
-/// specification: little-endian numbers, texts behind their length of 32 bits, lists and maps behind the length of all
-/// their bytes. A record is its kind (8 bits), the length of its content (64 bits) and its content; to bytes and back:
-/// mcap_bytes.hpp. Private to scenarios/recordings/bags.
+/// Records of MCAP files (mcap.dev/spec, version 0), each with one list of its fields in the specified order. Numbers
+/// are little-endian, texts have a 32-bit length prefix, lists and maps a prefix with their size in bytes. A record has
+/// its kind (8 bits), length (64 bits) and content. Encoding: mcap_bytes.hpp. Private to scenarios/recordings/bags.
 namespace tumble::scenarios::mcap {
 
 enum Op : std::uint8_t {
@@ -37,8 +36,8 @@ struct Header {
 };
 struct Footer {
   static constexpr Op op = kFooter;
-  std::uint64_t summary_start = 0, summary_offset_start = 0;  ///< 0: there is none
-  std::uint32_t summary_crc = 0;  ///< of all from the summary's start to this number; of every CRC here 0: not stated
+  std::uint64_t summary_start = 0, summary_offset_start = 0;  ///< 0: missing
+  std::uint32_t summary_crc = 0;  ///< of the bytes from the summary's start to this number; 0 for any CRC: not stated
 };
 struct Schema {
   static constexpr Op op = kSchema;
@@ -53,14 +52,14 @@ struct Channel {
   std::map<std::string, std::string> metadata;
   bool operator==(const Channel&) const = default;
 };
-/// What stands before the bytes of a message.
+/// Header of a message, before its bytes.
 struct Message {
   static constexpr Op op = kMessage;
   std::uint16_t channel_id = 0;
   std::uint32_t sequence = 0;
   std::uint64_t log_time = 0, publish_time = 0;
 };
-/// What stands before the records of a chunk.
+/// Header of a chunk, before its records.
 struct Chunk {
   static constexpr Op op = kChunk;
   std::uint64_t message_start_time = 0, message_end_time = 0, uncompressed_size = 0;
@@ -71,12 +70,12 @@ struct Chunk {
 struct MessageIndex {
   static constexpr Op op = kMessageIndex;
   std::uint16_t channel_id = 0;
-  std::vector<std::pair<std::uint64_t, std::uint64_t>> entries;  ///< log time, offset in the unpacked chunk
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> entries;  ///< log time, offset in the uncompressed chunk
 };
 struct ChunkIndex {
   static constexpr Op op = kChunkIndex;
   std::uint64_t message_start_time = 0, message_end_time = 0, chunk_start_offset = 0, chunk_length = 0;
-  std::map<std::uint16_t, std::uint64_t> message_index_offsets;  ///< in the file, by channel
+  std::map<std::uint16_t, std::uint64_t> message_index_offsets;  ///< file offsets by channel
   std::uint64_t message_index_length = 0;
   std::string compression;
   std::uint64_t compressed_size = 0, uncompressed_size = 0;
@@ -96,7 +95,7 @@ struct SummaryOffset {
 };
 struct DataEnd {
   static constexpr Op op = kDataEnd;
-  std::uint32_t data_section_crc = 0;  ///< of all before this record
+  std::uint32_t data_section_crc = 0;  ///< of all bytes before this record
 };
 
 template <class Archive>

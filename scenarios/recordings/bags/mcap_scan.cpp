@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Files without a summary, or with one that does not list everything: the data are gone through once.
+// Scans the data of files whose summary is missing or incomplete.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,10 +11,10 @@ namespace tumble::scenarios::mcap {
 namespace {
 
 constexpr std::uint64_t kRecordMax = 1u << 28;
-/// Records outside of chunks are kept together up to so many bytes.
+/// Largest segment of records outside chunks.
 constexpr std::uint64_t kSegmentBytes = 1u << 22;
 
-/// Widens the times of a segment.
+/// Extends the time range of a segment.
 void cover(Segment& segment, bool& empty, std::uint64_t time_ns) {
   segment.first_ns = empty ? time_ns : std::min(segment.first_ns, time_ns);
   segment.last_ns = empty ? time_ns : std::max(segment.last_ns, time_ns);
@@ -62,14 +62,14 @@ void File::scan() {
       loose->bytes = at + bytes - loose->at;
       if (op == kMessage) cover(*loose, empty, as<Message>(record, at).log_time);
     } else {
-      close();  // an index, an attachment, metadata, or what a later version knows
+      close();  // an index, attachment, metadata, or a record of a later version
     }
     at += bytes;
   }
   close();
 }
 
-/// The channels that a chunk brings, and when its messages were logged.
+/// Registers the channels in a chunk and the times of its messages.
 void File::scan_chunk(const ChunkIndex& index) {
   Segment segment{index.chunk_start_offset, index.chunk_length, 0, 0, index};
   bool empty = true;

@@ -20,14 +20,14 @@ namespace mcap {
 
 namespace {
 
-/// A chunk is closed once it holds so many bytes.
+/// Size at which a chunk is closed.
 constexpr std::size_t kChunkBytes = 1u << 20;
 
-/// The file in the making, and the checksum of all that it holds.
+/// The output file with a running checksum.
 class Output {
  public:
   explicit Output(const std::filesystem::path& path) : file_(path) { put(kMagic); }
-  /// Where it was put.
+  /// Appends bytes and returns their position.
   std::uint64_t put(std::string_view bytes) {
     file_.write(std::as_bytes(std::span(bytes.data(), bytes.size())));
     crc_ = crc32_of(bytes, crc_);
@@ -43,7 +43,7 @@ class Output {
   std::uint32_t crc_ = 0;
 };
 
-/// Records that are still to be packed, and where each channel's messages lie in them.
+/// Records not yet compressed, with each channel's message positions.
 struct OpenChunk {
   std::string records;
   std::map<std::uint16_t, MessageIndex> index;

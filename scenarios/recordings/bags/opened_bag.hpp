@@ -12,13 +12,13 @@
 /// Private to scenarios/recordings/bags.
 namespace tumble::scenarios {
 
-/// Where a message stands in a bag: its name for messages, and when it was recorded.
+/// Origin of a message: its location for error messages, and its record time.
 struct MessageOrigin {
   std::string where;
   std::int64_t record_ns;
 };
 
-/// A bag, its place for messages, and its topics.
+/// A bag, its location for error messages, and its topics.
 struct OpenedBag {
   BagReader& reader;
   std::string place;
@@ -35,7 +35,7 @@ struct OpenedBag {
                    (near.empty() ? "" : "; did you mean '" + near + "'?"));
   }
 
-  /// The topics named, which must be of a type that fits; all of such when none is named.
+  /// Returns the named topics, which must have a matching type; without names, all that match.
   std::vector<std::string> chosen(const std::vector<std::string>& names, bool (*fits)(const std::string& type),
                                   const std::string& wanted) const {
     std::vector<std::string> out = names;

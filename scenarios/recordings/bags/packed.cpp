@@ -17,11 +17,11 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// No LZ4 block gives more bytes for one.
+/// Largest compression ratio of an LZ4 block.
 constexpr std::uint64_t kRatioMax = 255;
 constexpr std::uint64_t kFirstRoom = 1u << 20;
 
-/// The output in the making: its room doubles up to what is promised.
+/// Growing output buffer; doubles up to the stated size.
 class Room {
  public:
   explicit Room(std::uint64_t promised) : promised_(promised), out_(std::min(promised, kFirstRoom), '\0') {}
@@ -56,7 +56,7 @@ std::string packed_lz4(std::string_view plain) {
   how.frameInfo.blockSizeID = LZ4F_max4MB;
   std::string out(LZ4F_compressFrameBound(plain.size(), &how), '\0');
   const std::size_t bytes = LZ4F_compressFrame(out.data(), out.size(), plain.data(), plain.size(), &how);
-  if (LZ4F_isError(bytes) != 0) throw std::bad_alloc();  // its room is enough: nothing else can go wrong
+  if (LZ4F_isError(bytes) != 0) throw std::bad_alloc();  // the buffer is large enough, so no other error is possible
   out.resize(bytes);
   return out;
 }

@@ -23,13 +23,13 @@ namespace {
 
 using std::filesystem::path;
 
-/// What comes out of so many bytes that were packed at most; of messages of sensors it is some tens of times.
+/// Upper bound of the decompressed size; sensor messages compress a few dozen times.
 constexpr std::uint64_t most_of(std::uint64_t packed_bytes) {
   constexpr std::uint64_t kAlways = 64u << 20, kBagRatioMax = 200;
   return kAlways + kBagRatioMax * packed_bytes;
 }
 
-/// What may come out of a file that is to be unpacked into a folder.
+/// Returns the size limit of a file decompressed to a folder.
 std::uint64_t most_bytes(const path& file, const path& folder) {
   constexpr std::uint64_t kLeftFree = 64u << 20;
   const std::uint64_t free = std::filesystem::space(folder).available;
@@ -67,7 +67,7 @@ void unpack(const path& file, const path& to) {
   if (!unpacked.flush()) fail("cannot be unpacked into " + to.parent_path().string());
 }
 
-/// A reader of files that are gone with it.
+/// A reader that removes its files when destroyed.
 class UnpackedFiles : public BagReader {
  public:
   UnpackedFiles(const std::vector<path>& files,
@@ -85,7 +85,7 @@ class UnpackedFiles : public BagReader {
 
  private:
   ScratchFolder folder_{"bag"};
-  std::unique_ptr<BagReader> bag_;  ///< gone before its files are
+  std::unique_ptr<BagReader> bag_;  ///< destroyed before its files
 };
 
 class UnpackedMessages : public BagReader {

@@ -8,19 +8,18 @@
 
 #include "scenarios/recordings/bags/bag_storage.hpp"
 
-/// ROS 2 bags that were packed by Zstandard while they were recorded. Private to scenarios/recordings/bags.
+/// ROS 2 bags with Zstandard compression. Private to scenarios/recordings/bags.
 namespace tumble::scenarios {
 
-/// Files of which each is one row of Zstandard frames ("bag_0.db3.zstd"): unpacked into a folder for temporary files,
-/// which is gone with the reader, also when a signal ends the program. `open` is given the unpacked ones. Throws
-/// BadInput with the file: damaged, truncated, more comes out than the disk holds or than 64 MiB and 200 times the
-/// file.
+/// Decompresses files of Zstandard frames ("bag_0.db3.zstd") to a temporary folder, which is removed with the reader,
+/// also when a signal ends the program. Calls `open` with the decompressed files. Throws BadInput with the file:
+/// damaged, truncated, not enough disk space, or an output above 64 MiB and 200 times the file.
 std::unique_ptr<BagReader> open_packed_files(
     const std::vector<std::filesystem::path>& files,
     const std::function<std::unique_ptr<BagReader>(const std::vector<std::filesystem::path>&)>& open);
 
-/// A bag of which each message is a Zstandard frame that states its size, 64 MiB and 200 times its own at most. Reading
-/// throws BadInput beginning with `place` of one that is damaged.
+/// Wraps a bag whose messages are Zstandard frames with a stated size, at most 64 MiB and 200 times the compressed
+/// size. Reading a damaged message throws BadInput, with a message that starts with `place`.
 std::unique_ptr<BagReader> with_packed_messages(std::unique_ptr<BagReader> bag, std::string place);
 
 }  // namespace tumble::scenarios

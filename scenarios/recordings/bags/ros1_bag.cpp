@@ -26,7 +26,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Bytes with what a bag says of their type, as the library takes messages.
+/// Bytes with type information, in the form that the library expects.
 struct TypedBytes {
   std::string type, md5sum, definition;
   ros::Bytes bytes;
@@ -36,7 +36,7 @@ struct TypedBytes {
 
 }  // namespace tumble::scenarios
 
-// what the library asks of a message
+// Traits that the library requires of a message.
 namespace ros {
 using tumble::scenarios::TypedBytes;
 namespace message_traits {
@@ -71,7 +71,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// While one lives, the library prints nothing.
+/// Suppresses the library's messages during its lifetime.
 class QuietBag {
  public:
   QuietBag() { console_bridge::noOutputHandler(); }
@@ -85,7 +85,7 @@ std::string without_line_ends(std::string text) {
   return text;
 }
 
-/// Runs what the library may throw in.
+/// Converts the library's exceptions.
 template <class Call>
 auto guarded(const std::filesystem::path& path, const char* what, Call&& call) {
   const QuietBag quiet;
@@ -114,7 +114,7 @@ TypedBytes typed(const ros::PointCloud2& message) {
 TypedBytes typed(const ros::Odometry& message) {
   return typed_as<nav_msgs::Odometry>(message);
 }
-// the headers of these three are no part of what the tree is built with; the sums are those of their definitions
+// The build does not include these three headers; the sums are those of their definitions.
 TypedBytes typed(const ros::TFMessage& message) {
   const std::string inner = ::ros::message_traits::Definition<geometry_msgs::TransformStamped>::value();
   return {ros::type_of(message), "94810edda583a504dfda3829e70d7eec",
@@ -156,7 +156,7 @@ class Ros1BagWriter : public BagWriter {
   }
 
  private:
-  /// Of a latched topic, whose last message every later listener is given; null: as the library makes it.
+  /// Connection header of a latched topic, whose last message is sent to late listeners; null: the library's default.
   boost::shared_ptr<::ros::M_string> connection_of(const std::string& topic, const TypedBytes& message) {
     if (topic != "/tf_static") return nullptr;
     return boost::make_shared<::ros::M_string>(::ros::M_string{{"topic", topic},
@@ -176,8 +176,8 @@ class Ros1BagWriter : public BagWriter {
     }
   }
 
-  /// The library's destructor closes what is open, and closing writes: on a full disk it throws there, where nothing
-  /// catches it. A bag that is given up and whose close fails is left to the end of the process.
+  /// Abandons a bag after an error. The library's destructor closes the file and writes, which throws on a full disk
+  /// where nothing catches it. If closing fails here, the object is leaked until the process ends.
   void give_up() {
     if (!bag_) return;
     const QuietBag quiet;
@@ -237,7 +237,7 @@ class Ros1BagReader : public BagReader {
   void open_unpacked() {
     const std::filesystem::path folder = std::filesystem::temp_directory_path();
     require_room(folder);
-    // unlinked as soon as it is open: gone with the reader, however that ends, and before that with the program
+    // Unlinked once open: disappears with the reader or the process; before that, removed on signals.
     const OutputFile unpacked(folder / "tumble_unpacked.bag");
     copy_ros1_bag(file_, unpacked.unfinished(), [](Ros1Chunk& chunk) {
       if (chunk.compression == "lz4") unpack_lz4(chunk);
@@ -251,7 +251,7 @@ class Ros1BagReader : public BagReader {
     open(unpacked.unfinished());
   }
 
-  /// A disk that fills up is everybody's trouble: it is looked at first.
+  /// Check the free space first, because a full disk affects other programs.
   void require_room(const std::filesystem::path& folder) const {
     const std::uint64_t needed = bytes_unpacked(file_), free = std::filesystem::space(folder).available;
     if (needed <= free) return;

@@ -21,7 +21,7 @@ namespace {
 constexpr std::string_view kMagic = "#ROSBAG V2.0\n";
 constexpr std::uint32_t kRecordHeaderMax = 1u << 20, kChunkMax = 1u << 30;
 
-/// One record: its header's fields, and where its data lie.
+/// One record: header fields, and the position of its data.
 struct CheckedRecord {
   std::uint64_t at = 0, data_at = 0;
   std::uint32_t data_bytes = 0;
@@ -29,7 +29,7 @@ struct CheckedRecord {
   std::uint64_t end() const { return data_at + data_bytes; }
 };
 
-/// A file that is asked for segments of itself; nothing beyond its end is read.
+/// Reads ranges of a file with bounds checks.
 class Walk {
  public:
   explicit Walk(const std::filesystem::path& path) : path_(path), stream_(open_regular_file(path)) {
@@ -73,7 +73,7 @@ class Walk {
     return out;
   }
 
-  /// The length that stands at `at`, of something that must end before `end`.
+  /// Returns the length stored at `at`, of an item that must end before `end`.
   std::uint32_t length(std::uint64_t at, std::uint64_t end, const char* what, std::uint32_t most) {
     if (end - at < sizeof(std::uint32_t))
       fail(at, fmt::format("the file ends within the length of {}; the bag may be truncated", what));
@@ -87,7 +87,7 @@ class Walk {
     return value;
   }
 
-  /// Those of the header of the record at `at`.
+  /// Parses the header of the record at `at`.
   std::map<std::string, std::string> fields(std::uint64_t at, const std::string& bytes) const {
     std::map<std::string, std::string> out;
     for (std::size_t place = 0; place < bytes.size();) {
@@ -127,7 +127,7 @@ class Walk {
 
   std::uint8_t op(const CheckedRecord& record) const { return number<std::uint8_t>(record, "op"); }
 
-  /// Takes note of a record of the file and checks what it says of others.
+  /// Registers a record and checks its references to others.
   void step(const CheckedRecord& record) {
     switch (op(record)) {
       case ros1::kChunk:
@@ -152,7 +152,7 @@ class Walk {
     connections_.insert(number<std::uint32_t>(record, "conn"));
     if (!record.fields.contains("topic")) fail(record.at, "a connection has no topic");
     if (record.data_bytes > kRecordHeaderMax) fail(record.at, "a connection record is larger than 1 MiB");
-    fields(record.at, text(record.data_at, record.data_bytes));  // what it says of its type is a header too
+    fields(record.at, text(record.data_at, record.data_bytes));  // type information is also a header
   }
 
   void chunk(const CheckedRecord& record) {
@@ -199,7 +199,7 @@ class Walk {
     return count;
   }
 
-  /// Offsets of messages in the chunk before.
+  /// Checks the message offsets in the preceding chunk.
   void index(const CheckedRecord& record) {
     constexpr std::uint32_t kEntry = 12, kPlace = 8;
     if (chunks_.empty()) fail(record.at, "an index comes before any chunk");
@@ -218,9 +218,9 @@ class Walk {
   std::ifstream stream_;
   std::uint64_t bytes_ = 0;
   std::set<std::uint64_t> chunks_;
-  std::map<std::uint64_t, std::uint64_t> infos_;  ///< place of the record, chunk that it names
+  std::map<std::uint64_t, std::uint64_t> infos_;  ///< position of the record, chunk that it refers to
   std::set<std::uint32_t> connections_;
-  std::optional<std::set<std::uint64_t>> messages_;  ///< offsets in the chunk before; nothing of a compressed one
+  std::optional<std::set<std::uint64_t>> messages_;  ///< message offsets in the preceding chunk; empty if compressed
   std::uint32_t chunk_bytes_ = 0;
 };
 

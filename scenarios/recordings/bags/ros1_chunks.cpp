@@ -16,13 +16,13 @@ namespace {
 
 constexpr std::uint64_t kMagicBytes = 13;  // "#ROSBAG V2.0\n"
 
-/// One record. Its header is kept as it stands, so that fields can be changed in their place.
+/// One record. Its header is kept as bytes, so that fields can be changed in place.
 struct RawRecord {
   std::uint64_t at = 0;
   std::string header;
   std::uint32_t data_bytes = 0;
 
-  /// Place of a field's value in the header and its length; nothing where there is no such field.
+  /// Returns offset and length of a field's value in the header; empty if missing.
   std::optional<std::pair<std::size_t, std::size_t>> find(const std::string& name) const {
     for (std::size_t place = 0; place + 4 <= header.size();) {
       std::uint32_t size = 0;
@@ -63,7 +63,7 @@ std::string bytes_of(Number value) {
   return {reinterpret_cast<const char*>(&value), sizeof(value)};
 }
 
-/// Walks the records of a bag whose lengths are known to fit.
+/// Iterates over the records of a bag whose lengths were checked.
 class Records {
  public:
   explicit Records(const std::filesystem::path& path) : path_(path), stream_(path, std::ios::binary) {
@@ -112,7 +112,7 @@ class Records {
   std::string magic_;
 };
 
-/// The copy in the making.
+/// The new bag.
 class Copy {
  public:
   explicit Copy(const std::filesystem::path& path) : path_(path), stream_(path, std::ios::binary) {}
@@ -147,7 +147,7 @@ std::string changed_chunk(RawRecord& record, std::string data, const std::functi
   Ros1Chunk chunk{record.text("compression"), record.number<std::uint32_t>("size"), std::move(data)};
   change(chunk);
   record.header.clear();
-  // in the order in which ROS writes them
+  // the order of ROS
   append_field(record.header, "compression=" + chunk.compression);
   append_field(record.header, "op=" + std::string(1, static_cast<char>(ros1::kChunk)));
   append_field(record.header, "size=" + bytes_of(chunk.unpacked_bytes));
@@ -179,7 +179,7 @@ void copy_ros1_bag(const std::filesystem::path& from, const std::filesystem::pat
   Records records(from);
   Copy copy(to);
   copy.put(records.magic());
-  std::map<std::uint64_t, std::uint64_t> places;  // of records, before and after
+  std::map<std::uint64_t, std::uint64_t> places;  // record positions, old and new
   std::optional<RawRecord> first;
   std::uint64_t first_at = 0;
   for (RawRecord record; records.next(record);) {

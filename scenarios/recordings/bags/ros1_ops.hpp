@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-/// What a record of a ROS 1 bag is: the field "op" of its header. Private to scenarios/recordings/bags.
+/// Kinds of records in a ROS 1 bag: the header field "op". Private to scenarios/recordings/bags.
 namespace tumble::scenarios::ros1 {
 
 enum Op : std::uint8_t { kMessage = 2, kFile = 3, kIndex = 4, kChunk = 5, kChunkInfo = 6, kConnection = 7 };

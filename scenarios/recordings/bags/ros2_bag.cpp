@@ -94,7 +94,7 @@ class Ros2BagWriter : public BagWriter {
     }
   }
 
-  /// The number of a topic, which is entered when it is new.
+  /// Returns the id of a topic; registers it if new.
   std::int64_t number_of(const BagTopic& topic) {
     const std::size_t known = summary_.topics.size();
     const std::size_t place = summary_.place_of(topic);
@@ -110,7 +110,7 @@ class Ros2BagWriter : public BagWriter {
     return static_cast<std::int64_t>(place) + 1;
   }
 
-  /// Readers without ROS know from it what a message holds. Its hash may be empty, which is not held against it.
+  /// Stores the message definition for readers without ROS. The type hash may be empty; readers accept this.
   void define(const std::string& type) {
     SQLite::Statement statement(
         *database_,
@@ -142,18 +142,17 @@ class Ros2BagWriter : public BagWriter {
   std::unique_ptr<SQLite::Database> database_;
   std::unique_ptr<SQLite::Statement> insert_;
   Ros2Summary summary_;
-  std::set<std::string> defined_;  ///< types
+  std::set<std::string> defined_;  ///< types already defined
 };
 
-/// The files of a bag, in order, and how they are stored: "sqlite3" or "mcap", and what of it is packed: "", "file" or
-/// "message".
+/// The files of a bag in order, their storage ("sqlite3" or "mcap"), and compression: "", "file" or "message".
 struct StoredBag {
   std::string kind = "sqlite3";
   std::vector<path> files;
   std::string packed = {};
 };
 
-/// What of a bag is packed, by its metadata.
+/// Returns the bag's compression from its metadata.
 std::string packed_by(const YAML::Node& root, const path& metadata) {
   const auto text = [&](const char* key) {
     std::string out = root[key] ? root[key].as<std::string>("") : "";
@@ -185,7 +184,7 @@ StoredBag storage_of(const path& bag) {
       fail_at(metadata, fmt::format("the storage is '{}', must be sqlite3 or mcap", out.kind));
     out.packed = packed_by(root, metadata);
     for (const YAML::Node& each : root["relative_file_paths"]) {
-      const path name = path(each.as<std::string>()).filename();  // nothing leads out of the folder
+      const path name = path(each.as<std::string>()).filename();  // only files within the folder
       out.files.push_back(bag / name);
     }
   } catch (const YAML::Exception& error) {

@@ -11,7 +11,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Fields of ROS 2's common interfaces, type and name a line (github.com/ros2/common_interfaces, rcl_interfaces).
+/// Fields of ROS 2's common interfaces, one type and name per line (github.com/ros2/common_interfaces, rcl_interfaces).
 const std::map<std::string, std::string>& definitions() {
   static const std::map<std::string, std::string> all = {
       {"builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n"},
@@ -50,7 +50,7 @@ const std::map<std::string, std::string>& definitions() {
   return all;
 }
 
-/// Appends the definitions of the messages that `text` is made of, each once, the outer before the inner.
+/// Appends the definitions of all messages nested in `text`, each once, outer before inner.
 void append_inner(const std::string& text, std::set<std::string>& there, std::string& out) {
   std::istringstream words(text);
   for (std::string word; words >> word;) {

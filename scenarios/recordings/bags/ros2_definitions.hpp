@@ -3,19 +3,19 @@
 
 #include <string>
 
-/// What ROS 2 says of its messages where a bag keeps it. Private to scenarios/recordings/bags.
+/// Message definitions and types stored in ROS 2 bags. Private to scenarios/recordings/bags.
 namespace tumble::scenarios {
 
-/// "sensor_msgs/Imu" as ROS 2 calls it, "sensor_msgs/msg/Imu", and back.
+/// Converts "sensor_msgs/Imu" to ROS 2's "sensor_msgs/msg/Imu" and back.
 std::string ros2_type(const std::string& type);
 std::string ros1_type(std::string type);
 
-/// The definition of a message by ROS 1's name, with those of the messages inside of it, as rosbag2 stores them
-/// (encoding "ros2msg"). Throws std::logic_error for a message that is not written here.
+/// Returns the definition of a message (by ROS 1's name) with its nested messages, as rosbag2 stores them (encoding
+/// "ros2msg"). Throws std::logic_error for messages that are never written.
 std::string ros2_definition(const std::string& type);
 
-/// The quality of service under which a topic is offered again, in the YAML of rosbag2's metadata: of /tf_static kept
-/// for listeners that come late; empty for others, which means the default.
+/// Returns a topic's quality of service in the YAML of rosbag2's metadata: transient for /tf_static, for late
+/// listeners; else empty (default).
 std::string ros2_qos(const std::string& topic);
 
 }  // namespace tumble::scenarios

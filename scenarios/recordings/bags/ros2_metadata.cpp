@@ -12,7 +12,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// A folder with one MCAP file in it, as rosbag2 writes them.
+/// Writes a folder with one MCAP file, like rosbag2.
 class Ros2McapWriter : public BagWriter {
  public:
   explicit Ros2McapWriter(const std::filesystem::path& folder) : output_(folder) {
@@ -37,7 +37,7 @@ class Ros2McapWriter : public BagWriter {
  private:
   OutputFolder output_;
   Ros2Summary summary_;
-  std::unique_ptr<BagWriter> file_;  ///< gone before the folder is
+  std::unique_ptr<BagWriter> file_;  ///< destroyed before the folder
 };
 
 }  // namespace

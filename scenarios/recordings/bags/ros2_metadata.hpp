@@ -9,24 +9,24 @@
 
 namespace tumble::scenarios {
 
-/// What the metadata.yaml of a ROS 2 bag says of it. Private to scenarios/recordings/bags.
+/// Content of a ROS 2 bag's metadata.yaml. Private to scenarios/recordings/bags.
 struct Ros2Summary {
   struct Topic {
     BagTopic topic;
     std::int64_t messages = 0;
   };
   std::string storage;  ///< "sqlite3" or "mcap"
-  std::string file;     ///< its name in the folder
+  std::string file;     ///< file name in the folder
   std::vector<Topic> topics = {};
-  std::int64_t first_ns = 0, last_ns = 0;  ///< of the messages' stamps
+  std::int64_t first_ns = 0, last_ns = 0;  ///< range of the messages' stamps
 
-  /// Of a topic, the last one when it is new.
+  /// Returns the index of a topic; appends it if new.
   std::size_t place_of(const BagTopic& topic);
-  /// Takes note of a message.
+  /// Counts a message.
   void count(const BagTopic& topic, std::int64_t stamp_ns);
 };
 
-/// The text of metadata.yaml, version 5.
+/// Returns the text of metadata.yaml, version 5.
 std::string ros2_metadata(const Ros2Summary& bag);
 
 }  // namespace tumble::scenarios

@@ -11,11 +11,10 @@
 #include "scenarios/recordings/bags/ros1_archives.hpp"
 #include "scenarios/recordings/bags/ros_fields.hpp"
 
-/// Messages to and from bytes: ROS 1's plain little-endian layout, and ROS 2's CDR. Private to
-/// scenarios/recordings/bags.
+/// Encodes and decodes messages: ROS 1's little-endian layout and ROS 2's CDR. Private to scenarios/recordings/bags.
 namespace tumble::scenarios::ros {
 
-/// The bytes of a message, and back. The readers throw BadMessage.
+/// Encode and decode a message. Decoding throws BadMessage.
 template <class Message>
 Bytes to_ros1(Message message) {
   Ros1Writer writer;
@@ -46,7 +45,7 @@ Message from_cdr(Bytes& bytes) {
   try {
     CdrReader reader(bytes);
     fields(reader, message);
-  } catch (const eprosima::fastcdr::exception::Exception&) {  // "not enough memory", for want of bytes
+  } catch (const eprosima::fastcdr::exception::Exception&) {  // thrown for truncated input
     throw BadMessage("the message has " + std::to_string(bytes.size()) +
                      " bytes; this does not fit its fields, or the type is wrong");
   }

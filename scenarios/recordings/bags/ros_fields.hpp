@@ -7,12 +7,14 @@
 
 #include "scenarios/recordings/bags/ros_messages.hpp"
 
-/// The one list of the messages' fields in the order of their definitions. ROS 1 and ROS 2 lay out the same fields
-/// differently: ros_bytes.hpp has the archives that visit them. Private to scenarios/recordings/bags.
+/// The single list of the messages' fields in the order of their definitions. ROS 1 and ROS 2 encode the same fields
+/// differently, by the archives in ros_bytes.hpp. Private to scenarios/recordings/bags.
 ///
-/// An archive has: operator()(uint8 | uint32 | uint64 | float | text | array of doubles), ros1_only(uint32) for the
-/// field that ROS 2 gave up, count(entries there are, least bytes of one) for the length before a list (a reader
-/// returns the length that it finds), and raw(first byte, bytes).
+/// An archive has:
+/// - operator()(uint8 | uint32 | uint64 | float | text | array of doubles);
+/// - ros1_only(uint32), for a field that ROS 2 removed;
+/// - count(number of entries, minimum bytes of one), for the length before a list; a reader returns the stored length;
+/// - raw(first byte, bytes).
 namespace tumble::scenarios::ros {
 
 template <class Archive, class Entry, class Fields>

@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-/// The messages that a recording becomes in a bag; their fields: ros_fields.hpp. Private to scenarios/recordings/bags.
+/// Messages of an exported recording; their fields: ros_fields.hpp. Private to scenarios/recordings/bags.
 namespace tumble::scenarios::ros {
 
 struct Header {
@@ -19,7 +19,7 @@ struct Header {
 struct Imu {
   Header header;
   std::array<double, 4> orientation_xyzw = {0, 0, 0, 1};
-  std::array<double, 9> orientation_covariance = {-1};  ///< -1 first: there is no attitude
+  std::array<double, 9> orientation_covariance = {-1};  ///< -1 first: no attitude
   std::array<double, 3> angular_velocity = {};
   std::array<double, 9> angular_velocity_covariance = {};
   std::array<double, 3> linear_acceleration = {};
@@ -92,7 +92,7 @@ struct LivoxCustomMsg {
   std::vector<LivoxPoint> points;
 };
 
-/// What a recording is written as. Types by ROS 1's names.
+/// Messages used for writing. Types have ROS 1's names.
 using Message = std::variant<Imu, PointCloud2, Odometry, TFMessage, Clock, LivoxCustomMsg>;
 inline const char* type_of(const Imu&) {
   return "sensor_msgs/Imu";
@@ -109,7 +109,7 @@ inline const char* type_of(const TFMessage&) {
 inline const char* type_of(const Clock&) {
   return "rosgraph_msgs/Clock";
 }
-/// As the driver for ROS 2 calls it; bags of ROS 1 have kLivoxRos1.
+/// Name in the driver for ROS 2; ROS 1 bags use kLivoxRos1.
 inline const char* type_of(const LivoxCustomMsg&) {
   return "livox_ros_driver2/CustomMsg";
 }

@@ -48,7 +48,7 @@ void SensorPlaces::place(const std::string& topic, const std::string& frame, con
 
 void SensorPlaces::place_in_body(const std::string& topic, const Eigen::Isometry3d& stated, Eigen::Isometry3d& T_BA,
                                  std::vector<std::string>& notes) const {
-  constexpr double kSame = 1e-3;  // m and, nearly, rad
+  constexpr double kSame = 1e-3;  // m, and approximately rad
   const std::string body = frames_.body();
   if (!is_given(T_BA)) {
     T_BA = stated;
@@ -62,7 +62,7 @@ void SensorPlaces::place_in_body(const std::string& topic, const Eigen::Isometry
 
 const SensorPlaces::Placed* SensorPlaces::neighbour(const std::string& frame) const {
   for (const Placed& each : placed_) {
-    // drivers give all sensors of a device one frame, which ties nothing
+    // drivers give all sensors of a device one frame, which relates no two frames
     if (each.frame != frame && frames_.pose(each.frame, frame, where_)) return &each;
   }
   return nullptr;

@@ -10,22 +10,21 @@
 
 namespace tumble::scenarios {
 
-/// Where a bag's sensors stand on the body, one after the other: by /tf_static, or by who imports it. Private to
-/// scenarios/recordings/bags.
+/// Mountings of a bag's sensors on the body, from /tf_static or from the user. Private to scenarios/recordings/bags.
 class SensorPlaces {
  public:
-  /// `where` is the topic's place for messages.
+  /// `where` is the topic's location for messages.
   SensorPlaces(StaticFrames frames, std::string where) : frames_(std::move(frames)), where_(std::move(where)) {}
 
-  /// Gives T_BA, unless somebody else has (it is not the identity): then both are shown where they differ. In the
-  /// body's frame, where the bag has one of its name; else beside the first sensor before it that is tied to it. Where
-  /// nobody has said it, that is noted with the option that says it.
+  /// Sets T_BA, unless the user has (it is not the identity); then only differences are reported. Uses the body's frame
+  /// if the bag has one, else the first earlier sensor with a transform to this one. If nothing is known, notes the
+  /// option that sets the mounting.
   void place(const std::string& topic, const std::string& frame, const char* option, Eigen::Isometry3d& T_BA,
              std::vector<std::string>& notes);
 
-  /// Of a sensor's frame, or one that is tied to the body; nothing of others.
+  /// Returns the mounting of a frame that is connected to the body; empty for others.
   std::optional<Eigen::Isometry3d> of(const std::string& frame) const;
-  /// The body's frame, "" where none has one of its names.
+  /// Returns the body's frame; "" if the bag has none.
   std::string body() const { return frames_.body(); }
 
  private:
@@ -35,7 +34,7 @@ class SensorPlaces {
   };
   void place_in_body(const std::string& topic, const Eigen::Isometry3d& stated, Eigen::Isometry3d& T_BA,
                      std::vector<std::string>& notes) const;
-  /// The first that was placed and is tied to the frame by /tf_static.
+  /// Returns the first earlier sensor connected to the frame by /tf_static.
   const Placed* neighbour(const std::string& frame) const;
 
   StaticFrames frames_;

@@ -11,39 +11,38 @@
 
 namespace tumble::scenarios {
 
-/// ROS 1 wrote "/imu" for what is called "imu" now.
+/// Removes the leading slash of ROS 1's frame names.
 std::string without_slash(const std::string& frame);
 
-/// Where frames stand to each other, as messages on /tf_static say: each hangs on one parent. Private to
-/// scenarios/recordings/bags.
+/// Tree of frames from /tf_static; each frame has one parent. Private to scenarios/recordings/bags.
 class StaticFrames {
  public:
-  /// Takes a transform; of a frame that is stated again the last one holds, and where it hung on another before, that
-  /// is told (`remarks`). One that makes no sense (not finite, beyond 1 km, a quaternion whose norm is not 1 within a
-  /// percent, a frame that hangs on itself) is told with `where`, and refused when something asks for it: bags hold
-  /// frames of the Earth, and of what has nothing to do with the sensors.
+  /// Adds a transform. For a repeated frame the last transform is used; a changed parent is noted (`remarks`). An
+  /// invalid transform is noted with `where` and throws only if used, because bags contain frames unrelated to the
+  /// sensors. Invalid are: non-finite values, more than 1 km, a quaternion norm off by more than 1 %, a frame that is
+  /// its own parent.
   void add(const ros::TransformStamped& transform, const std::string& where);
 
-  /// Throws BadInput beginning with `where` when frames hang on each other in a ring.
+  /// Throws BadInput, with a message that starts with `where`, if the frames have a cycle.
   void require_no_ring(const std::string& where) const;
 
   const std::vector<std::string>& remarks() const { return remarks_; }
 
-  /// The frame that is taken for the body's: "body", else "base_link", else none.
+  /// Returns the body's frame: "body", else "base_link", else "".
   std::string body() const;
 
-  /// T_AB of two frames that hang on the same one, or one on the other; nothing where they do not. Throws BadInput when
-  /// a transform between them makes no sense, and beginning with `where` when frames hang on each other in a ring.
+  /// Returns T_AB of two connected frames, else empty. Throws BadInput if a transform between them is invalid, or if the
+  /// frames have a cycle (message starts with `where`).
   std::optional<Eigen::Isometry3d> pose(const std::string& frame_A, const std::string& frame_B,
                                         const std::string& where) const;
 
  private:
   struct Hung {
     std::string parent;
-    Eigen::Isometry3d T_parent;  ///< takes coordinates of the frame to its parent's
-    std::string problem;         ///< why it makes no sense, "" where it does
+    Eigen::Isometry3d T_parent;  ///< transforms coordinates of the frame to its parent
+    std::string problem;         ///< why the transform is invalid; "" if valid
   };
-  /// The frame and all that it hangs on, upwards, each with the frame's pose there.
+  /// Returns the frame and all its ancestors, each with the frame's pose in it.
   std::vector<Hung> way_up(const std::string& frame, const std::string& where) const;
   std::map<std::string, Hung> frames_;
   std::vector<std::string> remarks_;

@@ -6,13 +6,17 @@
 #include <pcl/PCLPointCloud2.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cstring>
 #include <fstream>
+#include <sstream>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/recordings/clouds/bin_layout.hpp"
 #include "scenarios/recordings/clouds/pcl_reader.hpp"
 #include "scenarios/recordings/clouds/vtk_file.hpp"
 #include "scenarios/regular_file.hpp"
@@ -20,9 +24,6 @@
 namespace tumble::scenarios {
 
 namespace {
-
-/// KITTI's .bin: x y z intensity.
-constexpr std::size_t kKittiColumns = 4;
 
 template <class Number>
 void take_column(const pcl::PCLPointCloud2& cloud, std::size_t offset, std::vector<double>& out) {
@@ -34,7 +35,7 @@ void take_column(const pcl::PCLPointCloud2& cloud, std::size_t offset, std::vect
   }
 }
 
-/// False for a type that is no number.
+/// Returns false for a type that is not a number.
 bool take_field(const pcl::PCLPointCloud2& cloud, const pcl::PCLPointField& field, std::vector<double>& out) {
   using Field = pcl::PCLPointField;
   switch (field.datatype) {
@@ -73,7 +74,7 @@ Cloud to_columns(const pcl::PCLPointCloud2& cloud, std::size_t points) {
   out.points = points;
   for (const pcl::PCLPointField& field : cloud.fields) {
     std::vector<double> column(points);
-    // several numbers in one field, and bytes without meaning ("_"), are nothing that a sweep knows
+    // skip fields of several numbers and padding ("_")
     if (field.count > 1 || field.name == "_" || !take_field(cloud, field, column)) continue;
     out.names.push_back(plain_name(field.name));
     out.columns.push_back(std::move(column));
@@ -81,7 +82,7 @@ Cloud to_columns(const pcl::PCLPointCloud2& cloud, std::size_t points) {
   return out;
 }
 
-/// Whether a word is a number and nothing else: "nan" and "inf" are, "0,5" and "x" are not.
+/// Returns true if the whole word is a number: "nan" and "inf" are, "0,5" and "x" are not.
 bool is_number_of_pcl(std::string_view word) {
   if (word.starts_with('+')) word.remove_prefix(1);
   double value = 0.0;
@@ -89,8 +90,8 @@ bool is_number_of_pcl(std::string_view word) {
   return error != std::errc::invalid_argument && end == word.data() + word.size();
 }
 
-/// The library reads a word up to where it stops being a number, and 0 or NaN where it is none: the words of a file
-/// written as text are held to be numbers, as many in a line as the header says.
+/// Checks that all words of a text file are numbers, as many per line as the header states. The library silently reads
+/// a prefix, or 0 or NaN.
 void require_numbers(const std::filesystem::path& path, const CloudHeader& header) {
   std::ifstream stream(path, std::ios::binary);
   std::string text(static_cast<std::size_t>(header.header_bytes), '\0');
@@ -134,24 +135,73 @@ Cloud read_points(const std::filesystem::path& path, const CloudHeader& header, 
   return out;
 }
 
-Cloud read_kitti(const std::filesystem::path& path) {
+/// Types of a .bin file's columns, as NumPy writes them.
+constexpr std::array<std::pair<const char*, std::uint8_t>, 10> kBinTypes = {{{"f4", pcl::PCLPointField::FLOAT32},
+                                                                             {"f8", pcl::PCLPointField::FLOAT64},
+                                                                             {"u1", pcl::PCLPointField::UINT8},
+                                                                             {"u2", pcl::PCLPointField::UINT16},
+                                                                             {"u4", pcl::PCLPointField::UINT32},
+                                                                             {"u8", pcl::PCLPointField::UINT64},
+                                                                             {"i1", pcl::PCLPointField::INT8},
+                                                                             {"i2", pcl::PCLPointField::INT16},
+                                                                             {"i4", pcl::PCLPointField::INT32},
+                                                                             {"i8", pcl::PCLPointField::INT64}}};
+
+/// One "NAME" or "NAME:TYPE", behind the fields before it.
+void add_bin_column(const std::string& text, pcl::PCLPointCloud2& cloud) {
+  const std::size_t colon = text.find(':');
+  const std::string type = colon == std::string::npos ? "f4" : text.substr(colon + 1);
+  const auto known = std::ranges::find_if(kBinTypes, [&](const auto& each) { return type == each.first; });
+  if (known == kBinTypes.end())
+    throw BadInput("columns of a .bin file: type '" + type + "', must be f4, f8, u1, u2, u4, u8, i1, i2, i4 or i8");
+  pcl::PCLPointField field;
+  field.name = text.substr(0, colon);
+  field.offset = cloud.point_step;
+  field.datatype = known->second;
+  field.count = 1;
+  const auto same = [&](const pcl::PCLPointField& other) { return other.name == field.name && field.name != "_"; };
+  if (field.name.empty() || std::ranges::any_of(cloud.fields, same))
+    throw BadInput("columns of a .bin file: name '" + field.name + "' is empty or stands twice");
+  cloud.point_step += static_cast<std::uint32_t>(type.back() - '0');
+  cloud.fields.push_back(field);
+}
+
+/// The points' fields, without a point.
+pcl::PCLPointCloud2 bin_fields(const std::string& columns) {
+  pcl::PCLPointCloud2 cloud;
+  std::istringstream stream(columns + ",");
+  for (std::string column; std::getline(stream, column, ',');) add_bin_column(column, cloud);
+  for (const char* needed : {"x", "y", "z"}) {
+    if (std::ranges::none_of(cloud.fields, [&](const auto& field) { return field.name == needed; }))
+      throw BadInput("columns of a .bin file: '" + columns + "' lacks " + needed);
+  }
+  return cloud;
+}
+
+constexpr const char* kColumnsHint =
+    " (--bin-columns names the columns in order, as x,y,z,intensity,ring, or x:f8,y:f8,z:f8,intensity:f8 of doubles)";
+
+Cloud read_bin(const std::filesystem::path& path, const std::string& columns) {
+  pcl::PCLPointCloud2 cloud = bin_fields(columns.empty() ? "x,y,z,intensity" : columns);
   std::ifstream stream = open_regular_file(path);
   const std::uint64_t bytes = std::filesystem::file_size(path);
-  constexpr std::uint64_t kPointBytes = kKittiColumns * sizeof(float);
-  if (bytes % kPointBytes != 0) {
-    throw BadInput(fmt::format(
-        "{}: has {} bytes; the size must be a multiple of 16 (float32 x y z intensity), so the file may be truncated",
-        path.string(), bytes));
+  if (bytes / cloud.point_step > kCloudPointsMax) {
+    throw BadInput(path.string() + ": has " + std::to_string(bytes / cloud.point_step) + " points, at most " +
+                   std::to_string(kCloudPointsMax) + " are read from a file");
   }
-  std::vector<float> numbers(bytes / sizeof(float));
-  stream.read(reinterpret_cast<char*>(numbers.data()), static_cast<std::streamsize>(bytes));
+  cloud.data.resize(bytes);
+  stream.read(reinterpret_cast<char*>(cloud.data.data()), static_cast<std::streamsize>(bytes));
   if (static_cast<std::uint64_t>(stream.gcount()) != bytes) throw BadInput(path.string() + ": cannot be read");
-  Cloud out;
-  out.points = bytes / kPointBytes;
-  out.names = {"x", "y", "z", "intensity"};
-  out.columns.assign(kKittiColumns, std::vector<double>(out.points));
-  for (std::size_t i = 0; i < numbers.size(); ++i) out.columns[i % kKittiColumns][i / kKittiColumns] = numbers[i];
-  return out;
+  if (columns.empty()) {
+    const std::string contradiction =
+        contradiction_to_kitti({reinterpret_cast<const char*>(cloud.data.data()), cloud.data.size()});
+    if (!contradiction.empty()) throw BadInput(path.string() + ": " + contradiction + kColumnsHint);
+  }
+  if (bytes % cloud.point_step != 0) {
+    throw BadInput(path.string() + ": has " + std::to_string(bytes) + " bytes, must be a multiple of " +
+                   std::to_string(cloud.point_step) + " (" + columns + "): truncated, or other columns?");
+  }
+  return to_columns(cloud, bytes / cloud.point_step);
 }
 
 }  // namespace
@@ -161,11 +211,11 @@ const std::vector<double>* Cloud::find(const std::string& name) const {
   return found == names.end() ? nullptr : &columns[static_cast<std::size_t>(found - names.begin())];
 }
 
-Cloud read_cloud(const std::filesystem::path& path) {
+Cloud read_cloud(const std::filesystem::path& path, const std::string& bin_columns) {
   const std::string ending = path.extension().string();
   if (ending == ".ply") return read_points(path, read_ply_header(path), PclFormat::ply);
   if (ending == ".pcd") return read_points(path, read_pcd_header(path), PclFormat::pcd);
-  if (ending == ".bin") return read_kitti(path);
+  if (ending == ".bin") return read_bin(path, bin_columns);
   if (ending == ".vtk") return read_vtk(path);
   throw BadInput(path.string() + ": the file name must end in .ply, .pcd, .vtk or .bin");
 }

@@ -8,38 +8,43 @@
 
 namespace tumble::scenarios {
 
-/// Points as a file or a message holds them: named columns of numbers, none of them interpreted. A 64 bit integer keeps
-/// the 53 leading bits: stamps since the epoch in nanoseconds come to within 256 ns.
+/// Points of a file or message as uninterpreted named columns. A 64-bit integer keeps its 53 leading bits: stamps since
+/// 1970 in nanoseconds are accurate to 256 ns.
 struct Cloud {
-  std::vector<std::string> names;            ///< as written, but for a prefix "scalar_", which CloudCompare adds
+  std::vector<std::string> names;            ///< as written, without CloudCompare's prefix "scalar_"
   std::vector<std::vector<double>> columns;  ///< parallel to `names`, one number per point
   std::size_t points = 0;
-  std::string viewpoint;  ///< of a PCD that states another pose than the sensor's own, as written: not applied
+  std::string viewpoint;  ///< VIEWPOINT of a PCD if it is not the identity, as written; not applied
 
-  /// The column of that name; null when there is none.
+  /// Returns the column with that name, or null.
   const std::vector<double>* find(const std::string& name) const;
 };
 
 inline constexpr std::uint64_t kCloudPointsMax = std::uint64_t{1} << 26;
 
-/// Reads the points of a PLY or PCD file of any encoding (by PCL), of a legacy VTK file written as text (vtk_file.hpp),
-/// or of a KITTI .bin file (float32 x y z intensity); the file's ending tells which. A file without points is a cloud
-/// without points. What the header promises is held against the file's size before anything is allocated. Throws
-/// BadInput with file and place: absent, another format, a damaged header, truncated, more than 2^26 points.
-Cloud read_cloud(const std::filesystem::path& path);
+/// Reads the points of a file; the extension selects the format. Formats: PLY and PCD of any encoding (by PCL), legacy
+/// VTK text (vtk_file.hpp), and .bin, which has no header. A file without points gives an empty cloud. Checks the header
+/// against the file size before any allocation.
+///
+/// @param bin_columns  Columns of a .bin file in order, "x,y,z,intensity,ring". Each is float32, or has a NumPy type
+///                     after a colon ("x:f8"); "_" names bytes to skip. "": KITTI's x y z intensity; the content must
+///                     not contradict them (bin_layout.hpp).
+/// Throws BadInput with file and place: missing, another format, damaged header, truncated, more than 2^26 points,
+/// impossible columns, content that contradicts KITTI's columns.
+Cloud read_cloud(const std::filesystem::path& path, const std::string& bin_columns = "");
 
-/// What the header of a PLY or PCD file promises.
+/// Content of a PLY or PCD header.
 struct CloudHeader {
   std::uint64_t points = 0;
-  std::uint64_t point_bytes = 0;  ///< 0 when written as text
+  std::uint64_t point_bytes = 0;  ///< 0 for text
   std::uint64_t header_bytes = 0;
   std::size_t fields = 0;
-  std::uint64_t numbers = 0;  ///< per point, of all fields
+  std::uint64_t numbers = 0;  ///< numbers per point, over all fields
   bool ascii = false;
-  std::string viewpoint;  ///< of a PCD: x y z qw qx qy qz, as written; "" for the sensor's own
+  std::string viewpoint;  ///< of a PCD: x y z qw qx qy qz, as written; "" for the identity
 };
 
-/// Reads and checks a header alone; the same errors.
+/// Reads and checks the header only; same errors.
 CloudHeader read_ply_header(const std::filesystem::path& path);
 CloudHeader read_pcd_header(const std::filesystem::path& path);
 

@@ -18,25 +18,25 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// LZF makes at most 264 bytes of 3.
+/// LZF expands 3 bytes to at most 264.
 constexpr std::uint64_t kLzfMost = 88;
-/// A header longer than this is none.
+/// A longer header is invalid.
 constexpr std::size_t kCloudHeaderMax = 65536;
 
-/// The lines of a header, with their place.
+/// The lines of a header with their locations.
 class HeaderLines {
  public:
   explicit HeaderLines(const std::filesystem::path& path) : path_(path), stream_(open_regular_file(path)) {
     bytes_in_file_ = std::filesystem::file_size(path);
   }
 
-  /// The words of the next line. The header must end in a line, not in the file.
+  /// Returns the words of the next line, which must have a line end.
   std::vector<std::string> next() {
     if (!std::getline(stream_, line_) || stream_.eof()) fail("the header does not end; the file may be truncated");
     ++number_;
     bytes_ += line_.size() + 1;
     if (bytes_ > kCloudHeaderMax) fail(fmt::format("the header is longer than {} bytes", kCloudHeaderMax));
-    // the library that reads the points parts words by blanks and tabs alone
+    // The point reader separates words by blanks and tabs only.
     if (line_.find_first_of("\v\f") != std::string::npos) fail("the header contains a form feed or a vertical tab");
     std::istringstream words(line_);
     std::vector<std::string> out;
@@ -44,7 +44,7 @@ class HeaderLines {
     return out;
   }
 
-  /// Whether the last line has no character at all.
+  /// Returns true if the last line is completely empty.
   bool line_is_empty() const { return line_.empty(); }
 
   [[noreturn]] void fail(const std::string& what) const {
@@ -59,12 +59,12 @@ class HeaderLines {
 
   std::uint64_t bytes() const { return bytes_; }
 
-  /// Holds a promise of points against what follows the header, of which a byte makes so many at most.
+  /// Checks the stated number of points against the remaining file size; one byte expands to at most `made_of_a_byte`.
   void require_room(const CloudHeader& header, std::uint64_t made_of_a_byte = 1) const {
     if (header.points > kCloudPointsMax) {
       fail(fmt::format("states {} points; at most {} can be read from a file", header.points, kCloudPointsMax));
     }
-    // a number written as text has a digit and a blank or line end at least; the last one may lack it
+    // a text number needs at least a digit and a separator; the last one may lack the separator
     const std::uint64_t point_bytes = header.point_bytes > 0 ? header.point_bytes : 2 * header.fields;
     const std::uint64_t slack = header.point_bytes > 0 ? 0 : 1;
     const std::uint64_t rest = bytes_in_file_ - std::min(bytes_, bytes_in_file_) + slack;
@@ -74,7 +74,7 @@ class HeaderLines {
     }
   }
 
-  /// The two sizes that stand before compressed points, which the library trusts: of what follows, and of the points.
+  /// Checks the two sizes before compressed points, which the library does not check: compressed and uncompressed.
   void require_sizes(const CloudHeader& header) {
     std::array<std::uint32_t, 2> sizes{};
     if (!stream_.read(reinterpret_cast<char*>(sizes.data()), sizeof(sizes)))
@@ -89,8 +89,8 @@ class HeaderLines {
     }
   }
 
-  /// The library goes on with the header while lines begin with one of its words, and passes over empty ones and
-  /// comments: points whose bytes look so would change what it has read.
+  /// The library continues reading the header while lines start with a header word, are empty or comments. Point data
+  /// that look like this would change the header.
   void require_end_of_header(std::span<const char* const> words) {
     stream_.clear();
     stream_.seekg(static_cast<std::streamoff>(bytes_));
@@ -112,7 +112,7 @@ class HeaderLines {
   std::uint64_t bytes_ = 0, bytes_in_file_ = 0;
 };
 
-/// Bytes of a PLY type; 0 when it is none.
+/// Returns the bytes of a PLY type; 0 if unknown.
 std::uint64_t ply_bytes(const std::string& type) {
   static const std::map<std::string, std::uint64_t> known = {
       {"char", 1},   {"int8", 1},    {"uchar", 1},  {"uint8", 1},  {"short", 2}, {"int16", 2},
@@ -122,7 +122,7 @@ std::uint64_t ply_bytes(const std::string& type) {
   return found == known.end() ? 0 : found->second;
 }
 
-/// One line of a PLY's header that describes the points.
+/// Reads a PLY header line that describes the points.
 void take_property(const HeaderLines& lines, const std::vector<std::string>& words, CloudHeader& header) {
   if (words.size() == 5 && words[1] == "list")
     lines.fail("the points have a list property; such files are not supported");
@@ -135,13 +135,12 @@ void take_property(const HeaderLines& lines, const std::vector<std::string>& wor
 
 using Words = std::vector<std::string>;
 
-/// In the order of the format, then what the library takes for FIELDS too.
+/// In the order of the format, then an alternative name of FIELDS.
 constexpr std::array<const char*, 11> kPcdWords = {"VERSION", "FIELDS",    "SIZE",   "TYPE", "COUNT",  "WIDTH",
                                                    "HEIGHT",  "VIEWPOINT", "POINTS", "DATA", "COLUMNS"};
 
-/// The lines of a PCD's header by their first words. They stand once each and in this order, as the format has it: the
-/// library that reads the points takes a line that is unknown, doubled, in its wrong place or of blanks alone for the
-/// header's end or for another one, and trusts what it then has.
+/// Reads a PCD header by first words. Each must occur once and in order: the library misreads unknown, repeated,
+/// misplaced or blank lines and does not check the result.
 std::map<std::string, Words> pcd_lines(HeaderLines& lines) {
   const std::span order = std::span(kPcdWords).first<10>();
   std::map<std::string, Words> found;
@@ -174,7 +173,7 @@ std::uint64_t single(const HeaderLines& lines, const std::string& name, const Wo
   return value;
 }
 
-/// Of a VIEWPOINT, x y z qw qx qy qz: as written, or "" where it says nothing.
+/// Returns VIEWPOINT x y z qw qx qy qz as written; "" if it is the identity.
 std::string viewpoint_of(const HeaderLines& lines, const Words& words) {
   if (words.size() != 7) lines.fail(fmt::format("VIEWPOINT has {} numbers, must have 7", words.size()));
   constexpr std::array<double, 7> kOwn = {0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0};

@@ -20,7 +20,7 @@ std::string ending_of(const std::string& format) {
   throw BadInput(fmt::format("the sweep format '{}' is not supported; supported: ply, pcd, vtk and kitti", format));
 }
 
-/// The file of stamps that is asked for, or lies beside the sweeps; empty when there is none.
+/// Returns the requested stamp file, or one next to the sweeps; empty if there is none.
 path times_file(const SweepSource& source, const std::vector<path>& files) {
   if (!source.times.empty()) return source.times;
   for (const std::string& name : {stem_of(files.front()) + "_times.txt", std::string("times.txt")}) {
@@ -29,7 +29,7 @@ path times_file(const SweepSource& source, const std::vector<path>& files) {
   return {};
 }
 
-/// A stamp per file; empty when nothing tells them.
+/// Returns one stamp per file; empty if unknown.
 std::vector<std::int64_t> stamps_of(const SweepSource& source, const std::vector<path>& files) {
   const path file = times_file(source, files);
   if (file.empty()) return stamps_in_names(files);
@@ -63,7 +63,7 @@ Imported import_sweeps(const SweepSource& source) {
   SweepBuilder builder(std::move(reading), given_ns > 0 ? given_ns : median_step_ns(stamps));
   for (std::size_t k = 0; k < files.size(); ++k) {
     const std::optional<std::int64_t> stamp = stamps.empty() ? std::nullopt : std::optional(stamps[k]);
-    builder.add(stamp, read_cloud(files[k]), files[k].string());
+    builder.add(stamp, read_cloud(files[k], source.bin_columns), files[k].string());
   }
   add_lidar(out, builder.finish(source.folder.string(), out.notes));
   out.info.attribution = fmt::format("imported from {}, {} sweeps in format {}", source.folder.filename().string(),

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Where the program was installed or built to, else where this was built: tests stand elsewhere.
+/// Path relative to the installed or built program, else the build folder, for tests in other folders.
 fs::path module_file() {
   const fs::path built(TUMBLE_PCL_READER);
   std::error_code error;

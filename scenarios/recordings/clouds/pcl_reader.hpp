@@ -7,17 +7,18 @@
 
 namespace tumble::scenarios {
 
-/// Formats that PCL reads for us.
+/// Formats read by PCL.
 enum class PclFormat : int { ply, pcd };
 
-/// What the module `pcl_reader_module.cpp` is: reads the points of a file, and says nothing on the console. False when
-/// PCL does not read it, whatever it throws.
+/// Function of the module `pcl_reader_module.cpp`: reads the points of a file without console output. Returns false if
+/// PCL fails or throws.
 extern "C" using PclRead = bool(const char* path, PclFormat format, pcl::PCLPointCloud2* cloud);
-inline constexpr const char* kPclRead = "tumble_pcl_read";  ///< its name there
+inline constexpr const char* kPclRead = "tumble_pcl_read";  ///< its symbol name
 
-/// That of the module, which is loaded at the first file and stays: PCL's readers bring VTK and sixty libraries more
-/// with them, for which no program that reads no cloud is to wait. It lies in ../lib/tumble beside the folder of the
-/// program, or where it was built. Throws BadInput when it cannot be loaded. Private to scenarios/recordings/clouds.
+/// Reads a file by the module, which is loaded at first use and stays loaded. PCL's readers load VTK and more than
+/// sixty libraries, which would slow the start of every program. The module is in ../lib/tumble relative to the
+/// program's folder, or in the build folder. Throws BadInput if it cannot be loaded. Private to
+/// scenarios/recordings/clouds.
 bool read_by_pcl(const std::filesystem::path& path, PclFormat format, pcl::PCLPointCloud2& cloud);
 
 }  // namespace tumble::scenarios

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The module that holds PCL's readers (pcl_reader.hpp): nothing of the tree is linked into it.
+// The module with PCL's readers (pcl_reader.hpp); no library of this project is linked to it.
 #include <pcl/io/pcd_io.h>
 #include <pcl/io/ply_io.h>
 

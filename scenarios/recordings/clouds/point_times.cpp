@@ -24,12 +24,13 @@ struct TimeUnit {
 constexpr std::array<TimeUnit, 4> kUnits = {{{"s", 1e9}, {"ms", 1e6}, {"us", 1e3}, {"ns", 1.0}}};
 constexpr std::array<const char*, 8> kNames = {"t",          "time",        "timestamp",   "timestamps",
                                                "time_stamp", "offset_time", "time_offset", "offset"};
-/// Share of the sweep period that the times of a sweep span: a sector of 7 degrees at least, and some overlap at most.
-/// Units that follow each other differ by a thousand: one fits at most.
+/// The times of a sweep must span this fraction of the period: at least a sector of 7 degrees, at most some overlap.
+/// Units differ by factors of 1000, so at most one fits.
 constexpr double kSpanMin = 0.02, kSpanMax = 1.5;
-/// Stamps since 1973 in seconds are above this, whatever their unit then by its factor.
+/// Stamps after 1973, in seconds, exceed this.
 constexpr double kEpochMin_s = 1e8;
-/// So many points in a sweep span it: fewer may lie in any short part of it, and say nothing against a stated unit.
+/// With this many points a sweep's times span its period. Fewer points may cover any short part and do not contradict a
+/// stated unit.
 constexpr double kPointsThatSpan = 100.0;
 
 std::string lower(std::string text) {
@@ -37,7 +38,7 @@ std::string lower(std::string text) {
   return text;
 }
 
-/// The unit that a name ends in; null when in none.
+/// Returns the unit suffix of a name, or null.
 const TimeUnit* unit_of_name(const std::string& name) {
   const auto ends = [&](const TimeUnit& unit) { return name.ends_with(std::string("_") + unit.name); };
   const auto* found = std::find_if(kUnits.begin(), kUnits.end(), ends);
@@ -66,12 +67,12 @@ std::string choose_field(const Cloud& cloud, const SweepReading& reading, const 
     if (!found.empty() && states == stated)
       throw BadInput(
           fmt::format("{}: the fields '{}' and '{}' may both be point times; select one", where, found, name));
-    if (found.empty() || states) found = name;  // of two the one whose name tells its unit
+    if (found.empty() || states) found = name;  // prefer the field whose name states the unit
   }
   return found;
 }
 
-/// First and last time of the points that are there.
+/// Returns the first and last time of the valid points.
 std::pair<double, double> reach(const Cloud& cloud, const std::string& field) {
   std::pair<double, double> out(INFINITY, -INFINITY);
   const std::vector<double>* times = cloud.find(field);
@@ -94,7 +95,7 @@ std::string share_of(double span, const TimeUnit& unit, double period_ns) {
   return text + " % of the sweep period";
 }
 
-/// Refuses a unit that is stated, by a flag or by the field's name, where the numbers say another one.
+/// Rejects a unit, stated by option or field name, that the numbers contradict.
 void require_no_other_unit(const TimeUnit& stated, double span, double period_ns, const std::string& field,
                            const std::string& where) {
   if (!(period_ns > 0.0) || fits(span, stated, period_ns)) return;
@@ -108,11 +109,11 @@ void require_no_other_unit(const TimeUnit& stated, double span, double period_ns
                              share_of(span, stated, period_ns), share_of(span, *read, period_ns)));
 }
 
-/// The unit by the size of the numbers.
+/// Determines the unit from the size of the numbers.
 double unit_by_size(double span, double largest, double period_ns, const std::string& field, const std::string& where) {
   for (const TimeUnit& unit : kUnits) {
     if (period_ns > 0.0 && fits(span, unit, period_ns)) return unit.ns;
-    // of stamps since the epoch the largest unit that makes them old enough
+    // For stamps since 1970: the largest plausible unit.
     if (!(period_ns > 0.0) && largest >= kEpochMin_s * 1e9 / unit.ns && largest < kEpochMin_s * 1e12 / unit.ns)
       return unit.ns;
   }

@@ -5,7 +5,7 @@
 
 namespace tumble::scenarios {
 
-/// PCL tells its troubles to the console: it is kept from that for a while, the caller hears of them by exception.
+/// Suppresses PCL's console messages during its lifetime; errors are reported by exceptions.
 class QuietPcl {
  public:
   QuietPcl() { pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS); }

@@ -17,14 +17,14 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// So many clouds tell the unit of the times: one may be cut.
+/// Number of clouds that determine the time unit; a single one may be incomplete.
 constexpr std::ptrdiff_t kProbe = 10;
 constexpr double kByteIntensity = 255.0;
 constexpr double kPointFar_m = 1e6;
-constexpr double kBeyond = 2.0;        // ranges of the data sheet
-constexpr double kFarthest_m = 500.0;  // where no sheet is stated: that of no lidar which a robot bears is more
-constexpr double kOverlapMost = 1.05;  // of the time from one sweep to the next, that one lasts
-/// The longest offset that a sweep may hold where its period is not known yet.
+constexpr double kBeyond = 2.0;        // multiple of the data sheet's range
+constexpr double kFarthest_m = 500.0;  // default limit without a data sheet: beyond the range of robot lidars
+constexpr double kOverlapMost = 1.05;  // longest sweep relative to the time between sweeps
+/// Longest point offset while the period is unknown.
 constexpr std::int64_t kOffsetMax_ns = 1000000000;
 
 constexpr std::array<const char*, 3> kRingNames = {"ring", "line", "channel"};
@@ -46,7 +46,7 @@ const std::vector<double>* first_of(const Cloud& cloud, const std::array<const c
   return nullptr;
 }
 
-/// Points that the lidar saw.
+/// Returns the indices of valid points.
 std::vector<std::size_t> hits(const Cloud& cloud, const std::string& where) {
   const std::vector<double>&x = coordinate(cloud, "x", where), &y = coordinate(cloud, "y", where),
         &z = coordinate(cloud, "z", where);
@@ -62,14 +62,14 @@ std::string in_ns(std::int64_t time_ns) {
   return std::to_string(time_ns) + " ns";
 }
 
-/// How the times of points were read.
+/// Describes how point times were read.
 std::string said(const PointTimeRule& rule) {
   const char* unit = rule.unit_ns == 1e9 ? "s" : rule.unit_ns == 1e6 ? "ms" : rule.unit_ns == 1e3 ? "us" : "ns";
   return fmt::format("point times: field '{}', in {}{}", rule.field, unit,
                      rule.absolute ? " of the clock" : " after the sweep's time stamp");
 }
 
-/// The field's numbers as whole nanoseconds.
+/// Converts the field's numbers to whole nanoseconds.
 std::vector<std::int64_t> whole_times(const std::vector<double>& numbers, const std::vector<std::size_t>& kept,
                                       double unit_ns, const std::string& where) {
   constexpr double kBound = 9.2e18;
@@ -135,7 +135,7 @@ void SweepBuilder::take(Waiting& sweep) {
   if (store_) store_->take(record_);
 }
 
-/// The start of the sweep; the points' offsets from it are stored.
+/// Returns the start of the sweep; stores the points' offsets from it.
 std::int64_t SweepBuilder::take_times(const Waiting& sweep, const std::vector<std::size_t>& kept) {
   const auto no_offsets = [&] { record_.offset_ns.resize(record_.offset_ns.size() + kept.size(), 0); };
   if (rule_->field.empty() || kept.empty()) {
@@ -224,7 +224,7 @@ double SweepBuilder::range_max_m() const {
   return reading_.range_max_m > 0.0 ? reading_.range_max_m : kFarthest_m;
 }
 
-/// Points in mm look so; a real one beyond the range that its sheet states is a lucky one.
+/// Detects ranges in mm. Rare points beyond the data sheet's range are possible.
 void SweepBuilder::require_range(const std::string& where) const {
   if (2 * beyond_ <= points()) return;
   throw BadInput(fmt::format(

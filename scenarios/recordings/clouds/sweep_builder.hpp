@@ -14,64 +14,66 @@
 
 namespace tumble::scenarios {
 
-/// How the points of a sweep are to be read, where the file does not say.
+/// Options for reading points where the file lacks information.
 struct SweepReading {
-  sim::LidarRecord device;   ///< name, device, T_BL; sweep_period_ns, 0: the median step of the sweeps' starts
-  std::string time_field;    ///< "": the one that is called as one of them usually is
-  std::string time_unit;     ///< s ms us ns; "": told by the field's name ("offset_ns") or its size
-  bool not_skewed = false;   ///< the points were deskewed, or fired at once: their times mean nothing
-  double range_max_m = 0.0;  ///< by the data sheet; 0: not known
-  bool assumed = false;      ///< the stamps are a guess: absolute times of points replace them
-  /// Where the points are set aside as they come; "": they stay in the record, which then takes memory with each sweep.
+  sim::LidarRecord device;   ///< name, device, T_BL; sweep_period_ns 0: median step of the sweeps' starts
+  std::string time_field;    ///< "": a field with a usual name
+  std::string time_unit;     ///< s ms us ns; "": from the field's name ("offset_ns") or the numbers' size
+  bool not_skewed = false;   ///< the points were deskewed or measured at once; ignore their times
+  double range_max_m = 0.0;  ///< from the data sheet; 0: unknown
+  bool assumed = false;      ///< the stamps are a guess: absolute point times replace them
+  /// Folder for points on disk; "": in memory, which grows with each sweep.
   std::filesystem::path scratch;
 };
 
-/// Unit and name of the points' times in a sequence of clouds.
+/// Name and unit of the point times in a series of clouds.
 struct PointTimeRule {
-  std::string field;      ///< "": the points have no times of their own
-  double unit_ns = 1.0;   ///< of the field's numbers
-  bool absolute = false;  ///< they count from the clock's zero, not from the stamp of the sweep
+  std::string field;      ///< "": the points have no times
+  double unit_ns = 1.0;   ///< unit of the field [ns]
+  bool absolute = false;  ///< times are absolute, not relative to the sweep's stamp
 };
 
-/// Finds the field of the times and its unit from the first clouds. Names, whatever their case: t time timestamp
-/// timestamps time_stamp offset_time time_offset offset_ns; a name that ends in _s _ms _us _ns tells the unit. Else the
-/// unit is the one in which the times of a sweep (median over the clouds) span 2 to 150 % of `period_ns`; where that is
-/// not known (0), stamps since the epoch tell it by their size. A stated unit that does not fit so, where another does
-/// and the sweeps hold 100 points or more, is refused with both. Times that begin more than two periods from 0 in any
-/// of the clouds are absolute. Of two fields the one whose name tells its unit is taken. Throws BadInput beginning with
-/// `where`: a field that is not there, two of them, no unit that fits.
+/// Finds the time field and its unit from the first clouds. Names (any case): t time timestamp timestamps time_stamp
+/// offset_time time_offset offset_ns. A suffix _s _ms _us _ns states the unit. Otherwise the unit is the one in which a
+/// sweep's times (median over the clouds) span 2 to 150 % of `period_ns`. If the period is unknown (0), stamps since
+/// 1970 determine the unit by their size.
+///
+/// A stated unit is rejected if only another unit fits and the sweeps have at least 100 points. Times are absolute if
+/// they start more than two periods from 0 in any cloud. Of two fields, the one whose name states the unit is used.
+/// Throws BadInput, with a message that starts with `where`: a missing or ambiguous field, or no unit that fits.
 PointTimeRule find_point_times(const std::vector<Cloud>& first, std::int64_t period_ns, const SweepReading& reading,
                                const std::string& where);
 
-/// A lidar, and its points where they were set aside: then the record has none.
+/// A lidar, with its points if they are on disk; the record then has none.
 struct BuiltSweeps {
   sim::LidarRecord lidar;
   std::optional<PointStore> points;
-  std::vector<std::int64_t> last_point_ns = {};  ///< of each sweep, in the clock of the stamps; its start without times
+  std::vector<std::int64_t> last_point_ns = {};  ///< last point of each sweep in the stamps' clock; its start for
+                                                 ///< points without times
 };
 
-/// Makes the record of a lidar from clouds in the order of time. In memory are the first ten clouds, then one at a time
-/// where the points are set aside.
+/// Builds a lidar record from clouds in order of time. Memory holds the first ten clouds, then one at a time if points
+/// are on disk.
 ///
-/// A point that is not finite, farther than 1000 km or at the origin is a miss. Intensity ("intensity", "reflectivity")
-/// up to 1 stays as it is; up to 255 it is divided by that, else by the largest. Ring ("ring", "line", "channel") is a
-/// whole number up to 65535. A sweep starts at its stamp, or, where its first point is earlier or a period later, at
-/// that point; so that no offset is negative. No column is needed but x, y and z.
+/// Points that are not finite, farther than 1000 km, or at the origin are misses. Intensity ("intensity",
+/// "reflectivity") up to 1 is unchanged; up to 255 it is divided by 255, else by the maximum. Ring ("ring", "line",
+/// "channel") is an integer up to 65535. A sweep starts at its stamp. If its first point is earlier, or later by a
+/// period, it starts at that point, so that no offset is negative. Only x, y and z are required.
 class SweepBuilder {
  public:
-  /// `period_ns` is what find_point_times is given: of the device, or the median step of the stamps.
+  /// `period_ns` as for find_point_times: stated for the device, or the median step of the stamps.
   SweepBuilder(SweepReading reading, std::int64_t period_ns) : reading_(std::move(reading)), period_ns_(period_ns) {
     if (!reading_.scratch.empty()) store_.emplace(reading_.scratch);
   }
 
-  /// One sweep; `where` begins the messages. Throws BadInput: no x, y or z, a stamp that does not rise, a time outside
-  /// two sweep periods, a ring that is none.
+  /// Adds a sweep; messages start with `where`. Throws BadInput: missing x, y or z, a stamp that does not increase, a
+  /// time outside two sweep periods, an invalid ring.
   void add(std::optional<std::int64_t> stamp_ns, Cloud cloud, std::string where);
 
-  /// The record, in the clock of the stamps, and remarks for the user: how the times of points were read among them. A
-  /// period that is not given is the median step, or the latest offset where that is more. Throws BadInput beginning
-  /// with `where`: no point in any sweep, most of them beyond twice the range of the data sheet, a single sweep of
-  /// unknown length.
+  /// Returns the record in the stamps' clock, and adds notes, for example on how point times were read. Without a
+  /// stated period, it is the median step, or the latest offset if larger. Throws BadInput, with a message that starts
+  /// with `where`: no points at all, most points beyond twice the data sheet's range, or a single sweep of unknown
+  /// length.
   BuiltSweeps finish(const std::string& where, std::vector<std::string>& notes);
 
  private:
@@ -80,7 +82,7 @@ class SweepBuilder {
     Cloud cloud;
     std::string where;
   };
-  void find_rule();  ///< the rule of the times, from the clouds that wait; then these are taken
+  void find_rule();  ///< determines the time rule from the waiting clouds, then adds them
   void take(Waiting& sweep);
   std::int64_t take_times(const Waiting& sweep, const std::vector<std::size_t>& kept);
   void take_points(const Waiting& sweep, const std::vector<std::size_t>& kept);
@@ -98,12 +100,12 @@ class SweepBuilder {
   sim::LidarRecord record_;
   std::optional<PointStore> store_;
   float brightest_ = 0.0f;
-  std::int64_t longest_ns_ = 0;  ///< offset of a point
+  std::int64_t longest_ns_ = 0;  ///< largest point offset
   std::vector<std::int64_t> last_point_ns_;
   std::size_t misses_ = 0, dark_ = 0, skipped_ = 0, beyond_ = 0;
-  std::size_t viewpoints_ = 0;                  ///< sweeps that state one
-  std::string first_viewpoint_;                 ///< with its file
-  std::map<std::string, std::size_t> ignored_;  ///< columns that mean nothing here, and in how many sweeps they were
+  std::size_t viewpoints_ = 0;                  ///< number of sweeps with a viewpoint
+  std::string first_viewpoint_;                 ///< first viewpoint, with its file
+  std::map<std::string, std::size_t> ignored_;  ///< ignored columns, with their number of sweeps
 };
 
 }  // namespace tumble::scenarios

@@ -23,7 +23,7 @@ bool is_digit(char c) {
   return std::isdigit(static_cast<unsigned char>(c)) != 0;
 }
 
-/// Numbers within names count by value.
+/// Compares numbers in names by value.
 bool natural_less(const std::filesystem::path& left, const std::filesystem::path& right) {
   const std::string a = left.filename().string(), b = right.filename().string();
   std::size_t i = 0, j = 0;
@@ -43,10 +43,10 @@ bool natural_less(const std::filesystem::path& left, const std::filesystem::path
     if (order != 0) return order < 0;
   }
   if (a.size() - i != b.size() - j) return a.size() - i < b.size() - j;
-  return a < b;  // the same but for leading zeros
+  return a < b;  // equal except for leading zeros
 }
 
-/// The digits that `text` ends in, cut off from it.
+/// Cuts the trailing digits off `text` and returns them.
 std::string_view take_digits(std::string_view& text) {
   std::size_t begin = text.size();
   while (begin > 0 && is_digit(text[begin - 1])) --begin;
@@ -61,13 +61,13 @@ std::int64_t value_of(std::string_view digits) {
   return value;
 }
 
-/// `count` units and `rest_ns`, none of them negative; nothing beyond the year 2262, where nanoseconds end.
+/// Returns `count` units plus `rest_ns`, both non-negative; empty beyond the year 2262, where nanoseconds overflow.
 std::optional<std::int64_t> in_ns(std::int64_t count, std::int64_t unit_ns, std::int64_t rest_ns = 0) {
   if (count > (std::numeric_limits<std::int64_t>::max() - rest_ns) / unit_ns) return std::nullopt;
   return count * unit_ns + rest_ns;
 }
 
-/// Nanoseconds since the epoch of a number whose digits tell its unit; nothing for another number of digits.
+/// Returns nanoseconds since 1970; the number of digits determines the unit. Empty for other lengths.
 std::optional<std::int64_t> epoch_ns(std::string_view digits) {
   if (digits.size() == 13) return in_ns(value_of(digits), 1000000);
   if (digits.size() == 16) return in_ns(value_of(digits), 1000);

@@ -17,7 +17,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// The words of a text, and the lines on which they stand.
+/// Splits a text into words and tracks the line number.
 class VtkWords {
  public:
   explicit VtkWords(const std::filesystem::path& path) : name_(path.string()) {
@@ -29,7 +29,7 @@ class VtkWords {
     throw BadInput(name_ + ":" + std::to_string(line_) + ": " + what);
   }
 
-  /// The rest of the line, which is passed.
+  /// Returns and skips the rest of the line.
   std::string_view line() {
     const std::size_t end = std::min(text_.find('\n', at_), text_.size());
     std::string_view out = std::string_view(text_).substr(at_, end - at_);
@@ -39,7 +39,7 @@ class VtkWords {
     return out;
   }
 
-  /// The next word; empty at the end of the file.
+  /// Returns the next word; empty at the end of the file.
   std::string_view next() {
     while (at_ < text_.size() && is_blank(text_[at_])) line_ += text_[at_++] == '\n';
     const std::size_t begin = at_;
@@ -47,7 +47,7 @@ class VtkWords {
     return std::string_view(text_).substr(begin, at_ - begin);
   }
 
-  /// The next word where one must stand.
+  /// Returns the next word; throws at the end of the file.
   std::string_view need(const char* what) {
     const std::string_view word = next();
     if (word.empty()) fail(fmt::format("the file ends before {}; it may be truncated", what));
@@ -61,7 +61,7 @@ class VtkWords {
     return value;
   }
 
-  /// "nan" and "inf" are numbers: a lidar writes them for what it did not see.
+  /// Accepts "nan" and "inf", which lidars write for misses.
   double number() {
     std::string_view word = need("its numbers");
     if (word.starts_with('+')) word.remove_prefix(1);
@@ -71,7 +71,7 @@ class VtkWords {
     return value;
   }
 
-  /// Bytes that are left; a number takes two of them, a digit and what parts it from the next.
+  /// Returns the number of remaining bytes; a number needs two, a digit and a separator.
   std::uint64_t left() const { return text_.size() - at_; }
 
  private:
@@ -81,7 +81,7 @@ class VtkWords {
   int line_ = 1;
 };
 
-/// Holds so many numbers against what is left of the file, before anything is allocated for them.
+/// Checks a stated number of values against the remaining file before any allocation.
 void require_room(const VtkWords& words, std::uint64_t count, std::uint64_t each) {
   if (count > kCloudPointsMax) {
     words.fail(fmt::format("states {} points; at most {} can be read from a file", count, kCloudPointsMax));
@@ -109,13 +109,13 @@ void pass_over(VtkWords& words, std::uint64_t count, std::uint64_t each) {
   for (std::uint64_t i = 0; i < count * each; ++i) words.number();
 }
 
-/// VERTICES lines numbers: so many numbers follow.
+/// VERTICES lines numbers: skips that many numbers.
 void pass_vertices(VtkWords& words) {
   words.whole("the number of vertices");
   pass_over(words, words.whole("the numbers of the vertices"), 1);
 }
 
-/// SCALARS name type [numbers a point], LOOKUP_TABLE name, a line each; then the numbers.
+/// SCALARS name type [numbers per point], LOOKUP_TABLE name, one line each; then the numbers.
 void read_scalars(VtkWords& words, Cloud& cloud) {
   const std::string name(words.need("the name of scalars"));
   words.need("the scalars' type");
@@ -152,7 +152,7 @@ void pass_data(VtkWords& words, const Cloud& cloud, std::string_view section) {
 
 void read_header(VtkWords& words) {
   if (!words.line().starts_with("# vtk DataFile Version")) words.fail("does not begin as a VTK file");
-  words.line();  // a title
+  words.line();  // title
   const std::string_view encoding = words.need("ASCII");
   if (encoding == "BINARY") words.fail("is a binary file; only text (ASCII) VTK files are supported");
   if (encoding != "ASCII") words.fail("'" + shortened(encoding) + "' instead of ASCII");

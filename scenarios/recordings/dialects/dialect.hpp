@@ -8,10 +8,10 @@
 #include "scenarios/recordings/bags/bag_layout.hpp"
 #include "scenarios/recordings/dialects/sensor_facts.hpp"
 
-/// How a published estimator wants its recordings. Private to scenarios/recordings/dialects.
+/// Recording formats that published estimators expect. Private to scenarios/recordings/dialects.
 namespace tumble::scenarios {
 
-/// Where it is written that a peer reads so.
+/// Source that documents the format.
 struct Source {
   std::string repository, path, commit;
 };
@@ -26,14 +26,14 @@ struct Dialect {
   std::string bag_name;    ///< of the file or folder
   bool needs_imu = true;
   bool needs_times = true;   ///< of points
-  bool needs_rings = false;  ///< a lidar that scans in rings: no Livox
-  bool takes_empty = true;   ///< a sweep without a point; else such are left out
+  bool needs_rings = false;  ///< needs a scanning lidar with rings, not a Livox
+  bool takes_empty = true;   ///< accepts sweeps without points; else these are omitted
   ReaderNames (*names)(const SensorFacts&) = nullptr;
   SweepLayout (*sweeps)(const SensorFacts&) = nullptr;
-  /// The peer's own files, with this recording's sensors; the rest as its authors have it.
+  /// Returns the peer's configuration files with this recording's sensors; other values are its authors'.
   std::vector<ConfigurationFile> (*configuration)(const SensorFacts&, const ReaderNames&) = nullptr;
-  std::string run = {};                 ///< how it is started on them
-  std::vector<std::string> notes = {};  ///< what its user must know
+  std::string run = {};                 ///< command that starts the peer on these files
+  std::vector<std::string> notes = {};  ///< remarks for the user
   std::vector<Source> sources = {};
 };
 
@@ -46,15 +46,15 @@ Dialect kiss_icp_dialect();
 Dialect rko_lio_dialect();
 Dialect norlab_dialect();
 
-/// All of them.
 std::span<const Dialect> all_dialects();
 
-/// Layouts that several share: x y z and an intensity of 0 to 255, all float32, ring uint16, and the time as float32
-/// seconds ("time", Velodyne's driver) or uint32 nanoseconds ("t", Ouster's), both since the sweep's start.
+/// Shared layouts: x y z and an intensity of 0 to 255, all float32, ring uint16, and the time since the sweep's start.
+/// The time is in float32 seconds ("time", Velodyne's driver) or uint32 nanoseconds ("t", Ouster's).
 SweepLayout velodyne_layout(const SensorFacts&);
 SweepLayout ouster_layout(const SensorFacts&);
 
-/// Of FAST-LIO and what came of it: a Livox under its driver's topics as its CustomMsg, any other lidar as a Velodyne.
+/// Names for FAST-LIO and its derivatives: a Livox with its driver's topics as CustomMsg, any other lidar as a
+/// Velodyne.
 ReaderNames fast_lio_names(const SensorFacts& facts);
 SweepLayout fast_lio_layout(const SensorFacts& facts);
 

@@ -5,18 +5,19 @@
 #include <string>
 #include <vector>
 
-/// Recordings as published estimators read them: dialects/README.md.
+/// Exports recordings for published estimators: dialects/README.md.
 namespace tumble::scenarios {
 
-/// Names that export_for takes: dlio fast-lio glim kiss-icp lio-sam norlab point-lio rko-lio.
+/// Returns the peer names: dlio fast-lio glim kiss-icp lio-sam norlab point-lio rko-lio.
 std::vector<std::string> peer_dialects();
 
-/// Writes a recording for one peer into a folder, which is made when absent and must be empty: the bag that it reads
-/// (its storage, topics, frames, point fields; first IMU and first lidar alone), its own configuration with this
-/// recording's sensors, and manifest.json. `with_truth`: truth.tum beside it, poses of the body in the bag's clock,
-/// for evo. Returns how many sweeps without a point were left out, where there are such and the peer cannot take them.
-/// Throws BadInput: an unknown name (the nearest is named), a recording without lidar, IMU or times of points
-/// where the peer needs them, what the bags' writers say.
+/// Writes a recording for one peer to an empty or new folder. Writes the bag in its format (storage, topics, frames,
+/// point fields; only the first IMU and first lidar), its configuration with this recording's sensors, and
+/// manifest.json. `with_truth` adds truth.tum for evo: body poses in the bag's clock. Returns notes on omitted empty
+/// sweeps.
+///
+/// Throws BadInput: an unknown name (suggests the nearest), a recording without the lidar, IMU or point times that the
+/// peer needs, or errors of the bag writers.
 std::vector<std::string> export_for(const std::filesystem::path& recording, const std::string& peer,
                                     const std::filesystem::path& folder, bool with_truth);
 

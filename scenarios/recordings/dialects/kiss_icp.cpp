@@ -26,8 +26,8 @@ data:
 }  // namespace
 
 Dialect kiss_icp_dialect() {
-  // ROS 1, which its version 1.3.0 reads with PyPI's packages alone, as it does ROS 2 bags that bring definitions. Of
-  // MCAP its fields of points are not found with those of mcap-ros2-support 0.5.7 and 0.6.0.
+  // Version 1.3.0 reads ROS 1 bags, and ROS 2 bags with definitions, with packages from PyPI only. For MCAP,
+  // mcap-ros2-support 0.5.7 and 0.6.0 do not find the point fields.
   Dialect out{"kiss-icp", "rosbag1", "recording.bag"};
   out.needs_imu = out.needs_times = false;
   out.takes_empty = false;

@@ -31,7 +31,7 @@ const char* word(NumberType type) {
   return "float64";
 }
 
-/// What the number of a field means.
+/// Returns the unit of a field.
 std::string unit(const PointColumn& column) {
   switch (column.quantity) {
     case PointQuantity::x_m:

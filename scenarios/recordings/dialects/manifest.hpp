@@ -9,9 +9,8 @@
 
 namespace tumble::scenarios {
 
-/// manifest.json (dialects/README.md has its keys): what lies in the folder, in which units, stamps and frames, the
-/// sensors' noise, rails and mounting, and where it is written that the peer reads so. Private to
-/// scenarios/recordings/dialects.
+/// Returns manifest.json (keys: dialects/README.md): files with their units, stamps and frames, the sensors' noise,
+/// ranges and mounting, and the peer's documentation. Private to scenarios/recordings/dialects.
 std::string manifest_of(const Dialect& dialect, const SensorFacts& facts, const RecordingInfo& info,
                         std::int64_t origin_ns, const std::vector<std::string>& configuration, bool with_truth);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Point-LIO (hku-mars/Point-LIO, GPL-2): facts of its interface alone, none of its text.
+// Point-LIO (hku-mars/Point-LIO, GPL-2): contains facts about its interface only, none of its text.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,7 +11,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Where the peer takes an axis for clipped. Its sheet may state less than the device gives: then what was read holds.
+/// Returns the saturation threshold for the peer. The data sheet may state less than the device reaches; then the
+/// largest reading is used.
 double rail(double stated, double largest) {
   return std::max(stated, largest);
 }

@@ -12,7 +12,7 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr double kStillRate_rad_s = 0.2, kStillForce_m_s2 = 1.0;
-/// The corner of the box (-0.5 -0.4 -0.27) to (0.5 0.4 0.23) m around the rig's lidar, rounded up.
+/// The farthest corner of the box (-0.5 -0.4 -0.27) to (0.5 0.4 0.23) m around the rig's lidar, rounded up.
 constexpr double kRigCage_m = 0.7;
 
 bool is_livox(const std::string& device) {
@@ -40,7 +40,7 @@ ImuFacts facts_of(const sim::ImuRecord& imu, double gravity_m_s2) {
   return out;
 }
 
-/// A lidar, and where its points are.
+/// A lidar and its points.
 struct Sweeps {
   const sim::LidarRecord& lidar;
   const PointStore* aside;
@@ -51,7 +51,7 @@ struct Sweeps {
   }
 };
 
-/// Calls `take(step)` with each time between returns of one ring in a sweep, ns.
+/// Calls `take(step)` with each time between consecutive returns of one ring in a sweep [ns].
 template <class Take>
 void for_steps(const Sweeps& sweeps, Take&& take) {
   sweeps.for_each([&](const sim::LidarRecord& sweep) {
@@ -64,16 +64,16 @@ void for_steps(const Sweeps& sweeps, Take&& take) {
   });
 }
 
-/// The value of 16 bits that stands in the middle by its counts, as upper_median has it once `below` are passed.
+/// Returns the upper median of 16-bit values from their counts, after `below` smaller ones.
 std::uint32_t middle_of(const std::vector<std::uint64_t>& counts, std::uint64_t place, std::uint64_t& below) {
   std::uint32_t value = 0;
   for (; value + 1 < counts.size() && below + counts[value] <= place; ++value) below += counts[value];
   return value;
 }
 
-/// Firings of a ring in a sweep: its period over the (upper) median step between returns of one ring. The steps are
-/// counted by their upper halves and then, of the half that the median has, by their lower ones: they are as many as
-/// the points.
+/// Returns the firings of a ring per sweep: its period divided by the upper median step between returns of one ring.
+/// There are as many steps as points, so their upper halves are counted first, then the lower halves within the
+/// median's bin.
 int columns_of(const Sweeps& sweeps) {
   constexpr std::uint32_t kHalf_bits = 16, kLower = 0xffff;
   std::vector<std::uint64_t> counts(std::size_t{1} << kHalf_bits, 0);

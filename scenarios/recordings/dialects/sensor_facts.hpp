@@ -11,33 +11,33 @@
 
 namespace tumble::scenarios {
 
-/// What a peer's configuration asks of the first IMU.
+/// Properties of the first IMU for configurations.
 struct ImuFacts {
   std::string device;
   std::size_t samples = 0;
   double period_s = 0.0;
-  double gyro_noise_rad_s_sqrt_hz = 0.0, accel_noise_m_s2_sqrt_hz = 0.0;  ///< of the data sheet; 0: not stated
-  double stated_gyro_range_rad_s = 0.0, stated_accel_range_m_s2 = 0.0;    ///< of the data sheet; 0: not stated
-  double largest_gyro_rad_s = 0.0, largest_accel_m_s2 = 0.0;              ///< of any axis in this recording
-  double still_at_start_s = 0.0;  ///< until the first sample above 0.2 rad/s or 1 m/s^2 off gravity
+  double gyro_noise_rad_s_sqrt_hz = 0.0, accel_noise_m_s2_sqrt_hz = 0.0;  ///< from the data sheet; 0: not stated
+  double stated_gyro_range_rad_s = 0.0, stated_accel_range_m_s2 = 0.0;    ///< from the data sheet; 0: not stated
+  double largest_gyro_rad_s = 0.0, largest_accel_m_s2 = 0.0;              ///< maximum over all axes in this recording
+  double still_at_start_s = 0.0;  ///< time until the first sample above 0.2 rad/s or 1 m/s^2 off gravity
 };
 
-/// Of the first lidar.
+/// Properties of the first lidar.
 struct LidarFacts {
   std::string device;
   bool livox = false;                                    ///< by the device's name
-  bool timed = false;                                    ///< points have times of their own
-  std::size_t sweeps = 0, empty_sweeps = 0, points = 0;  ///< the empty ones are among the sweeps
+  bool timed = false;                                    ///< points have individual times
+  std::size_t sweeps = 0, empty_sweeps = 0, points = 0;  ///< `sweeps` includes the empty ones
   double period_s = 0.0;
-  int rings = 1;                             ///< one more than the highest
+  int rings = 1;                             ///< highest ring plus one
   int columns = 1;                           ///< firings of a ring in a sweep, from the median step between its returns
-  double nearest_m = 0.0, farthest_m = 0.0;  ///< of the returns
-  /// What is nearer belongs to the robot: the rig's cage reaches 0.7 m from its lidar (the box that the mapper leaves
-  /// out); else the nearest return.
+  double nearest_m = 0.0, farthest_m = 0.0;  ///< range of the returns
+  /// Closer points belong to the robot: the rig's cage extends 0.7 m from its lidar (the mapper's exclusion box).
+  /// Otherwise the nearest return.
   double own_body_m = 0.0;
 };
 
-/// The sensors that a peer is given, in numbers; truth has no part in it.
+/// Properties of the sensors that a peer reads, without the truth.
 struct SensorFacts {
   std::optional<ImuFacts> imu;
   std::optional<LidarFacts> lidar;
@@ -47,7 +47,7 @@ struct SensorFacts {
   Eigen::Isometry3d T_IL() const { return T_BI.inverse(Eigen::Isometry) * T_BL; }
 };
 
-/// `points`: of each lidar, where they are set aside; null: in the records. A sweep at a time is in memory.
+/// `points`: stores per lidar if on disk; null: in the records. Memory holds one sweep.
 SensorFacts facts_of(const sim::Sensors& sensors, const std::vector<PointStore>* points = nullptr);
 
 }  // namespace tumble::scenarios

@@ -9,13 +9,13 @@
 
 #include "scenarios/recordings/number_text.hpp"
 
-/// Numbers as every reader of YAML takes them: with a point, which ROS 2 needs for a double and YAML 1.1 before an
-/// exponent. Private to scenarios/recordings/dialects.
+/// Numbers that every YAML reader accepts as doubles: with a decimal point, which ROS 2 requires for a double and YAML
+/// 1.1 before an exponent. Private to scenarios/recordings/dialects.
 namespace tumble::scenarios {
 
 inline std::string decimal(double value) {
   std::string text;
-  append_number(text, value == 0.0 ? 0.0 : value);  // no "-0"
+  append_number(text, value == 0.0 ? 0.0 : value);  // avoids "-0"
   if (text.find('.') != std::string::npos) return text;
   const std::size_t exponent = text.find('e');
   return exponent == std::string::npos ? text + ".0" : text.insert(exponent, ".0");
@@ -32,20 +32,20 @@ inline std::string translation_of(const Eigen::Isometry3d& T) {
   return decimals({p.x(), p.y(), p.z()});
 }
 
-/// Row by row.
+/// row by row
 inline std::string rotation_of(const Eigen::Isometry3d& T) {
   const Eigen::Matrix3d R = T.linear();
   return decimals({R(0, 0), R(0, 1), R(0, 2), R(1, 0), R(1, 1), R(1, 2), R(2, 0), R(2, 1), R(2, 2)});
 }
 
-/// qx qy qz qw x y z.
+/// qx qy qz qw x y z
 inline std::string quaternion_first(const Eigen::Isometry3d& T) {
   const Eigen::Quaterniond q = Eigen::Quaterniond(T.linear()).normalized();
   const Eigen::Vector3d p = T.translation();
   return decimals({q.x(), q.y(), q.z(), q.w(), p.x(), p.y(), p.z()});
 }
 
-/// The next whole metre.
+/// rounded up
 inline double whole_metres(double range_m) {
   return std::max(1.0, std::ceil(range_m));
 }

@@ -22,7 +22,7 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-/// Of the first line.
+/// Returns the most frequent separator in the first line.
 char likely_separator(std::string_view text) {
   const std::string_view line = text.substr(0, text.find('\n'));
   char most = ',';
@@ -32,7 +32,7 @@ char likely_separator(std::string_view text) {
   return most;
 }
 
-/// Throws BadInput where the bytes are no lines of text in UTF-8, which is met before what it makes of columns.
+/// Throws BadInput unless the file is UTF-8 text with lines; checked before columns, for a better message.
 void require_lines(const std::string& name, std::string_view text) {
   const std::string_view mark = text.substr(0, 2);
   if (mark == "\xFF\xFE" || mark == "\xFE\xFF") throw BadInput(name + ": the text is in UTF-16; it must be in UTF-8");
@@ -58,7 +58,7 @@ CsvText::CsvText(const std::filesystem::path& path, char separator) : name_(path
     throw BadInput(name_ + ":" + std::to_string(lines) +
                    ": the last line has no line end; the file may be truncated within a number");
   }
-  if (text_.starts_with("\xEF\xBB\xBF")) at_ = 3;  // a mark of the encoding
+  if (text_.starts_with("\xEF\xBB\xBF")) at_ = 3;  // byte order mark
   text_.erase(text_.find_last_not_of(" \t\r\n") + 1);
   text_ += '\n';
 }
@@ -69,7 +69,7 @@ CsvText::CsvText(const std::filesystem::path& path) : CsvText(path, ',') {
 
 bool CsvText::next(CsvLine& line) {
   if (at_ >= text_.size()) return false;
-  const std::size_t end = text_.find('\n', at_);  // there is one: the text ends in it
+  const std::size_t end = text_.find('\n', at_);  // always found: the text ends in a newline
   std::string_view text = std::string_view(text_).substr(at_, end - at_);
   at_ = end + 1;
   line.where = name_ + ":" + std::to_string(++number_);

@@ -7,24 +7,23 @@
 #include <string_view>
 #include <vector>
 
-/// Text files of separated columns, read line by line. Private to scenarios/recordings.
+/// Text files with separated columns, read line by line. Private to scenarios/recordings.
 namespace tumble::scenarios {
 
-/// One line and where it stands: "FILE:12". Fields are views into the file's text, without blanks or quotes around
-/// them.
+/// A line and its location "FILE:12". Fields are views of the file's text without surrounding blanks or quotes.
 struct CsvLine {
   std::string where;
   std::vector<std::string_view> fields;
 };
 
-/// The lines of a file, from its memory. Line ends may be those of Windows; empty lines at the end are none.
+/// The lines of a file in memory. Accepts Windows line ends; ignores empty lines at the end.
 class CsvText {
  public:
-  /// Separated by what the first line has most of: a comma, a semicolon or a tabulator.
+  /// Uses the most frequent separator in the first line: comma, semicolon or tab.
   explicit CsvText(const std::filesystem::path& path);
-  /// Throws BadInput with the file: not there, empty, or a last line without its end, which may be cut in a number.
+  /// Throws BadInput with the file: missing, empty, or a last line without newline, which may be truncated.
   CsvText(const std::filesystem::path& path, char separator);
-  /// The next line; false at the end.
+  /// Reads the next line; false at the end.
   bool next(CsvLine& line);
 
  private:
@@ -34,13 +33,13 @@ class CsvText {
   int number_ = 0;
 };
 
-/// Throws BadInput: where the line stands, and what is wrong with it.
+/// Throws BadInput with the line's location and the message.
 [[noreturn]] void fail(const CsvLine& line, const std::string& what);
 
-/// A finite number. Throws BadInput with the place and `column`, the name or number of the column.
+/// Returns a finite number. Throws BadInput with the location and `column`, the column's name or number.
 double csv_number(const CsvLine& line, std::size_t index, const std::string& column);
 
-/// Whether a whole field reads as a number, NaN and infinities included.
+/// Returns true if the whole field is a number; NaN and infinities are accepted.
 bool is_number(std::string_view field);
 
 }  // namespace tumble::scenarios

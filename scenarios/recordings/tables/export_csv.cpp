@@ -11,7 +11,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Attitude 0 0 0 1 with a first covariance of -1: sensor_msgs/Imu's way to say that there is none.
+/// Attitude 0 0 0 1 with a first covariance of -1: unknown attitude in sensor_msgs/Imu.
 constexpr const char* kNoAttitude = "0,0,0,1,[-1 0 0 0 0 0 0 0 0]";
 
 template <class Vector>
@@ -19,7 +19,7 @@ void append_all(std::string& text, const Vector& vector) {
   for (const double x : vector) append_number(text += ',', x);
 }
 
-/// White noise of one sample: density squared times the bandwidth of the output rate.
+/// Covariance of one sample's white noise: density squared times the bandwidth of the output rate.
 std::string covariance_text(double density_sqrt_hz, std::int64_t period_ns) {
   const double variance = density_sqrt_hz * density_sqrt_hz / (static_cast<double>(period_ns) * 1e-9);
   std::string text = ",[";
@@ -74,7 +74,7 @@ std::string truth_text(const sim::Truth& truth) {
     append_all(text, truth.v_WB_m_s[i]);
     append_all(text, truth.w_WB_B_rad_s[i]);
     if (truth.f_B_m_s2.empty())
-      text += ",,,";  // what a reference does not know stays empty
+      text += ",,,";  // unknown values of a reference stay empty
     else
       append_all(text, truth.f_B_m_s2[i]);
     text += ',';

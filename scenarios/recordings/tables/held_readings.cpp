@@ -15,7 +15,7 @@ constexpr double kHeldShare = 0.05, kFrozenShare = 0.98;
 constexpr double kRailLeast_m_s2 = 14.7;
 constexpr int kRailReadings = 5, kRailContrast = 3;
 
-/// Rows whose reading differs from the row before; the first one is new.
+/// Returns the rows whose reading differs from the previous row, and the first row.
 std::vector<std::size_t> fresh_rows(const std::vector<Eigen::Vector3d>& readings) {
   std::vector<std::size_t> rows;
   for (std::size_t k = 0; k < readings.size(); ++k) {
@@ -24,7 +24,7 @@ std::vector<std::size_t> fresh_rows(const std::vector<Eigen::Vector3d>& readings
   return rows;
 }
 
-/// A reading came after the row before and before its own.
+/// A reading was taken between the previous row's time and its own.
 std::vector<std::int64_t> beat_of(const std::vector<std::int64_t>& time_ns, const std::vector<std::size_t>& rows) {
   std::vector<std::int64_t> stamps;
   std::vector<StampBounds> bounds;
@@ -39,12 +39,13 @@ double repeated_share(std::size_t fresh, std::size_t rows) {
   return rows < 2 ? 0.0 : static_cast<double>(rows - fresh) / static_cast<double>(rows - 1);
 }
 
-/// What repeats for ever is not held but frozen, or at rest to the last digit: nothing is known of its beat.
+/// Readings that almost always repeat are not held: the sensor is frozen or noise-free at rest, and its period is
+/// unknown.
 bool is_held(double share) {
   return share > kHeldShare && share < kFrozenShare;
 }
 
-/// Readings at `times`, which rise, by straight lines between the sensor's own; the nearest beyond its ends.
+/// Interpolates readings linearly at `times`, which increase; beyond the ends the nearest reading is used.
 std::vector<Eigen::Vector3d> interpolated(const std::vector<std::int64_t>& own,
                                           const std::vector<Eigen::Vector3d>& values,
                                           const std::vector<std::int64_t>& times) {

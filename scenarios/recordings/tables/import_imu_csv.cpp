@@ -15,8 +15,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// The unit that the names state, else the one asked for. Another than theirs cannot be asked for; the usual one counts
-/// as not asked.
+/// Returns the unit in the column names, else the requested one. Throws if a non-default request contradicts the names.
 template <class Unit>
 Unit chosen(std::optional<Unit> stated, Unit asked, Unit usual, const CsvLine& header) {
   if (!stated || *stated == asked) return asked;
@@ -33,7 +32,7 @@ std::string unit_of_stamps(int decimals) {
   return decimals == 9 ? "s" : decimals == 6 ? "ms" : decimals == 3 ? "us" : "ns";
 }
 
-/// What was taken for what, where a logger's names leave room.
+/// Notes the interpretation of ambiguous column names.
 void say_columns(const ImuColumns& columns, bool stated, std::vector<std::string>& notes) {
   if (columns.stamp_form != StampForm::decimal) return;
   if (!stated)

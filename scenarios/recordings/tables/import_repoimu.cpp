@@ -30,17 +30,17 @@ constexpr const char* kRepoimuAttribution =
 
 constexpr double kBadNormShareMax = 0.2;
 constexpr double kRepoimuStampMax_s = 86400.0;
-/// Rows on either side that tell how finely stamps are printed around a row.
+/// Rows on either side used to find the precision of printed stamps.
 constexpr std::size_t kDigitsReach = 50;
-constexpr double kCoarse = 0.02;  // of a step: printed more coarsely than this is worth a remark
+constexpr double kCoarse = 0.02;  // fraction of a step above which coarse printing is noted
 
-/// The groups of columns, and where each column stands.
+/// Positions of the columns by group.
 struct RepoimuColumns {
   std::size_t time = 0;
   std::array<std::size_t, 4> attitude{};  ///< w x y z
   std::array<std::size_t, 3> force{}, rate{};
   std::size_t count = 0;    ///< of the header
-  bool open_ended = false;  ///< the header ends in a separator, rows need not
+  bool open_ended = false;  ///< the header ends in a separator, rows may not
 };
 
 struct Log {
@@ -51,7 +51,7 @@ struct Log {
   std::vector<std::string> where;
 };
 
-/// "Vicon Orientation/W": the group's name stands above its first column.
+/// "Vicon Orientation/W": the group's name is above its first column.
 std::vector<std::string> column_names(const CsvLine& groups, const CsvLine& names) {
   if (groups.fields.size() != names.fields.size()) {
     fail(names, fmt::format("has {} columns, but the line above has {}; must be equal", names.fields.size(),
@@ -79,7 +79,7 @@ RepoimuColumns columns_of(const CsvLine& groups, const CsvLine& second) {
     if (count == 0) missing += " '" + name + "'";
     const auto found = std::find(names.begin(), names.end(), name);
     place = static_cast<std::size_t>(found - names.begin());
-    if (found != names.end()) *found = "";  // taken
+    if (found != names.end()) *found = "";  // used
   };
   take("Time", columns.time);
   for (std::size_t i = 0; i < 4; ++i) take(std::string("Vicon Orientation/") + "WXYZ"[i], columns.attitude[i]);
@@ -93,7 +93,7 @@ RepoimuColumns columns_of(const CsvLine& groups, const CsvLine& second) {
   return columns;
 }
 
-/// A published file holds a value with a decimal comma among thousands with points; between ';' it is no separator.
+/// Accepts a decimal comma, which one published file contains; between ';' it is unambiguous.
 class DecimalNumbers {
  public:
   DecimalNumbers(const CsvLine& line, std::size_t& commas) : line_(line), commas_(commas) {}
@@ -102,7 +102,7 @@ class DecimalNumbers {
     const std::size_t comma = text.find(',');
     if (comma == std::string_view::npos) return csv_number(line_, column, name);
     if (text.find('.') != std::string_view::npos || text.find(',', comma + 1) != std::string_view::npos)
-      return csv_number(line_, column, name);  // refuses it
+      return csv_number(line_, column, name);  // throws
     std::string pointed(text);
     pointed[comma] = '.';
     ++commas_;
@@ -111,7 +111,7 @@ class DecimalNumbers {
   Eigen::Vector3d at(const std::array<std::size_t, 3>& columns, const char* name) {
     return {at(columns[0], name), at(columns[1], name), at(columns[2], name)};
   }
-  /// NaN or nothing where the cameras saw nothing.
+  /// Returns NaN for missing values, where the cameras saw nothing.
   double or_unknown(std::size_t column, const char* name) {
     const std::string_view text = line_.fields[column];
     if (text.empty() || text == "NaN" || text == "nan") return kNaN;
@@ -123,13 +123,13 @@ class DecimalNumbers {
   std::size_t& commas_;
 };
 
-/// Decimals of a number as it is printed.
+/// Returns the number of printed decimals.
 int decimals(std::string_view text) {
   const std::size_t point = text.find('.');
   return point == std::string_view::npos ? 0 : static_cast<int>(text.size() - point - 1);
 }
 
-/// Half of the last decimal that stamps around a row are printed with.
+/// Returns half of the last printed decimal of the stamps around each row.
 std::vector<StampBounds> rounding_of(const std::vector<int>& decimals) {
   std::vector<StampBounds> bounds;
   for (std::size_t k = 0; k < decimals.size(); ++k) {
@@ -183,7 +183,7 @@ Log read_log(const std::filesystem::path& path) {
   return log;
 }
 
-/// Stamps on their beat; says so where printing had coarsened them.
+/// Regularises the stamps, with a note if printing was coarse.
 void steady(Log& log, std::vector<std::string>& notes) {
   const std::vector<std::int64_t> printed = log.readings.time_ns;
   log.readings.time_ns = steady_stamps(printed, log.rounding);
@@ -195,7 +195,7 @@ void steady(Log& log, std::vector<std::string>& notes) {
     if (k == 0) continue;
     const bool same = printed[k] == printed[k - 1];
     equal += same ? 1 : 0;
-    // stamps that are printed finely do not repeat by their rounding
+    // precise stamps do not repeat because of rounding
     const bool coarse = 2 * (log.rounding[k].before_ns + log.rounding[k].after_ns) >= mean_step;
     if (time_ns <= log.readings.time_ns[k - 1] || (same && !coarse)) {
       throw BadInput(fmt::format("{}: Time does not increase: {:.9g} s occurs twice, beyond its rounding", log.where[k],
@@ -225,7 +225,7 @@ void require_attitudes(const std::filesystem::path& path, const Log& log) {
                   log.where[first], log.poses[first].q_WA.norm(), bad, log.poses.size(), path.filename().string()));
 }
 
-/// Errors of the reference's rates at samples whose axes are all far from their extreme.
+/// Describes errors of the reference's rates where all axes are far from their extreme.
 std::string rate_error_text(const sim::ImuRecord& imu, const std::vector<Eigen::Vector3d>& rates) {
   Eigen::Vector3d extreme = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& w : imu.gyro_rad_s) extreme = extreme.cwiseMax(w.cwiseAbs());
@@ -243,7 +243,7 @@ std::string rate_error_text(const sim::ImuRecord& imu, const std::vector<Eigen::
       kRateWindow_ns / 1'000'000, errors[errors.size() / 2], errors[errors.size() * 9 / 10], errors.size());
 }
 
-/// The reference becomes the truth of the recording.
+/// Adds the reference as the recording's truth.
 void add_reference(const std::filesystem::path& path, Log& log, bool align, Imported& out) {
   const sim::ImuRecord& imu = out.sensors.imus.front();
   const std::size_t samples = log.poses.size();
@@ -292,7 +292,7 @@ Imported import_repoimu(const std::filesystem::path& path, bool align) {
   out.info.origin_ns = log.readings.time_ns.front();
   for (std::int64_t& time : log.readings.time_ns) time -= out.info.origin_ns;
   steady(log, out.notes);
-  // the first stamp is time 0, wherever its beat lies within the rounding
+  // time 0 is the first printed stamp, not its regularised time
   const std::int64_t first_ns = log.readings.time_ns.front();
   for (std::int64_t& time : log.readings.time_ns) time -= first_ns;
   for (ReferencePose& pose : log.poses) pose.time_ns -= first_ns;

@@ -22,18 +22,18 @@ namespace {
 
 constexpr std::int64_t kLatest_ns = kSecondsMax * kSecond_ns;
 
-/// RequiredColumns that a header-less sensor_msgs/Imu must have.
+/// Minimum number of columns of a sensor_msgs/Imu table without header.
 constexpr std::size_t kColumnsByPlace = 15;
 
 const std::array<std::string, 3> kAxes = {"x", "y", "z"};
 
-/// What `export` writes: each of these once, and nothing else.
+/// Columns written by `export`: each once, and nothing else.
 const std::vector<std::string> kExported = {"stamp_s",  "stamp_ns", "frame_id", "qx",
                                             "qy",       "qz",       "qw",       "orientation_covariance",
                                             "wx_rad_s", "wy_rad_s", "wz_rad_s", "angular_velocity_covariance",
                                             "fx_m_s2",  "fy_m_s2",  "fz_m_s2",  "linear_acceleration_covariance"};
 
-/// The one column that `fits`; a second one would be another sensor's.
+/// Returns the only column that `fits`; a second one would belong to another sensor.
 template <class Fits>
 std::optional<std::size_t> find_column(const CsvLine& header, const std::string& name, const Fits& fits) {
   std::optional<std::size_t> found;
@@ -55,7 +55,7 @@ std::optional<std::size_t> find_any(const CsvLine& header, const std::vector<std
   });
 }
 
-/// Collects the columns of a header that must all be there.
+/// Collects the columns of a header that must all exist.
 class RequiredColumns {
  public:
   explicit RequiredColumns(const CsvLine& header) : header_(header) {}
@@ -65,7 +65,7 @@ class RequiredColumns {
     else
       missing_ += " " + name;
   }
-  /// False when none is there; throws when some are.
+  /// Returns false if none exists; throws if only some do.
   bool complete() const {
     if (found_ == 0) return false;
     if (!missing_.empty()) fail(header_, "missing columns:" + missing_);
@@ -78,7 +78,7 @@ class RequiredColumns {
   std::string missing_;
 };
 
-/// ".../header/stamp" and so on, as tools that flatten messages write them.
+/// Columns ".../header/stamp" and so on, as written by tools that flatten messages.
 std::optional<ImuColumns> flattened(const CsvLine& header) {
   ImuColumns layout;
   RequiredColumns columns(header);
@@ -92,7 +92,7 @@ std::optional<ImuColumns> flattened(const CsvLine& header) {
   return columns.complete() ? std::optional(layout) : std::nullopt;
 }
 
-/// "wx_rad_s" or "wx", "fx_m_s2", "fx" or "ax", "stamp_s", "sec", "secs" or "s" with "stamp_ns" and so on.
+/// Columns "wx_rad_s" or "wx", "fx_m_s2", "fx" or "ax", "stamp_s", "sec", "secs" or "s" with "stamp_ns" and so on.
 std::optional<ImuColumns> named(const CsvLine& header) {
   ImuColumns layout;
   RequiredColumns columns(header);
@@ -106,7 +106,7 @@ std::optional<ImuColumns> named(const CsvLine& header) {
   return columns.complete() ? std::optional(layout) : std::nullopt;
 }
 
-/// A header with names of our own export has all of them, each once, and no other.
+/// Throws unless a header with names of our export has all of them once and no other.
 void require_exported(const CsvLine& header) {
   for (const std::string_view field : header.fields) {
     const std::string name(field);
@@ -136,7 +136,7 @@ bool all_digits(std::string_view text) {
   return std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
 }
 
-/// A number and what follows its point.
+/// Integer part and decimals of a number.
 struct Decimal {
   std::string_view whole, part;
 
@@ -145,7 +145,7 @@ struct Decimal {
   bool sound() const { return !whole.empty() && all_digits(whole) && all_digits(part); }
 };
 
-/// Of a unit with so many decimals, rounded to nanoseconds without the rounding of a double; none where it is no time.
+/// Converts a number in a unit with this many decimals to nanoseconds, without a double's rounding; empty if invalid.
 std::optional<std::int64_t> scaled_ns(const Decimal& number, std::size_t decimals) {
   std::string digits = std::string(number.whole) + std::string(number.part.substr(0, decimals));
   digits.resize(number.whole.size() + decimals, '0');
@@ -171,12 +171,12 @@ std::int64_t decimal_ns(const CsvLine& line, std::size_t column, int decimals) {
                    column, text));
 }
 
-/// Whole seconds in a column and nanoseconds in another.
+/// Returns true if seconds and nanoseconds are in separate columns.
 bool has_split_stamp(const CsvLine& header) {
   return find_any(header, {"sec", "secs", "s"}) || find_any(header, {"nsec", "nsecs", "ns"});
 }
 
-/// A column that `export` writes and nobody else.
+/// Returns true for a column name that only `export` writes.
 bool is_own(std::string_view field) {
   return (field == "stamp_s" || field.ends_with("_rad_s") || field.ends_with("_m_s2")) &&
          std::find(kExported.begin(), kExported.end(), field) != kExported.end();
@@ -235,7 +235,7 @@ int decimals_by_step(CsvText text, std::size_t stamp, std::size_t columns, const
     steps.push_back(now - last);
     last = now;
   }
-  if (steps.size() < 2) return 9;  // too few samples, which is said where they are counted
+  if (steps.size() < 2) return 9;  // too few samples; reported later
   steps.erase(steps.begin());      // the first stamp is no step
   const double step = upper_median(steps);
   for (const int decimals : {9, 6, 3, 0}) {

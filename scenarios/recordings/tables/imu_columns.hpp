@@ -12,43 +12,43 @@
 #include "scenarios/recordings/import.hpp"
 #include "scenarios/recordings/tables/csv_text.hpp"
 
-/// Which columns of a table are the readings of an IMU. Private to scenarios/recordings.
+/// Finds the IMU columns of a table. Private to scenarios/recordings.
 namespace tumble::scenarios {
 
-/// How a line says when it was.
+/// Format of time stamps.
 enum class StampForm {
-  split,    ///< whole seconds, and nanoseconds in a column of their own
-  seconds,  ///< "1617333602.223639727", nine decimals at most
-  decimal   ///< a number of some unit, with any decimals
+  split,    ///< whole seconds, and nanoseconds in another column
+  seconds,  ///< "1617333602.223639727", at most nine decimals
+  decimal   ///< a decimal number in some unit
 };
 
 struct ImuColumns {
   StampForm stamp_form = StampForm::split;
   std::size_t stamp = 0, stamp_ns = 1;
-  std::optional<int> stamp_decimals;  ///< of `decimal`: 9 where it is in seconds, 0 in nanoseconds; none: not stated
-  std::array<std::size_t, 3> rate = {8, 9, 10}, force = {12, 13, 14};  ///< as a plain sensor_msgs/Imu has them
-  std::optional<GyroUnit> gyro_unit;                                   ///< as the names state it
+  std::optional<int> stamp_decimals;  ///< for `decimal`: 9 for seconds, 0 for nanoseconds; empty: unit not stated
+  std::array<std::size_t, 3> rate = {8, 9, 10}, force = {12, 13, 14};  ///< default: a plain sensor_msgs/Imu
+  std::optional<GyroUnit> gyro_unit;                                   ///< unit stated by the names
   std::optional<AccelUnit> accel_unit;
   bool has_header = true;
-  std::vector<std::string> left_out;  ///< names of a logger's other columns
+  std::vector<std::string> left_out;  ///< names of ignored columns
 };
 
-/// Of the first line. Names are believed before places: those of tools that flatten ROS messages
-/// (".../angular_velocity/x"), those of `export`, each once and no other, short forms of them (sec nsec wx.. fx..), or
-/// those of loggers (logger_columns.hpp). A line of numbers is a sample, whose columns stand by place. Throws BadInput
-/// with file and line: unknown, doubled or missing columns.
+/// Interprets the first line. Names take precedence over positions: those of tools that flatten ROS messages
+/// (".../angular_velocity/x"), of `export` (each once and no other), their short forms (sec nsec wx.. fx..), or of
+/// loggers (logger_columns.hpp). A line of numbers is a sample, with columns by position. Throws BadInput with file and
+/// line: unknown, repeated or missing columns.
 ImuColumns imu_columns(const CsvLine& first);
 
-/// Nanoseconds of a line's stamp. Throws BadInput with file, line and column.
+/// Returns a line's stamp in nanoseconds. Throws BadInput with file, line and column.
 std::int64_t stamp_ns(const CsvLine& line, const ImuColumns& columns);
 
-/// Throws BadInput, the line's place before it, where a line has not as many columns as the first.
+/// Throws BadInput, starting with the line's location, unless the line has this many columns.
 void require_width(const CsvLine& line, std::size_t columns);
 
-/// Decimals of the unit of stamps that state none, of their first thousand steps: the one of s, ms, us and ns for which
-/// the IMU reads 10 to 1000 times a second, which at most one is: a slower or a faster one must say its unit. `text`
-/// stands before the first sample, whose lines must be of `columns`. Throws BadInput beginning with the file where none
-/// is.
+/// Determines the unit of stamps without a stated unit (as decimals) from up to a thousand steps: the one of s, ms, us
+/// and ns that gives 10 to 1000 samples per second. At most one fits; other rates must state the unit. `text` starts at
+/// the first sample; lines must have `columns` fields. Throws BadInput, with a message that starts with the file, if no
+/// unit fits.
 int decimals_by_step(CsvText text, std::size_t stamp, std::size_t columns, const std::string& file);
 
 }  // namespace tumble::scenarios

@@ -17,14 +17,14 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// At rest and while rolling or carried the median is near g; in g, mg or raw counts it is not.
+/// At rest, rolling or hand-held, the median is near g; in g, mg or raw counts it is not.
 constexpr double kLeastMedian_m_s2 = 3.0, kLargestMedian_m_s2 = 30.0;
 
 bool near_factor(double ratio, double factor) {
   return ratio > factor / 2.0 && ratio < factor * 2.0;
 }
 
-/// The unit that would make the median gravity's size; of counts nobody knows the scale.
+/// Returns the unit in which the median would be close to gravity; none for raw counts.
 const char* likely_force_unit(double median, AccelUnit read_as) {
   constexpr double kThousand = 1000.0;
   const double numbers = read_as == AccelUnit::g ? median / kStandardGravity_m_s2 : median;
@@ -49,15 +49,15 @@ void require_plausible_force(const std::string& where, const sim::ImuRecord& imu
 
 constexpr const char *kTakenInDegrees = " (set '--gyro-unit deg/s')", *kTakenInRadians = " (set '--gyro-unit rad/s')";
 
-/// Of either triad [rad/s, m/s^2]: as the estimators bear.
+/// Limit of both triads [rad/s, m/s^2], as in the estimator.
 constexpr double kSensorReadingMax = 1e6;
 
-/// Not finite where one of them is not.
+/// Returns a non-finite value if any axis is.
 double largest_of_triad(const Eigen::Vector3d& reading) {
   return reading.allFinite() ? reading.cwiseAbs().maxCoeff() : std::nan("");
 }
 
-/// From 0.5 Hz to 50 kHz: what an IMU gives at all.
+/// 0.5 Hz to 50 kHz, the range of IMUs.
 constexpr double kLeastPeriod_s = 2e-5, kLargestPeriod_s = 2.0;
 
 void require_plausible_period(const std::string& where, const sim::ImuRecord& imu) {
@@ -69,13 +69,13 @@ void require_plausible_period(const std::string& where, const sim::ImuRecord& im
       period_s > kLargestPeriod_s ? ", ms or us" : " than s or ns"));
 }
 
-/// Of a device whose sheet is not known: none that a robot bears reads more.
+/// Largest plausible rate of a robot's device without a data sheet.
 constexpr double kLargestRate_rad_s = 100.0;
-/// Of the samples; single ones are glitches.
+/// Fraction of the samples; single ones are glitches.
 constexpr double kBeyondShare = 0.01, kBeyondRange = 2.0;
 constexpr double kDegreesPerRadian = 57.29577951308232;
 
-/// Of samples whose largest axis, times `factor`, lies beyond the bound.
+/// Returns the fraction of samples whose largest axis, times `factor`, exceeds the bound.
 double beyond_share(const sim::ImuRecord& imu, double bound_rad_s, double factor) {
   const auto beyond = std::count_if(imu.gyro_rad_s.begin(), imu.gyro_rad_s.end(), [&](const Eigen::Vector3d& w) {
     return factor * w.cwiseAbs().maxCoeff() > bound_rad_s;
@@ -98,10 +98,11 @@ void require_rates_in_range(const std::string& where, const sim::ImuRecord& imu,
 }
 
 constexpr double kRotationWindow_s = 0.2, kNearGravity = 0.1;
-constexpr double kLeastRotation = 0.0175, kMostRotation = 0.4;  // of the force, as shares of it: from one degree on
+constexpr double kLeastRotation = 0.0175, kMostRotation = 0.4;  // rotation of the force in units of the force: at least
+                                                                // one degree
 constexpr int kLeastWindows = 10;
 constexpr double kLeastCorrelation = 0.8;
-/// Of gravity, at which a brisk window ends.
+/// Change of gravity that ends a brisk window.
 constexpr double kBriskRotation = 0.25;
 
 }  // namespace
@@ -138,14 +139,14 @@ GravityRotation gravity_rotation(const sim::ImuRecord& imu, RotationWindows wind
     while (end + 1 < count && near(end) && !turned() &&
            1e-9 * static_cast<double>(imu.time_ns[end] - imu.time_ns[begin]) < kRotationWindow_s) {
       ++end;
-      // a sample is the mean over what ends at its stamp
+      // a sample is the mean over the window that ends at its stamp
       angle += imu.gyro_rad_s[end] * (1e-9 * static_cast<double>(imu.time_ns[end] - imu.time_ns[end - 1]));
     }
     const double length_s = 1e-9 * static_cast<double>(imu.time_ns[end] - imu.time_ns[begin]);
     const bool whole = near(end) && end >= begin + 4 && (length_s >= kRotationWindow_s || turned()) &&
                        length_s < 1.5 * kRotationWindow_s;
     if (whole) {
-      // the ends' means over a quarter each, so that noise does not pass for turning
+      // Average a quarter of the window at each end, so that noise does not appear as rotation.
       const std::size_t quarter = std::max<std::size_t>(1, (end - begin) / 4);
       Eigen::Vector3d first = Eigen::Vector3d::Zero(), last = Eigen::Vector3d::Zero(), middle = Eigen::Vector3d::Zero();
       for (std::size_t k = 0; k < quarter; ++k) first += imu.accel_m_s2[begin + k], last += imu.accel_m_s2[end - k];
@@ -175,11 +176,11 @@ bool tells_rotation(const GravityRotation& turn) {
 
 GravityRotation telling_rotation(const sim::ImuRecord& imu) {
   const GravityRotation turn = gravity_rotation(imu, RotationWindows::even);
-  // a sphere that rolls turns too far within them
+  // a rolling sphere rotates too far in even windows
   return tells_rotation(turn) ? turn : gravity_rotation(imu, RotationWindows::brisk);
 }
 
-/// Why the motion does not tell.
+/// Explains why the motion does not suffice.
 std::string untold_text(const GravityRotation& turn) {
   if (turn.windows < kLeastWindows) return "gravity's rotation in the accelerometer is too small to check them";
   return fmt::format(

@@ -14,7 +14,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// A name and the unit that it states, both in small letters without what separates words.
+/// A name and its unit, both in lower case without separators.
 struct Name {
   std::string quantity, unit;
 };
@@ -63,14 +63,14 @@ bool is_one_of(const std::vector<std::string_view>& names, std::string_view name
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// "gx [deg/s]", "gx (deg/s)": the unit stands in brackets.
+/// "gx [deg/s]", "gx (deg/s)": unit in brackets.
 Name split_brackets(std::string_view field) {
   const std::size_t open = field.find_first_of("[(");
   if (open == std::string_view::npos) return {letters(field), ""};
   return {letters(field.substr(0, open)), letters(field.substr(open))};
 }
 
-/// "time_ms", "gyro_x_deg_s": the unit follows at an underscore, which begins after the axis.
+/// "time_ms", "gyro_x_deg_s": unit after an underscore, following the axis.
 template <class Value, class IsQuantity>
 Name split_suffix(std::string_view field, const UnitNames<Value>& units, const IsQuantity& is_quantity) {
   for (std::size_t at = field.find('_'); at != std::string_view::npos; at = field.find('_', at + 1)) {
@@ -80,7 +80,7 @@ Name split_suffix(std::string_view field, const UnitNames<Value>& units, const I
   return split_brackets(field);
 }
 
-/// The axis of a triad that one of `names` is, "imu" before it or not: 0 to 2.
+/// Returns the axis (0 to 2) if the quantity is one of `names`, with or without the prefix "imu".
 std::optional<std::size_t> axis_of(const std::vector<std::string_view>& names, std::string_view quantity) {
   if (quantity.starts_with("imu")) quantity.remove_prefix(3);
   if (quantity.size() < 2 || !is_one_of(names, quantity.substr(0, quantity.size() - 1))) return std::nullopt;
@@ -88,7 +88,7 @@ std::optional<std::size_t> axis_of(const std::vector<std::string_view>& names, s
   return axis == std::string_view::npos ? std::nullopt : std::optional(axis);
 }
 
-/// Takes the columns of one quantity out of a header.
+/// Takes the columns of one quantity from a header.
 class HeaderReader {
  public:
   explicit HeaderReader(const CsvLine& header) : header_(header), taken_(header.fields.size(), false) {}
@@ -134,7 +134,7 @@ class HeaderReader {
     return stated[0];
   }
 
-  /// False where nothing but a time is known; throws where something is missing.
+  /// Returns false if only a time is known; throws if something is missing.
   bool complete(std::size_t readings) const {
     if (readings == 0) return false;
     if (!missing_.empty()) fail("missing columns:" + missing_);

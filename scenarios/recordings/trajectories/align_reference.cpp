@@ -24,17 +24,17 @@ constexpr int kSearch_ms = 100;
 constexpr double kSlopeStep_s = 4e-3;
 constexpr int kAlignmentParts = 8;
 constexpr int kRounds = 20;
-/// Standard deviations of the pairs, and how many samples in a row err alike.
+/// Standard deviations of the pairs, and the number of consecutive samples with correlated errors.
 constexpr double kRateSigma_rad_s = 0.15, kForceSigma_m_s2 = 1.0;
 constexpr double kRateRun = 5.0, kForceRun = 25.0;
 
 using Vectors = std::vector<Eigen::Vector3d>;
 
-/// A sample at which both speak.
+/// A sample with known gyro and reference.
 struct SamplePair {
   std::int64_t time_ns = 0;
   Eigen::Vector3d w_I, f_I;
-  Eigen::Vector3d w_V = Eigen::Vector3d::Zero();  ///< at the delay in force
+  Eigen::Vector3d w_V = Eigen::Vector3d::Zero();  ///< at the current delay
   Eigen::Quaterniond q_V = Eigen::Quaterniond::Identity();
   double speed_rad_s = 0.0;
 };
@@ -79,8 +79,8 @@ double correlation(const std::vector<SamplePair>& pairs, const std::vector<doubl
   return spread > 0.0 ? (n * ab - a * b) / std::sqrt(spread) : -1.0;
 }
 
-/// One Gauss-Newton step of the delay on |w| of the samples [first, end); speeds a little earlier and later give
-/// the slope.
+/// One Gauss-Newton step of the delay on |w| of the samples [first, end); the slope comes from speeds slightly earlier
+/// and later.
 double delay_step(const std::vector<SamplePair>& pairs, const std::array<std::vector<double>, 3>& speeds,
                   std::size_t first, std::size_t end) {
   std::vector<double> sizes;
@@ -113,7 +113,7 @@ double deviation_of_mean(const std::vector<double>& values) {
   return n > 1.0 ? std::sqrt(squares / (n - 1.0) / n) : 0.0;
 }
 
-/// Bounds of part i of n samples.
+/// Returns the bounds of part i of n samples.
 std::array<std::size_t, 2> part(std::size_t i, std::size_t n) {
   return {i * n / kAlignmentParts, (i + 1) * n / kAlignmentParts};
 }
@@ -139,7 +139,7 @@ void estimate_delay(const std::vector<ReferencePose>& poses, const std::vector<S
   alignment.delay_sigma_s = deviation_of_mean(steps);
 }
 
-/// What the reference says at the delay; pairs about which it says nothing go.
+/// Sets the reference values for a delay; removes pairs without a known reference.
 void pair_up(const std::vector<ReferencePose>& poses, double delay_s, std::vector<SamplePair>& pairs) {
   std::vector<std::int64_t> times;
   for (const SamplePair& pair : pairs) times.push_back(pair.time_ns + std::llround(delay_s * 1e9));
@@ -149,7 +149,7 @@ void pair_up(const std::vector<ReferencePose>& poses, double delay_s, std::vecto
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     if (!rates[k].allFinite()) continue;
     while (next < poses.size() && poses[next].time_ns < times[k]) ++next;
-    const ReferencePose &before = poses[next - 1], &after = poses[next];  // a rate has poses on both sides
+    const ReferencePose &before = poses[next - 1], &after = poses[next];  // a rate needs poses on both sides
     const double share =
         static_cast<double>(times[k] - before.time_ns) / static_cast<double>(after.time_ns - before.time_ns);
     pairs[k].w_V = rates[k];
@@ -159,16 +159,16 @@ void pair_up(const std::vector<ReferencePose>& poses, double delay_s, std::vecto
   pairs = std::move(kept);
 }
 
-/// Gravity (up) in the reference's world, given the rotation: of all samples alike, since what the body gains in speed
-/// it loses again.
+/// Returns the up direction in the reference's world for a given rotation. Averages all samples, because accelerations
+/// cancel over the recording.
 Eigen::Vector3d up_in_world(const std::vector<SamplePair>& all, const Eigen::Quaterniond& q_IV) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const SamplePair& pair : all) sum += pair.q_V * (q_IV.conjugate() * pair.f_I);
   return sum.normalized();
 }
 
-/// The rotation R with the largest trace(R^T B), as a unit quaternion: the eigenvector of the largest eigenvalue of
-/// Davenport's matrix (Markley and Crassidis, Fundamentals of Spacecraft Attitude Determination and Control, 2014,
+/// Returns the rotation R with the largest trace(R^T B) as a unit quaternion: the eigenvector of the largest eigenvalue
+/// of Davenport's matrix (Markley and Crassidis, Fundamentals of Spacecraft Attitude Determination and Control, 2014,
 /// section 5.3; there for R^T).
 Eigen::Quaterniond closest_rotation(const Eigen::Matrix3d& B) {
   const Eigen::Vector3d z(B(2, 1) - B(1, 2), B(0, 2) - B(2, 0), B(1, 0) - B(0, 1));
@@ -181,7 +181,7 @@ Eigen::Quaterniond closest_rotation(const Eigen::Matrix3d& B) {
   return Eigen::Quaterniond(q.w() < 0.0 ? Eigen::Vector4d(-q) : q).normalized();
 }
 
-/// The rotation, given gravity, of samples [first, end).
+/// Returns the rotation of samples [first, end) for a given gravity direction.
 Eigen::Quaterniond rotation(const std::vector<SamplePair>& pairs, std::size_t first, std::size_t end,
                             const Eigen::Vector3d& up) {
   Eigen::Matrix3d B = Eigen::Matrix3d::Zero();

@@ -6,12 +6,13 @@
 #include "scenarios/recordings/clouds/sweep_stamps.hpp"
 #include "scenarios/recordings/import.hpp"
 #include "scenarios/recordings/recording_clock.hpp"
+#include "scenarios/recordings/trajectories/reference_check.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
 
-/// Times of a KITTI file's poses when there are no sweeps to give them.
+/// Returns times for a KITTI file's poses without sweeps.
 std::vector<std::int64_t> own_times(const ReferenceSource& source) {
   if (!source.times.empty()) return read_stamps(source.times);
   if (source.steady_ns <= 0) {
@@ -32,7 +33,7 @@ std::vector<ReferencePose> poses_of(const ReferenceSource& source, const std::ve
       fmt::format("the pose format '{}' is not supported; supported: tum, kitti and odometry", source.format));
 }
 
-/// From poses of A to poses of B.
+/// Converts poses of A to poses of B.
 void move_to(std::vector<ReferencePose>& poses, const Eigen::Isometry3d& T_AB) {
   if (T_AB.matrix().isIdentity(0.0)) return;
   const Eigen::Quaterniond q_AB(T_AB.linear());
@@ -72,6 +73,7 @@ void attach_poses(Imported& recording, std::vector<ReferencePose> poses, const E
                   const std::string& where) {
   const sim::Sensors& sensors = recording.sensors;
   for (ReferencePose& pose : poses) pose.time_ns -= recording.info.origin_ns;
+  std::string remark = check_reference(poses, T_BA, sensors, where);
   move_to(poses, T_BA.inverse(Eigen::Isometry));
   sim::Truth truth = named(where, poses, span_of(sensors).second);
   for (const sim::ImuRecord& imu : sensors.imus) {
@@ -82,6 +84,7 @@ void attach_poses(Imported& recording, std::vector<ReferencePose> poses, const E
   for (const sim::LidarRecord& lidar : sensors.lidars) truth.lidars.push_back({lidar.name, lidar.T_BL, {}, {}});
   for (const sim::SeriesRecord& series : sensors.series) truth.series.push_back({series.name, series.T_BX, {}});
   recording.reference = std::move(truth);
+  recording.notes.push_back(std::move(remark));
 }
 
 void attach_reference(Imported& recording, const ReferenceSource& source) {

@@ -19,10 +19,10 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr const char* kFirst = "header.stamp.sec";
-/// A header of all columns that drivers write has some 2 kB.
+/// A header with all columns of drivers has about 2 kB.
 constexpr std::size_t kHeaderMax_bytes = 64 * 1024;
 
-/// The columns that are read, in this order.
+/// The columns to read, in this order.
 constexpr std::array<const char*, 9> kOdometryColumns = {
     kFirst,
     "header.stamp.nanosec",
@@ -35,8 +35,8 @@ constexpr std::array<const char*, 9> kOdometryColumns = {
     "pose.pose.orientation.w",
 };
 
-/// Empty where no regular file is. Of a longer line one byte more than a header may have: a file without line ends is
-/// not read whole for it.
+/// Returns the first line; empty if the file is not a regular file. Reads at most one byte more than the limit, because
+/// a file may have no line ends.
 std::string odometry_header(const std::filesystem::path& file) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) return "";
@@ -59,7 +59,7 @@ std::vector<std::string> names_in(const std::string& header) {
   return names;
 }
 
-/// Where each of kOdometryColumns stands.
+/// Returns the position of each of kOdometryColumns.
 std::array<std::size_t, kOdometryColumns.size()> places_in(const std::filesystem::path& file,
                                                            const std::vector<std::string>& names) {
   std::array<std::size_t, kOdometryColumns.size()> places{};

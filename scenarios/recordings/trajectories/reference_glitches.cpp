@@ -33,7 +33,7 @@ std::vector<double> step_rates_rad_s(const std::vector<ReferencePose>& poses) {
   return rates;
 }
 
-/// Lower median of up to four steps; none at the ends of the recording counts as rest.
+/// Returns the lower median of up to four steps; none at the recording's ends counts as rest.
 double side_rad_s(const std::vector<double>& rates, std::ptrdiff_t k, std::ptrdiff_t direction) {
   std::vector<double> side;
   for (auto i = static_cast<std::ptrdiff_t>(kNear); i <= static_cast<std::ptrdiff_t>(kFar); ++i) {
@@ -46,7 +46,7 @@ double side_rad_s(const std::vector<double>& rates, std::ptrdiff_t k, std::ptrdi
   return *middle;
 }
 
-/// First and last step of each leap.
+/// Returns the first and last step of each jump.
 std::vector<std::array<std::size_t, 2>> find_leaps(const std::vector<double>& rates, double& fastest_rad_s) {
   std::vector<std::array<std::size_t, 2>> leaps;
   for (std::size_t k = 0; k < rates.size(); ++k) {
@@ -87,7 +87,7 @@ void leave_out_frozen(std::vector<ReferencePose>& poses, GlitchReport& report) {
   for (std::size_t first = 0; first < poses.size();) {
     std::size_t last = first;
     while (last + 1 < poses.size() && poses[last + 1].q_WA.coeffs() == poses[first].q_WA.coeffs()) ++last;
-    // at rest a rounded attitude may repeat; it does not then catch up with a leap
+    // at rest, rounded attitudes may repeat without a later jump
     const bool thaws = last > first && last + 2 < poses.size();
     const double thaw_rad = thaws ? rotation_rad(poses[last], poses[last + 1]) : 0.0;
     if (thaws && thaw_rad > kThaw_rad && thaw_rad > kCatchUp * rotation_rad(poses[last + 1], poses[last + 2])) {
@@ -108,7 +108,7 @@ void leave_out_leaps(std::vector<ReferencePose>& poses, GlitchReport& report) {
     for (std::size_t k = first > kMargin ? first - kMargin : 0; k <= std::min(last + kMargin, poses.size() - 1); ++k)
       out[k] = true;
   };
-  bool away = false;  // between a leap and its return
+  bool away = false;  // between a jump and its return
   for (std::size_t i = 0; i < leaps.size(); ++i) {
     drop(leaps[i][0], leaps[i][1] + 1);
     const bool near = i > 0 && poses[leaps[i][0]].time_ns - poses[leaps[i - 1][1]].time_ns < kPair_ns;

@@ -3,25 +3,26 @@
 
 namespace tumble::sim {
 
-/// A slope that falls along +x between a level top at height 0 and a level run-out, its two corners rounded (softplus).
+/// A slope that falls along +x between a level top at height 0 and a level run-out, with two rounded corners
+/// (softplus).
 struct SlopeProfile {
   double edge_x_m = 0.0;     ///< upper corner
   double slope_rad = 0.6;    ///< steepness, below a right angle
   double drop_m = 3.0;       ///< from top to run-out
   double rounding_m = 0.25;  ///< length over which a corner bends, above 0
 
-  double length_m() const;  ///< level length of the slope
+  double length_m() const;  ///< horizontal length of the slope
   double height_m(double x_m) const;
 };
 
-/// Terraces below the level top at height 0: drops of equal height, upright within `face_m`, a sloping ledge after each
-/// of them, then a level run-out.
+/// Terraces below the level top at height 0: drops of equal height, vertical within `face_m`, each followed by a
+/// sloping ledge; then a level run-out.
 struct LedgeProfile {
   double edge_x_m = 0.0;  ///< first drop
   int drops = 2;          ///< at least 1
   double drop_height_m = 1.5;
-  double face_m = 0.1;          ///< level width of a face, above 0
-  double ledge_length_m = 2.0;  ///< level length of a ledge, above 0
+  double face_m = 0.1;          ///< horizontal width of a face, above 0
+  double ledge_length_m = 2.0;  ///< horizontal length of a ledge, above 0
   double ledge_slope_rad = 0.3;
 
   double height_m(double x_m) const;

@@ -8,19 +8,19 @@
 
 namespace tumble::sim {
 
-/// A level rectangle along the axes.
+/// A horizontal rectangle along the axes.
 struct Rectangle {
   double low_x_m = 0.0, high_x_m = 0.0, low_y_m = 0.0, high_y_m = 0.0;
 };
 
-/// A level disc.
+/// A horizontal disc.
 struct Disc {
   Eigen::Vector2d centre_m = Eigen::Vector2d::Zero();
   double radius_m = 0.0;
 };
 
-/// A position drawn evenly from the area until `fits` takes it. Throws InvalidSituation after 1000 refusals, naming
-/// `what`.
+/// Draws uniform positions from the area until `fits` accepts one. Throws InvalidSituation with `what` after 1000
+/// rejections.
 template <typename Fits>
 Eigen::Vector2d draw_position(Stream& stream, const Rectangle& area, const char* what, Fits fits) {
   constexpr int kAttempts = 1000;

@@ -8,19 +8,19 @@
 
 namespace tumble::sim {
 
-/// Spectrum of a rough surface: power per wave number E(k) in proportion to k^-exponent (integrated over directions; a
-/// cut through the surface falls off with the same exponent) for wavelengths within [shortest_m, longest_m], none
-/// outside.
+/// Spectrum of a rough surface. The power per wave number E(k), integrated over directions, is proportional to
+/// k^-exponent for wavelengths within [shortest_m, longest_m], and zero outside. A cut through the surface has the same
+/// exponent.
 struct ReliefSpectrum {
   double rms_m = 0.1;       ///< root mean square of the height over phases, at least 0
   double shortest_m = 1.0;  ///< above 0
   double longest_m = 9.0;   ///< at least shortest_m
-  double exponent = 3.0;    ///< 3: amplitude in proportion to wavelength, natural ground has 2 to 3.5
-  bool ruled = false;       ///< true: height depends on x alone, so that every contour line is straight
+  double exponent = 3.0;    ///< 3: amplitude proportional to wavelength; natural ground has 2 to 3.5
+  bool ruled = false;       ///< true: the height depends only on x, so that every contour line is straight
 };
 
-/// Relief of a stated spectrum: a sum of plane waves of random phase and direction, log-uniform wavelengths.
-/// Deterministic: it belongs to the numbers that the stream gives.
+/// Relief of a stated spectrum: a sum of plane waves of random phase and direction with log-uniform wavelengths. It is
+/// determined by the random numbers of the stream.
 class Relief {
  public:
   Relief(Stream& stream, const ReliefSpectrum& spectrum);
@@ -33,8 +33,8 @@ class Relief {
   std::vector<Wave> waves_;
 };
 
-/// Bumps and hollows of Gaussian shape strewn evenly over `ground`: heights uniform in +-height_m, standard deviations
-/// of the shape uniform in [0.2, 0.7] m (0.5 to 1.6 m wide at half height).
+/// Adds Gaussian bumps and hollows at uniform positions of `ground`. Heights are uniform in +-height_m; standard
+/// deviations of the shape are uniform in [0.2, 0.7] m (0.5 to 1.6 m wide at half height).
 void add_bumps(Ground& ground, Stream& stream, int count, double height_m);
 
 }  // namespace tumble::sim

@@ -10,27 +10,27 @@
 
 namespace tumble::sim {
 
-/// Where rocks lie and how large they are.
+/// Positions and sizes of rocks.
 struct RockField {
   int count = 0;
   double largest_m = 0.3;       ///< largest half axis
-  double smallest_share = 0.4;  ///< half axes along the ground are uniform in [smallest_share, 1] * largest_m, heights
-                                ///< in [0.75 smallest_share, 0.7] * largest_m
+  double smallest_share = 0.4;  ///< horizontal half axes are uniform in [smallest_share, 1] * largest_m, heights in
+                                ///< [0.75 smallest_share, 0.7] * largest_m
   Rectangle area;
-  Disc clear;  ///< no rock reaches into it
+  Disc clear;  ///< no rock reaches into this disc
 };
 
-/// An ellipsoid, more than a third of it buried.
+/// An ellipsoid that is more than a third buried.
 struct Rock {
   Eigen::Vector3d centre_W_m;
   Eigen::Vector3d half_axes_m;
   double yaw_rad;
 };
 
-/// Rocks on the ground, evenly over the area; they may lie on each other. Throws InvalidSituation when the clear disc
-/// leaves no room for them.
+/// Places rocks on the ground, uniformly over the area; they may overlap. Throws InvalidSituation if the clear disc
+/// leaves no room.
 std::vector<Rock> strew_rocks(Stream& stream, const RockField& field, const Ground& ground);
-/// Adds them as surfaces "rock_0", "rock_1", ...
+/// Adds the rocks as surfaces "rock_0", "rock_1", ...
 void add_rocks(mjSpec* spec, engine::World& world, const std::vector<Rock>& rocks);
 
 }  // namespace tumble::sim

@@ -7,28 +7,28 @@
 
 namespace tumble::sim {
 
-/// A straight flight of steps that goes down along +x from a level top at height 0.
+/// A straight flight of steps that descends along +x from a level top at height 0.
 struct Flight {
   double edge_x_m = 0.0;  ///< edge of the top: the first riser
-  int steps = 12;         ///< risers, at least 1
+  int steps = 12;         ///< number of risers, at least 1
   double rise_m = 0.17;
   double tread_m = 0.29;
   double half_width_m = 2.0;
 
-  double slope_rad() const;  ///< of the line through the edges
+  double slope_rad() const;  ///< slope of the line through the edges
   double drop_m() const { return steps * rise_m; }
   double length_m() const { return steps * tread_m; }
 };
 
-/// Box of step i = 1 .. steps: its top lies i risers below the top of the flight, the last one's level with the foot.
+/// Box of step i = 1 .. steps. Its top is i risers below the top of the flight; the last top is level with the foot.
 struct Step {
   Eigen::Vector3d centre_W_m;
   Eigen::Vector3d half_m;
 };
 
-/// Steps as boxes that reach `depth_m` below their tops.
+/// Returns the steps as boxes that extend `depth_m` below their tops.
 std::vector<Step> lay_steps(const Flight& flight, double depth_m);
-/// Adds them as surfaces "step_1", "step_2", ...
+/// Adds the steps as surfaces "step_1", "step_2", ...
 void add_steps(mjSpec* spec, engine::World& world, const std::vector<Step>& steps, const Colour& colour);
 
 }  // namespace tumble::sim

@@ -10,26 +10,26 @@
 
 namespace tumble::sim {
 
-/// Where trees stand.
+/// Positions and sizes of trees.
 struct Stand {
   int count = 0;
-  double largest_radius_m = 0.15;  ///< radii are uniform in [0.4, 1] of it
-  double spacing_m = 0.8;          ///< least distance between two axes
-  double lane_half_width_m = 0.0;  ///< none stands within this of y = 0
+  double largest_radius_m = 0.15;  ///< radii are uniform in [0.4, 1] times this value
+  double spacing_m = 0.8;          ///< minimum distance between two axes
+  double lane_half_width_m = 0.0;  ///< no tree is within this distance of y = 0
   Rectangle area;
-  Disc clear;  ///< none stands in it
+  Disc clear;  ///< no tree is in this disc
 };
 
-/// An upright cylinder, its foot half a metre under the ground.
+/// A vertical cylinder whose foot is half a metre below the ground.
 struct Trunk {
   Eigen::Vector3d centre_W_m;
   double radius_m;
   double half_height_m;  ///< uniform in [1.5, 3] m
 };
 
-/// Trunks on the ground. Throws InvalidSituation when spacing, lane and clear disc leave no room for them. O(count^2).
+/// Places trunks on the ground. Throws InvalidSituation if spacing, lane and clear disc leave no room. O(count^2).
 std::vector<Trunk> plant_trunks(Stream& stream, const Stand& stand, const Ground& ground);
-/// Adds them as surfaces "trunk_0", "trunk_1", ...
+/// Adds the trunks as surfaces "trunk_0", "trunk_1", ...
 void add_trunks(mjSpec* spec, engine::World& world, const std::vector<Trunk>& trunks);
 
 }  // namespace tumble::sim

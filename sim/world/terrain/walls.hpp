@@ -7,11 +7,12 @@
 
 namespace tumble::sim {
 
-/// An upright block on the ground, for a wall or a house.
+/// A vertical block on the ground, for a wall or a house.
 struct Block {
   double x_m = 0.0, y_m = 0.0;
   double half_x_m = 1.0, half_y_m = 1.0;  ///< along its own axes
-  double height_m = 2.0;                  ///< above the lowest ground at its corners and centre; 1 m more is buried
+  double height_m = 2.0;                  ///< above the lowest ground at its corners and centre; a further 1 m is
+                                          ///< buried
   double yaw_rad = 0.0;
 };
 

@@ -118,7 +118,7 @@ TEST(RateFactors, VanishOnATorqueFreeBody) {
   }
 }
 
-// What lever and inertia leave of a gyro's scale in flight: rate_smoother.md (R47), (R48). Nothing of a spin about a
+// What lever and inertia leave of a gyro's scale in flight: rate_smoother.md (R46), (R47). Nothing of a spin about a
 // principal axis.
 TEST(RateFactors, AScaleOfTheGyroShowsByTheAccelerationAlone) {
   constexpr double k = 0.01;

@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 
 struct ScaleInformation {
   double of_model = 0.0;  ///< with all else at its optimum
-  double at_most = 0.0;   ///< rate_smoother.md (R49)
+  double at_most = 0.0;   ///< rate_smoother.md (R48)
 };
 
 // Of a scale that all axes of the gyro share, from an unclipped tumble of a body of these moments.
@@ -83,7 +83,7 @@ TEST(ScaleBound, ARunTellsNoMoreOfAScaleThanItsAcceleration) {
 }
 
 // Of a device whose size of scale errors is stated as it is, the error is what the bound leaves of it: the covariance
-// is that of parameters of this size, less what of (R49) is believed.
+// is that of parameters of this size, less what of (R48) is believed.
 TEST(ScaleBound, TheErrorIsThatOfTheBound) {
   double squares = 0.0, variances = 0.0, without = 0.0;
   for (const std::uint64_t seed : {2u, 3u, 5u, 6u}) {

@@ -59,7 +59,7 @@ TEST(SensorErrors, ComeBackFromTheirVector) {
   EXPECT_EQ(errors.accel_delay_s, v[SensorErrors::kDelay]);
 }
 
-// What any motion explains counts by time, whatever the number of samples; all else stays: (R37a).
+// What any motion explains counts by time, whatever the number of samples; all else stays: (R39).
 TEST(SensorErrors, WhatNoMotionTellsIsDiscounted) {
   oracles::Gaussian noise(2);
   SensorErrors::Matrix root;

@@ -78,7 +78,7 @@ double once_more(double lasts_s) {
   return 4.0 * std::numbers::pi / lasts_s;
 }
 
-/// Deviation in the middle of a segment at whose ends rate, angular acceleration and angle are known: carried.md (C43).
+/// Deviation in the middle of a segment at whose ends rate, angular acceleration and angle are known: carried.md (C42).
 double closed_form_sigma(const CarriedStream::Params& params, double lasts_s) {
   const double q = std::pow(params.body.expert.jerk_inflation * params.body.jerk_rad_s3_sqrts, 2.0);
   return std::sqrt(q * std::pow(lasts_s + 1.0 / SpinReadings::kHz, 3.0) * (1.0 / 192.0 - 720.0 / (384.0 * 384.0)));

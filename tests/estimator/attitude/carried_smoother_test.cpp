@@ -89,7 +89,7 @@ TEST(CarriedSmoother, ReadingsThatWrapSayNothing) {
   EXPECT_GT(free, 5.0 * all);
 }
 
-/// Rates about x that somebody recovered, 2 rad/s too large for a third of a second: carried.md (C40)
+/// Rates about x that somebody recovered, 2 rad/s too large for a third of a second: carried.md (C15)
 TEST(CarriedSmoother, ARecoveredRateIsBelievedAsFarAsItIsTold) {
   CarriedRecording recording = testing::record({.spin_rad = 1.0}, 100.0, 12.0, 0.0);
   std::vector<Eigen::Matrix3d> told(recording.samples.size(), Eigen::Matrix3d::Zero()), untold = told;
@@ -113,7 +113,7 @@ TEST(CarriedSmoother, ARecoveredRateIsBelievedAsFarAsItIsTold) {
   EXPECT_GT(error(untold), 3.0 * error(told));  // negative control
 }
 
-// carried.md (C42): of a turn of 9 rad between two rests nothing is open at its ends, and in its middle what half of it
+// carried.md (C27): of a turn of 9 rad between two rests nothing is open at its ends, and in its middle what half of it
 // gathers; the attitudes stay where they are. Of a body in a hand, without recovered rates, nothing is added.
 TEST(CarriedSmoother, BesideRecoveredRatesAScaleGathersOverTheTurning) {
   std::vector<ImuSample> samples(700);

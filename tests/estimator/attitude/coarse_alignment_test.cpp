@@ -19,7 +19,7 @@ double tilted_rad(const Eigen::Quaterniond& q) {
   return std::acos(std::clamp((q * Eigen::Vector3d::UnitZ()).z(), -1.0, 1.0));
 }
 
-// attitude.md (A10c), (A10d), closed form: a velocity that changes by (0.6, -0.4) m/s in 2 s, seen upside down.
+// attitude.md (A19), (A20), closed form: a velocity that changes by (0.6, -0.4) m/s in 2 s, seen upside down.
 TEST(CoarseAlignment, FindsUpFromUpsideDownToWithinTheChangeOfTheVelocity) {
   const Eigen::Quaterniond wrong = so3::exp({3.0, 0.4, 0.0});
   CoarseAlignment alignment;

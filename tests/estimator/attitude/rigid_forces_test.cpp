@@ -36,7 +36,7 @@ int agree_after_asking(RigidForces rigid) {
   return rigid.most_agreed().others;
 }
 
-// imu_merge.md (I6a): exact where nothing is hidden.
+// imu_merge.md (I7): exact where nothing is hidden.
 TEST(RigidForces, AnAccelerationThatBeganIsFoundFromTheDifferences) {
   const RigidForces rigid = sphere();
   EXPECT_EQ(rigid.most_agreed().others, 0);

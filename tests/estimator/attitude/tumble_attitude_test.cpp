@@ -69,7 +69,7 @@ TEST(TumbleAttitude, SlowTurnAfterTheBiasIsKnownIsNotRest) {
 }
 
 // A sphere that has rolled goes on turning about its contact, slower than a detector by itself would tell: attitude.md
-// (A11a)
+// (A16)
 TEST(TumbleAttitude, ACreepingTurnAfterTheBiasIsKnownIsNotRest) {
   constexpr double kCreep = 0.02;  // rad/s
   const auto after_creeping = [&](const TumbleAttitude::Params& params) {
@@ -127,7 +127,7 @@ std::vector<ImuSample> far_run() {
   return samples;
 }
 
-// attitude.md (A10a): 7.5 m are more than a hand's reach, and no tilt that the gyro left open makes them
+// attitude.md (A13): 7.5 m are more than a hand's reach, and no tilt that the gyro left open makes them
 TEST(TumbleAttitude, ABodyThatGoesFarIsNotTiltedForIt) {
   const auto worst_tilt = [](const auto& filter) {
     typename std::decay_t<decltype(filter)>::State state;
@@ -167,7 +167,7 @@ TEST(TumbleAttitude, ATiltThatARecoveredRateLeavesOpenIsTakenBack) {
   EXPECT_GT(tilt(after_wrong_rates(filter, Eigen::Matrix3d::Zero(), lost_rad).q_WI), 0.06);
 }
 
-// attitude.md (A8a): an error of deviation s and memory T over a time t has the angle's variance 2 s^2 T (t - T(1 - e))
+// attitude.md (A10): an error of deviation s and memory T over a time t has the angle's variance 2 s^2 T (t - T(1 - e))
 TEST(TumbleAttitude, ARecoveredRatesErrorGrowsAsThatOfItsMemory) {
   constexpr double kMemory_s = 0.5, kSigma_rad_s = 0.1;
   TumbleAttitude::Params params{.gyro_noise_rad_sqrts = 1e-6,
@@ -278,7 +278,7 @@ BehindGap behind_gap(const Struck& struck, double gap_s) {
   return {off.head<2>(), TumbleAttitude::attitude_covariance_rad2(state).diagonal().head<2>().mean(), state.at_rest};
 }
 
-// A strike at any time of a gap turns a body by what no reading tells; attitude.md (A8c).
+// A strike at any time of a gap turns a body by what no reading tells; attitude.md (A17).
 TEST(TumbleAttitude, OverAGapTheCovarianceHoldsWhatAStrikeMakes) {
   std::mt19937 random(11);
   std::normal_distribution<double> rate(0.0, 5.0);

@@ -98,7 +98,7 @@ TEST(Belief, AtTheEndOfAPushIsTheClosedForm) {
   const Eigen::Vector3d force(kForce_m_s2, 0.0, g);
   EXPECT_LT((end.mean.state.p_WI_m - (start.mean.state.v_WI_m_s * t + 0.5 * t * t * force)).norm(), 1e-12);
   EXPECT_LT((end.mean.state.v_WI_m_s - (start.mean.state.v_WI_m_s + t * force)).norm(), 1e-12);
-  // mapping.md (R12): a turn moves by the force's integrals, across the force alone
+  // mapping.md (R11): a turn moves by the force's integrals, across the force alone
   const double turned_m = 0.5 * kForce_m_s2 * t * t, turned_m_s = kForce_m_s2 * t;
   const double along_m2 = 0.01 + t * t * 0.09 + 0.25 * t * t * t * t * 0.16;
   const double across_m2 = along_m2 + turned_m * turned_m * 0.04;

@@ -22,7 +22,7 @@ constexpr int kRuns = 16, kSweepsOfRun = 16, kColumns = 300;
 constexpr double kRs16Noise_m = 0.02;  // of the RS-16
 
 /// The errors of an IMU as the mapper believes it to be: constant over a sweep and independent from one to the next, as
-/// large as the parameters say (mapping.md, R31 to R33). None at rest, of which the mapper knows.
+/// large as the parameters say (mapping.md, R39 to R41). None at rest, of which the mapper knows.
 class BelievedImu {
  public:
   BelievedImu(const Odometry::Params& params, std::uint64_t seed) : params_(params), noise_(seed) {}

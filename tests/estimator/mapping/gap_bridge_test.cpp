@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A gap of the IMU: the rate between what is read on both sides, and how far it may be from that; docs/maths/mapping.md
-// (R100), (R101).
+// (R44), (R43).
 #include "estimator/src/mapping/gap_bridge.hpp"
 
 #include <gtest/gtest.h>

@@ -3,7 +3,7 @@
 
 #include "estimator/src/rolling/rolling_node.hpp"
 
-// rolling.md (R7), (R7a): forces of which some axes met the accelerometer's rail.
+// rolling.md (R7), (R8): forces of which some axes met the accelerometer's rail.
 namespace tumble::rolling {
 namespace {
 

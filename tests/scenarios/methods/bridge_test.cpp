@@ -58,17 +58,30 @@ TEST(Bridge, WhatNoDeviceOfThatRangeMeasuresIsRefusedWithItsValue) {
   std::vector<ImuSample> samples;
   record.gyro_rad_s[40].y() = -1.4 * record.stated_gyro_range_rad_s;  // a rail beyond what is stated
   EXPECT_TRUE(bridge::imu_samples(record, samples).ok());
-  record.gyro_rad_s[40].y() = -3e5;
+  const std::vector<Eigen::Vector3d> read = record.gyro_rad_s;
+  for (std::size_t k = 40; k < 90; ++k) record.gyro_rad_s[k].y() = -3e5;
   const Status gyro = bridge::imu_samples(record, samples);
   EXPECT_EQ(gyro.trouble, Trouble::out_of_range);
   EXPECT_EQ(gyro.value, 3e5);
   EXPECT_EQ(gyro.bound, 2.0 * record.stated_gyro_range_rad_s);
   EXPECT_TRUE(samples.empty());
-  record.gyro_rad_s[40].y() = 0.0;
-  record.accel_m_s2[7].x() = 1e6;
-  EXPECT_EQ(bridge::imu_samples(record, samples).value, 1e6);
+  record.gyro_rad_s = read;
+  record.accel_m_s2[7].x() = record.accel_m_s2[8].x() = 1e3;  // it lasts
+  EXPECT_EQ(bridge::imu_samples(record, samples).value, 1e3);
   record.stated_accel_range_m_s2 = 0.0;  // nothing is stated
   EXPECT_TRUE(bridge::imu_samples(record, samples).ok());
+}
+
+TEST(Bridge, ASingleReadingThatNoDeviceOfThatRangeMeasuresIsLeftOut) {
+  sim::Recording recording = testing::synthetic_rig();
+  sim::ImuRecord& record = recording.sensors.imus.front();
+  record.gyro_rad_s[40].y() = -3e5;
+  record.accel_m_s2[70].x() = 1e3;
+  std::vector<ImuSample> samples;
+  ASSERT_TRUE(bridge::imu_samples(record, samples).ok());
+  ASSERT_EQ(samples.size() + 2, record.time_ns.size());
+  EXPECT_EQ(samples[39].time_ns, record.time_ns[39]);
+  EXPECT_EQ(samples[40].time_ns, record.time_ns[41]);
 }
 
 // the lever arm's frame and sign together: a body that turns at a steady rate about its centre of mass, weightless,

@@ -208,7 +208,7 @@ TEST(Verdicts, RatesTellAGyroOfAnotherSenseAndAnAxisThatFroze) {
 }
 
 // Of a gyro that clips in its flights too: neither the right sense nor another had any flight while readings at a rail
-// did not count (docs/maths/imu_merge.md (I29)).
+// did not count (docs/maths/imu_merge.md (I32)).
 TEST(Verdicts, FlightsTellAxesWhileTheGyroClips) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "throw"), 99101, 1, Lidars::left_out);
@@ -217,7 +217,7 @@ TEST(Verdicts, FlightsTellAxesWhileTheGyroClips) {
     EXPECT_TRUE(rates_of(draw, wrong).other_sense) << wrong;
 }
 
-// An attitude behind a gap in a tumble: off by radians and sure of it before gaps were bridged (attitude.md (A8c)).
+// An attitude behind a gap in a tumble: off by radians and sure of it before gaps were bridged (attitude.md (A17)).
 TEST(Verdicts, AttitudesSayThatAGapLeavesThemWithoutUp) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "hill"), 99101, 1, Lidars::left_out);

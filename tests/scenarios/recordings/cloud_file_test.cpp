@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -15,6 +16,7 @@
 namespace tumble::scenarios {
 namespace {
 
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -124,6 +126,77 @@ TEST_F(CloudFile, KittiBin) {
   EXPECT_THAT(complaint_of("a.bin", "123456789012345"),
               HasSubstr("a.bin: has 15 bytes; the size must be a multiple of 16 (float32 x y z intensity), so the file "
                         "may be truncated"));
+}
+
+/// A sweep of 16 rings, ring by ring, as the columns x y z intensity ring time 0: the first `columns` of them.
+template <class Number>
+std::string sweep_of(std::size_t columns) {
+  std::string out;
+  for (int ring = 0; ring < 16; ++ring) {
+    for (int k = 0; k < 40; ++k) {
+      const double azimuth = 0.157 * k, elevation = 0.035 * (ring - 7.5), range = 5.0 + 3.0 * std::sin(2.0 * azimuth);
+      const std::array<double, 7> point = {range * std::cos(azimuth),
+                                           range * std::sin(azimuth),
+                                           range * elevation,
+                                           (k * 7 + ring * 5) % 100 / 100.0,
+                                           1.0 * ring,
+                                           0.0025 * k,
+                                           0.0};
+      for (std::size_t i = 0; i < columns; ++i) out += bytes(static_cast<Number>(point[i]));
+    }
+  }
+  return out;
+}
+
+TEST_F(CloudFile, KittiBinOfOtherColumnsIsRefused) {
+  EXPECT_EQ(read("a.bin", sweep_of<float>(4)).points, 640u);
+  for (const std::size_t columns : {3u, 5u, 6u, 7u}) {
+    EXPECT_THAT(complaint_of("a.bin", sweep_of<float>(columns)),
+                AllOf(HasSubstr("a.bin: its numbers lie as " + std::to_string(columns) +
+                                " columns of float32, not as 4 (x y z intensity)"),
+                      HasSubstr("--bin-columns names the columns in order")));
+  }
+  for (const std::size_t columns : {4u, 5u, 6u}) {
+    EXPECT_THAT(
+        complaint_of("a.bin", sweep_of<double>(columns)),
+        AllOf(HasSubstr("% of its numbers, read as float32, are beyond 1e+07 or below 1e-20, at most 1 % may be"),
+              HasSubstr("they lie as " + std::to_string(columns) + " columns of float64")));
+  }
+  // a point more, and the size is no multiple of 16 either
+  EXPECT_THAT(complaint_of("a.bin", sweep_of<float>(5) + sweep_of<float>(5).substr(0, 20)),
+              AllOf(HasSubstr("has 12820 bytes, must be a multiple of 16"), HasSubstr("5 columns of float32")));
+}
+
+TEST_F(CloudFile, ColumnsOfABinFileMayBeNamed) {
+  const auto named = [&](const std::string& content, const std::string& columns) {
+    fixture::put(folder_ / "a.bin", content);
+    return read_cloud(folder_ / "a.bin", columns);
+  };
+  const Cloud plain = read("a.bin", sweep_of<float>(4));
+  for (const auto& [content, columns] : {std::pair{sweep_of<float>(5), "x,y,z,intensity,ring"},
+                                         {sweep_of<float>(6), "x,y,z,intensity,_,t"},
+                                         {sweep_of<double>(4), "x:f8,y:f8,z:f8,intensity:f8"},
+                                         {sweep_of<double>(5), "x:f8,y:f8,z:f8,intensity:f8,ring:f8"}}) {
+    const Cloud cloud = named(content, columns);
+    ASSERT_EQ(cloud.points, 640u) << columns;
+    EXPECT_NEAR((*cloud.find("z"))[639], (*plain.find("z"))[639], 1e-6) << columns;
+    const std::vector<double>* const rings = cloud.find("ring");
+    EXPECT_TRUE(rings == nullptr || rings->back() == 15.0) << columns;
+  }
+  // integers among them, as some drivers store rings and times
+  const Cloud mixed =
+      named(bytes(1.0f) + bytes(2.0f) + bytes(3.0f) + bytes(std::uint32_t{70000}) + bytes(std::uint16_t{9}),
+            "x,y,z,t:u4,ring:u2");
+  EXPECT_EQ((*mixed.find("t"))[0], 70000.0);
+  EXPECT_EQ((*mixed.find("ring"))[0], 9.0);
+  const auto complaint = [&](const char* columns) {
+    return fixture::complaint([&] { named(sweep_of<float>(5), columns); });
+  };
+  EXPECT_THAT(complaint("x,y,z,intensity"), "") << "as stated, whatever it looks like";
+  EXPECT_THAT(complaint("x,y,intensity"), HasSubstr("'x,y,intensity' lacks z"));
+  EXPECT_THAT(complaint("x,y,z,x"), HasSubstr("name 'x' is empty or stands twice"));
+  EXPECT_THAT(complaint("x,y,z:f2"), HasSubstr("type 'f2', must be f4, f8"));
+  EXPECT_THAT(complaint("x:f8,y:f8,z:f8"), HasSubstr("has 12800 bytes, must be a multiple of 24"));
 }
 
 TEST_F(CloudFile, NoPointsAreNoError) {

@@ -13,58 +13,60 @@
 
 namespace tumble {
 
-/// What the rails of an IMU are known to be.
+/// Saturation levels of an IMU.
 struct KnownRails {
-  RailDetector::State upright_rails;  ///< levels of equal readings, stated ranges
-  RailPlanes planes;                  ///< of the gyro's elements, where they were seen
-  RailPlanes accel_planes;            ///< of the accelerometer's
-  bool upright = false;               ///< the device clips what it delivers: nothing is off on the axes beside
-  bool accel_upright = false;         ///< the same of the accelerometer
+  RailDetector::State upright_rails;  ///< levels found from equal readings, and stated ranges
+  RailPlanes planes;                  ///< of the gyro's sensing elements, where observed
+  RailPlanes accel_planes;            ///< of the accelerometer
+  bool upright = false;               ///< the device clips its output, so other axes are unaffected
+  bool accel_upright = false;         ///< same for the accelerometer
 
-  /// The planes by which readings are judged: where rails are upright equal readings tell them to the bit, and planes
-  /// what else there is.
+  /// Returns the planes that classify readings. If the device clips its output, equal readings identify clipped samples
+  /// exactly, and planes are used only for the remaining elements.
   RailPlanes planes_in_use(Triad triad = Triad::gyro) const;
-  /// Along what the elements sense; `unknown_sigma` is the deviation of slopes that no rail has told.
+  /// Returns the sensing directions of the elements. `unknown_sigma` is the standard deviation of slopes that no
+  /// saturation plane determines.
   ElementRows rows(Triad triad, double unknown_sigma) const;
   bool operator==(const KnownRails&) const = default;
 };
 
-/// What the reading of one element is worth.
+/// How the reading of one element may be used.
 enum class ElementReading : std::uint8_t {
   measured,
-  clipped_high,  ///< a bound: the truth along the element's row lies there or beyond
+  clipped_high,  ///< a bound: the true value along the element's row is at this level or beyond
   clipped_low,
-  unreadable  ///< says nothing
+  unreadable  ///< no information
 };
-/// Of element `axis` of a judged sample.
+/// Returns the use of element `axis` of a classified sample.
 ElementReading element_reading(const ImuSample& sample, const Clipping& clipping, Triad triad, int axis);
 
-/// Flags of a judged sample, ClipFlag bits: what readings the device itself should have flagged.
+/// Returns the ClipFlag bits of a classified sample, as the device should have set them.
 std::uint8_t clip_flags(const Clipping& clipping);
 
-/// The rails of a unit that may freeze, as those beside it have to hear of them. Equal readings alone are no rail: flat
-/// tops of a slow motion far below a stated range are not heard, nor what repeats where none is stated. Planes are,
-/// which know neither.
+/// Saturation levels that are certain enough for tests across units, used for units that may freeze. Equal readings
+/// alone are not sufficient. Excluded are flat maxima of slow motion far below the stated range, and repeated readings
+/// without a stated range. Saturation planes are included because neither of these effects creates a plane.
 struct HeardRails {
   RailPlanes gyro, accel;                                 ///< in use
-  double gyro_range_rad_s = 0.0, accel_range_m_s2 = 0.0;  ///< stated; 0: not
-  /// Of a judged sample, beside the flags of its own.
+  double gyro_range_rad_s = 0.0, accel_range_m_s2 = 0.0;  ///< stated range; 0: not stated
+  /// Returns the flags of a classified sample, in addition to its own flags.
   std::uint8_t flags(const ImuSample& sample, const Clipping& judged) const;
 };
 
-/// Finds which readings of a recording are clipped: the one judgement for all that reads recordings, from what the
-/// device flags, levels of equal readings (RailDetector) and tilted planes (RailPlaneFinder), of gyro and
-/// accelerometer. RateStream judges its window by the same rails and rules (RailWatch).
+/// Finds the clipped readings of a recording, for all readers of recordings. The class combines the flags of the
+/// device, levels of equal readings (RailDetector) and tilted planes (RailPlaneFinder), for gyro and accelerometer.
+/// RateStream applies the same rules to its window (RailWatch).
 class ClippingFinder {
  public:
   struct Params {
     RailDetector::Params upright_rails = {};
-    RailPlaneFinder::Params planes = {};  ///< without a stated range of its own: that of `upright_rails`
-    RailPlaneFinder::Params accel_planes = RailPlaneFinder::Params::for_accelerometer();  ///< likewise
-    /// False: by flags and upright rails alone, as methods were published that know no other rail.
+    RailPlaneFinder::Params planes = {};  ///< without a stated range, that of `upright_rails` applies
+    /// same for the accelerometer
+    RailPlaneFinder::Params accel_planes = RailPlaneFinder::Params::for_accelerometer();
+    /// False: use only flags and levels of equal readings, as in the published methods.
     bool tilted = true;
 
-    /// Every number of it, stated once.
+    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("rails_", p.upright_rails);
@@ -81,10 +83,10 @@ class ClippingFinder {
     std::vector<Clipping> clippings;  ///< one per sample
   };
 
-  /// Throws InvalidParams on a parameter outside of its bound.
+  /// Throws InvalidParams if a parameter is out of bounds.
   explicit ClippingFinder(const Params& params);
 
-  /// Samples must be finite and in order of time. O(N) apart from the search of RailPlaneFinder.
+  /// Classifies all samples. Samples must be finite and in time order. O(N) apart from the search of RailPlaneFinder.
   Found find(std::span<const ImuSample> samples) const;
 
   const RailDetector& upright_rails() const { return upright_rails_; }
@@ -94,7 +96,7 @@ class ClippingFinder {
                          bool& upright) const;
 
   RailDetector upright_rails_;
-  // of gyro and accelerometer; the second of each where readings contradict the stated range
+  // gyro and accelerometer; the second of each applies if readings exceed the stated range
   std::array<std::array<RailPlaneFinder, 2>, 2> planes_;
   bool tilted_;
 };

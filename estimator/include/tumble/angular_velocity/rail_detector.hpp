@@ -12,24 +12,24 @@
 
 namespace tumble {
 
-/// Which readings of a sample say less than they show.
+/// Clipped axes of a sample.
 struct Clipping {
-  std::uint8_t gyro = 0;          ///< bit j: axis j at its rail, the truth lies at or beyond the reading
-  std::uint8_t accel = 0;         ///< likewise for the accelerometer
-  std::uint8_t missing_gyro = 0;  ///< bit j: the reading of axis j says nothing (sign flipped at the rail: overflow)
+  std::uint8_t gyro = 0;          ///< bit j: axis j is saturated; the true value is at or beyond the reading
+  std::uint8_t accel = 0;         ///< same for the accelerometer
+  std::uint8_t missing_gyro = 0;  ///< bit j: the reading of axis j is unusable (overflow with flipped sign)
   bool operator==(const Clipping&) const = default;
 };
 
-/// A plateau: readings in a row that lie closer together than noise allows.
+/// Plateaus: consecutive readings that are closer together than noise allows.
 struct RailPlateauParams {
-  int samples = 4;  ///< readings in a row that make one
-  /// Largest spread as a share of its level. Below the noise of a free reading.
+  int samples = 4;  ///< minimum number of readings
+  /// Largest spread as a fraction of the level. Below the noise of an unsaturated reading.
   double spread_share = 2e-5;
-  /// One of the gyro below this is a low one, which needs twice as many readings and a jump.
+  /// A plateau of the gyro below this level needs twice as many readings and a jump at its start or end.
   double gyro_low_rad_s = 1.0;
-  double gyro_min_rad_s = 0.02;  ///< one below this is no rail
-  double accel_min_m_s2 = 15.0;  ///< likewise of the accelerometer; above gravity
-  /// Digits (smallest changes seen between two readings) of the jump with which a low one begins or ends.
+  double gyro_min_rad_s = 0.02;  ///< minimum level of a plateau
+  double accel_min_m_s2 = 15.0;  ///< minimum level of a plateau of the accelerometer; above gravity
+  /// Minimum jump at the start or end of a low plateau, in digits (smallest observed change between two readings).
   double jump_digits = 8.0;
 
   template <class Self, class Visitor>
@@ -48,7 +48,7 @@ struct RailPlateauParams {
   }
 };
 
-/// What few need of RailDetectorParams.
+/// Parameters of RailDetectorParams that few users change.
 struct RailDetectorExpertParams {
   RailPlateauParams plateau = {};
 
@@ -58,19 +58,19 @@ struct RailDetectorExpertParams {
   }
 };
 
-/// Of RailDetector.
+/// Parameters of RailDetector.
 struct RailDetectorParams {
-  /// Range as stated by the data sheet or the user, if any: gyro [rad/s], (0, 1000]; accelerometer [m/s^2], (0, 1e5].
+  /// Range stated by the data sheet or the user, if any: gyro [rad/s], (0, 1000]; accelerometer [m/s^2], (0, 1e5].
   std::optional<double> stated_gyro_rad_s = std::nullopt;
   std::optional<double> stated_accel_m_s2 = std::nullopt;
-  double enter_share = 0.003;        ///< a reading within this share of the rail starts clipping
-  double leave_share = 0.02;         ///< a neighbour of a clipped reading within this share of the rail is clipped too
-  double disagreement_share = 0.02;  ///< stated and found rail disagree beyond this share
+  double enter_share = 0.003;        ///< clipping starts within this fraction of the saturation level
+  double leave_share = 0.02;         ///< neighbours of a clipped reading are clipped within this fraction of the level
+  double disagreement_share = 0.02;  ///< minimum relative difference that counts as contradiction of the stated range
 
   using Expert = RailDetectorExpertParams;
-  Expert expert = {};  ///< what few need
+  Expert expert = {};  ///< parameters that few users change
 
-  /// Every number of it, stated once.
+  /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.enter_share, {"enter_share", "1", 0.0, 0.1,
@@ -84,28 +84,28 @@ struct RailDetectorParams {
   }
 };
 
-/// Finds the rails of an IMU in its readings: the level that a channel keeps while it is clipped, which differs from
-/// unit to unit and from the data sheet (one specified for 450 deg/s was seen to stay at 600).
+/// Finds the saturation level of each axis of an IMU from its readings. The level differs from unit to unit and from
+/// the data sheet. One gyro with a stated range of 450 deg/s saturated at 600 deg/s.
 ///
-/// A plateau is a run of readings of one sign that lie closer together than noise allows, at the largest magnitude
-/// seen so far on that axis. Low ones must be longer and be entered or left by a jump of many digits of the device: the
-/// round top of a slow motion, read in coarse digits, and an axis that stands still are flat too. A stated range serves
-/// until a plateau is seen, and only as long as no reading exceeds it. Flags reported by the device count always.
-/// Clipping has hysteresis, so that the ragged edge of a plateau belongs to it. What it does not model: rails that
-/// differ between the two signs of an axis, or that drift.
+/// A plateau is a run of readings of one sign, closer together than noise allows, at the largest magnitude so far on
+/// the axis. Low plateaus must be longer and start or end with a jump of many digits of the device. The rule excludes
+/// the rounded maximum of a slow, coarsely quantised motion and an axis at rest. A stated range is used until a plateau
+/// is found or a reading exceeds it. Flags of the device are always used. Clipping has hysteresis, so that the
+/// irregular edge of a plateau belongs to it. Not modelled: levels that drift or differ between the two signs of an
+/// axis.
 class RailDetector {
  public:
   using Params = RailDetectorParams;
 
-  /// One channel; gyro x, y, z then accelerometer x, y, z.
+  /// State of one channel. Order: gyro x, y, z, then accelerometer x, y, z.
   struct Channel {
-    double rail = 0.0;  ///< found by a plateau; 0: none yet
-    double peak = 0.0;  ///< largest magnitude seen
+    double rail = 0.0;  ///< level of a plateau; 0: none found
+    double peak = 0.0;  ///< largest magnitude so far
     double run_first = 0.0;
     int run_length = 0;
-    double before = 0.0;  ///< the last reading
-    double entry = 0.0;   ///< change with which the run began; 0: with the recording
-    double digit = 0.0;   ///< smallest change seen between two readings; 0: none yet
+    double before = 0.0;  ///< previous reading
+    double entry = 0.0;   ///< change at the start of the run; 0: the recording started with the run
+    double digit = 0.0;   ///< smallest observed change between two readings; 0: none yet
     double last = 0.0;
     bool clipped = false;
     bool operator==(const Channel&) const = default;
@@ -115,30 +115,31 @@ class RailDetector {
     bool operator==(const State&) const = default;
   };
 
-  /// Throws InvalidParams on a parameter outside of its bound.
+  /// Throws InvalidParams if a parameter is out of bounds.
   explicit RailDetector(const Params& params);
 
-  /// Learns from one finite sample. O(1).
+  /// Updates the saturation levels with one finite sample. O(1).
   void observe(const ImuSample& sample, State& state) const;
-  /// Classifies one finite sample with what is known; carries the hysteresis in `state`. O(1).
+  /// Classifies one finite sample with the current levels. `state` stores the hysteresis. O(1).
   Clipping classify(const ImuSample& sample, State& state) const;
-  /// Classifies a whole recording after learning from all of it, edges on both sides of each plateau included. O(N).
+  /// Classifies a whole recording after processing all of it, including the edges on both sides of each plateau. O(N).
   void classify_all(std::span<const ImuSample> samples, State& state, std::span<Clipping> out) const;
 
-  /// The rising edge: adds to `clipping` of `sample` what stands before a plateau, that is before a clipped `next`, and
-  /// as near to the rail as what stands after one.
+  /// Adds the rising edge of a plateau: axes of `sample`, before a clipped `next`, within the same distance of the
+  /// level as after a plateau.
   void add_edge(const ImuSample& sample, const ImuSample& next, const Clipping& of_next, const State& state,
                 Clipping& clipping) const;
 
-  /// Rail in use for channel c (0-5): the plateau found; else, as long as no reading exceeds it, the largest found on
-  /// another axis of the same sensor; else likewise the stated range; else none.
+  /// Returns the saturation level of channel c (0-5). The first available value counts: the plateau of the channel; the
+  /// largest plateau on another axis of the same sensor; the stated range. The plateau of another axis and the stated
+  /// range only apply while no reading exceeds them.
   std::optional<double> rail(const State& state, int c) const;
-  /// True when a stated range exists and a plateau or a larger reading contradicts it.
+  /// Returns whether a plateau or a larger reading contradicts the stated range.
   bool disagrees(const State& state, int c) const;
 
  private:
   std::optional<double> stated(int c) const;
-  /// Whether the run of readings at hand is a plateau that began or ended with `jump`.
+  /// Returns whether the current run of readings is a plateau that started or ended with `jump`.
   bool plateau(int c, const Channel& channel, double jump) const;
   Params params_;
 };

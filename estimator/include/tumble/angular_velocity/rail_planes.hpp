@@ -13,45 +13,46 @@
 
 namespace tumble {
 
-/// Finds the rails of a triad's elements in a whole recording, without flags and without a stated range.
+/// Finds the saturation planes of a triad's elements in a whole recording, without flags and without a stated range.
 ///
-/// A rail is a plane that bounds the readings, close to upright, with many samples in a thin slab below it. What else
-/// puts samples there: the round top of a motion, which its neighbours give away (they fall off as a parabola does,
-/// a rail is left by a kink), and a constant rate (a torque-free spin, a turntable), which is as noisy as any reading,
-/// has a level of its own each time and is entered by an impact that all axes feel. The evidence of each segment is
-/// added up as a log likelihood ratio against these, less what choosing slopes and level freely was worth (Occam).
-/// Readings that repeat (sample and hold) count once; what is thinner than the digits or the noise is not told apart.
-/// A device has three elements of one kind: a rail far below what another axis reads is none, one at the level of
-/// another element's is likely. Elements that are not found are not clipped as far as anybody can tell.
+/// A saturation plane bounds the readings, is nearly axis-aligned, and has many samples in a thin slab below it. Two
+/// kinds of motion look similar. The rounded maximum of a motion is recognised by its neighbours, which decrease as a
+/// parabola; saturation ends with a kink. A constant rate (torque-free spin, turntable) has full sensor noise, a
+/// different level each time, and starts with an impact on all axes. The evidence of all segments is summed as a log
+/// likelihood ratio against these alternatives. A penalty accounts for the free choice of slopes and level (Occam
+/// factor).
 ///
-/// What it does not model: rails that drift or recover slowly, readings that wrap around, several levels of one
-/// element.
+/// Repeated readings (sample and hold) count once. Structure below the quantisation or the noise is not resolved. A
+/// device has three elements of one kind. A level far below readings of another axis is therefore rejected, and a level
+/// equal to that of another element is more likely. Elements without a plane count as unsaturated.
+///
+/// Not modelled: levels that drift or recover slowly, overflow, several levels of one element.
 class RailPlaneFinder {
  public:
   struct Params {
-    /// What differs for an accelerometer: below about 1.5 g gravity alone reads constant for long.
+    /// Returns the parameters for an accelerometer. Below about 1.5 g, gravity alone can be constant for long.
     static Params for_accelerometer() {
       Params out;
       out.distance_min_rad_s = 15.0;
       return out;
     }
-    /// Cross-axis sensitivity of elements before compensation: prior of each slope.
+    /// Cross-axis sensitivity of elements before compensation: prior standard deviation of each slope.
     double slope_sigma = 0.03;
-    double slope_max = 0.12;  ///< steepest slope searched
-    /// Rails lower than this are not looked for: rest and creeping are constant too [rad/s].
+    double slope_max = 0.12;  ///< largest slope in the search
+    /// Minimum saturation level. At rest and in slow motion, readings are constant, too [rad/s].
     double distance_min_rad_s = 1.5;
-    /// Range that the data sheet states, if any: the rail does not lie far below it [rad/s].
+    /// Range stated in the data sheet, if any. The saturation level is not far below it [rad/s].
     std::optional<double> stated_rad_s = std::nullopt;
-    double offset_share = 0.02;     ///< prior of the offset and of how far elements differ, as a share of r
-    int samples_min = 4;            ///< on a rail, of one sign
-    double log_odds_before = -6.0;  ///< before anything is seen, for each element and sign
-    double log_odds_min = 1.0;      ///< of a rail that is believed
-    double log_odds_keep = -3.0;    ///< of one that was believed before and still is
-    /// Rails that an earlier run on the device has found: a device keeps them to a fraction of a percent. They hold as
-    /// long as no readings contradict them, before anything is met, and make one near them likely.
+    double offset_share = 0.02;     ///< prior of the offset and of differences between elements, as a fraction of r
+    int samples_min = 4;            ///< minimum number of samples on a plane of one sign
+    double log_odds_before = -6.0;  ///< prior log odds for each element and sign
+    double log_odds_min = 1.0;      ///< minimum log odds of an accepted plane
+    double log_odds_keep = -3.0;    ///< minimum log odds of a plane that was accepted before
+    /// Saturation planes from an earlier run of the device, which are stable to a fraction of a percent. Such planes
+    /// are used from the start until readings contradict them, and make planes near them more likely.
     RailPlanes known = {};
 
-    /// Every number of it, stated once.
+    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.slope_sigma,
@@ -71,7 +72,7 @@ class RailPlaneFinder {
     }
   };
 
-  /// Scratch space of a search, which allocates nothing when it has room for all readings.
+  /// Buffers of a search. With room for all readings, the search allocates nothing.
   struct Workspace {
     std::vector<Eigen::Vector3d> rates;
     std::vector<double> values;
@@ -79,13 +80,13 @@ class RailPlaneFinder {
     void reserve(std::size_t readings);
   };
 
-  /// Throws InvalidParams on a parameter outside of its bound.
+  /// Throws InvalidParams if a parameter is out of bounds.
   explicit RailPlaneFinder(const Params& params);
 
-  /// The rails that the readings of a triad show. Samples must be finite and in order of time. O(N) apart from a search
-  /// of some hundred slopes over the samples near the extremes.
+  /// Finds the saturation planes in the readings of a triad. Samples must be finite and in time order. O(N) plus a
+  /// search of some hundred slopes over the samples near the extremes.
   RailPlanes find(std::span<const ImuSample> samples, Triad triad = Triad::gyro) const;
-  /// The same of readings alone [rad/s]. `before`: rails that fewer of these readings showed.
+  /// Same for plain readings [rad/s]. `before`: planes found in a subset of these readings.
   RailPlanes find(std::span<const Eigen::Vector3d> readings_rad_s, const RailPlanes& before,
                   Workspace& workspace) const;
 
@@ -96,9 +97,9 @@ class RailPlaneFinder {
   Params params_;
 };
 
-/// Which elements of a sample are at their rail. O(1).
+/// Returns which elements of a sample are clipped. O(1).
 ElementClipping classify(const ImuSample& sample, const RailPlanes& planes);
-/// The same for each sample of a recording; `out` has their number.
+/// Same for each sample of a recording; `out` has the same size.
 void classify(std::span<const ImuSample> samples, const RailPlanes& planes, std::span<ElementClipping> out);
 
 }  // namespace tumble

@@ -21,23 +21,22 @@
 
 namespace tumble {
 
-/// Of RateSmoother.
+/// Parameters of RateSmoother.
 struct RateSmootherParams {
   RateModelParams model = {};
   RailDetector::Params rails = {};
-  double recovered_sigma_rad_s = 0.5;  ///< a clipped axis known better than this is recovered, not only bounded
-  /// A run whose constants move further than this (RateReport::calibration_mahalanobis) is estimated again with the
-  /// constants held to what was known.
+  double recovered_sigma_rad_s = 0.5;  ///< a clipped axis with a smaller standard deviation is recovered
+  /// If the constants move further from their prior (RateReport::calibration_mahalanobis), the run is estimated again
+  /// with the constants fixed at the prior.
   double calibration_mahalanobis_max = 1.5;
-  /// What an earlier run has told of the device's errors (RateReport::sensor_errors); of use where they are
-  /// estimated.
+  /// Sensor errors from an earlier run (RateReport::sensor_errors). Only used if sensor errors are estimated.
   std::optional<KnownSensorErrors> learnt_errors = std::nullopt;
-  double gap_max_s = 1.0;  ///< longest time between samples before the run is refused
+  double gap_max_s = 1.0;  ///< a longer time between samples is an error
 
   using Expert = RateSmootherExpertParams;
-  Expert expert = {};  ///< what few need
+  Expert expert = {};  ///< parameters that few users change
 
-  /// Every number of it, stated once.
+  /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit.group("", p.model);
@@ -55,86 +54,89 @@ struct RateSmootherParams {
   }
 };
 
-/// What a run tells about its own health.
+/// Diagnostics of a run.
 struct RateReport {
   int iterations = 0;
   bool converged = false;
-  int restarts = 0;              ///< descents from another start, where the first found hardly any flight
+  int restarts = 0;              ///< restarts from other initial values, if the first found almost no flight
   double last_step_rad_s = 0.0;  ///< largest change of a rate in the last iteration
-  RigCalibration calibration;    ///< what the run has learnt of the rig: can be given to the next
-  /// How far the constants moved from what was known beforehand (RateModel::calibration_mahalanobis). Far beyond 1 the
-  /// prior is wrong, or a run without flight was taken for one with flight.
+  RigCalibration calibration;    ///< estimated calibration, which can be passed to the next run
+  /// Distance of the constants from their prior (RateModel::calibration_mahalanobis). Far above 1: a wrong prior, or a
+  /// run without flight that was mistaken for one with flight.
   double calibration_mahalanobis = 0.0;
-  bool calibration_at_prior = false;  ///< that was too large: nothing was learnt, the constants stayed at their prior
-  std::array<std::optional<double>, 6> rail;  ///< in use: gyro [rad/s], accelerometer [m/s^2]; none: not seen
-  std::array<bool, 6> rail_seen{};            ///< on that axis itself, not on another one or in a sheet
-  RailPlanes planes;                          ///< of the gyro's elements, where they were seen
-  RailPlanes accel_planes;                    ///< of the accelerometer's, m/s^2
-  /// What the device makes of the motion, as far as the run tells.
+  bool calibration_at_prior = false;          ///< the distance was too large; the constants remain at their prior
+  std::array<std::optional<double>, 6> rail;  ///< levels in use: gyro [rad/s], accelerometer [m/s^2]; empty: none
+  std::array<bool, 6> rail_seen{};            ///< observed on this axis, not inferred
+  RailPlanes planes;                          ///< of the gyro's elements, where observed
+  RailPlanes accel_planes;                    ///< of the accelerometer's elements, m/s^2
+  /// Estimated sensor errors.
   KnownSensorErrors sensor_errors;
   double calibrated = 1.0, together = 1.0;  ///< see SensorErrorFit
-  /// A delay that both triads may share, counted in the covariance: of a device that is not what its sheet says.
+  /// Standard deviation of a delay common to both triads; above 0 if the device deviates from its data sheet.
   double shared_delay_sigma_s = 0.0;
-  double gyro_update_s = 0.0, accel_update_s = 0.0;  ///< of readings that repeat (find_held); 0: none does
-  int error_rounds = 0;                              ///< descents with corrected readings
-  bool rails_upright = false;                        ///< the device clips what it delivers, nothing else is off
-  std::array<bool, 6> rail_disagrees{};              ///< a stated range contradicted by the readings
-  bool rate_unit_suspect = false;   ///< a reading beyond RateModelParams::rate_max_rad_s: perhaps degrees
-  bool force_unit_suspect = false;  ///< the median specific force is near 1: perhaps given in g
+  double gyro_update_s = 0.0, accel_update_s = 0.0;  ///< update interval of repeated readings; 0: none
+  int error_rounds = 0;                              ///< number of descents with corrected readings
+  bool rails_upright = false;                        ///< the device clips its output, so other axes are unaffected
+  std::array<bool, 6> rail_disagrees{};              ///< readings contradict the stated range
+  bool rate_unit_suspect = false;   ///< a reading exceeds RateModelParams::rate_max_rad_s: possibly degrees
+  bool force_unit_suspect = false;  ///< the median specific force is near 1: possibly in g
   std::size_t samples = 0, clipped = 0, recovered_flight = 0, recovered_contact = 0, bounded_only = 0;
-  std::size_t missing_readings = 0;  ///< samples with an overflow (sign flipped at the rail)
-  double flight_share = 0.0;         ///< share of the samples that count as free flight
-  /// Bit j, one per sample: the reading of axis j may stand at a rail that was not seen, though nothing says that it is
-  /// clipped.
+  std::size_t missing_readings = 0;  ///< samples with an overflow (flipped sign)
+  double flight_share = 0.0;         ///< fraction of samples classified as free flight
+  /// Bit j, one byte per sample: the reading of axis j may be saturated although no saturation was detected.
   std::vector<std::uint8_t> doubted_axes;
 };
 
-/// Angular velocity of a tumbling body through saturation of its gyro: a tightly coupled smoother over a recording.
+/// Estimates the angular velocity of a tumbling body through gyro saturation: a tightly coupled smoother over a
+/// recording.
 ///
-/// Unknown per sample: rate and angular acceleration, and for the run the RigConstants. Gauss-Newton on: the gyro where
-/// it is not clipped; the bound that a clipped reading is, for any number of axes; in flight the whole rigid-body
-/// form of the specific force at the lever arm and Euler's equation without torque, both weighed down together where
-/// they do not hold (contact); between samples white noise on jerk, of a density that grows with the force of contact
-/// so that an impact breaks the chain; at standstill (RestDetector) the rate is zero, which tells the gyro's bias. The
-/// normal equations are an arrow matrix: O(N) per iteration, covariance included. Starts from the published method
-/// (Saave), extended to bounds.
+/// Unknowns: rate and angular acceleration per sample, and RigConstants for the run. Gauss-Newton uses these factors:
+/// - The gyro's readings where not clipped, and the bounds given by clipped readings, for any number of axes.
+/// - In flight, the complete rigid-body equation of the specific force at the lever arm, and Euler's equation without
+///   torque. During contact, both equations have reduced weight.
+/// - White noise on jerk between samples. The density grows with the contact force: impacts interrupt the chain.
+/// - At rest (RestDetector), zero rate, which determines the gyro's bias.
 ///
-/// Contact: the force at the centre of mass is what flight leaves of the reading, and a force through a point of the
-/// cage has no torque about its own direction: that row of Euler's equation stays in force, the two across it are as
-/// wide as the cage makes them (RateContactParams::lever_rad_m). More is not to be had from a contact point:
-/// of clipped samples in contact (tests/bench/rate_contact; docs/maths/rate_smoother.md) along the force lie 1.4 % of
-/// the torque (median), but the point that the sample before gives leaves 66 % of it, the best single point of a whole
-/// impact 48 %, and all of it in one sample of ten: a cage strikes with several bars, and within 10 ms it rolls on.
-/// Rest is zero rate (RestDetector).
+/// The normal equations are an arrow matrix: O(N) per iteration, including the covariance. The initial values come from
+/// the published method (Saave), extended by bounds.
 ///
-/// What the device makes of the motion (SensorErrors: scale, misalignment, g-sensitivity, delay and window of the
-/// accelerometer against the gyro) looks in part like other constants of the rig. It is estimated as far as the run
-/// tells, at the size that the readings show (fit_sensor_errors), by a descent with corrected readings; what remains
-/// open is in both covariances (as of parameters considered, S. F. Schmidt, 1966), else the fit takes it for noise and
-/// averages it away: the test ScaleAndMisalignmentAreInTheCovariance. A first guess of the delay comes before
-/// (guess_triad_delay). Of two triads that are apart the later one is taken to be late and the other in time.
+/// Contact: the force at the centre of mass is the part of the reading that flight does not explain. A force through
+/// one point of the cage has no torque about its own direction. This row of Euler's equation therefore remains in use.
+/// The uncertainty of the two other rows follows from the size of the cage (RateContactParams::lever_rad_m). The
+/// position of the contact point gives no further information, because a cage strikes with several bars and rolls on
+/// within 10 ms. For clipped samples, the median torque along the force is 1.4 %, but the contact point of the previous
+/// sample leaves 66 % of the torque unexplained (tests/bench/rate_contact; docs/maths/rate_smoother.md).
 ///
-/// A gyro's elements clip along their own, not quite orthogonal axes; the device's compensation then mixes what is left
-/// (RailPlaneFinder). While one clips the gyro is read element by element (element_factor): free elements measure,
-/// clipped ones bound, and the axes beside are corrected for what is hidden. The rows are constants of the run, told by
-/// the planes of the rails and by flight; where the rails are found to be upright nothing of this applies.
+/// Sensor errors (SensorErrors: scale, misalignment, g-sensitivity, delay and window of the accelerometer relative to
+/// the gyro) are partly correlated with other constants. Sensor errors are estimated as far as the run determines them,
+/// by repeated descents with corrected readings. Their prior magnitude is chosen to fit the readings
+/// (fit_sensor_errors). The remaining uncertainty is included in both covariances as considered parameters (S. F.
+/// Schmidt, 1966). Otherwise the fit would treat these errors as noise and average them. guess_triad_delay computes an
+/// initial delay. If the two triads are not synchronous, the later one is assumed to be delayed.
 ///
-/// What it does not model: a contact point that persists, a delay that both triads share. The rates are those at
-/// which the gyro's readings stand: means over the window of the sample.
+/// The elements of a gyro clip along their own, not quite orthogonal axes. The device's compensation then mixes the
+/// clipped values (RailPlaneFinder). While an element clips, the gyro is therefore used element by element
+/// (element_factor). Free elements measure, clipped elements bound, and the other axes are corrected for the saturation
+/// deficit. The rows are constants of the run, determined by saturation planes and by flight. If the device clips its
+/// output, none of this is needed.
+///
+/// Not modelled: a persistent contact point, and a delay common to both triads. The rates have the time of the gyro's
+/// readings: means over the sample's window.
 class RateSmoother {
  public:
   using Params = RateSmootherParams;
 
-  /// Throws InvalidParams on a parameter outside of its bound.
+  /// Throws InvalidParams if a parameter is out of bounds.
   explicit RateSmoother(const Params& params);
 
-  /// One RateState per sample, and what the run tells of itself. On trouble (`empty`, `too_few`: less than two samples,
-  /// `non_finite`, `time_order`, `gap`, `diverged`) nothing is written and the status names field, value and bound.
+  /// Computes one RateState per sample, and the diagnostics of the run. On error nothing is written; the status
+  /// contains field, value and bound: `empty`, `too_few` (less than two samples), `non_finite`, `time_order`, `gap`,
+  /// `diverged`.
   Status estimate(std::span<const ImuSample> samples, std::vector<RateState>& out, RateReport& report) const {
     return estimate(samples, {}, out, report);
   }
-  /// The same with other IMUs on the body: `auxiliary_imus` holds one list per RateModelParams::auxiliary_imus, one
-  /// reading per sample each (see align()); `too_few` when the numbers differ.
+  /// Same with other IMUs on the body: one list per RateModelParams::auxiliary_imus, one reading per sample (see
+  /// align()). Returns `too_few` if the sizes differ.
   Status estimate(std::span<const ImuSample> samples, std::span<const std::vector<AuxiliaryReading>> auxiliary_imus,
                   std::vector<RateState>& out, RateReport& report) const;
 

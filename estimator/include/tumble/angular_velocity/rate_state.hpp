@@ -8,15 +8,15 @@
 
 namespace tumble {
 
-/// Where an angular velocity comes from.
+/// Source of an angular velocity.
 enum class RateSource : std::uint8_t {
-  measured,           ///< no axis of the gyro is clipped, nor doubted to be
-  recovered_flight,   ///< clipped, recovered from the centripetal specific force of free flight
-  recovered_contact,  ///< clipped, recovered while in contact
-  bounded_only,       ///< clipped or doubted to be, nothing known but the rail and the smoothness of the motion
+  measured,           ///< no axis of the gyro is clipped or suspected to be
+  recovered_flight,   ///< clipped; recovered from the centripetal specific force in free flight
+  recovered_contact,  ///< clipped; recovered during contact
+  bounded_only,       ///< clipped or suspected; only the saturation bound and the smoothness of motion are known
 };
 
-/// Name as in tables ("recovered_flight").
+/// Returns the name as used in tables ("recovered_flight").
 const char* to_string(RateSource source);
 
 /// Angular velocity of an IMU in the world, in the IMU's axes, at the time of an IMU sample.
@@ -24,7 +24,7 @@ struct RateState {
   TimeNs time_ns = 0;
   Eigen::Vector3d w_WI_I_rad_s = Eigen::Vector3d::Zero();
   Eigen::Matrix3d covariance_rad2_s2 = Eigen::Matrix3d::Zero();
-  std::uint8_t clipped_axes = 0;  ///< bit j set: gyro axis j was at its rail
+  std::uint8_t clipped_axes = 0;  ///< bit j set: gyro axis j was saturated
   RateSource source = RateSource::measured;
 };
 

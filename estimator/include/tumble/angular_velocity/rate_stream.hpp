@@ -22,62 +22,66 @@
 
 namespace tumble {
 
-/// The streaming form of RateSmoother: the same factors over a window of fixed length, one Gauss-Newton step per
-/// sample, or every 5 ms where samples come faster; what leaves the window is marginalised into a Gaussian prior on the
-/// next sample and on the RigConstants.
+/// Estimates angular velocity through gyro saturation, sample by sample, with a fixed lag. RateStream uses the factors
+/// of RateSmoother over a window of fixed length. One Gauss-Newton step is made per sample, or every 5 ms for faster
+/// samples. Samples that leave the window are marginalised into a Gaussian prior on the next sample and on
+/// RigConstants.
 ///
-/// An estimate comes out when its sample is `lag_s` old, and a provisional one at once. A step is O(window): in
-/// proportion to the rate of the samples beyond 200 Hz, to its square below; no allocation after the State is made.
-/// Rails, upright ones and the tilted planes of a gyro's elements, are learnt as they show themselves (RailWatch); with
-/// each that becomes known the window is read again, so that a clipped sample that was believed counts as believed only
-/// where it left the window before its rail was seen. With the calibration of an earlier run the error is 1.1 times
-/// that of the batch and 99 % lie within three deviations; without it the rig is learnt in the tumble that needs
-/// it: 1.6 times, 1.2 with 0.5 s of lag (docs/maths/rate_stream.md has the draws). The samples of a flight err
-/// together: the covariance of the rig, and of the rates with it, is inflated while few have been learnt from
-/// (`rig_inflation`). What it does not model: see RateSmoother.
+/// An estimate is reported when its sample is `lag_s` old, and a provisional estimate immediately. A step costs
+/// O(window): in proportion to the sample rate above 200 Hz, to its square below. No allocation after the State is
+/// created.
+///
+/// Saturation levels and planes are detected from the readings (RailWatch). After each detection the window is
+/// re-evaluated. A clipped sample is therefore accepted as a measurement only if it left the window before the
+/// detection. With the calibration of an earlier run, the error is 1.1 times that of RateSmoother, and 99 % are within
+/// three standard deviations. Without it, the calibration is estimated during the same tumble, and the factor is 1.6,
+/// or 1.2 with 0.5 s of lag (data: docs/maths/rate_stream.md). Errors of the samples of a flight are correlated. The
+/// covariance of the calibration and of the rates is therefore inflated while few flight samples were processed
+/// (`rig_inflation`). Not modelled: see RateSmoother.
 class RateStream {
  public:
   using Params = RateStreamParams;
   using Knot = RateStreamKnot;
   using State = RateStreamState;
 
-  /// Throws InvalidParams on a parameter outside of its bound.
+  /// Throws InvalidParams if a parameter is out of bounds.
   explicit RateStream(const Params& params);
 
-  /// A state before the first sample, with all memory that push() needs.
+  /// Returns the state before the first sample, with all memory that push() needs.
   State start() const;
 
-  /// Takes one sample; `out` is the estimate of the sample that is lag_s old, empty while the window fills. On trouble
-  /// (`non_finite`, `time_order`, `gap`) the state is left as it was and `out` is empty.
+  /// Processes one sample. `out` is the estimate of the sample that is lag_s old; empty while the window fills. On
+  /// error (`non_finite`, `time_order`, `gap`) the state is unchanged and `out` is empty.
   Status push(const ImuSample& sample, State& state, std::optional<RateState>& out) const {
     return push(sample, {}, state, out);
   }
-  /// The same with what other IMUs on the body read at that time, one per RateModelParams::auxiliary_imus or none at
-  /// all; else `too_few`.
+  /// Same with the readings of other IMUs on the body at that time: one per RateModelParams::auxiliary_imus, or none.
+  /// Returns `too_few` otherwise.
   Status push(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state,
               std::optional<RateState>& out) const;
 
-  /// Provisional estimate of the newest sample; empty before the first.
+  /// Returns the provisional estimate of the newest sample; empty before the first.
   std::optional<RateState> newest(const State& state) const;
 
-  /// Estimates of the samples still in the window that push() has not given out, oldest first, appended to `out`.
+  /// Appends the estimates of the samples still in the window to `out`, oldest first.
   void flush(const State& state, std::vector<RateState>& out) const;
 
-  /// Whether the IMU can be believed just now: `out_of_range` with the name of an axis that has frozen (FrozenAxes; its
-  /// rates state the fastest rate read as their deviation), or of an accelerometer of the other sense (FlightSense).
+  /// Reports whether the IMU is plausible now. Returns `out_of_range` with the name of a frozen axis (FrozenAxes), or
+  /// for an accelerometer with inverted sign (FlightSense). The standard deviation on a frozen gyro axis is the largest
+  /// rate read so far.
   Status doubt(const State& state) const;
 
-  /// What has been learnt of the rig.
+  /// Returns the estimated calibration.
   RigCalibration calibration(const State& state) const { return {state.rig, inflated(state)}; }
 
-  /// What readings are corrected for of the device's errors, and what is open of them. A late accelerometer is found
-  /// from strokes where the device's sheet leaves it open; see RateStreamDelay.
+  /// Returns the sensor errors for which readings are corrected, and their covariance. A delayed accelerometer is
+  /// detected from impacts if the data sheet does not exclude it; see RateStreamDelay.
   KnownSensorErrors sensor_errors(const State& state) const;
 
-  /// True when two states will behave alike for ever (scratch space excluded), bit for bit.
+  /// Returns whether two states will give identical results, bit for bit. Buffers are not compared.
   static bool equal(const State& a, const State& b);
 
-  /// What holds of every state that push() left, for one that comes from elsewhere; the first that does not.
+  /// Checks the invariants of a state that was loaded from outside. Returns the first violation.
   Status check_state(const State& state) const;
 
  private:
@@ -132,9 +136,9 @@ class RateStream {
   RateModel model_;
   DeviceDoubt device_;
   std::size_t capacity_;
-  std::size_t every_;     ///< samples from one step to the next
-  double given_delay_s_;  ///< of the accelerometer, as known beforehand
-  bool delay_open_;       ///< the device may have another
+  std::size_t every_;     ///< number of samples between steps
+  double given_delay_s_;  ///< prior delay of the accelerometer
+  bool delay_open_;       ///< whether another delay is possible
 };
 
 }  // namespace tumble

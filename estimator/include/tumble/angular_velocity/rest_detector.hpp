@@ -11,27 +11,27 @@
 
 namespace tumble {
 
-/// Finds standstill in the readings of an IMU, for rates, attitude, rolling and the mapper: rates that are a known bias
-/// at most and a force that is large enough to be gravity, both constant up to noise for a while. There the gyro reads
-/// its bias. Everything is meant by time and at one bandwidth: readings that come faster than `reading_s` are taken
-/// together first, so that white noise of density n [unit/sqrt(Hz)] is n / sqrt(reading_s) in what the bounds are
-/// compared with, whatever the rate of the samples. A spread should be five of these deviations or more. What it does
-/// not tell apart from standstill: a steady turn about the vertical, slower than `rate_max_rad_s`.
+/// Detects when an IMU is stationary, for rates, attitude, rolling and mapping. At rest the rate is within a plausible
+/// bias, and the force is large enough to be gravity. Rate and force are constant up to noise for a while. The gyro
+/// then measures its bias. All parameters refer to times and to one bandwidth: readings faster than `reading_s` are
+/// averaged first. White noise of density n [unit/sqrt(Hz)] then has the standard deviation n / sqrt(reading_s),
+/// whatever the sample rate. A spread should be at least five such deviations. Not distinguished from rest: a steady
+/// rotation about the vertical, slower than `rate_max_rad_s`.
 ///
-/// What differs from use to use are the Params, stated where they are used: docs/design.md.
+/// Parameters differ between uses and are set there: docs/design.md.
 class RestDetector {
  public:
   struct Params {
     double rate_max_rad_s = 0.05;     ///< of the mean of the run about the bias, each axis
-    double rate_spread_rad_s = 0.03;  ///< largest distance of a reading from the mean of the run, per axis
-    double force_min_m_s2 = 5.0;      ///< flight is no rest
-    double force_max_m_s2 = 1e3;      ///< nor is a push
-    double force_spread_m_s2 = 0.15;  ///< as that of the rate
-    double rest_s = 0.4;              ///< the shortest run that is rest
-    double reading_s = 0.01;          ///< length of what counts as a reading; 0: each sample
-    double memory_s = 600.0;          ///< in which the mean of a run forgets: a bias that drifts is no motion
+    double rate_spread_rad_s = 0.03;  ///< maximum distance of a reading from the mean of the run, per axis
+    double force_min_m_s2 = 5.0;      ///< excludes flight
+    double force_max_m_s2 = 1e3;      ///< excludes impacts
+    double force_spread_m_s2 = 0.15;  ///< maximum distance of a reading from the mean of the run, per axis
+    double rest_s = 0.4;              ///< minimum duration of a rest
+    double reading_s = 0.01;          ///< averaging time of a reading; 0: each sample
+    double memory_s = 600.0;          ///< time constant of the run's mean: a drifting bias is not motion
 
-    /// Every number of it, stated once.
+    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.rate_max_rad_s,
@@ -50,15 +50,15 @@ class RestDetector {
     }
   };
   struct State {
-    // the run: readings that stay about their mean, which are rest once they have lasted
+    // State of the run: readings that stay close to their mean. A run that lasts long enough is rest.
     Eigen::Vector3d rate_sum_rad_s = Eigen::Vector3d::Zero();
     Eigen::Vector3d force_sum_m_s2 = Eigen::Vector3d::Zero();
-    double weight = 0.0;      ///< of the sums: readings, but for those that are forgotten
-    TimeNs first_ns = 0;      ///< of its first sample
-    TimeNs last_mean_ns = 0;  ///< of its last reading
-    TimeNs quiet_ns = 0;      ///< for so long the run has lasted, with a mean that is a bias at most
-    bool rests = false;       ///< the run, up to the last reading
-    // samples since the last reading
+    double weight = 0.0;      ///< weight of the sums: number of readings, decreasing with age
+    TimeNs first_ns = 0;      ///< of the run's first sample
+    TimeNs last_mean_ns = 0;  ///< of the last reading
+    TimeNs quiet_ns = 0;      ///< duration of the run with a mean within the bias bound
+    bool rests = false;       ///< whether the run, up to the last reading, is rest
+    // Sums of the samples since the last reading.
     Eigen::Vector3d rate_open_rad_s = Eigen::Vector3d::Zero();
     Eigen::Vector3d force_open_m_s2 = Eigen::Vector3d::Zero();
     std::size_t open = 0;
@@ -66,24 +66,24 @@ class RestDetector {
     bool started = false;
     bool operator==(const State&) const = default;
 
-    /// Of the run; zero before one.
+    /// Returns the mean of the run; zero without a run.
     Eigen::Vector3d mean_rate_rad_s() const;
     Eigen::Vector3d mean_force_m_s2() const;
   };
 
-  /// Throws InvalidParams on a parameter outside of its bound.
+  /// Throws InvalidParams if a parameter is out of bounds.
   explicit RestDetector(const Params& params);
 
-  /// Takes the next finite sample; true when it ends a run that is rest, as far as whole readings tell. `bias_rad_s` is
-  /// what is known of the gyro's. O(1), no allocation.
+  /// Processes the next finite sample. Returns whether the IMU is at rest up to the last complete reading. `bias_rad_s`
+  /// is the known bias of the gyro. O(1), no allocation.
   bool observe(const ImuSample& sample, State& state,
                const Eigen::Vector3d& bias_rad_s = Eigen::Vector3d::Zero()) const;
 
-  /// The same of a mean over a span, which is a reading by itself, whatever `reading_s`.
+  /// Same for a mean over a time span, which counts as one reading whatever `reading_s`.
   bool observe_mean(const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& force_m_s2, TimeNs from_ns, TimeNs to_ns,
                     const Eigen::Vector3d& bias_rad_s, State& state) const;
 
-  /// For each sample of a recording whether it belongs to a rest, also those with which one begins. O(N).
+  /// Returns for each sample of a recording whether it belongs to a rest, including the start of each rest. O(N).
   std::vector<bool> find(std::span<const ImuSample> samples) const;
 
  private:

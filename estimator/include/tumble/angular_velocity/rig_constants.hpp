@@ -7,31 +7,31 @@
 
 namespace tumble {
 
-/// What stays the same during a run and is estimated with the rates: 20 numbers, in this order.
+/// Calibration constants that are estimated with the rates of a run: 20 numbers, in this order.
 struct RigConstants {
   static constexpr int kSize = 20, kElements = 14;
-  static constexpr double kMost = 10.0;  ///< magnitude of each, in its unit
+  static constexpr double kMost = 10.0;  ///< maximum magnitude of each, in its unit
   using Vector = Eigen::Matrix<double, kSize, 1>;
   using Matrix = Eigen::Matrix<double, kSize, kSize>;
 
   Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();      ///< t: from the centre of mass to the IMU, IMU axes
   Eigen::Vector3d gyro_bias_rad_s = Eigen::Vector3d::Zero();  ///< reading minus truth
   Eigen::Vector3d accel_bias_m_s2 = Eigen::Vector3d::Zero();  ///< reading minus truth
-  /// Shape of the inertia about the centre of mass in IMU axes, free of scale: J = 1 + sum_i inertia_i S_i, S_i an
-  /// orthonormal basis of the symmetric matrices without trace. Zero: all moments equal.
+  /// Shape of the inertia about the centre of mass in IMU axes, without scale: J = 1 + sum_i inertia_i S_i. S_i is an
+  /// orthonormal basis of the traceless symmetric matrices. Zero: all moments equal.
   Eigen::Matrix<double, 5, 1> inertia = Eigen::Matrix<double, 5, 1>::Zero();
-  /// Where the sensing elements of the gyro look before the device compensates it: element j senses along the row m_j,
-  /// 1 on axis j, elements[2j] on axis (j+1) % 3 and elements[2j+1] on axis (j+2) % 3. Seen where an element clips
-  /// only.
+  /// Directions of the gyro's sensing elements before the device's compensation. Element j senses along the row m_j: 1
+  /// on axis j, elements[2j] on axis (j+1) % 3 and elements[2j+1] on axis (j+2) % 3. Observable only while an element
+  /// clips.
   Eigen::Matrix<double, 6, 1> elements = Eigen::Matrix<double, 6, 1>::Zero();
 
-  /// m_j.
+  /// Returns m_j.
   Eigen::Vector3d element_row(int j) const;
-  /// J, trace 3.
+  /// Returns J, with trace 3.
   Eigen::Matrix3d inertia_matrix() const;
-  /// Coordinates `inertia` of a symmetric matrix of any positive scale.
+  /// Returns the coordinates `inertia` of a symmetric matrix of any positive scale.
   static Eigen::Matrix<double, 5, 1> inertia_coordinates(const Eigen::Matrix3d& inertia);
-  /// S_i of the basis, i in 0..4.
+  /// Returns the basis matrix S_i, i in 0..4.
   static const Eigen::Matrix3d& inertia_basis(int i);
 
   Vector vector() const;
@@ -39,15 +39,16 @@ struct RigConstants {
   bool operator==(const RigConstants&) const = default;
 };
 
-/// What one run has learnt and another may start from.
+/// Calibration estimated by one run, from which another run may start.
 struct RigCalibration {
   RigConstants constants;
   RigConstants::Matrix covariance = RigConstants::Matrix::Identity();
 };
 
-/// `out_of_range` where a constant lies beyond what any rig has.
+/// Returns `out_of_range` if a constant exceeds the limits of any plausible rig.
 Status check_rig(const RigConstants& rig);
-/// The same, and `degenerate` where the covariance is not positive definite: a run cannot start from it.
+/// Same as check_rig(). In addition returns `degenerate` if the covariance is not positive definite, since a run cannot
+/// start from it.
 Status check_calibration(const RigCalibration& calibration);
 
 }  // namespace tumble

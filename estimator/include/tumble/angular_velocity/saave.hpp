@@ -14,39 +14,40 @@
 
 namespace tumble {
 
-/// Angular velocity of a tumbling body whose gyro clips, from the centripetal part of the specific force.
+/// Estimates the angular velocity of a tumbling body with a clipped gyro from the centripetal part of the specific
+/// force.
 ///
-/// The published method (Deschenes et al., "Saturation-Aware Angular Velocity Estimation", ICRA 2024, eqs 5-7) in two
-/// stages. Recursion, per sample: the rotation axis e of the last accepted sample and the lever arm t give the vector
-/// from the IMU to the axis, l = (t.e)e - t; the component of the specific force along l is |l| |w|^2 in free flight,
-/// so the one clipped axis follows from the two others. Then all samples are smoothed by WnojSmoother.
+/// Implements the published method (Deschenes et al., "Saturation-Aware Angular Velocity Estimation", ICRA 2024, eqs
+/// 5-7) in two stages. The first stage is a recursion per sample. The rotation axis e of the last accepted sample and
+/// the lever arm t give the vector from the IMU to the axis, l = (t.e)e - t. The component of the specific force along
+/// l is |l| |w|^2 in free flight. The clipped axis follows from this and the two others. In the second stage,
+/// WnojSmoother smooths all samples.
 ///
-/// What it does not model: a second clipped axis (the first in x, y, z order is treated, the others are believed with
+/// Not modelled, as in the publication: a second clipped axis (the first in x, y, z order is recovered; the others keep
 /// the variance of an unclipped reading), angular acceleration across the axis, contact, clipped accelerometers, bias.
-/// Near r = |l| = 0 the estimate is unguarded (r = 0 exactly rejects). The variance of an estimate depends on nothing.
-/// Smoothed rates are not held to the rail again: they may fall below it. As published, all of it.
+/// Near r = |l| = 0 the estimate is unprotected (r = 0 exactly is rejected). The variance of an estimate is constant.
+/// Smoothed rates may fall below the saturation level.
 class Saave {
  public:
   struct Params {
-    /// t: from the centre of mass to the IMU, IMU axes [m]; bound |t_j| <= 10. Needed to about a millimetre; has no
-    /// default.
+    /// t: from the centre of mass to the IMU, IMU axes [m]; bound |t_j| <= 10. Required, no default; needed to about a
+    /// millimetre.
     Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
-    /// A reading strictly beyond this counts as clipped [rad/s]. Known error, kept as published: a device
-    /// whose plateau is exactly this value never exceeds it and nothing is recovered; pass a value slightly below. Has
-    /// no default.
+    /// Readings strictly above this are clipped [rad/s]. Required, no default. Known error of the published method: a
+    /// device whose plateau equals this value never exceeds it, and nothing is recovered. Use a slightly lower value.
     double saturation_point_rad_s = 0.0;
     /// Variance of an unclipped reading [(rad/s)^2]; (0.03 deg/s/sqrt(Hz) * sqrt(100 Hz))^2.
     double variance_measured_rad2_s2 = 2.741e-5;
     /// Variance of an accepted estimate [(rad/s)^2]: 0.2741 as in the authors' code, 3.648 as printed in the paper.
     double variance_estimated_rad2_s2 = 0.2741;
-    /// Variance of the clipped axis when no estimate is possible [(rad/s)^2].
+    /// Variance of the clipped axis without an estimate [(rad/s)^2].
     double variance_rejected_rad2_s2 = 1e6;
     /// Power spectral density of the white angular jerk [rad^2/s^5].
     double jerk_psd_rad2_s5 = 1e6;
-    /// Longest time between two samples before the run is refused [s].
+    /// A longer time between two samples is an error [s].
     double gap_max_s = 1.0;
 
-    /// Every number of it, stated once.
+    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.lever_arm_m, {"lever_arm_m", "m", -10.0, 10.0,
@@ -70,7 +71,7 @@ class Saave {
     }
   };
 
-  /// All that the recursion carries from sample to sample.
+  /// State of the recursion.
   struct State {
     Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< direction of the last accepted rate
     TimeNs last_time_ns = 0;
@@ -78,23 +79,23 @@ class Saave {
     bool operator==(const State&) const = default;
   };
 
-  /// A sample after the recursion, before smoothing.
+  /// Result of the recursion for one sample, before smoothing.
   struct Recovered {
     Eigen::Vector3d rate_rad_s;
     Eigen::Vector3d variance_rad2_s2;  ///< per axis
-    std::uint8_t clipped_axes = 0;     ///< bits of the axes beyond the saturation point
+    std::uint8_t clipped_axes = 0;     ///< bits of the axes above the saturation point
     bool accepted = true;              ///< false: the clipped axis could not be recovered
   };
 
-  /// Throws InvalidParams on a parameter outside of its bound.
+  /// Throws InvalidParams if a parameter is out of bounds.
   explicit Saave(const Params& params);
 
-  /// One step of the recursion. On trouble (`non_finite`, `time_order`, `gap`) neither state nor out is touched.
+  /// Performs one step of the recursion. On error (`non_finite`, `time_order`, `gap`) `state` and `out` are unchanged.
   /// O(1), no allocation.
   Status step(const ImuSample& sample, State& state, Recovered& out) const;
 
-  /// Both stages over a whole recording; one RateState per sample. O(N). No sample: `empty`.
-  /// On trouble nothing is written to `out` and the status names the first offending sample's field and value.
+  /// Performs both stages over a whole recording; one RateState per sample. O(N). Returns `empty` without samples.
+  /// On error `out` is unchanged, and the status contains the field and value of the first invalid sample.
   Status estimate(std::span<const ImuSample> samples, std::vector<RateState>& out) const;
 
   const Params& params() const { return params_; }

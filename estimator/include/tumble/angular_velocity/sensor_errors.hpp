@@ -7,22 +7,21 @@
 
 namespace tumble {
 
-/// What a device makes of the motion besides bias and noise, the same for a run: 29 numbers, in this order, matrices
-/// row by row.
+/// Constant sensor errors other than bias and noise: 29 numbers, in this order, matrices row by row.
 struct SensorErrors {
   static constexpr int kSize = 29, kAccel = 9, kFelt = 18, kDelay = 27, kBlur = 28;
   using Vector = Eigen::Matrix<double, kSize, 1>;
   using Matrix = Eigen::Matrix<double, kSize, kSize>;
 
-  /// Scale and misalignment: the gyro reads (1 + gyro) rate + felt force + bias, the accelerometer (1 + accel) force +
+  /// Scale and misalignment. The gyro reads (1 + gyro) rate + felt force + bias, the accelerometer (1 + accel) force +
   /// bias.
   Eigen::Matrix3d gyro = Eigen::Matrix3d::Zero(), accel = Eigen::Matrix3d::Zero();
-  /// What the gyro feels of the specific force [rad/s per m/s^2].
+  /// g-sensitivity of the gyro [rad/s per m/s^2].
   Eigen::Matrix3d felt_s_m = Eigen::Matrix3d::Zero();
-  /// How much later than the gyro the accelerometer says the same instant.
+  /// Delay of the accelerometer relative to the gyro.
   double accel_delay_s = 0.0;
-  /// How much wider its window is: variance of the instants that a reading mixes, less that of the gyro [s^2]; negative
-  /// where the gyro's is the wider one.
+  /// Difference in window width: variance of the time weights of an accelerometer reading minus that of the gyro [s^2].
+  /// Negative if the gyro's window is wider.
   double accel_blur_s2 = 0.0;
 
   Vector vector() const;
@@ -30,29 +29,31 @@ struct SensorErrors {
   bool operator==(const SensorErrors&) const = default;
 };
 
-/// Errors of a device with their covariance.
+/// Sensor errors with their covariance.
 struct KnownSensorErrors {
   SensorErrors errors;
   SensorErrors::Matrix covariance = SensorErrors::Matrix::Zero();
 };
 
-/// Throws InvalidParams on errors beyond 0.2, or on what is no covariance: a negative eigenvalue would pass for perfect
+/// Throws InvalidParams for errors above 0.2 or an invalid covariance. A negative eigenvalue would act as perfect
 /// knowledge.
 void require_known(const KnownSensorErrors& learnt);
 
-/// What is assumed of a device's errors: standard deviations as a data sheet states them, and those of a device that
-/// nobody has calibrated. Which of the two a device is, the readings tell (SensorErrorFit); a second deviation that
-/// does not exceed the first takes the sheet's word for it. [0, 0.1] each, units as in SensorErrors.
+/// Prior standard deviations of sensor errors: those stated in a data sheet, and those of an uncalibrated device.
+/// SensorErrorFit determines from the readings which of the two applies. If the second value does not exceed the first,
+/// the data sheet always applies. [0, 0.1] each, units as in SensorErrors.
 struct SensorErrorSizes {
-  /// MTi-300 sheet: non-orthogonality 0.05 deg; the MPU-6050 has 3 % of scale and 2 % across, taken as 3 sigma.
+  /// Data sheet of the MTi-300: non-orthogonality 0.05 deg. The MPU-6050 has 3 % scale and 2 % cross-axis error, used
+  /// as 3 sigma.
   double gyro = 5e-4, gyro_unknown = 0.01;
   double accel = 5e-4, accel_unknown = 0.01;
   /// 0.003 deg/s/g; 0.1 deg/s/g.
   double felt_s_m = 5.3e-6, felt_unknown_s_m = 1.8e-4;
-  /// Filters of both triads at some 400 Hz; windows and filters of their own. The blur goes with the delay's square.
+  /// Filters of both triads at about 400 Hz; or separate windows and filters. The window difference scales with the
+  /// square of the delay.
   double delay_s = 1e-4, delay_unknown_s = 5e-3;
 
-  /// Every number of it, stated once.
+  /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.gyro, {"gyro", "1", 0.0, 0.1,
@@ -75,41 +76,42 @@ struct SensorErrorSizes {
   }
 };
 
-/// Deviations of all errors; `share` from 0, the sheet's, to 1, those of a device that nobody has calibrated. None is
-/// 0.
+/// Returns the standard deviations of all errors. `share` is between 0 (data sheet) and 1 (uncalibrated device). All
+/// are above 0.
 SensorErrors::Vector error_deviations(const SensorErrorSizes& sizes, double share);
 
-/// What a run's readings say of the errors: of the cost, once all else is at its optimum for each value of the errors,
-/// half the second derivative's double and minus the first, about `about`.
+/// Evidence of a run's readings about the sensor errors, about the point `about`. `information` is the second
+/// derivative of the cost and `gradient` its negative first derivative, with all other unknowns at their optimum.
 struct SensorErrorEvidence {
   SensorErrors about;
   SensorErrors::Matrix information = SensorErrors::Matrix::Zero();
   SensorErrors::Vector gradient = SensorErrors::Vector::Zero();
 };
 
-/// Leaves `share` of the evidence along what a motion that is as free as its model cannot tell: a scale that all axes
-/// of a gyro or of an accelerometer share, and a turn of both triads together. What stands there is the pull of the
-/// model's own residuals, which a motion that is scaled down makes smaller, and counts samples. rate_smoother.md
-/// (R37a).
+/// Reduces the evidence to `share` in the directions that a freely moving body does not determine. Such directions are
+/// a scale common to all axes of a triad, and a common rotation of both triads. In these directions the evidence comes
+/// from residuals of the motion model, which smaller motions reduce, and grows with the number of samples.
+/// rate_smoother.md (R39).
 void discount_untold(double share, SensorErrorEvidence& evidence);
 
-/// The errors as the readings tell them and what is assumed beforehand allows.
+/// Sensor errors estimated from the readings and the prior.
 struct SensorErrorFit {
   KnownSensorErrors known;
-  double calibrated = 1.0;  ///< probability that scale and misalignment are those of the sheet
-  double together = 1.0;    ///< probability that the triads are sampled as alike as the sheet has it
+  double calibrated = 1.0;  ///< probability that scale and misalignment are within the data sheet
+  double together = 1.0;    ///< probability that the triads are as synchronous as the data sheet states
 };
 
-/// Bayes over the sizes: for each combination of what sheet and `unknown` leave open (scale and misalignment of both
-/// triads, g-sensitivity, sampling; sizes in between too) the Gaussian posterior of the errors and how likely the
-/// readings are under it; mean and covariance are those of the mixture. So a device whose readings show errors as a
-/// calibrated one has keeps the small doubt in what its readings do not show. O(1): some 30 systems of 29 unknowns.
-/// `learnt`: what earlier runs of the device have told, from learnt_evidence(); believed in full.
+/// Estimates the sensor errors by Bayesian model averaging over prior sizes. The models combine data sheet,
+/// uncalibrated, and intermediate sizes for scale and misalignment of both triads, g-sensitivity, and sampling. For
+/// each model, the function computes the Gaussian posterior of the errors and the likelihood of the readings. The
+/// result has the mean and covariance of the mixture. A device whose readings fit the data sheet thereby keeps a small
+/// uncertainty of unobservable errors. O(1): some 30 systems of 29 unknowns.
+/// `learnt`: evidence of earlier runs of the device, from learnt_evidence(), used with full weight.
 SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const SensorErrorSizes& sizes,
                                  const SensorErrorEvidence& learnt = {});
 
-/// What a run has told of a device, as evidence for the next: its covariance without what was assumed beforehand of a
-/// device that nobody has calibrated, which the next run assumes again.
+/// Converts the sensor errors estimated in one run to evidence for the next. The prior of an uncalibrated device is
+/// removed from the covariance because the next run adds it again.
 SensorErrorEvidence learnt_evidence(const KnownSensorErrors& learnt, const SensorErrorSizes& sizes);
 
 }  // namespace tumble

@@ -13,24 +13,25 @@
 
 namespace tumble {
 
-/// What is known of the rails in each sample of a recording, as CarriedSmoother wants it: flags of the device, plateaus
-/// and tilted planes found in the readings.
+/// Clipped elements of each sample of a recording, as input of CarriedSmoother. Sources are flags of the device, and
+/// plateaus and tilted planes in the readings.
 struct CarriedElements {
-  Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();  ///< of the gyro's planes, the axes where none was seen
+  Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();  ///< sensing directions of the gyro; axes without planes
   std::vector<ClipSigns> signs;                        ///< one per sample
   std::vector<std::uint8_t> near;                      ///< one per sample: bits of may_meet_rails()
 
   ClippedElements clipped() const { return {rows, signs}; }
 
-  /// Free readings of these axes (bit j of each sample) may stand at a rail that was not seen: they are bounds.
+  /// Treats free readings of these axes (bit j of each sample) as lower bounds because they may be at an unknown
+  /// saturation level.
   void doubt(std::span<const ImuSample> samples, std::span<const std::uint8_t> axes);
 
-  /// A rate whose reading may have met its rail in a part of its window is bounded, not measured. `rates`: one per
-  /// sample.
+  /// Marks rates as bounded instead of measured if the reading may have been saturated for a part of its window.
+  /// `rates`: one per sample.
   void mark_near(std::span<RateState> rates) const;
 };
 
-/// Of samples that were judged. O(N).
+/// Converts the result of a ClippingFinder. O(N).
 CarriedElements carried_elements(std::span<const ImuSample> samples, const ClippingFinder::Found& found);
 
 }  // namespace tumble

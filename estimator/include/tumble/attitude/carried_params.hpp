@@ -6,15 +6,15 @@
 
 namespace tumble {
 
-/// What a hand does, in time.
+/// Time constants of hand-held motion.
 struct CarriedHandParams {
-  double hand_tau_s = 0.1;        ///< its memory
-  double velocity_tau_s = 0.3;    ///< and memory
-  double position_tau_s = 1.0;    ///< and memory of that
-  double position_leak_s = 10.0;  ///< in which a position is forgotten
-  double hand_follow = 0.8;       ///< how far the hand's density follows its power about that time
-  double hand_window_s = 2.0;     ///< over which that power is taken
-  double hand_floor = 1.0;        ///< least share of the assumed density
+  double hand_tau_s = 0.1;        ///< correlation time of the held point's acceleration
+  double velocity_tau_s = 0.3;    ///< correlation time of its velocity
+  double position_tau_s = 1.0;    ///< correlation time of its position
+  double position_leak_s = 10.0;  ///< time constant with which a position decays
+  double hand_follow = 0.8;       ///< adaptation of the acceleration's density to its measured power, 0 to 1
+  double hand_window_s = 2.0;     ///< averaging time of this power
+  double hand_floor = 1.0;        ///< minimum density as a fraction of the assumed one
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -34,15 +34,15 @@ struct CarriedHandParams {
   }
 };
 
-/// What readings are off by beside their noise, clipped and recovered ones among them.
+/// Errors of readings other than noise, including clipped and recovered readings.
 struct CarriedReadingParams {
-  double tilt_share = 0.02;             ///< error of a free element per deficit of a clipped one
-  double rail_sigma_rad_s = 0.01;       ///< how sharp a rail is
-  double accel_error_share = 0.02;      ///< more, per m/s^2 away from gravity
-  double rotation_error_sqrts = 1e-3;   ///< random walk of the attitude per rad/s turned
-  double recovered_sigma_rad_s = 1.0;   ///< a clipped rate known better is recovered
-  double recovered_tau_s = 0.005;       ///< memory of the error of a rate that was recovered
-  double recovered_scale_share = 6e-3;  ///< beside recovered rates: of the turning, by which gyros misread all of it
+  double tilt_share = 0.02;             ///< error of a free element per deficit of a clipped element
+  double rail_sigma_rad_s = 0.01;       ///< softness of a saturation level
+  double accel_error_share = 0.02;      ///< additional force noise per m/s^2 of difference from gravity
+  double rotation_error_sqrts = 1e-3;   ///< random walk of the attitude per rad/s of rotation
+  double recovered_sigma_rad_s = 1.0;   ///< a clipped rate with a smaller standard deviation is recovered
+  double recovered_tau_s = 0.005;       ///< correlation time of the error of a recovered rate
+  double recovered_scale_share = 6e-3;  ///< scale error of rates next to recovered ones
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -62,7 +62,7 @@ struct CarriedReadingParams {
   }
 };
 
-/// A node that rests.
+/// A stationary node.
 struct CarriedStillParams {
   double rest_sigma_rad_s = 0.01;  ///< of the rate at rest, one node
   double rest_sigma_m_s = 0.02;    ///< of the velocity at rest
@@ -78,13 +78,13 @@ struct CarriedStillParams {
   }
 };
 
-/// What few need of CarriedParams, by meaning. Fields bear the names that they have in tables and on command lines.
+/// Parameters of CarriedParams that few users change, grouped by meaning. Field names equal those in tables and on
+/// command lines.
 struct CarriedExpertParams {
-  double node_s = 0.01;  ///< between two nodes
+  double node_s = 0.01;  ///< time between two nodes
   int iterations_max = 15;
   double gap_max_s = 1.0;
-  /// What motions of a kind differ in their jerk is not known beforehand: covariances are those of a root density so
-  /// many times larger.
+  /// Inflation of the jerk's root density in covariances. The jerk of the actual motion is not known in advance.
   double jerk_inflation = 4.0;
   RestDetector::Params rest = {};
   CarriedHandParams hand = {};
@@ -107,7 +107,7 @@ struct CarriedExpertParams {
   }
 };
 
-/// Of CarriedSmoother and CarriedStream: the IMU, and how a hand moves it.
+/// Parameters of CarriedSmoother and CarriedStream: the IMU, and the hand-held motion.
 struct CarriedParams {
   double gravity_m_s2 = 9.80665;
   double gyro_noise_density = 5e-4;   ///< rad/s/sqrt(Hz)
@@ -116,14 +116,14 @@ struct CarriedParams {
   double accel_bias_sigma_m_s2 = 0.02;
   double lever_arm_sigma_m = 0.03;
   double jerk_rad_s3_sqrts = 200.0;  ///< root density of the angular jerk
-  double hand_m_s2 = 5.0;            ///< deviation of the carried point's acceleration
-  double velocity_m_s = 1.0;         ///< deviation of the carried point's velocity
-  double position_m = 1.0;           ///< deviation of its position
+  double hand_m_s2 = 5.0;            ///< standard deviation of the held point's acceleration
+  double velocity_m_s = 1.0;         ///< standard deviation of the held point's velocity
+  double position_m = 1.0;           ///< standard deviation of the held point's position
 
   using Expert = CarriedExpertParams;
-  Expert expert = {};  ///< what few need
+  Expert expert = {};  ///< parameters that few users change
 
-  /// Every number of it, stated once.
+  /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-300, 100.0, "strength of gravity"});

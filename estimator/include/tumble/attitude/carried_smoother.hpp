@@ -17,37 +17,37 @@
 
 namespace tumble {
 
-/// Which elements of an IMU stand at a rail in one sample: -1 the negative one, 1 the positive one, 0 free; of the gyro
-/// kMissing where the reading says nothing (one that has wrapped over the rail): neither measurement nor bound.
+/// Clipped elements of an IMU in one sample: -1 at the negative level, 1 at the positive level, 0 free. kMissing marks
+/// gyro readings that have overflowed, which are neither a measurement nor a bound.
 struct ClipSigns {
   static constexpr std::int8_t kMissing = 2;
   std::array<std::int8_t, 3> gyro{}, accel{};
 };
-/// Those of a judged sample.
+/// Returns the clipped elements of a classified sample.
 ClipSigns clip_signs(const ImuSample& sample, const Clipping& clipping);
 
-/// What is known of an IMU's rails. Element i senses along row i of `rows` and clips there: where it does, the readings
-/// y lie in the plane m_i' y = rail, and truly m_i' (rate + bias) lies beyond.
+/// Saturation of an IMU. Element i senses along row i of `rows`. While it clips, the readings y satisfy m_i' y = level,
+/// and the true value m_i' (rate + bias) is beyond.
 struct ClippedElements {
   Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();
-  std::span<const ClipSigns> signs;  ///< one per sample; empty: nothing clips
-  /// One per sample: covariance of a rate that no gyro read but somebody recovered from what this smoother does not
-  /// know (flight), sensor axes; zero: as read. Empty: all are. No element of a recovered sample is called clipped.
+  std::span<const ClipSigns> signs;  ///< one per sample; empty: no clipping
+  /// One per sample: covariance of a rate that was not measured but recovered from other information (flight), sensor
+  /// axes. Zero: measured. Empty: all measured. Elements of recovered samples must not be marked as clipped.
   std::span<const Eigen::Matrix3d> recovered_rad2_s2 = {};
 };
 
-/// Attitude and angular velocity of a body that is carried (held, swung, twirled), from one IMU, also where its gyro
-/// clips: a smoother over a whole recording.
+/// Estimates attitude and angular velocity of a hand-held body (held, swung, twirled) from one IMU, also while its gyro
+/// is saturated. CarriedSmoother is a smoother over a whole recording.
 ///
-/// What a hand does is bounded: its acceleration is short-lived and its velocity and position come back. So the
-/// specific force is gravity at the attitude, the lever arm's share and a bounded rest, and gravity turning in the
-/// sensor tells the rate that the gyro lost. Nodes at equal times of attitude, rate, angular acceleration and the
-/// carried point's acceleration, velocity, position; constants of the device beside them; Gauss-Newton on the arrow
-/// matrix (ArrowSystem), covariances from the same factors. O(time) in memory (about 7 kB a node) and work, whatever
-/// the IMU's rate.
+/// Hand-held motion is bounded: its acceleration is short, and velocity and position return to zero. The specific force
+/// is therefore gravity at the attitude, the contribution of the lever arm, and a bounded remainder. The rotation of
+/// gravity in the sensor determines a rate that the gyro could not measure. Nodes at equal times contain attitude,
+/// rate, angular acceleration, and the held point's acceleration, velocity and position. The device's constants are
+/// added. Gauss-Newton on the arrow matrix (ArrowSystem); covariances come from the same factors. Memory (about 7 kB
+/// per node) and computation are O(time), whatever the IMU's rate.
 ///
-/// Not modelled: flight (a body that is thrown: `hand_mahalanobis` tells), contact beyond what a hand's acceleration
-/// explains, walk of the biases, heading.
+/// Not modelled: flight (a thrown body; see `hand_mahalanobis`), contact with forces beyond hand-held motion, drift of
+/// the biases, heading.
 class CarriedSmoother {
  public:
   using Params = CarriedParams;
@@ -58,27 +58,26 @@ class CarriedSmoother {
     int iterations = 0;
     bool converged = false;
     double cost = 0.0;
-    /// Largest mean acceleration of the carried point over a quarter of a second, in deviations of what is assumed. One
-    /// that is thrown (specific force about 0) shows 2 and more; so does a hand that is rough: it warns, it decides
-    /// nothing.
+    /// Largest mean acceleration of the held point over a quarter of a second, in assumed standard deviations. A thrown
+    /// body (specific force about 0) gives 2 and more, and so does rough handling. Diagnostic only.
     double hand_mahalanobis = 0.0;
-    /// Clipped segments in which the body may have turned once more, or less, than the descent says: how many were
-    /// long and unknown enough to be asked, in how many another number of turns was the better one and was taken (a
-    /// segment counts anew in each round), and in how many others stay possible, at odds of 1 to 1000 or better: there
-    /// the covariance holds their spread.
+    /// Clipped segments in which the number of revolutions may differ by one from the solution. `asked`: segments that
+    /// are long and uncertain enough for a test. `taken`: segments in which another number was better and was used,
+    /// counted in each round. `open`: segments in which another number remains possible, at odds of 1 to 1000 or
+    /// better. The covariance includes their spread.
     int revolutions_asked = 0, revolutions_taken = 0, revolutions_open = 0;
-    /// Turns that were to be taken and from which the whole could not be solved: the answer without them stands, and
-    /// they count as possible.
+    /// Changes of revolutions after which the whole problem could not be solved. The solution without them is kept, and
+    /// they count as open.
     int revolutions_failed = 0;
   };
 
-  /// Throws InvalidParams when a parameter is outside of its bound.
+  /// Throws InvalidParams if a parameter is out of bounds.
   explicit CarriedSmoother(const Params& params);
 
-  /// One rate and one attitude per sample (sensor axes to world, heading 0 at the start). Trouble: `empty`,
-  /// `non_finite`, `time_order`, `gap` as for a filter; `out_of_range` for signs or recovered rates that are not one
-  /// per sample, or for a covariance of these that is none; `diverged` when the equations lose their definiteness. The
-  /// outputs are then empty.
+  /// Computes one rate and one attitude per sample (sensor axes to world, heading 0 at the start). Errors: `empty`,
+  /// `non_finite`, `time_order`, `gap`; `out_of_range` if signs or recovered rates do not have one element per sample
+  /// or a covariance is invalid; `diverged` if the normal equations are not positive definite. The outputs are then
+  /// empty.
   Status estimate(std::span<const ImuSample> samples, const ClippedElements& clipped, std::vector<RateState>& rates,
                   std::vector<AttitudeState>& attitudes, Report& report) const;
 

@@ -12,30 +12,34 @@
 
 namespace tumble {
 
-/// The streaming form of CarriedSmoother: the same factors over a window of nodes, one Gauss-Newton step per node.
+/// Streaming form of CarriedSmoother: the same factors over a window of nodes, with one Gauss-Newton step per node.
 ///
-/// The oldest node is marginalised into a Gaussian prior on the next one and on the constants; it keeps the derivatives
-/// that it had when it left. Each estimate is given out when its sample is `lag_s` old, from a window that reaches back
-/// further (`window_s`), so that what the window still holds of the past is linearised anew with each step. `lag_s` is
-/// counted in samples of `period_s`: where they come so sparse that a sample's node leaves the window before, its rate
-/// is kept as it was then. Memory is bounded and made by start(); splitting a recording and carrying the State over
-/// gives the same bits.
+/// The oldest node is marginalised into a Gaussian prior on the next node and on the constants, with its last
+/// derivatives. Estimates are reported when their sample is `lag_s` old. The window reaches further back (`window_s`),
+/// so that older nodes are relinearised in each step. `lag_s` is counted in samples of `period_s`. For sparser samples,
+/// a node may leave the window earlier; its rate is then stored. start() allocates all memory. Splitting a recording
+/// and continuing from the State gives bit-identical results.
 ///
-/// Differs from the batch: while nothing in the window clips, only each fifth node is a step; the first attitude stands
-/// on one force and not on a filter; the hand's liveliness follows the nodes that have left, with the memory
-/// `hand_window_s` / 2, and not the time to come; whole turns are not asked for, their deviation is stated and the
-/// segments that may hide one are counted (C43, C44 of carried.md); readings that have left were read with
-/// the rails known then; the prior of the past keeps the assumed jerk where covariances are those of a larger one.
-/// Work: one step per node that begins, O(window).
+/// Differences from CarriedSmoother:
+/// - While nothing in the window clips, a step is made for each fifth node only.
+/// - The first attitude comes from one force, not from a filter.
+/// - The density of the hand's acceleration adapts to the nodes that left the window, with the time constant
+///   `hand_window_s` / 2, and not to later nodes.
+/// - Other numbers of revolutions are not tested. The covariance includes the deviation of an additional revolution,
+///   and segments that may contain one are counted (C42, C43 of carried.md).
+/// - Readings that have left the window were classified with the saturation levels known at that time.
+/// - The prior from the past uses the assumed jerk; covariances use the inflated one.
+///
+/// Cost: one step per new node, O(window).
 class CarriedStream {
  public:
   struct Params {
-    CarriedSmoother::Params body;  ///< `iterations_max` has no meaning here
+    CarriedSmoother::Params body;  ///< `iterations_max` is not used here
     double period_s = 0.01;        ///< nominal time between samples
     double lag_s = 0.2;
     double window_s = 0.6;
 
-    /// Every number of it, stated once.
+    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.body);
@@ -49,11 +53,11 @@ class CarriedStream {
   struct Reading {
     ImuSample sample;
     ClipSigns signs;
-    double centre_s = 0.0, end_s = 0.0;  ///< of its window, from the first sample's centre
-    std::int64_t node = 0;               ///< nearest to the centre
+    double centre_s = 0.0, end_s = 0.0;  ///< start and end of the sample's window, from the first sample's centre
+    std::int64_t node = 0;               ///< node closest to the centre
     bool rest = false;
-    HeldReading gyro, accel;            ///< of a log that says readings again
-    std::optional<RateState> smoothed;  ///< its rate, where its node has left and the rate has not been given out
+    HeldReading gyro, accel;            ///< state of repeated readings
+    std::optional<RateState> smoothed;  ///< rate of a sample whose node has left the window, not yet reported
   };
   struct Knot {
     carried::Node node;
@@ -62,50 +66,52 @@ class CarriedStream {
   struct State {
     std::vector<Reading> readings;  ///< of the nodes in the window, oldest first
     std::vector<Knot> window;       ///< oldest first
-    std::int64_t first_node = 0;    ///< number of the oldest
+    std::int64_t first_node = 0;    ///< number of the oldest node
     Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();
     carried::Constants constants;
     carried::System::BorderMatrix constants_covariance = carried::System::BorderMatrix::Zero();
-    // what all that left says of the oldest node and of the constants, about a point
+    // Prior on the oldest node and the constants from everything that left the window, about a linearisation point.
     carried::System::Block prior;
     carried::System::Corner prior_corner;
     carried::Node prior_node;
     carried::Constants prior_constants;
-    double hand_power = 1.0;  ///< of the nodes that left, over that assumed
+    double hand_power = 1.0;  ///< power of the nodes that left, relative to the assumed one
     RestDetector::State rests;
-    std::int64_t given_node = -1;  ///< node of the last estimate given out, and its covariance
+    std::int64_t given_node = -1;  ///< node of the last reported estimate, and its covariance
     Eigen::Matrix3d given_covariance_rad2_s2 = Eigen::Matrix3d::Zero();
     std::int64_t start_ns = 0;
     std::size_t samples = 0;
-    std::size_t failures = 0;  ///< steps whose system was not positive definite and was skipped
-    /// Of the segment in which each element of the gyro is clipped now, as far as it was given out: how long it is, and
-    /// the integral of the rate's deviation.
+    std::size_t failures = 0;  ///< number of skipped steps, whose system was not positive definite
+    /// Current clipped segment of each gyro element, up to the last reported sample: its duration, and the integral of
+    /// the rate's standard deviation.
     Eigen::Vector3d hidden_s = Eigen::Vector3d::Zero(), hidden_rad = Eigen::Vector3d::Zero();
-    std::size_t revolutions_open = 0;          ///< segments in which a whole turn more was not excluded
-    std::vector<carried::System::Block> work;  ///< scratch space, no part of the state proper
+    std::size_t revolutions_open = 0;          ///< segments in which an additional revolution could not be excluded
+    std::vector<carried::System::Block> work;  ///< buffer, not part of the state
   };
 
-  /// Throws InvalidParams on a parameter outside of its bound.
+  /// Throws InvalidParams if a parameter is out of bounds.
   explicit CarriedStream(const Params& params);
 
-  /// A state before the first sample, with all memory that push() needs.
+  /// Returns the state before the first sample, with all memory that push() needs.
   State start() const;
-  /// Makes of a state one before the first sample, in the memory that it has. What it has counted stays.
+  /// Resets a state to before the first sample and reuses its memory. Counters keep their values.
   void restart(State& state) const;
 
-  /// Takes one sample. `known.signs`: of the newest samples as they are known now, this one's last, at least this one;
-  /// samples whose signs have changed are read again while they are in the window. `out`: rate of the sample that is
-  /// `lag_s` old, empty while the window fills and where it is not `wanted`, which spares most of the work. `held`:
-  /// which readings the log says again; they count once, about when they were taken (R97 of rate_stream.md). Trouble:
-  /// `non_finite`, `time_order`, `gap`, `out_of_range` for no signs, `degenerate` for rows that do not span the axes;
-  /// the state is then as it was and `out` empty.
+  /// Processes one sample. On error the state is unchanged and `out` is empty: `non_finite`, `time_order`, `gap`,
+  /// `out_of_range` (no signs), `degenerate` (rows that do not span the axes).
+  /// - `known.signs`: current signs of the newest samples; the last entry belongs to this sample. Samples in the window
+  ///   whose signs changed are processed again.
+  /// - `out`: rate of the sample that is `lag_s` old. Empty while the window fills, and if not `wanted`, which saves
+  ///   most of the computation.
+  /// - `held`: repeated readings of the log. A repeated reading counts once, at the time when the sensor took it (R95
+  ///   of rate_stream.md).
   Status push(const ImuSample& sample, const ClippedElements& known, State& state, std::optional<RateState>& out,
               bool wanted = true, const HoldWatch::State& held = {}) const;
 
-  /// Rates of the samples that push() has not given out, oldest first, appended to `out`.
+  /// Appends the rates of the samples that are not yet reported to `out`, oldest first.
   void flush(const State& state, std::vector<RateState>& out) const;
 
-  /// What holds of every state that push() left, for one that comes from elsewhere; the first that does not.
+  /// Checks the invariants of a state that was loaded from outside. Returns the first violation.
   Status check_state(const State& state) const;
 
  private:

@@ -18,24 +18,24 @@
 
 namespace tumble {
 
-/// Of ImuMerge.
+/// Parameters of ImuMerge.
 struct ImuMergeParams {
   static constexpr int kImus = ImuMergeState::kImus;
   std::array<Eigen::Isometry3d, kImus> T_CI{};  ///< mountings; the first `count` are used
   int count = 1;
   double rate_noise_rad_s = 0.01;  ///< of the mean over a window
-  double window_s = 4e-3;          ///< over which readings are averaged beforehand
-  double offset_sigma_s = 3e-3;    ///< prior of a unit's time offset; zero: none
-  double gyro_range_rad_s = 1e3;   ///< readings from here on are at the rail
+  double window_s = 4e-3;          ///< averaging time of readings
+  double offset_sigma_s = 3e-3;    ///< prior of a unit's time offset; zero: not estimated
+  double gyro_range_rad_s = 1e3;   ///< readings from this value on are saturated
   double accel_range_m_s2 = 1e5;
   double gap_max_s = 1.0;
-  /// Along what the elements of each unit sense (RailPlaneFinder).
+  /// Sensing directions of each unit's elements (RailPlaneFinder).
   std::array<ElementRows, kImus> gyro_elements{}, accel_elements{};
 
   using Expert = ImuMergeExpertParams;
-  Expert expert = {};  ///< what few need
+  Expert expert = {};  ///< parameters that few users change
 
-  /// Every number of it, stated once.
+  /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.count, {"count", "1", 1, kImus, "number of IMUs in use"});
@@ -54,33 +54,33 @@ struct ImuMergeParams {
   }
 };
 
-/// Several IMUs on one rigid body as one: in common axes C, at the mean of their positions.
+/// Fuses several IMUs on one rigid body into one IMU, in common axes C, at the mean of their positions.
 ///
-/// On a rigid body specific force is linear in the position, so the mean of the forces is exactly the force at the mean
-/// place: no angular acceleration is needed. Where three or more agree but for one, that one is left out of the sample,
-/// and what its position would have added is made up for with the rate of the others. Each unit's own bias, scale,
-/// misalignment and time offset about the mean are estimated by a small Kalman filter while the body turns; the time
-/// offset is taken out when it is beyond doubt, the others average out. The accelerometers' do not in fast turns, where
-/// large forces cancel in the mean: they are told apart and taken out (ForceErrors).
+/// On a rigid body the specific force is linear in position. The mean of the forces is therefore exactly the force at
+/// the mean position, without the angular acceleration. If three or more units agree and one does not, this unit is
+/// excluded from the sample. The contribution of its position is replaced, using the other units' rate. A small Kalman
+/// filter estimates each unit's bias, scale, misalignment and time offset relative to the mean while the body rotates.
+/// A significant time offset is corrected; the other errors average out. Accelerometer errors do not average out in
+/// fast rotation, where large forces cancel in the mean. ForceErrors estimates and corrects them.
 ///
-/// A unit whose accelerometer stands at its rail is left out of the force, and one that may have met it within a sample
-/// and disagrees with the others; where most are doubtful, the merged force is flagged as clipped. Where
-/// the gyros do, three units or more tell the rate by what the turning does to their accelerometers (RateRecovery); the
-/// merged sample's clip flags say when they could not. Fewer units leave out a clipped one where another is free; where
-/// none is, the merged sample carries the flags, of all axes of C that a clipped one has a part in. Clipped is what is
-/// flagged or reads beyond the range: rails below it, tilted ones above all, are for whoever judges the units
-/// (ClippingFinder) to flag.
+/// A unit with a saturated accelerometer is excluded from the force. The same applies to a unit that may have been
+/// saturated within a sample and disagrees with the others. If most units are suspect, the merged force is flagged as
+/// clipped. If the gyros are saturated, three or more units determine the rate from the accelerometers' differences
+/// (RateRecovery). The merged clip flags show when this fails. With fewer units, a clipped unit is excluded while
+/// another is free. If none is free, the merged sample is flagged on all axes of C to which a clipped axis contributes.
+/// A reading is clipped if flagged or beyond the range. Lower saturation levels, in particular tilted ones, must be
+/// flagged beforehand (ClippingFinder).
 ///
-/// Decided and learnt is by means over window_s, whatever the rate of the IMUs: they have one bandwidth, and so the
-/// tolerances one meaning. A reading that is itself as long is taken as it is; of an axis that was at its rail within
-/// the window the mean is a bound, as a reading at the rail is.
+/// All decisions and estimates use means over window_s, whatever the IMUs' rate. Bandwidth and tolerances are therefore
+/// fixed. Readings as long as window_s are used unchanged. If an axis was saturated within the window, its mean is a
+/// bound.
 ///
-/// A unit whose reading is not finite is absent. One whose gyro or accelerometer repeats itself while the others move,
-/// or its accelerometer while gravity turns, is frozen, and left out until it has moved again for a while; one that is
-/// off from the others for long (scale, axes, unit) is left out for good, as long as two others remain. Equal readings
-/// at rest are no sign of either.
+/// A unit whose reading is not finite is absent. A unit is frozen if its gyro or accelerometer repeats its reading
+/// while the others change, or its accelerometer does while gravity rotates. A frozen unit is excluded until its
+/// readings have changed for a while. A unit that disagrees for long (scale, axes, unit of measurement) is excluded
+/// permanently, as long as two others remain. Equal readings at rest do not count as freezing or disagreement.
 ///
-/// Not modelled: clocks of different rates, an error that all units share.
+/// Not modelled: clocks of different rates, an error common to all units.
 class ImuMerge {
  public:
   static constexpr int kImus = ImuMergeState::kImus;
@@ -95,21 +95,20 @@ class ImuMerge {
 
   explicit ImuMerge(const Params& params);
 
-  /// What the forces differ by from unit to unit, as a share of what the turning makes of their positions: 1 when all
-  /// is as it should be, -1 when the accelerometers' sign is flipped. None while the body has not turned enough to
-  /// tell.
+  /// Returns the ratio of the force differences between units to those expected from rotation and positions. The ratio
+  /// is 1 if correct, -1 if the accelerometers' sign is inverted. Empty while the body has not rotated enough.
   static std::optional<double> arm_share(const State& state);
 
-  /// `out_of_range` with the seconds for which they have repeated themselves where all units that were heard last are
-  /// frozen (their readings are merged as they are then); `ok` otherwise.
+  /// Returns `out_of_range` with the duration [s] if all recently received units are frozen. The readings of frozen
+  /// units are then merged unchanged. Otherwise returns `ok`.
   Status verdict(const State& state) const;
 
-  /// Position of the merged IMU in C.
+  /// Returns the position of the merged IMU in C.
   Eigen::Vector3d p_C_m() const { return p_C_m_; }
 
-  /// `samples` are those of all units at one time (their time stamps are the first's); `merged` is in C, the mean over
-  /// the window that they close, and empty where they close none. On trouble, `too_few` when there are not `count`
-  /// samples or none is finite, the state is unchanged and `merged` empty. O(count), no allocation.
+  /// Processes simultaneous samples of all units; the time stamp is that of the first. `merged` is in C, the mean over
+  /// the window that these samples complete; otherwise empty. On error (`too_few`: not `count` samples, or none is
+  /// finite) the state is unchanged and `merged` is empty. O(count), no allocation.
   Status step(std::span<const ImuSample> samples, State& state, std::optional<ImuSample>& merged) const;
 
  private:
@@ -117,7 +116,7 @@ class ImuMerge {
 
   using Flags = std::array<bool, kImus>;
 
-  using Readings = std::array<ImuSample, kImus>;  ///< means over a window; flags of the axes that met a rail in it
+  using Readings = std::array<ImuSample, kImus>;  ///< means over a window; flags of the axes that were saturated in it
 
   void gather(std::span<const ImuSample> samples, double dt_s, State& state) const;
   ImuSample merge(State& state) const;

@@ -15,20 +15,20 @@
 
 namespace tumble {
 
-/// Of ImuPlausibility.
+/// Parameters of ImuPlausibility.
 struct ImuPlausibilityParams {
   double gravity_m_s2 = 9.80665;
-  double window_s = 0.2;          ///< over which force and turning are compared
-  double reading_s = 0.02;        ///< readings are averaged to this length
-  double steady_share = 0.12;     ///< by which the force's size may change within a window
-  double near_share = 0.25;       ///< by which it may differ from gravity for its direction to be compared
-  double gyro_range_rad_s = 1e6;  ///< a window with an axis beyond it is not compared
-  double gap_max_s = 0.1;         ///< after a longer one a window begins anew
+  double window_s = 0.2;          ///< window over which force and rotation are compared
+  double reading_s = 0.02;        ///< averaging time of readings
+  double steady_share = 0.12;     ///< maximum relative change of the force's magnitude within a window
+  double near_share = 0.25;       ///< maximum relative difference from gravity for comparing directions
+  double gyro_range_rad_s = 1e6;  ///< windows with an axis beyond this are not compared
+  double gap_max_s = 0.1;         ///< a longer gap restarts the window
 
   using Expert = ImuPlausibilityExpertParams;
-  Expert expert = {};  ///< what few need
+  Expert expert = {};  ///< parameters that few users change
 
-  /// Every number of it, stated once.
+  /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-12, 100.0, "strength of gravity"});
@@ -45,33 +45,33 @@ struct ImuPlausibilityParams {
   }
 };
 
-/// Whether an IMU's readings can be what they claim to be: units, axes, signs, and alive.
+/// Checks whether an IMU's readings are plausible: units, axes, signs, and frozen sensors.
 ///
-/// Where the force is steady in size over a fifth of a second it is nearly gravity: its size must be g, and the gyro
-/// must say how its direction turns, u(t + T) = R^T u(t). A steady force of another size is no gravity: of a body
-/// that flies and spins it is what its turning makes of the sensor's position, and stands still in the sensor's axes.
-/// Of that its direction is not asked, nor anything of a window in which the gyro is at its rail. Where the force
-/// turned, it must have turned as the gyro says: the slope of one over the other is 1 of a sound IMU, 2 of a gyro of
-/// half the scale, -1 of one of the other sense, and about 0 of axes that are swapped. Pushes and a rod that a force
-/// points along spread about that slope and do not move it far. A body that turns about the one axis which a wrong
-/// naming leaves alone (a sphere that rolls along x = y with x and y swapped) keeps it; but the right naming leaves
-/// less unexplained, so every naming is asked. A force that does not turn at all while the body does is told apart from
-/// that.
+/// If the magnitude of the force is constant over a fifth of a second, the force is nearly gravity. The magnitude of
+/// the force must then be g, and the force's direction must rotate as the gyro measures: u(t + T) = R^T u(t). A
+/// constant force of another magnitude is not gravity, but for example the centripetal force of a spin in flight. The
+/// direction of such a force is not compared. Windows with a saturated gyro are not compared either.
 ///
-/// A gyro or an accelerometer that repeats one reading to the last bit, for a second and ten times as long as ever
-/// before, is frozen: it has shown that its readings move. One that held its readings as long before (a coarse quantum
-/// at rest, a simulation without noise) is not told from that. One that never moved is frozen when the other one says
-/// that the body moves: a gyro by the turning of gravity, or by forces that are far from gravity's for long enough, an
-/// accelerometer that reads nothing but 0 by the gyro.
+/// The rotation of the force is regressed on that of the gyro. The slope is 1 for a sound IMU, 2 for a half-scale gyro,
+/// -1 for an inverted gyro, and about 0 for swapped axes. Pushes, and a force along a rod, scatter about this slope and
+/// shift it little. Rotation about one special axis is the same under wrong axis labels, for example a sphere rolling
+/// along x = y with x and y swapped. The correct labels then leave a smaller residual, so all labels are compared. A
+/// force that does not rotate although the body does is detected separately.
 ///
-/// Not seen: an accelerometer with all three axes flipped, which is the mirrored world (ImuMerge::arm_share() tells it,
-/// with several IMUs), errors of some per cent, axes about which the body does not turn, or a body that is pushed about
-/// all the time.
+/// A gyro or an accelerometer is frozen if it repeats one reading bit for bit, for a second and for ten times its
+/// longest earlier repetition. The sensor's readings must have changed before. A sensor that repeated its readings as
+/// long before is not distinguished from this (coarse quantisation at rest, a simulation without noise). A gyro that
+/// never changed is frozen if gravity rotates, or if forces differ from gravity for long enough. An accelerometer that
+/// always reads 0 is frozen if the gyro measures motion.
+///
+/// Not detected: errors of some per cent, errors of axes about which the body does not rotate, and a body that is
+/// pushed all the time. An accelerometer with all three axes flipped is not detected either; with several IMUs,
+/// ImuMerge::arm_share() detects it.
 class ImuPlausibility {
  public:
   using Params = ImuPlausibilityParams;
 
-  /// How long a triad has repeated its reading.
+  /// Duration of a triad's repeated reading.
   struct Hold {
     Eigen::Vector3d reading = Eigen::Vector3d::Zero();
     double held_s = 0.0, longest_s = 0.0, moved_s = 0.0;
@@ -82,49 +82,52 @@ class ImuPlausibility {
     Hold gyro, accel;
     ImuAverage average;
     Eigen::Vector3d force_start_m_s2 = Eigen::Vector3d::Zero();
-    Eigen::Quaterniond turned = Eigen::Quaterniond::Identity();  ///< within the window, by the gyro
+    Eigen::Quaterniond turned = Eigen::Quaterniond::Identity();  ///< rotation within the window, from the gyro
     double length_s = 0.0;
     bool open = false, steady = false;
-    bool in_range = true;  ///< of all samples of the window and of the average that is open
+    bool in_range = true;  ///< of all samples of the window and of the current average
     double force_sum_m_s2 = 0.0, windows = 0.0;
-    double pushed_s = 0.0;                               ///< time of forces that are no rest's
-    std::array<double, kAxisLabels> unexplained_rad2{};  ///< by how axes are named; the first: as they are
-    double by_force_rad2 = 0.0, by_gyro_rad2 = 0.0;      ///< where the force turned, in
-    double rotated_windows = 0.0;                        ///< windows
-    double all_force_rad2 = 0.0, all_gyro_rad2 = 0.0;    ///< where either did
+    double pushed_s = 0.0;                               ///< time with forces that exclude rest
+    std::array<double, kAxisLabels> unexplained_rad2{};  ///< residual for each labelling of the axes
+    double by_force_rad2 = 0.0, by_gyro_rad2 = 0.0;      ///< sums over the windows in which the force rotated
+    double rotated_windows = 0.0;                        ///< number of these windows
+    double all_force_rad2 = 0.0, all_gyro_rad2 = 0.0;    ///< sums over the windows in which force or gyro rotated
     TimeNs last_time_ns = 0;
     bool started = false;
     bool operator==(const State&) const = default;
   };
 
-  /// Throws InvalidParams when a parameter is outside of its bound.
+  /// Throws InvalidParams if a parameter is out of bounds.
   explicit ImuPlausibility(const Params& params);
 
-  /// Takes a reading; one that is not finite or out of order is passed over. O(1), no allocation.
+  /// Processes a reading. Ignores readings that are not finite or out of order. O(1), no allocation.
   void step(const ImuSample& sample, State& state) const;
 
-  /// Mean size of a steady force as a share of gravity; 1 while nothing is known.
+  /// Returns the mean magnitude of a constant force as a fraction of gravity; 1 while unknown.
   double force_share(const State& state) const;
-  /// Share of the force's turning that the gyro does not explain; 0 while nothing is known.
+  /// Returns the fraction of the force's rotation that the gyro does not explain; 0 while unknown.
   double unexplained_share(const State& state) const;
-  /// Slope of the force's turning over the gyro's (I17); 1 while nothing is known.
+  /// Returns the slope of the force's rotation over the gyro's (I20); 1 while unknown.
   double rotation_slope(const State& state) const;
-  /// Correlation of the two turnings, -1 to 1: 1 of a gyro of any scale, -1 of the other sense, about 0 of axes that
-  /// are swapped, between where pushes are taken for gravity. 1 while too little turned.
+  /// Returns the correlation of the two rotations, -1 to 1. The correlation is 1 for a gyro of any scale, -1 for an
+  /// inverted gyro, and about 0 for swapped axes. Pushes mistaken for gravity cause values between. 1 while the
+  /// rotation is too small.
   double rotation_agreement(const State& state) const;
-  /// The force's turning as a share of the gyro's, also where the force did not turn; 1 while nothing is known.
+  /// Returns the force's rotation as a fraction of the gyro's, including windows in which the force did not rotate; 1
+  /// while unknown.
   double force_rotated_share(const State& state) const;
-  /// How axes are named where gravity turns with the gyro, when they clearly are not as they say (I18).
+  /// Returns the axis labels under which gravity rotates with the gyro, if they clearly differ from the current ones
+  /// (I22).
   std::optional<AxisLabels> other_labels(const State& state) const;
-  /// Longest time for which the gyro or the accelerometer was frozen [s]; 0: never.
+  /// Returns the longest time for which the gyro or the accelerometer was frozen [s]; 0: never.
   double frozen_s(const State& state) const;
-  /// `out_of_range` naming which of these is out of its bound.
+  /// Returns `out_of_range` with the name of the quantity that is out of its bound.
   Status verdict(const State& state) const;
 
  private:
-  /// Whether the force turned far enough, and in windows enough, for the sums to mean something.
+  /// Returns whether the force rotated far enough, in enough windows, for a decision.
   bool turned(const State& state) const;
-  /// Whether a gyro of the slope's scale leaves far less unexplained than this one, or is of the other sense.
+  /// Returns whether a gyro with the slope's scale leaves a far smaller residual than the actual one, or is inverted.
   bool explains_more(const State& state) const;
   void take(State& state) const;
   void compare(const Eigen::Vector3d& force_m_s2, State& state) const;

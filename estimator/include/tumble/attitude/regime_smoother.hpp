@@ -11,25 +11,24 @@
 
 namespace tumble {
 
-/// Angular velocity of a body that flies, touches or is carried, over a whole recording: RateSmoother, which believes
-/// in flight and contact, and where the readings say that a hand held the body while its gyro clipped (RegimeEvidence)
-/// CarriedSmoother, joined by `either`. The other smoother is asked only where it may matter. RegimeStream is the same
-/// as a stream.
+/// Estimates the angular velocity of a body in flight, in contact or hand-held over a whole recording. RateSmoother
+/// assumes flight and contact. Where RegimeEvidence indicates that the body was hand-held while its gyro clipped,
+/// CarriedSmoother is used as well. `either` combines both. CarriedSmoother runs only if it can change the result.
+/// RegimeStream is the streaming form.
 ///
-/// A sample of a segment of clipped or doubted ones, or near about it, is believed to be carried as far as the least
-/// carried sample of the segment is that is near to it: where a hand lets go, the flight tells the rate beside it, and
-/// says nothing of what the hand does a second later. Not modelled: further IMUs, which tell the rate whoever holds the
-/// body.
+/// Samples in and near a segment of clipped or suspect samples use the smallest hand-held probability among the
+/// segment's nearby samples. Reason: when a hand releases the body, the flight determines nearby rates, but nothing
+/// about hand-held motion a second later. Not modelled: further IMUs, which determine the rate in any regime.
 class RegimeSmoother {
  public:
   struct Params {
     RateSmoother::Params rate;
     RegimeEvidence::Params evidence;
     CarriedSmoother::Params carried;
-    double carried_min = 0.02;  ///< a share of the carried body below this changes nothing worth a run
-    double near_s = 0.1;  ///< clipped samples so close belong to one segment, and judge each other and what is so close
+    double carried_min = 0.02;  ///< minimum probability of hand-held motion that justifies a run of CarriedSmoother
+    double near_s = 0.1;        ///< clipped samples within this time form one segment and affect each other
 
-    /// Every number of it, stated once.
+    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.rate);
@@ -42,21 +41,21 @@ class RegimeSmoother {
   };
   struct Report {
     RateReport rate;
-    bool judged = false;               ///< the regimes were; what follows is of use
+    bool judged = false;               ///< regimes were estimated; the following members are valid
     RegimeShares shares{};             ///< mean over the samples
-    double carried_clipped_max = 0.0;  ///< largest share of the carried body in a segment of clipped samples
-    bool carried_asked = false;        ///< and had an answer, whose report follows
+    double carried_clipped_max = 0.0;  ///< largest probability of hand-held motion in a segment of clipped samples
+    bool carried_asked = false;        ///< CarriedSmoother was run successfully; its report follows
     CarriedSmoother::Report carried;
   };
 
-  /// Throws InvalidParams on a parameter outside of its bound.
+  /// Throws InvalidParams if a parameter is out of bounds.
   explicit RegimeSmoother(const Params& params);
 
-  /// One RateState per sample. Trouble as of RateSmoother, `rates` is then empty; what CarriedSmoother has trouble with
-  /// stays as RateSmoother has it.
+  /// Computes one RateState per sample. Errors are those of RateSmoother; `rates` is then empty. If CarriedSmoother
+  /// fails, the result of RateSmoother is used.
   Status estimate(std::span<const ImuSample> samples, std::vector<RateState>& rates, Report& report) const;
 
-  /// Joins what RateSmoother has said, `rates` with `report.rate`, with what CarriedSmoother says.
+  /// Combines the result of RateSmoother (`rates` with `report.rate`) with that of CarriedSmoother.
   void join(std::span<const ImuSample> samples, std::vector<RateState>& rates, Report& report) const;
 
  private:

@@ -12,30 +12,29 @@
 
 namespace tumble {
 
-/// Angular velocity of a body that flies, touches or is carried, as a stream: RateStream, which believes in flight and
-/// contact, and CarriedStream, joined (`either`) where RegimeEvidence says that a hand may hold the body while its gyro
-/// clips. Rails are those that RateStream learns.
+/// Estimates the angular velocity of a body in flight, in contact or hand-held, sample by sample. RateStream assumes
+/// flight and contact. CarriedStream is combined with it (`either`) where RegimeEvidence indicates hand-held motion
+/// while the gyro clips. Saturation levels are those that RateStream detects.
 ///
-/// The evidence is a filter over the samples as they are given out, so that each is judged by all of the past and, by
-/// its rate, by the lag ahead. The share with which CarriedStream is believed is the least of what is near in the
-/// segment of clipped samples, as in the batch, as far as the window shows it. While RateStream drops one rig after
-/// another (in more than half of the steps of its lag), clipped samples tell nothing. CarriedStream's work is spared
-/// while the evidence says that no hand holds the body (share below `carried_min`); it starts anew after that.
-/// Estimates are those of RateStream where nothing clips.
+/// The evidence is a filter over the reported samples. Each sample is therefore judged by the past and, through its
+/// rate, by the lag ahead. The weight of CarriedStream is the smallest nearby value in the segment of clipped samples,
+/// as in RegimeSmoother, within the window. While RateStream resets its calibration repeatedly (in more than half of
+/// the steps of its lag), clipped samples are not used. CarriedStream is paused while the hand-held probability is
+/// below `carried_min`, and restarts afterwards. Unclipped estimates are those of RateStream.
 ///
-/// Clipped rates were fitted to the very force by which they are judged, and so was the angular acceleration of
-/// RateStream, also where the gyro reads the rate: where the IMU sits far from the centre of mass, gravity in a gentle
-/// hand passes for the lever arm's force. The evidence therefore takes the derivative of the rates themselves.
+/// RateStream fits clipped rates, and all angular accelerations, to the same force by which the regime is judged. For
+/// an IMU far from the centre of mass, gravity in gentle hand-held motion is then mistaken for the lever arm's force.
+/// The evidence therefore uses the time derivative of the rates instead.
 class RegimeStream {
  public:
   struct Params {
     RateStream::Params rate;
     RegimeEvidence::Params evidence;
     CarriedStream::Params carried;  ///< `period_s` and `lag_s` are those of `rate`
-    double carried_min = 0.02;      ///< a share of the carried body below this is not worth its work
-    double near_s = 0.1;            ///< clipped samples so close belong to one segment, and judge each other
+    double carried_min = 0.02;      ///< minimum probability of hand-held motion for which CarriedStream runs
+    double near_s = 0.1;            ///< clipped samples within this time form one segment and affect each other
 
-    /// Every number of it, stated once.
+    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.rate);
@@ -46,7 +45,7 @@ class RegimeStream {
       visit(p.near_s, {"near_s", "s", 0.0, 10.0, "clipped samples within this time belong to one segment"});
     }
   };
-  /// Of a sample given out.
+  /// Data of a reported sample.
   struct Given {
     TimeNs time_ns = 0;
     double carried = 0.0;
@@ -54,42 +53,42 @@ class RegimeStream {
   struct State {
     RateStream::State rate;
     CarriedStream::State carried;
-    std::vector<ClipSigns> signs;  ///< of RateStream's window: scratch space
+    std::vector<ClipSigns> signs;  ///< of RateStream's window; buffer
     RegimeShares shares{1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0};
-    RegimeShares sum{};          ///< of all samples given out
-    std::size_t given = 0;       ///< samples given out
-    std::size_t joined = 0;      ///< of these, joined with CarriedStream's
-    std::size_t starts = 0;      ///< times that CarriedStream was started
-    std::size_t rig_resets = 0;  ///< of RateStream, as seen last
-    double resets = 0.0;         ///< times that RateStream dropped its rig, forgotten over its lag
-    bool carrying = false;       ///< CarriedStream runs
-    /// Of the last segment of clipped samples what is within `near_s`, but for what has a lesser share after it: the
-    /// first is the least.
+    RegimeShares sum{};          ///< sum over all reported samples
+    std::size_t given = 0;       ///< number of reported samples
+    std::size_t joined = 0;      ///< of these, combined with CarriedStream
+    std::size_t starts = 0;      ///< number of starts of CarriedStream
+    std::size_t rig_resets = 0;  ///< last value of RateStream's counter
+    double resets = 0.0;         ///< resets of RateStream's calibration, decaying over its lag
+    bool carrying = false;       ///< CarriedStream is running
+    /// Samples of the last clipped segment within `near_s`, without those followed by a smaller probability. The first
+    /// has the smallest.
     std::vector<Given> near;
-    TimeNs given_ns = 0;               ///< of the last sample given out
-    std::optional<TimeNs> clipped_ns;  ///< last clipped sample given out
+    TimeNs given_ns = 0;               ///< of the last reported sample
+    std::optional<TimeNs> clipped_ns;  ///< last reported clipped sample
   };
 
-  /// Throws InvalidParams on a parameter outside of its bound.
+  /// Throws InvalidParams if a parameter is out of bounds.
   explicit RegimeStream(const Params& params);
 
-  /// A state before the first sample, with all memory that push() needs.
+  /// Returns the state before the first sample, with all memory that push() needs.
   State start() const;
 
-  /// As RateStream::push.
+  /// Same as RateStream::push.
   Status push(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state,
               std::optional<RateState>& out) const;
   Status push(const ImuSample& sample, State& state, std::optional<RateState>& out) const {
     return push(sample, {}, state, out);
   }
 
-  /// As RateStream::flush, joined with the shares as they stand.
+  /// Same as RateStream::flush, combined with the current probabilities.
   void flush(const State& state, std::vector<RateState>& out) const;
 
   const RateStream& rate() const { return rate_; }
   const Params& params() const { return params_; }
 
-  /// What holds of every state that push() left, for one that comes from elsewhere; the first that does not.
+  /// Checks the invariants of a state that was loaded from outside. Returns the first violation.
   Status check_state(const State& state) const;
 
  private:

@@ -12,37 +12,36 @@
 
 namespace tumble {
 
-/// Probabilities, of one sample, of what a body is doing: free of support (the specific force at the centre of mass is
-/// zero), touching something (a force of any size), held by a hand (a bounded acceleration about gravity); their sum is
-/// 1.
+/// Probabilities of the regimes of one sample: free flight (zero specific force at the centre of mass), contact (any
+/// force), hand-held (bounded acceleration about gravity). Their sum is 1.
 struct RegimeShares {
   double flight = 0.0, contact = 0.0, carried = 0.0;
 };
 
-/// Which regime each sample of a recording is in, by its specific force: what is left of it after the turning at the
-/// lever arm, e = f - a x r - w x (w x r), is zero in flight, the size of gravity and a hand's acceleration when the
-/// body is carried, whatever its direction, and anything (a norm flat in its logarithm) in contact. A Markov chain over
-/// the samples joins them: flight and contact follow each other several times a second, but a body is rarely thrown or
-/// caught, so that an impact does not pass for a hand, nor a quiet moment of a roll. Readings within `memory_s` are not
-/// independent and count as one. A body that does not turn says nothing of who holds it.
+/// Estimates the regime of each sample of a recording from its specific force. The force minus the effect of rotation
+/// at the lever arm is e = f - a x r - w x (w x r). It is zero in flight. In hand-held motion its magnitude is that of
+/// gravity plus a hand's acceleration, in any direction. In contact it has any value (flat density of the logarithmic
+/// norm). A Markov chain connects the samples: flight and contact alternate several times per second, but a body is
+/// rarely thrown or caught. An impact or a quiet moment while rolling is therefore not mistaken for hand-held motion.
+/// Readings within `memory_s` are correlated and count as one. A body that does not rotate gives no evidence.
 ///
-/// Needs no attitude, so that it is decided before the problem of the carried body is posed. Not modelled: a body that
-/// hangs on a rope, buoyancy, forces of air beyond `flight_m_s2`.
+/// No attitude is needed, so the regimes are available before CarriedSmoother runs. Not modelled: a body that hangs on
+/// a rope, buoyancy, aerodynamic forces above `flight_m_s2`.
 class RegimeEvidence {
  public:
   struct Params {
     double gravity_m_s2 = 9.80665;
-    double flight_m_s2 = 0.3;          ///< deviation of the force left in flight: drag, bandwidth
-    double flight_share = 0.05;        ///< more, as a share of the lever arm's force
-    double hand_m_s2 = 5.0;            ///< deviation of a hand's acceleration
-    double grip_m = 0.05;              ///< how far from the hand an IMU is
-    double contact_max_m_s2 = 1000.0;  ///< forces of contact lie between 1 m/s^2 and this
+    double flight_m_s2 = 0.3;          ///< standard deviation of the remaining force in flight: drag, bandwidth
+    double flight_share = 0.05;        ///< additional, as a fraction of the lever arm's force
+    double hand_m_s2 = 5.0;            ///< standard deviation of a hand's acceleration
+    double grip_m = 0.05;              ///< distance of the IMU from the hand
+    double contact_max_m_s2 = 1000.0;  ///< forces of contact are between 1 m/s^2 and this
     double memory_s = 0.05;
-    double rest_rate_rad_s = 0.5;  ///< slower turning says nothing of who holds the body
-    double contacts_hz = 5.0;      ///< changes between flight and contact
-    double throws_hz = 0.02;       ///< changes between these and a hand
+    double rest_rate_rad_s = 0.5;  ///< slower rotation gives no evidence
+    double contacts_hz = 5.0;      ///< rate of changes between flight and contact
+    double throws_hz = 0.02;       ///< rate of changes between these and hand-held motion
 
-    /// Every number of it, stated once.
+    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-300, 100.0, "strength of gravity"});
@@ -62,17 +61,17 @@ class RegimeEvidence {
     }
   };
 
-  /// Throws InvalidParams when a parameter is outside of its bound.
+  /// Throws InvalidParams if a parameter is out of bounds.
   explicit RegimeEvidence(const Params& params);
 
-  /// One RegimeShares per sample. `rates` are those of a smoother that believes in flight and contact, one per sample;
-  /// `lever_arm_m` from the centre of mass to the IMU, its axes, with its covariance. Trouble: `empty`; `out_of_range`
-  /// for rates that are not one per sample. O(N).
+  /// Computes one RegimeShares per sample. `rates` are those of a smoother that assumes flight and contact, one per
+  /// sample. `lever_arm_m` is from the centre of mass to the IMU, in its axes, with its covariance. Errors: `empty`;
+  /// `out_of_range` if `rates` does not have one element per sample. O(N).
   Status find(std::span<const ImuSample> samples, std::span<const RateState> rates, const Eigen::Vector3d& lever_arm_m,
               const Eigen::Matrix3d& lever_arm_covariance_m2, std::vector<RegimeShares>& out) const;
 
-  /// The same as a filter: the shares after a sample, given those after the one `dt_s` before it, with the rate's
-  /// derivative. O(1).
+  /// Same as a filter: returns the probabilities after a sample from those `dt_s` earlier, with the derivative of the
+  /// rate. O(1).
   RegimeShares next(const RegimeShares& before, double dt_s, const ImuSample& sample, const RateState& rate,
                     const Eigen::Vector3d& angular_acceleration_rad_s2, const Eigen::Vector3d& lever_arm_m,
                     const Eigen::Matrix3d& lever_arm_covariance_m2) const;
@@ -83,8 +82,8 @@ class RegimeEvidence {
   Params params_;
 };
 
-/// A rate of which two smoothers say different things: that of the likelier one with the covariance of both, the spread
-/// between them included. `share`: probability of `second`.
+/// Combines two different estimates of a rate: the mean of the more probable one, with the covariance of the mixture.
+/// `share`: probability of `second`.
 RateState either(const RateState& first, const RateState& second, double share);
 
 }  // namespace tumble

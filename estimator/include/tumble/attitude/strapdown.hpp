@@ -10,14 +10,15 @@
 
 namespace tumble {
 
-/// Attitude by integration of the gyro alone: q <- q Exp(w dt), from a start levelled by the accelerometer.
-/// Exact for a rate that is constant in body axes over each sample. No bias, no correction: it drifts.
+/// Integrates the gyro to an attitude: q <- q Exp(w dt), from a start levelled by the accelerometer.
+/// Exact for a rate that is constant in body axes over each sample. No bias estimate and no correction: the attitude
+/// drifts.
 class Strapdown {
  public:
   struct Params {
     double gap_max_s = 1.0;  ///< a longer time between samples is a `gap`
 
-    /// Every number of it, stated once.
+    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4,
@@ -35,16 +36,16 @@ class Strapdown {
 
   explicit Strapdown(const Params& params);
 
-  /// The first sample levels the attitude (yaw 0) by its specific force; each later one integrates.
-  /// On trouble the state is unchanged. O(1), no allocation.
+  /// Integrates a sample. The first sample levels the attitude (yaw 0) by its specific force.
+  /// On error the state is unchanged. O(1), no allocation.
   Status step(const ImuSample& sample, State& state) const;
 
  private:
   Params params_;
 };
 
-/// Attitude with yaw 0 whose z axis (up) agrees with a specific force measured at rest, in sensor axes.
-/// `degenerate` when the force is shorter than 1e-6 m/s^2.
+/// Computes the attitude with yaw 0 whose z axis (up) agrees with a specific force measured at rest, in sensor axes.
+/// Returns `degenerate` if the force is below 1e-6 m/s^2.
 Status level(const Eigen::Vector3d& specific_force_m_s2, Eigen::Quaterniond& q_WI);
 
 }  // namespace tumble

@@ -12,23 +12,23 @@
 
 namespace tumble {
 
-/// Of TumbleAttitude: the gyro, and how far the body moves.
+/// Parameters of TumbleAttitude: the gyro, and the extent of the motion.
 struct TumbleAttitudeParams {
   double gravity_m_s2 = 9.80665;
   double gyro_noise_rad_sqrts = 1e-3;         ///< angle random walk per sqrt(s), unmodelled errors included
-  double rate_error_sqrts = 4e-3;             ///< angle random walk per sqrt(s) and rad/s turned: scale, timing
+  double rate_error_sqrts = 4e-3;             ///< angle random walk per sqrt(s) and rad/s of rotation: scale, timing
   double bias_sigma_start_rad_s = 8.7266e-3;  ///< 0.5 deg/s
-  double velocity_m_sqrts = 1.0;              ///< sigma of the mean velocity over 1 s of motion
-  double displacement_m_sqrts = 0.3;          ///< sigma of the mean displacement over 1 s
-  double displacement_tau_s = 10.0;           ///< in which a displacement is forgotten
-  double motion_tau_s = 3.0;                  ///< memory of a body's own velocity and displacement, and of their size
-  double radius_m = 0.0;                      ///< of a rolling sphere on a level floor; 0: no such thing
+  double velocity_m_sqrts = 1.0;              ///< standard deviation of the mean velocity over 1 s of motion
+  double displacement_m_sqrts = 0.3;          ///< standard deviation of the mean displacement over 1 s
+  double displacement_tau_s = 10.0;           ///< time constant with which a displacement decays
+  double motion_tau_s = 3.0;                  ///< time constant of the body's velocity and displacement
+  double radius_m = 0.0;                      ///< radius of a sphere rolling on a level floor; 0: not a sphere
   Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< centre to IMU, sensor axes; length up to 10
 
   using Expert = TumbleAttitudeExpertParams;
-  Expert expert = {};  ///< what few need
+  Expert expert = {};  ///< parameters that few users change
 
-  /// Every number of it, stated once.
+  /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-12, 100.0, "strength of gravity"});
@@ -54,31 +54,32 @@ struct TumbleAttitudeParams {
   }
 };
 
-/// Attitude from gyro and accelerometer by what a body cannot do: its velocity is bounded, and at rest it is zero.
+/// Estimates attitude from gyro and accelerometer, using bounds on the motion: the velocity is bounded, and zero at
+/// rest.
 ///
-/// The gyro is integrated exactly and the force turned into W is integrated to a horizontal velocity and displacement
-/// (leaky). A tilt error would make these grow without end, so "velocity about zero, displacement about zero", believed
-/// weakly, tells tilt and gyro bias apart from every acceleration that is made good again. A Kalman filter of nine
-/// states (tilt, bias, velocity, displacement) does this every `node_s`: the low-pass in an inertial frame of VQF, but
-/// with the corner that the sensor's errors ask for at each time. At rest the velocity and the rate are zero to within
-/// noise: the bias is measured and the attitude held, so that noise moves neither tilt nor heading.
+/// The gyro is integrated exactly. The force, rotated to W, is integrated to a horizontal velocity and displacement
+/// (leaky). A tilt error would let both grow without bound. Weak pseudo-measurements of zero velocity and zero
+/// displacement therefore separate tilt and gyro bias from any acceleration that is later compensated. A Kalman filter
+/// of nine states (tilt, bias, velocity, displacement) does this every `node_s`. The filter acts like VQF's low-pass in
+/// an inertial frame, with a corner frequency that adapts to the sensor's errors. At rest, velocity and rate are zero
+/// up to noise. The bias is then measured and the attitude kept constant, so noise moves neither tilt nor heading.
 ///
-/// How far a body moves is not known beforehand: a hand's breadth, or down a hill. A velocity or displacement that is
-/// larger than was believed and that the present tilt's variance does not explain is the body's own, and widens the
-/// belief for `motion_tau_s`.
+/// The extent of the motion is not known in advance: a few centimetres, or down a hill. If a velocity or displacement
+/// exceeds its assumed standard deviation and the tilt's variance does not explain it, it is real motion. The assumed
+/// standard deviation then increases for `motion_tau_s`.
 ///
-/// A rolling sphere (radius_m > 0) tells more: its velocity is r w x n, and that of the IMU w x (R rho) more, so the
-/// specific force is explained by rolling but for tilt and bias, without a derivative of the rate. A velocity that
-/// does not fit opens a slip: corrections are frozen until it fits again, for slip_timeout_s at the most.
+/// For a rolling sphere (radius_m > 0), the centre's velocity is r w x n. That of the IMU differs from it by w x (R
+/// rho). Rolling then explains the specific force except for tilt and bias, without the derivative of the rate. A
+/// velocity that does not fit indicates slip. Corrections pause until it fits again, for at most slip_timeout_s.
 ///
-/// Readings count by their time: those of a fast IMU are averaged to reading_s before anything is decided by them, and
-/// the attitude between two averages is the last one, turned on. Over a gap (a time longer than `gap_least_s`) the rate
-/// goes from the last reading to the next in a straight line and the velocity goes on, with variances that say how
-/// little that is; a body that rests before and after rested meanwhile. Where that leaves the tilt unknown to
-/// gap_lost_tilt_rad, a coarse alignment looks for up beside the filter, which is not linear there, and until it has
-/// found it the covariance is that of the gap; where the two disagree, the filter begins again from the alignment.
+/// Readings of a fast IMU are averaged to reading_s before they are processed. Between two averages the attitude is
+/// extrapolated. Over a gap (longer than `gap_least_s`) the rate is interpolated and the velocity continues, with
+/// increased variances. A body at rest before and after a gap is assumed to rest during it. If the gap increases the
+/// tilt's standard deviation to gap_lost_tilt_rad, the filter is no longer linear. A coarse alignment then searches for
+/// the vertical in parallel, and the covariance remains that of the gap until it succeeds. If the two disagree, the
+/// filter restarts from the alignment.
 ///
-/// Not modelled: accelerometer bias and scale (they are the tilt error that is left at rest), heading reference.
+/// Not modelled: accelerometer bias and scale (they are the remaining tilt error at rest), heading reference.
 class TumbleAttitude {
  public:
   using Params = TumbleAttitudeParams;
@@ -86,15 +87,16 @@ class TumbleAttitude {
 
   explicit TumbleAttitude(const Params& params);
 
-  /// The first sample levels the attitude (yaw 0); each later one integrates, and one per `node_s` corrects.
-  /// On trouble the state is unchanged. O(1), no allocation.
+  /// Processes a sample. The first sample levels the attitude (yaw 0); each later one is integrated, and one per
+  /// `node_s` corrects the state.
+  /// On error the state is unchanged. O(1), no allocation.
   Status step(const ImuSample& sample, State& state) const { return step(sample, Eigen::Matrix3d::Zero(), state); }
-  /// The same of a sample whose rate no gyro read (its rail hid it) but somebody recovered, with the covariance of its
-  /// error, sensor axes; zero: read. The error has the memory `recovered_tau_s`. `out_of_range` for a
-  /// covariance that is not finite or has a variance below zero.
+  /// Same for a sample whose rate was recovered from saturation, with the covariance of its error in sensor axes; zero:
+  /// measured. The error has the correlation time `recovered_tau_s`. Returns `out_of_range` if the covariance is not
+  /// finite or has a negative variance.
   Status step(const ImuSample& sample, const Eigen::Matrix3d& rate_covariance_rad2_s2, State& state) const;
 
-  /// Covariance of the attitude's error as AttitudeState has it, at the last node.
+  /// Returns the covariance of the attitude error, defined as in AttitudeState, at the last node.
   static Eigen::Matrix3d attitude_covariance_rad2(const State& state);
 
  private:

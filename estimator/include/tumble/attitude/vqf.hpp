@@ -10,11 +10,11 @@
 
 namespace tumble {
 
-/// The paper's parameters that its authors set once for all devices.
+/// Parameters for which the authors use one value for all devices.
 struct VqfExpertParams {
-  double bias_sigma_motion_rad_s = 1.7453e-3;  ///< 0.1 deg/s: what the bias converges to in motion
-  double bias_sigma_rest_rad_s = 5.2360e-4;    ///< 0.03 deg/s: and at rest
-  double vertical_forgetting = 1e-4;           ///< pull of the unobservable vertical bias to zero
+  double bias_sigma_motion_rad_s = 1.7453e-3;  ///< 0.1 deg/s: limit of the bias uncertainty in motion
+  double bias_sigma_rest_rad_s = 5.2360e-4;    ///< 0.03 deg/s: the same at rest
+  double vertical_forgetting = 1e-4;           ///< decay of the unobservable vertical bias to zero
   double rest_tau_s = 0.5;                     ///< of the rest detector's low-pass
 
   template <class Self, class Visitor>
@@ -29,23 +29,23 @@ struct VqfExpertParams {
   }
 };
 
-/// Of Vqf, the published method's.
+/// Parameters of Vqf, named as in the publication.
 struct VqfParams {
   double tau_s = 3.0;  ///< of the low-pass on the specific force
   bool rest_bias_estimation = true;
-  bool motion_bias_estimation = true;         ///< both off: the basic filter, as its authors call it
+  bool motion_bias_estimation = true;         ///< both off: the authors' basic filter
   double bias_sigma_start_rad_s = 8.7266e-3;  ///< 0.5 deg/s
-  double bias_forgetting_s = 100.0;           ///< in which the variance grows to (0.1 deg/s)^2
-  double bias_clip_rad_s = 3.4907e-2;         ///< 2 deg/s: largest bias that is believed
+  double bias_forgetting_s = 100.0;           ///< time in which the variance grows to (0.1 deg/s)^2
+  double bias_clip_rad_s = 3.4907e-2;         ///< 2 deg/s: largest accepted bias
   double rest_time_s = 1.5;
   double rest_rate_rad_s = 3.4907e-2;  ///< 2 deg/s from the low-passed gyro
   double rest_force_m_s2 = 0.5;        ///< from the low-passed force
   double gap_max_s = 1.0;
 
   using Expert = VqfExpertParams;
-  Expert expert = {};  ///< what few need
+  Expert expert = {};  ///< parameters that few users change
 
-  /// Every number of it, stated once.
+  /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.tau_s, {"tau_s", "s", 1e-3, 1e4,
@@ -69,23 +69,24 @@ struct VqfParams {
   }
 };
 
-/// The versatile quaternion filter, gyro and accelerometer (D. Laidig, T. Seel, Information Fusion 91, 2023, "VQF").
-/// The specific force is turned by the gyro alone into a nearly inertial frame N and low-passed there, where the
-/// acceleration of a bounded motion averages out; the result levels N in W by the smallest rotation. A Kalman filter of
-/// three states estimates the gyro's bias: from the low-passed gyro at rest, from the levelling's own rate in motion.
-/// No heading reference, no bias about the vertical in motion, no adaptation to the strength of the acceleration.
+/// Estimates attitude by the versatile quaternion filter with gyro and accelerometer (D. Laidig, T. Seel, Information
+/// Fusion 91, 2023, "VQF"). The gyro alone rotates the specific force into a nearly inertial frame N. A low-pass in N
+/// averages out the acceleration of bounded motion. The result levels N in W by the smallest rotation. A Kalman filter
+/// of three states estimates the gyro's bias: at rest from the low-passed gyro, in motion from the rate of the
+/// levelling. Not modelled: heading reference, bias about the vertical in motion, adaptation to the magnitude of the
+/// acceleration.
 class Vqf {
  public:
   using Params = VqfParams;
   struct State {
     Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();  ///< the estimate, q_WN * q_NI
-    Eigen::Quaterniond q_NI = Eigen::Quaterniond::Identity();  ///< gyro alone, bias removed
+    Eigen::Quaterniond q_NI = Eigen::Quaterniond::Identity();  ///< gyro only, bias removed
     Eigen::Quaterniond q_WN = Eigen::Quaterniond::Identity();
     Eigen::Vector3d bias_rad_s = Eigen::Vector3d::Zero();
     Eigen::Matrix3d bias_covariance_rad2_s2 = Eigen::Matrix3d::Zero();
     LowPass<3> f_N_m_s2;
-    LowPass<9> R_WI;          ///< rotation matrix by columns, low-passed as the force is
-    LowPass<2> bias_W_rad_s;  ///< horizontal bias in W, low-passed as the force is
+    LowPass<9> R_WI;          ///< rotation matrix by columns, low-passed like the force
+    LowPass<2> bias_W_rad_s;  ///< horizontal bias in W, low-passed like the force
     LowPass<3> rest_rate_rad_s;
     LowPass<3> rest_force_m_s2;
     double rest_s = 0.0;
@@ -97,8 +98,9 @@ class Vqf {
 
   explicit Vqf(const Params& params);
 
-  /// The first sample levels the attitude (yaw 0); each later one integrates and corrects. A force below 1e-6 m/s^2
-  /// integrates the gyro alone. On trouble the state is unchanged. O(1), no allocation.
+  /// Processes a sample. The first sample levels the attitude (yaw 0); each later one is integrated and corrects the
+  /// state. With a force below 1e-6 m/s^2, only the gyro is integrated. On error the state is unchanged. O(1), no
+  /// allocation.
   Status step(const ImuSample& sample, State& state) const;
 
  private:

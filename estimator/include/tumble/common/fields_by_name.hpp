@@ -9,12 +9,13 @@
 
 #include "tumble/common/parameters.hpp"
 
-/// The fields of a `Params` by the names that a user writes: what a command line, a table and keywords of Python know.
+/// Access to the fields of a `Params` by the names that users write on a command line, in a table or as Python
+/// keywords.
 namespace tumble {
 
 namespace detail {
 
-/// Carries the prefixes of the groups about a field.
+/// Visitor that prepends the prefixes of the enclosing groups to each field's name.
 template <class Each>
 class ByWholeName {
  public:
@@ -39,15 +40,15 @@ class ByWholeName {
 
 }  // namespace detail
 
-/// Calls `each(name, value, field)` for each field of `params`, const or not, in order: a number (`Number`) or a whole
-/// Vector3d. `name`, a std::string, begins with the prefixes of the groups about the field.
+/// Calls `each(name, value, field)` for each field of `params` (const or not), in order. A value is a number (`Number`)
+/// or a whole Vector3d. `name` is a std::string that starts with the prefixes of the enclosing groups.
 template <class Params, class Each>
 void visit_by_name(Params& params, Each each) {
   detail::ByWholeName<Each> visitor(each);
   std::remove_cv_t<Params>::fields(params, visitor);
 }
 
-/// Whether a name is one of `patterns`: equal, or begins as one that ends in '*'.
+/// Returns whether `name` matches one of `patterns`. A pattern that ends in '*' matches every name with that prefix.
 template <class Text>
 bool is_among(std::string_view name, std::span<const Text> patterns) {
   return std::any_of(patterns.begin(), patterns.end(), [&](std::string_view pattern) {

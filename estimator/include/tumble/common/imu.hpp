@@ -9,7 +9,7 @@
 
 namespace tumble {
 
-/// Bits of ImuSample::device_clip_flags, set by devices that report clipping themselves.
+/// Bits of ImuSample::device_clip_flags, set by devices that report clipping.
 enum ClipFlag : std::uint8_t {
   kClipGyroX = 1,
   kClipGyroY = 2,
@@ -21,26 +21,28 @@ enum ClipFlag : std::uint8_t {
 inline constexpr std::uint8_t kClipGyro = kClipGyroX | kClipGyroY | kClipGyroZ;
 inline constexpr std::uint8_t kClipAccel = kClipAccelX | kClipAccelY | kClipAccelZ;
 
-/// One reading of an inertial measurement unit, in the unit's own axes I.
+/// One reading of an inertial measurement unit, in the unit's axes I.
 /// The values are means over the sample's window, which ends at `time_ns`.
 struct ImuSample {
   TimeNs time_ns = 0;
-  Eigen::Vector3d angular_velocity_rad_s = Eigen::Vector3d::Zero();  ///< w_WI_I as measured
+  Eigen::Vector3d angular_velocity_rad_s = Eigen::Vector3d::Zero();  ///< measured w_WI_I
   Eigen::Vector3d specific_force_m_s2 =
-      Eigen::Vector3d::Zero();         ///< f_I: acceleration minus gravity, +9.8 "up" at rest
-  std::uint8_t device_clip_flags = 0;  ///< ClipFlag bits; 0 when the device reports none
+      Eigen::Vector3d::Zero();         ///< measured f_I: acceleration minus gravity, +9.8 upwards at rest
+  std::uint8_t device_clip_flags = 0;  ///< ClipFlag bits; 0 if the device reports none
 };
 
-/// True when the rates and forces of a sample are all finite.
+/// Returns whether all rates and forces of a sample are finite.
 inline bool is_finite(const ImuSample& sample) {
   return sample.angular_velocity_rad_s.allFinite() && sample.specific_force_m_s2.allFinite();
 }
 
-/// `non_finite`, or `out_of_range` beyond 1e6 (no sensor says that), of the first component that is so; ok otherwise.
+/// Checks a single reading. Returns `non_finite` or `out_of_range` (magnitude above 1e6, which no sensor reports) for
+/// the first bad component, otherwise ok.
 Status check_sample(const ImuSample& sample);
 
-/// `time_order` unless time_ns > previous_ns (value: time_ns, bound: previous_ns), `gap` when more than gap_max_s lies
-/// between them (value: the gap in seconds); ok otherwise.
+/// Checks the time stamps of two consecutive samples.
+/// Returns `time_order` unless time_ns > previous_ns (value: time_ns, bound: previous_ns).
+/// Returns `gap` if more than gap_max_s lies between them (value: the gap in seconds). Otherwise returns ok.
 Status check_follows(TimeNs time_ns, TimeNs previous_ns, double gap_max_s);
 
 }  // namespace tumble

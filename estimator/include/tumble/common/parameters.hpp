@@ -10,50 +10,51 @@
 
 #include "tumble/common/status.hpp"
 
-/// What there is to know of each number of a `Params`, stated once: checks, tables, reading and comparing are visitors.
+/// Description of each number of a `Params`, stated in one place. Checks, tables, readers and comparisons are visitors.
 ///
-/// A `Params` has `template <class Self, class Visitor> static void fields(Self& p, Visitor& visit)`, which calls
-/// `visit(p.member, Field)` for each double, int, std::size_t, bool, enumeration (by its number) and Vector3d, and
-/// `visit.group("prefix_", p.member)` for each `Params` within. Self may be const. What is no number that a user sets
-/// (poses, planes, what was learnt before) is no field. Relations between fields are checked beside: a Field's bounds
-/// are numbers.
+/// A `Params` has `template <class Self, class Visitor> static void fields(Self& p, Visitor& visit)`. This function
+/// calls `visit(p.member, Field)` for each double, int, std::size_t, bool, enumeration (by its number) and Vector3d. It
+/// calls `visit.group("prefix_", p.member)` for each nested `Params`. Self may be const.
+///
+/// Members that are not numbers set by a user are not fields: poses, planes and earlier calibrations. A Field's bounds
+/// are plain numbers, so relations between fields are checked separately.
 namespace tumble {
 
-/// Which numbers a listing shows first: those that a user sets before others.
+/// Order of fields in a listing. `first` marks the numbers that users usually set first.
 enum class Rank : std::uint8_t { first, further };
 
-/// One number of a `Params`. All texts are static.
+/// Description of one number of a `Params`. All strings are static.
 struct Field {
-  const char* name;     ///< ends in its unit where it has one; stands in tables, suites and messages
-  const char* unit;     ///< "1" when dimensionless
-  double low, high;     ///< bounds, both included; of a vector: of each coordinate
-  const char* meaning;  ///< one sentence: effect, source
+  const char* name;     ///< with its unit as suffix; used in tables, suites and messages
+  const char* unit;     ///< "1" if dimensionless
+  double low, high;     ///< inclusive bounds; for a vector, the bounds of each coordinate
+  const char* meaning;  ///< one sentence: effect and source
   Rank rank = Rank::further;
 };
 
-/// Of a Field that is on or off.
+/// Returns a Field for a boolean switch.
 inline Field on_off(const char* name, const char* meaning, Rank rank = Rank::further) {
   return {name, "1", 0.0, 1.0, meaning, rank};
 }
 
-/// Where no bound is known beside that of being finite.
+/// Bound of fields whose values only need to be finite.
 inline constexpr double kUnbounded = std::numeric_limits<double>::max();
 
-/// What a visitor is given as a number: not a vector, not a `Params`.
+/// Types that a visitor receives as a number, as opposed to a vector or a nested `Params`.
 template <class T>
 concept Number = std::is_arithmetic_v<std::remove_cvref_t<T>> || std::is_enum_v<std::remove_cvref_t<T>>;
 
 namespace detail {
 
-/// The first field that is out of its bounds. `names` are the prefixes of the groups about it and its own.
+/// The first field that is out of its bounds. `names` holds the prefixes of its groups and its own name.
 struct OutOfBounds {
   std::array<const char*, 8> names{};
   std::size_t depth = 0;
-  double low = 0.0, high = 0.0;  ///< the bounds that it broke
+  double low = 0.0, high = 0.0;  ///< violated bounds
   Status status;
 };
 
-/// Visits until a field is out of its bounds (NaN is). Does not allocate.
+/// Visitor that finds the first field that is out of its bounds (NaN counts as out of bounds). Does not allocate.
 class FindOutOfBounds {
  public:
   explicit FindOutOfBounds(OutOfBounds& out) : out_(out) {}
@@ -79,13 +80,13 @@ class FindOutOfBounds {
   OutOfBounds& out_;
 };
 
-/// Throws InvalidParams, with the field's whole name, unless `found` is empty.
+/// Throws InvalidParams with the field's full name, unless `found` is empty.
 void throw_if(const OutOfBounds& found);
 
 }  // namespace detail
 
-/// `out_of_range` with name, value and bound of the first field of `params` that is out of its bounds; `ok` when none
-/// is. Of a field of a group the name is without the group's prefix. Does not allocate.
+/// Checks the bounds of all fields. Returns `out_of_range` with name, value and bound of the first violation, otherwise
+/// `ok`. The name of a nested field lacks its group's prefix. Does not allocate.
 template <class Params>
 Status check_fields(const Params& params) {
   detail::OutOfBounds found;

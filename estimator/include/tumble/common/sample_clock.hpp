@@ -13,29 +13,35 @@
 
 namespace tumble {
 
-/// The time at which a sensor that samples by a clock of its own took a sample, told causally from stamps that a host
-/// put on them: the host is late by this and that, the sensor is not. At 300 rad/s^2 half a millisecond is 0.15 rad/s.
+/// Estimates when a sensor with its own clock took each sample, causally, from stamps that a host computer assigned.
+/// The host's delay varies; the sensor's period is regular. At 300 rad/s^2, a timing error of 0.5 ms means a rate error
+/// of 0.15 rad/s.
 ///
-/// A line through the stamps against the samples' numbers, older ones counting exponentially less: the fading-memory
-/// polynomial filter of first degree (N. Morrison, Introduction to Sequential Smoothing and Prediction, 1969, ch. 13).
-/// Its time errs by 1.1 sqrt(T / memory_s) of the jitter at period T; a host that is always late by the same is a
-/// clock's offset, which it does not see. Samples that never came are numbered too.
+/// The class fits a line to the stamps as a function of the sample number, with exponentially decreasing weights for
+/// older samples. The method is the fading-memory polynomial filter of first degree (N. Morrison, Introduction to
+/// Sequential Smoothing and Prediction, 1969, ch. 13). The error of its time is 1.1 sqrt(T / memory_s) times the
+/// jitter, with the sample period T. A constant delay of the host is a clock offset and is not observable. Dropped
+/// samples are counted in the numbering.
 ///
-/// A stamp is left as it is, bit for bit, where there is nothing to mend or it can't be: among the first 32; where the
-/// jitter is below `jitter_min` of the period (the sensor's own clock, or one rounded to microseconds); where it is
-/// beyond `jitter_max`, or errors follow each other (a sensor that has no period, one whose period wanders). No time
-/// lies further than half a period from its stamp.
+/// A stamp is kept, bit for bit, in each of these cases:
+/// - It is among the first 32.
+/// - The jitter is below `jitter_min` of the period: the stamps come from the sensor's clock, possibly rounded to
+///   microseconds.
+/// - The jitter is above `jitter_max`, or successive errors are correlated: the sensor has no period, or its period
+///   drifts.
 ///
-/// Not modelled: a sensor that samples when it is asked, by a host that jitters and stamps exactly: its stamps look the
-/// same, and are the truth. `jitter_max` 0 leaves every stamp as it is.
+/// The estimated time is never further than half a period from the stamp.
+///
+/// Not modelled: a sensor that samples on request of a host that jitters but stamps exactly. The stamps of such a
+/// sensor look the same but are correct. Set `jitter_max` to 0 to keep every stamp.
 class SampleClock {
  public:
   struct Params {
-    double memory_s = 2.0;      ///< clocks of sensors are steady for longer
-    double jitter_min = 0.005;  ///< standard deviations of the stamps, in periods
+    double memory_s = 2.0;      ///< time constant of the fit; sensor clocks are stable for longer
+    double jitter_min = 0.005;  ///< standard deviation of the stamps, in periods
     double jitter_max = 0.15;
 
-    /// Every number of it, stated once.
+    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.memory_s, {"memory_s", "s", 0.01, 1e3, "time over which the sensor's clock is assumed to be steady"});
@@ -46,35 +52,36 @@ class SampleClock {
     }
   };
 
-  static constexpr std::size_t kStart = 32;  ///< stamps from which the first line is made
+  static constexpr std::size_t kStart = 32;  ///< number of stamps used for the first fit
 
   struct State {
-    std::size_t samples = 0;                      ///< while there is no line: of `start`
-    std::array<TimeNs, kStart> start{};           ///< their stamps
+    std::size_t samples = 0;                      ///< number of valid entries of `start` while no line is fitted
+    std::array<TimeNs, kStart> start{};           ///< stamps collected for the first fit
     std::optional<TimeNs> stamp_ns;               ///< last stamp
-    TimeNs time_ns = 0;                           ///< last time given out
-    bool line = false;                            ///< whether there is one: the members below
+    TimeNs time_ns = 0;                           ///< last estimated sample time
+    bool line = false;                            ///< whether a line is fitted; the members below describe it
     double period_ns = 0.0;                       ///< slope of the line
-    double ahead_ns = 0.0;                        ///< the line at the last sample, from its stamp
-    double sum = 0.0, sum_n = 0.0, sum_nn = 0.0;  ///< of weights, by numbers of samples counted from the last one
-    double square_ns2 = 0.0, product_ns2 = 0.0;  ///< mean square of what the line expected wrongly; with the one before
-    double error_ns = 0.0;                       ///< the last of these
-    std::size_t strays = 0;                      ///< in a row, nearly half a period off
+    double ahead_ns = 0.0;                        ///< value of the line at the last sample minus its stamp
+    double sum = 0.0, sum_n = 0.0, sum_nn = 0.0;  ///< sums of weights; sample numbers count from the last sample
+    double square_ns2 = 0.0, product_ns2 = 0.0;   ///< mean square prediction error; mean product of successive errors
+    double error_ns = 0.0;                        ///< last prediction error
+    std::size_t strays = 0;                       ///< consecutive errors close to half a period
   };
 
-  /// Throws InvalidParams on a parameter outside of its bound.
+  /// Throws InvalidParams if a parameter is out of bounds.
   explicit SampleClock(const Params& params);
 
-  /// Takes a stamp; `time_ns` is when its sample was taken, later than that of the sample before. `time_order` unless
-  /// it is later than the last stamp; the state is then as it was. No allocation, O(1).
+  /// Processes a stamp and computes `time_ns`, the time at which its sample was taken. Returned times increase
+  /// strictly. Returns `time_order` and leaves the state unchanged unless the stamp is later than the previous one.
+  /// O(1), no allocation.
   Status push(TimeNs stamp_ns, State& state, TimeNs& time_ns) const;
 
-  /// Standard deviation of the stamps about the line [s]; nothing where there is no line.
+  /// Returns the standard deviation of the stamps about the line [s], or nothing while no line is fitted.
   static std::optional<double> jitter_s(const State& state);
-  /// Whether times are those of the line.
+  /// Returns whether push() currently corrects stamps.
   bool mends(const State& state) const;
 
-  /// What holds of every state that push() left, for one that comes from elsewhere; the first that does not.
+  /// Checks the invariants of a state that was loaded from outside. Returns the first violation.
   static Status check_state(const State& state);
 
  private:
@@ -84,8 +91,9 @@ class SampleClock {
   Params params_;
 };
 
-/// Puts the times of SampleClock in the place of stamps, and gives the largest jitter that was mended [s]; 0: none, all
-/// stamps are as they were. `time_order` as push(); `stamps_ns` are then as they were. O(N).
+/// Replaces stamps by the sample times that SampleClock estimates. `mended_s` returns the largest jitter that was
+/// corrected [s]; 0 means that all stamps are unchanged. Returns `time_order` as push() does; `stamps_ns` is then
+/// unchanged. O(N).
 Status to_sample_times(const SampleClock& clock, std::span<TimeNs> stamps_ns, double& mended_s);
 
 }  // namespace tumble

@@ -4,26 +4,30 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "tumble/common/detail/compiled_alike.hpp"  // IWYU pragma: keep
+
 namespace tumble::so3 {
 
-/// Skew-symmetric matrix [v]x with [v]x w = v x w.
+/// Returns the skew-symmetric matrix [v]x with [v]x w = v x w.
 Eigen::Matrix3d hat(const Eigen::Vector3d& v);
 
-/// Unit quaternion of the rotation by |phi| radians about phi, exact to the rounding of |phi|; 0 gives the identity.
+/// Returns the unit quaternion of the rotation by |phi| radians about phi, exact to the rounding of |phi|. 0 gives the
+/// identity.
 Eigen::Quaterniond exp(const Eigen::Vector3d& phi);
 
-/// Rotation vector of shortest length (at most pi) of a unit quaternion; q and -q give the same vector. Of the two
-/// vectors of a half turn, the one whose first non-zero component is positive.
+/// Returns the shortest rotation vector (length at most pi) of a unit quaternion. q and -q give the same vector. For a
+/// half turn, which has two such vectors, the first non-zero component is positive.
 Eigen::Vector3d log(const Eigen::Quaterniond& q);
 
-/// Left Jacobian J_l(phi): Exp(phi + d) = Exp(J_l d) Exp(phi) to first order in d. The right one is its transpose.
+/// Returns the left Jacobian J_l(phi): Exp(phi + d) = Exp(J_l d) Exp(phi) to first order in d. The right Jacobian is
+/// its transpose.
 Eigen::Matrix3d left_jacobian(const Eigen::Vector3d& phi);
 
-/// Inverse of left_jacobian; finite for |phi| < 2 pi.
+/// Returns the inverse of left_jacobian; finite for |phi| < 2 pi.
 Eigen::Matrix3d left_jacobian_inverse(const Eigen::Vector3d& phi);
 
-/// Smallest rotation that takes the unit vector `from` to the unit vector `to`; for opposite vectors a half turn about
-/// an axis perpendicular to them.
+/// Returns the smallest rotation that takes the unit vector `from` to the unit vector `to`. For opposite vectors, this
+/// is a half turn about an axis perpendicular to them.
 Eigen::Quaterniond shortest_arc(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 
 }  // namespace tumble::so3

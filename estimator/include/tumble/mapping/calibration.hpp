@@ -8,9 +8,9 @@
 
 namespace tumble {
 
-/// What ties a lidar to an IMU and both to the world, known to a calibration's accuracy only and refined with the
-/// motion. Errors are ordered (rotation of T_IL, left perturbation in IMU axes: R_true = Exp(phi) R; translation of
-/// T_IL; time offset; gravity).
+/// Calibration between lidar, IMU and world. The initial values come from an external calibration and are refined
+/// during the motion. Errors are ordered (rotation of T_IL, left perturbation in IMU axes: R_true = Exp(phi) R;
+/// translation of T_IL; time offset; gravity).
 struct SweepCalibration {
   static constexpr int kErrors = 10;
   using Covariance = Eigen::Matrix<double, kErrors, kErrors>;
@@ -21,21 +21,23 @@ struct SweepCalibration {
 
   /// Adds a small error in the order above.
   void add(const Eigen::Matrix<double, kErrors, 1>& error);
-  /// The error that takes `other` to this, first order in the rotation's difference.
+  /// Returns the error that transforms `other` to this, to first order in the difference of rotation.
   Eigen::Matrix<double, kErrors, 1> minus(const SweepCalibration& other) const;
 };
 
-/// A calibration as it was given, with the deviation of each axis of its parts; 0 for a part that is exact.
+/// A stated calibration with the standard deviation of each part per axis; 0 for an exact part.
 struct GivenCalibration {
-  static constexpr double kBelieved = 5.0;  ///< deviations that a calibration may move by in one run
+  static constexpr double kBelieved = 5.0;  ///< plausible change during one run, in standard deviations
 
   SweepCalibration calibration;
   double mount_sigma_rad = 0.0, mount_sigma_m = 0.0, time_offset_sigma_s = 0.0;
 
-  /// How far `learnt` is from it, in its deviations: the largest of rotation, translation and time offset; infinite
-  /// where a part that is exact differs. mapping.md (R55). Gravity, which each run finds by itself, does not count.
+  /// Returns the distance of `learnt` from the stated calibration in standard deviations: the largest of rotation,
+  /// translation and time offset. The distance is infinite if an exact part differs. mapping.md (R69). Gravity is
+  /// excluded because each run estimates it.
   double moved(const SweepCalibration& learnt) const;
-  /// `out_of_range` where `learnt` lies more than `kBelieved` deviations away: it was given wrong.
+  /// Returns `out_of_range` if `learnt` is more than `kBelieved` standard deviations away. The stated calibration is
+  /// then wrong.
   Status verdict(const SweepCalibration& learnt) const;
 };
 

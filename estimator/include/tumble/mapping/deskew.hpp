@@ -14,56 +14,58 @@
 
 namespace tumble {
 
-/// A lidar return that is used: in the IMU's axes at its own instant.
+/// A usable lidar return in the IMU's axes at its own time.
 struct SweepPoint {
   Eigen::Vector3f x_I_m = Eigen::Vector3f::Zero();
   Eigen::Vector3f x_L_m = Eigen::Vector3f::Zero();  ///< as measured, so that the mounting can be refined
-  float t_s = 0.0f;                                 ///< after the start of the trajectory, by the IMU's clock
-  float sweep_t_s = 0.0f;                           ///< after the start of the sweep
-  float range_m = 0.0f;                             ///< from the lidar
+  float t_s = 0.0f;                                 ///< time after the start of the trajectory, in the IMU's clock
+  float sweep_t_s = 0.0f;                           ///< time after the start of the sweep
+  float range_m = 0.0f;                             ///< distance from the lidar
   std::uint16_t ring = 0;
 };
 
-/// Which returns are used.
+/// Bounds on usable returns.
 struct PointBounds {
   double range_min_m = 0.3;
   double range_max_m = 100.0;
-  Eigen::AlignedBox3d own_body_L;  ///< returns inside are the robot's own; an empty box keeps all
+  Eigen::AlignedBox3d own_body_L;  ///< returns inside hit the robot itself; an empty box keeps all
 };
 
-/// What was found on the way.
+/// Counts of the returns of a sweep.
 struct PointCounts {
   std::size_t given = 0;
   std::size_t finite = 0;  ///< returns with finite coordinates; misses may be stored as NaN
   std::size_t used = 0;
-  bool rings_differ = false;  ///< false when the device does not tell its rings
+  bool rings_differ = false;  ///< false if the device does not report ring numbers
 };
 
-/// Takes the usable returns of a sweep into the IMU's axes. `sweep_start_s` is the sweep's start after the
-/// trajectory's.
+/// Selects the usable returns of a sweep and transforms them to the IMU's axes. `sweep_start_s` is the start of the
+/// sweep relative to the trajectory's start.
 PointCounts select_points(std::span<const LidarPoint> points, const PointBounds& bounds, const Eigen::Isometry3d& T_IL,
                           double sweep_start_s, std::vector<SweepPoint>& selected);
 
-/// The same points under another calibration, `later_s` later by the IMU's clock. `moved` may not be `points`. O(n).
+/// Recomputes the points for another calibration, with times that are `later_s` later in the IMU's clock. `moved` must
+/// not be `points`. O(n).
 void apply_calibration(const SweepCalibration& calibration, double later_s, std::span<const SweepPoint> points,
                        std::vector<SweepPoint>& moved);
-/// The same in place.
+/// Same, in place.
 void apply_calibration(const SweepCalibration& calibration, double later_s, std::span<SweepPoint> points);
 
-/// Levers u_i = S(t_i) + R(t_i) x_i of SweepTrajectory: the point in the world is trajectory.base_m(t_i) + u_i. O(n).
+/// Computes the levers u_i = S(t_i) + R(t_i) x_i of SweepTrajectory. The point in the world is trajectory.base_m(t_i) +
+/// u_i. O(n).
 void compute_levers(const SweepTrajectory& trajectory, std::span<const SweepPoint> points,
                     std::vector<Eigen::Vector3f>& levers_W_m);
 
-/// Positions of points in the IMU's axes at `target_s` after the trajectory's start (its end, usually): what a still
-/// sensor would have seen from there. Each point is moved from its own instant.
+/// Transforms points to the IMU's axes at `target_s` after the trajectory's start, usually its end. Each point moves
+/// from its own time, so the result is what a stationary sensor would measure there.
 void deskew(const SweepTrajectory& trajectory, std::span<const SweepPoint> points, double target_s,
             std::vector<Eigen::Vector3f>& positions_I_m);
 
-/// Picks one point per cube of edge `voxel_m` in the world, the first in each: even density, and few points to
-/// register.
+/// Keeps one point per cube of edge `voxel_m` in the world, the first in each cube. The result has an even density and
+/// few points to register.
 class SweepSampler {
  public:
-  /// `chosen` holds indices into `positions_W_m`, in order.
+  /// Writes the indices of the kept points of `positions_W_m` to `chosen`, in order.
   void choose(std::span<const Eigen::Vector3f> positions_W_m, double voxel_m, std::vector<std::uint32_t>& chosen);
 
  private:

@@ -5,9 +5,11 @@
 #include <cstdint>
 #include <vector>
 
+#include "tumble/common/detail/compiled_alike.hpp"  // IWYU pragma: keep
+
 namespace tumble {
 
-/// One lidar return in the lidar's axes L, at its own instant: nothing is deskewed.
+/// One lidar return in the lidar's axes L at its own time, not deskewed.
 struct LidarPoint {
   Eigen::Vector3f position_L_m = Eigen::Vector3f::Zero();
   float intensity = 0.0f;       ///< 0..1
@@ -15,11 +17,11 @@ struct LidarPoint {
   std::uint16_t ring = 0;       ///< channel from bottom to top, or line
 };
 
-/// A point of a map, in the world.
+/// A map point in the world.
 struct MapPoint {
   Eigen::Vector3f position_W_m = Eigen::Vector3f::Zero();
-  Eigen::Vector3f normal_W = Eigen::Vector3f::Zero();  ///< unit; zero where no plane could be fitted
-  float sigma_m = 0.0f;                                ///< uncertainty of the position, one standard deviation
+  Eigen::Vector3f normal_W = Eigen::Vector3f::Zero();  ///< unit length; zero if no plane could be fitted
+  float sigma_m = 0.0f;                                ///< standard deviation of the position
 };
 
 }  // namespace tumble

@@ -23,24 +23,28 @@ class StateWriter;
 class StateReader;
 class StateLayout;
 
-/// Lidar-inertial odometry and mapping of a body that tumbles: integrates the IMU between sweeps, deskews each point at
-/// its own time, registers the sweep to a voxel map by k-nearest-neighbour point-to-plane, and extends the map.
-/// Position, attitude and velocity at the start of a sweep are refined together, so that the deskewing is refined too.
+/// Estimates pose and map of a tumbling body from an IMU and a lidar. The mapper integrates the IMU between sweeps and
+/// deskews each point at its own time. The mapper registers the sweep to a voxel map by k-nearest-neighbour
+/// point-to-plane distances, and then extends the map. The registration refines position, attitude and velocity at the
+/// start of a sweep together, which also refines the deskewing.
 ///
-/// World: z up, origin and yaw at the IMU at the first sample, levelled by the specific force at rest.
-/// Feed IMU samples in time order, then each sweep once IMU samples reach its end. No threads of its own, no files, no
-/// printing. Where their standard deviation is not 0, the lidar's mounting, its clock and gravity are estimated with
-/// the motion, as one state with one covariance: an iterated error-state filter over sweeps, whose last window_sweeps
-/// are smoothed by those that follow (fixed lag), with what they drew into the map. Beyond the window the map stays
-/// where it was put: a caller that keeps its recording runs a second time from calibration() and gets a map of one
-/// piece.
+/// World: z up, levelled by the specific force at rest. The first sweep with `matches_min` points starts the map. If it
+/// starts within half a second of the IMU, origin and yaw are at the IMU at the first sample. Otherwise they are at the
+/// IMU at the start of that sweep, whose velocity and tilt come from dead reckoning. Pass IMU samples in time order,
+/// then each sweep once IMU samples reach its end. The class starts no threads, uses no files and prints nothing.
 ///
-/// Covariances reported follow the errors through the filter's weights, the registration's share as measured from its
-/// residuals (Registration::Result::score_covariance).
+/// The lidar's mounting, its time offset and gravity are estimated if their standard deviations are not 0. All unknowns
+/// form one state with one covariance. The estimator is an iterated error-state filter over sweeps. A fixed-lag
+/// smoother refines the last window_sweeps with later sweeps, including their points in the map. Map points of older
+/// sweeps are not moved. A caller that stores its recording can process it a second time, starting from calibration(),
+/// to get a consistent map.
 ///
-/// After rejected sweeps the sensor is lost: the inertial prior goes on, with velocity zero while the IMU rests, and
-/// each further sweep is also tried against the map from starts around the prior, coarse to fine. Not modelled: biases
-/// of the IMU but the gyro's at the start, loop closure, moving objects.
+/// Reported covariances follow the errors through the filter's weights. The contribution of the registration is
+/// measured from its residuals (Registration::Result::score_covariance).
+///
+/// After rejected sweeps, tracking has failed. Inertial prediction continues, with zero velocity while the IMU is at
+/// rest. Each further sweep is also registered from several starts around the prediction, coarse to fine. Not modelled:
+/// IMU biases other than the gyro's at the start, loop closure, moving objects.
 class LidarInertialOdometry {
  public:
   using Params = OdometryParams;
@@ -50,71 +54,77 @@ class LidarInertialOdometry {
   ~LidarInertialOdometry();
   LidarInertialOdometry(LidarInertialOdometry&&) noexcept;
   LidarInertialOdometry& operator=(LidarInertialOdometry&&) noexcept;
-  /// Copies carry all state: continuing from a copy gives bit-identical results.
+  /// Copies contain the complete state: continuing from a copy gives bit-identical results.
   LidarInertialOdometry(const LidarInertialOdometry&);
   LidarInertialOdometry& operator=(const LidarInertialOdometry&);
 
-  /// Adds a sample with the angular velocity that a rate method gave for it. On trouble the state is unchanged:
-  /// `non_finite`, `time_order`, or `out_of_range` when `rate` belongs to another time. A gap is bridged by the sample
-  /// after it, and the prior loosened accordingly.
+  /// Processes a sample with the angular velocity that a rate method estimated for it. On error the state is unchanged:
+  /// `non_finite`, `time_order`, or `out_of_range` if `rate` has another time stamp. The sample after a gap bridges it,
+  /// with correspondingly larger uncertainty of the prior.
   Status add_imu(const ImuSample& sample, const RateState& rate);
 
-  /// What an odometer says of the velocity at the start of the next sweep, which is where the last one ended: in IMU
-  /// axes, and its standard deviation per axis. It takes the place of the velocity that the last sweep ended with, for
-  /// that one sweep. `non_finite`, or `out_of_range` where the standard deviation is not above 0; nothing is changed.
+  /// Sets an odometer's velocity at the start of the next sweep, which is the end of the last one. The velocity is in
+  /// IMU axes, with its standard deviation per axis. This velocity replaces the one at the end of the last sweep, for
+  /// the next sweep only. On error nothing changes: `non_finite`, or `out_of_range` if the standard deviation is not
+  /// above 0.
   Status add_velocity(const Eigen::Vector3d& v_WI_I_m_s, double sigma_m_s);
-  /// What an odometer says of the motion within the next sweep, from where the last one ended to its end and 20 ms
-  /// about it, to be weighed against what the IMU tells (check_reading); in the place of add_velocity, or of one
-  /// before. One of another time changes nothing.
+  /// Sets an odometer's reading for the next sweep. The times of the reading are between the end of the last sweep and
+  /// that of the next, with a margin of 20 ms. The reading is fused with the IMU's prediction by covariance
+  /// (check_reading). A new reading replaces an earlier one and add_velocity. A reading of another time has no effect.
   Status add_reading(const OdometerReading& reading);
-  /// What the accelerometer reads within the next sweep is of no use: the velocity goes on as over a gap, and the gyro
-  /// counts. In the place of what was said of that sweep before.
+  /// Marks the accelerometer as unusable within the next sweep. The velocity is predicted as over a gap; the gyro is
+  /// used. This call replaces earlier odometer readings of the sweep.
   void leave_out_force();
 
-  /// Registers a sweep of points fired in [start_ns, end_ns]; sweeps do not overlap. Returns that are NaN are misses.
+  /// Registers a sweep of points fired in [start_ns, end_ns]. Sweeps do not overlap. NaN returns are misses.
   ///
-  /// Trouble that leaves the state as it was: `time_order` (end before start, or start before the last sweep's end),
-  /// `too_few` (IMU samples do not cover the sweep), `out_of_range` (an offset beyond the sweep).
-  /// Trouble after which the pose is the inertial prior and the verdict `rejected`: `empty` (no points), `non_finite`
-  /// (no finite point), `too_few` (none in range), `degenerate` (all points bear one time stamp though the sweep
-  /// lasts).
+  /// These errors leave the state unchanged: `time_order` (end before start, or start before the last sweep's end),
+  /// `too_few` (IMU samples do not cover the sweep), `out_of_range` (an offset beyond the sweep). After other errors,
+  /// the pose is the inertial prediction and the verdict is `rejected`: `empty` (no points), `non_finite` (no finite
+  /// point), `too_few` (no point in range), `degenerate` (all points have one time stamp). Before the map starts, a
+  /// sweep with such an error or with too few points (`too_few`) has no pose: its `report.trajectory` is empty.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points, SweepReport& report);
 
-  /// Pose and velocity at the last of further samples, which are not added: from the last sweep's end by inertia alone,
-  /// with covariance; there where nothing came after it. For who needs a pose before the sweep is there, or its rates
-  /// are known. Trouble: `empty` before the first sweep, and that of add_imu. O(samples since the last sweep).
+  /// Predicts pose and velocity with covariance at the last of further samples, by inertial integration from the last
+  /// sweep's end. The samples are not added to the state. Without samples after the last sweep, returns the pose at its
+  /// end. Useful before a sweep or its rates are available. Errors: `empty` before the first sweep, and those of
+  /// add_imu. O(samples since the last sweep).
   Status predict(std::span<const ImuSample> samples, std::span<const RateState> rates, PoseState& pose) const;
 
-  /// Calibration as estimated so far, and the covariance of its errors; the given one, and 0, where not estimated.
+  /// Returns the current calibration and the covariance of its errors. Parts that are not estimated have their stated
+  /// values and covariance 0.
   SweepCalibration calibration() const;
   SweepCalibration::Covariance calibration_covariance() const;
-  /// What weighs the calibration against the next sweep, wider than its errors since a point counts for less than it
-  /// tells: what another run over the same data starts from.
+  /// Returns the covariance by which the calibration is weighted against the next sweep. This covariance is larger than
+  /// that of the errors because points are correlated and count less. A second run over the same data starts from this
+  /// covariance.
   SweepCalibration::Covariance calibration_weight() const;
 
-  /// Pose at any time within the window of sweeps, by all that has been seen. `out_of_range` outside of it.
+  /// Returns the pose at any time within the window of sweeps, from all data so far. Returns `out_of_range` outside of
+  /// the window.
   Status pose_at(TimeNs time_ns, PoseState& pose) const;
 
-  /// Poses of the sweeps in the window that have not had their last word yet, as they stand, oldest first: with
-  /// SweepReport::smoothed, the whole trajectory.
+  /// Returns the current poses of the sweeps in the window, oldest first. The final poses of these sweeps are still
+  /// pending. Together with SweepReport::smoothed they form the whole trajectory.
   std::vector<std::vector<PoseState>> open_trajectories() const;
 
-  /// Memory held by the map [bytes].
+  /// Returns the memory of the map [bytes].
   std::size_t map_bytes() const;
 
-  /// The map within map_radius_m, with normals from the nearest neighbours that look towards where the point was seen
-  /// from; without what two sweeps saw through since (people who went on). O(number of points).
+  /// Returns the map within map_radius_m. Normals are fitted to nearest neighbours and point towards the sensor's
+  /// position at the time of observation. Points that two later sweeps saw through are left out, for example people who
+  /// moved on. O(number of points).
   std::vector<MapPoint> map() const;
 
-  /// All of it but what the caller gave for its work (`parallel_for`), into one of the same parameters: a state that
-  /// was loaded goes on with the same bits. What another run may have taught of the parameters (the mounting, the
-  /// clock, their deviations) comes with it; that the others are the same is for the caller to see to. On trouble,
-  /// which the reader tells, this is as it was.
+  /// Saves or loads the complete state, except `parallel_for`. The loading object must have the same parameters; the
+  /// caller is responsible for that. The loading object then continues with bit-identical results. Parameters that an
+  /// earlier run may have estimated are part of the state (mounting, time offset and their deviations). On error, which
+  /// the reader reports, this object is unchanged.
   void save(StateWriter& out) const;
   void load(StateReader& in);
   void describe(StateLayout& out) const;
 
-  struct Impl;  ///< for the library's own sources
+  struct Impl;  ///< used by the library's sources
 
  private:
   std::unique_ptr<Impl> impl_;

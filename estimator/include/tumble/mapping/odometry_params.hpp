@@ -13,13 +13,14 @@
 
 namespace tumble {
 
-/// What few need of OdometryParams, by meaning. Fields bear the names that they have in tables and on command lines.
+/// Parameters of OdometryParams that few users change, grouped by meaning. Field names equal those in tables and on
+/// command lines.
 struct OdometryExpertParams {
   double gravity_m_s2 = 9.80665;
   /// Standard deviation of gravity's horizontal part; 0: exact, not estimated.
   double gravity_sigma_m_s2 = 0.0;
-  /// Sweeps that are refined together: the newest, and so many less one before it by what it teaches (see
-  /// SweepReport::smoothed). 1: none is refined later.
+  /// Number of sweeps that are refined together: the newest one and the window_sweeps - 1 before it (see
+  /// SweepReport::smoothed). 1: no sweep is refined later.
   int window_sweeps = 2;
   RestBoundsParams rest = {};
   OdometryStartParams start = {};
@@ -57,7 +58,7 @@ struct OdometryExpertParams {
   }
 };
 
-/// Of LidarInertialOdometry.
+/// Parameters of LidarInertialOdometry.
 struct OdometryParams {
   Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< lidar in IMU axes
   double time_offset_s = 0.0;                              ///< the IMU's clock minus the lidar's
@@ -67,15 +68,15 @@ struct OdometryParams {
   double time_offset_sigma_s = 0.0;
   double range_min_m = 0.3;        ///< nearer returns are dropped
   double range_max_m = 100.0;      ///< farther returns are dropped
-  Eigen::AlignedBox3d own_body_L;  ///< returns inside are the robot's own; an empty box, as here, keeps all
+  Eigen::AlignedBox3d own_body_L;  ///< returns inside hit the robot itself; an empty box, the default, keeps all
   double sweep_voxel_m = 0.25;     ///< one point per voxel of a sweep is registered
-  /// Threads, if any, that the registration may use; results do not depend on it.
+  /// Threads that the registration may use, if any. Results do not depend on it.
   ParallelFor parallel_for;
 
   using Expert = OdometryExpertParams;
-  Expert expert;  ///< what few need
+  Expert expert;  ///< parameters that few users change
 
-  /// Every number of it, stated once.
+  /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.time_offset_s, {"time_offset_s", "s", -1.0, 1.0, "clock of the IMU minus clock of the lidar"});
@@ -94,7 +95,8 @@ struct OdometryParams {
   }
 };
 
-/// `out_of_range` with the first number that LidarInertialOdometry would refuse: that of a Field, or of what is none.
+/// Checks all parameters. Returns `out_of_range` with the first one that LidarInertialOdometry would reject, including
+/// those that are not fields.
 Status check_odometry_params(const OdometryParams& params);
 
 }  // namespace tumble

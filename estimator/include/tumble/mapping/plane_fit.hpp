@@ -8,31 +8,32 @@
 
 namespace tumble {
 
-/// What a neighbourhood of map points allows.
+/// Result of a plane fit to a neighbourhood of map points.
 enum class PlaneVerdict { plane, too_few, collinear, one_line, rough };
 
 /// Plane through a neighbourhood: normal . x = normal . centre.
 struct PlaneFit {
   PlaneVerdict verdict = PlaneVerdict::too_few;
-  Eigen::Vector3f normal_W = Eigen::Vector3f::Zero();  ///< unit, sign arbitrary
+  Eigen::Vector3f normal_W = Eigen::Vector3f::Zero();  ///< unit length, arbitrary sign
   Eigen::Vector3f centre_W_m = Eigen::Vector3f::Zero();
-  float thickness2_m2 = 0.0f;  ///< least eigenvalue of the neighbours' covariance
-  /// Standard deviation of the normal's error along the two axes of the plane, as columns: that of a regression on
-  /// neighbours that lie off the plane by chance, as far as their thickness shows.
+  float thickness2_m2 = 0.0f;  ///< smallest eigenvalue of the neighbours' covariance
+  /// Standard deviation of the normal's error along the two axes of the plane, as columns. The value is that of a
+  /// regression whose residuals have the neighbours' thickness.
   Eigen::Matrix<float, 3, 2> tilt_W = Eigen::Matrix<float, 3, 2>::Zero();
 };
 
 /// Bounds on the eigenvalues l0 <= l1 <= l2 of the covariance of a neighbourhood.
 struct PlaneBounds {
   int neighbours_min = 5;
-  /// l1 below this share of l2: the neighbours lie on a line (a lidar's ring at rest) and the normal would be false.
+  /// If l1 is below this fraction of l2, the neighbours are collinear (a ring of a lidar at rest) and the normal would
+  /// be wrong.
   double collinear_share = 0.03;
-  double rough_share = 0.1;  ///< l0 above this share of l1: no plane
-  /// Fewer neighbours than this beside the most frequent scan line: the plane would be that of the ring, not of the
-  /// surface (a ring around a pillar or through a corner of a room is flat, and its normal is false).
+  double rough_share = 0.1;  ///< if l0 is above this fraction of l1, there is no plane
+  /// Minimum number of neighbours that are not on the most frequent scan line. With fewer, the fit could be the plane
+  /// of the ring instead of the surface. Examples are a ring around a pillar or through a room's corner.
   int off_line_min = 2;
 
-  /// Every number of it, stated once.
+  /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.neighbours_min, {"neighbours_min", "1", 3, 32, "least number of map points for a plane"});
@@ -45,7 +46,7 @@ struct PlaneBounds {
   }
 };
 
-/// Least-squares plane of a set of map points. Does not allocate.
+/// Fits a least-squares plane to a set of map points. Does not allocate.
 PlaneFit fit_plane(const VoxelMap& map, const Neighbours& neighbours, const PlaneBounds& bounds);
 
 }  // namespace tumble

@@ -21,13 +21,14 @@ class OuterProducts;
 
 /// Registers a sweep to a map by point-to-plane distances, together with the motion inside the sweep.
 ///
-/// Unknowns: position, attitude (left perturbation in W) and velocity of the IMU at the start of the trajectory, and,
-/// where their prior leaves them free, the saturation deficit of clipped axes and the calibration. A point in the world
-/// is X = p + v t + g t^2/2 + Exp(phi) u with the lever u of SweepTrajectory, so that each iteration deskews anew.
-/// Cost: robustly weighted squared distances to planes through the k nearest map points, plus the prior's Mahalanobis
-/// distance; Gauss-Newton, a 28x28 normal matrix at most. In directions that no surface holds the prior stands.
+/// Unknowns: position, attitude (left perturbation in W) and velocity of the IMU at the start of the trajectory. The
+/// saturation deficit of clipped axes and the calibration are added if their prior is uncertain. A point in the world
+/// is X = p + v t + g t^2/2 + Exp(phi) u with the lever u of SweepTrajectory, so each iteration deskews again.
+/// Cost function: robustly weighted squared distances to planes through the k nearest map points, plus the prior's
+/// Mahalanobis distance. The solver is Gauss-Newton with a normal matrix of at most 28x28. The prior determines
+/// directions that no surface constrains.
 class Registration {
-  static constexpr std::size_t kBlock = 128;  // points whose sums are formed together; however many threads there are
+  static constexpr std::size_t kBlock = 128;  // points per partial sum; independent of the number of threads
 
  public:
   using Params = RegistrationParams;
@@ -43,16 +44,16 @@ class Registration {
 
   explicit Registration(const Params& params);
 
-  /// Aligns `points` (taken with the prior's calibration) with `map`. `trajectory` is rebuilt from `prior` and
-  /// `samples` up to `end_ns` and, on return, stands for the result. Trouble of the trajectory is passed on.
+  /// Aligns `points` (computed with the prior's calibration) with `map`. `trajectory` is rebuilt from `prior` and
+  /// `samples` up to `end_ns`; on return it contains the result. Errors of the trajectory are returned.
   Status align(const Prior& prior, std::span<const MotionSample> samples, TimeNs end_ns,
                std::span<const SweepPoint> points, const VoxelMap& map, SweepTrajectory& trajectory, Result& result);
 
-  /// Variance of a return along its ray together with the skew left after deskewing.
+  /// Returns the variance of a return along its ray, including the skew left after deskewing.
   double point_variance_m2(const SweepPoint& point) const;
 
-  /// Distance of a point to a plane and its derivative by all unknowns, for one point. Public so that it can be checked
-  /// against differences.
+  /// Computes the distance of a point to a plane and its derivative by all unknowns. Public so that tests can check it
+  /// against finite differences.
   static double residual(const SweepTrajectory& trajectory, const SweepCalibration& calibration,
                          const SweepPoint& point, const PlaneFit& plane, std::size_t& hint, Vector& derivative);
 
@@ -61,10 +62,10 @@ class Registration {
     PlaneFit plane;
     Eigen::Vector3f searched_at_W_m = Eigen::Vector3f::Zero();
     float map_variance_m2 = 0.0f;
-    float reach_m = std::numeric_limits<float>::infinity();  // to the farthest neighbour, where there are all
+    float reach_m = std::numeric_limits<float>::infinity();  // distance to the farthest neighbour, if all were found
     bool searched = false;
   };
-  /// Over the matches of one iteration, of the free unknowns alone.
+  /// Sums over the matches of one iteration, for the free unknowns only.
   struct Sums {
     Matrix H = Matrix::Zero();
     Vector g = Vector::Zero();
@@ -100,14 +101,14 @@ class Registration {
   Weight weigh(const SweepPoint& point, const Match& match, double distance_m, double kernel_m) const;
 
   Params params_;
-  // memory kept between sweeps; holds nothing that the next result depends on
+  // buffers kept between sweeps; results do not depend on their contents
   std::vector<Eigen::Vector3f> levers_, positions_;
   std::vector<SweepPoint> moved_;
   std::vector<Match> matches_;
   std::vector<float> distances_, sorted_;
   std::vector<Sums> parts_;  // per block of points
   SpatialHash cluster_of_{1 << 10};
-  std::vector<Vector> pulls_;  // of the clusters
+  std::vector<Vector> pulls_;  // gradients of the clusters
 };
 
 }  // namespace tumble

@@ -9,21 +9,21 @@
 
 namespace tumble {
 
-/// What few need of RegistrationParams. Fields bear the names that they have in tables and on command lines.
+/// Parameters of RegistrationParams that few users change. Field names equal those in tables and on command lines.
 struct RegistrationExpertParams {
-  double step_m = 5e-4;  ///< converged when a step is below this and below step_rad
+  double step_m = 5e-4;  ///< the iteration has converged if a step is below this and below step_rad
   double step_rad = 1e-4;
-  double step_s = 1e-5;       ///< likewise of the time offset
-  double rematch_m = 0.05;    ///< a point's plane is searched anew once the point has moved by this
-  double kernel_min_m = 0.1;  ///< least width of the robust kernel (Geman-McClure)
-  /// Weight of a point's information: neighbouring returns share the errors of the map and are not independent.
+  double step_s = 1e-5;       ///< same for the time offset
+  double rematch_m = 0.05;    ///< motion of a point after which its plane is searched again
+  double kernel_min_m = 0.1;  ///< minimum width of the robust kernel (Geman-McClure)
+  /// Weight of each point's information. Neighbouring returns share the map's errors and are therefore correlated.
   double correlation_discount = 0.1;
-  double cluster_m = 1.0;          ///< points of one cube of this edge are not independent
-  double matched_share_min = 0.1;  ///< of the points
-  /// Fewer matches than matches_min and matched_share_min ask for are enough if they are this many and the result lies
-  /// where the prior expects it; as here: never.
+  double cluster_m = 1.0;          ///< points within one cube of this edge are correlated
+  double matched_share_min = 0.1;  ///< fraction of the points
+  /// A registration with fewer matches than matches_min and matched_share_min is accepted if it has this many matches
+  /// and agrees with the prior. The default disables this rule.
   std::size_t agreeing_min = 1'000'000'000;
-  /// Of the matches within three standard deviations; below it the result is refused.
+  /// Minimum fraction of matches within three standard deviations; below it the result is rejected.
   double fitting_share_min = 0.6;
   PlaneBounds plane;
 
@@ -47,24 +47,24 @@ struct RegistrationExpertParams {
   }
 };
 
-/// Of Registration.
+/// Parameters of Registration.
 struct RegistrationParams {
   static constexpr double kMatchDistanceMax_m = 10.0;
   int neighbours = 8;             ///< k of the plane fit
-  double match_distance_m = 1.0;  ///< farther map points are no match
+  double match_distance_m = 1.0;  ///< farther map points are not matched
   int iterations_max = 30;
-  double range_sigma_m = 0.02;  ///< of a return, at least; grows as range_sigma_share of the range
+  double range_sigma_m = 0.02;  ///< minimum range noise; the noise grows with range by range_sigma_share
   double range_sigma_share = 0.0015;
   double skew_sigma_m_s = 0.25;   ///< growth of a point's uncertainty over the sweep (time weighting); 0: none
-  std::size_t matches_min = 100;  ///< fewer matches are too few
+  std::size_t matches_min = 100;  ///< minimum number of matches
   double correction_max_m = 15.0;
   double correction_max_rad = 1.1;
-  ParallelFor parallel_for;  ///< for the search of neighbours and the sums; empty: the calling thread
+  ParallelFor parallel_for;  ///< threads for neighbour search and sums; empty: the calling thread
 
   using Expert = RegistrationExpertParams;
-  Expert expert = {};  ///< what few need
+  Expert expert = {};  ///< parameters that few users change
 
-  /// Every number of it, stated once.
+  /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.neighbours, {"neighbours", "1", 3, 32, "number of map points per plane fit", Rank::first});

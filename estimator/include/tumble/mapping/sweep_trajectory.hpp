@@ -17,23 +17,22 @@ namespace tumble {
 
 struct SweepPoint;
 
-/// One window of an IMU with the angular velocity of a rate method: both are means over (from_ns, time_ns].
+/// One window of an IMU with the angular velocity of a rate method. Both are means over (from_ns, time_ns].
 struct MotionSample {
   TimeNs from_ns = 0;
   TimeNs time_ns = 0;
   Eigen::Vector3d w_WI_I_rad_s = Eigen::Vector3d::Zero();
   Eigen::Vector3d f_I_m_s2 = Eigen::Vector3d::Zero();
   Eigen::Vector3d rate_sigma_rad_s = Eigen::Vector3d::Zero();  ///< standard deviation of the rate, IMU axes
-  std::uint8_t clipped_axes = 0;                               ///< bit j: the gyro's axis j was at its rail
-  std::uint8_t railed_axes = 0;                                ///< likewise the accelerometer's
+  std::uint8_t clipped_axes = 0;                               ///< bit j: axis j of the gyro was saturated
+  std::uint8_t railed_axes = 0;                                ///< bit j: axis j of the accelerometer was saturated
   bool at_rest = false;                                        ///< belongs to the rest at the start
-  std::optional<TimeNs> rests_since_ns;  ///< of a rest by the IMU alone that it belongs to: the first sample
+  std::optional<TimeNs> rests_since_ns;  ///< first sample of its rest, detected from the IMU alone
   bool in_flight = false;                ///< f_I_m_s2 is that of free flight, not the accelerometer's
-  bool bridges_gap = false;  ///< longer than a sample: the force is not known inside, and the velocity goes on
+  bool bridges_gap = false;              ///< longer than a sample: the force inside is unknown; velocity continues
 };
 
-/// Motion of the IMU at one instant. Errors are ordered (position, attitude, velocity), all in W, the attitude's as in
-/// AttitudeState: q_true = Exp(phi) q.
+/// Motion of the IMU at one time. Errors are (position, attitude, velocity), all in W; attitude as in AttitudeState.
 struct MotionState {
   TimeNs time_ns = 0;
   Eigen::Vector3d p_WI_m = Eigen::Vector3d::Zero();
@@ -44,17 +43,17 @@ struct MotionState {
   PoseState pose() const;
 };
 
-/// Motion of the IMU over a segment of its run from a known start, by strapdown integration; asked at any instant.
+/// Computes the motion of the IMU over a segment from a known start by strapdown integration. Evaluates it at any time.
 ///
 /// Attitude: R(t) = R_k Exp(w_k (t - t_k)), exact for a rate that is constant in body axes over each sample. Position:
-/// p(t) = p_0 + v_0 t + g t^2 / 2 + S(t) with S the double integral of the specific force in W, whose mean over each
-/// sample is R_k J_l(w_k dt) f_k (exact for a force constant in body axes, as the centripetal force of a spin is).
+/// p(t) = p_0 + v_0 t + g t^2 / 2 + S(t), with the double integral S of the specific force. The mean force over each
+/// sample is R_k J_l(w_k dt) f_k, exact for a force constant in body axes, as the centripetal force of a spin is.
 ///
-/// The saturation deficit e is a correction of the clipped axes, linear in time between kKnots knots at equal steps
-/// from the start to the end of the segment: the rate used is w_j + s_j e_j(t) where axis j was clipped, with the sign
-/// of w_j and the magnitude sigma_j / (largest sigma_j among the segment's clipped samples), so that what is known well
-/// moves little; 1 where nothing is known of any. Over a sample e is what it is in the middle of it. Not modelled:
-/// sculling within a sample, the earth's rotation.
+/// The saturation deficit e corrects the clipped axes. The deficit is linear in time between kKnots knots at equal
+/// steps from the start to the end of the segment. The rate is w_j + s_j e_j(t) where axis j was clipped. The factor
+/// s_j has the sign of w_j and the magnitude sigma_j / (largest sigma_j of the segment's clipped samples). Well known
+/// rates thus change little. The magnitude is 1 if all sigma_j are 0. Over a sample, e has the value of the sample's
+/// middle. Not modelled: sculling within a sample, the earth's rotation.
 class SweepTrajectory {
  public:
   static constexpr int kKnots = 3;
@@ -62,7 +61,7 @@ class SweepTrajectory {
   using Deficit = Eigen::Matrix<double, 3, kKnots>;
   using ByDeficit = Eigen::Matrix<double, 3, kDeficit>;
 
-  /// What a lidar point needs of its instant: attitude, and S(t) of the text above.
+  /// Motion at the time of a lidar point: attitude, and S(t) as defined above.
   struct Instant {
     Eigen::Quaterniond q_WI;
     Eigen::Vector3d preintegrated_position_m;
@@ -73,12 +72,12 @@ class SweepTrajectory {
     ByDeficit preintegrated_position_m_s;
   };
 
-  /// Integrates from `start` to `end_ns`. Samples must be in time order and follow each other; the first window must
-  /// reach back to the start. Trouble: `too_few` (no sample, or they end before end_ns), `time_order` (end before
-  /// start), `gap` (the first window begins after the start, by so many seconds). Reuses its memory.
+  /// Integrates from `start` to `end_ns`. Samples must be contiguous and in time order, from the start on. Errors:
+  /// `too_few` (no sample, or they end before end_ns), `time_order` (end before start), `gap` (the first window begins
+  /// after the start; value in seconds). Reuses its memory.
   Status build(const MotionState& start, std::span<const MotionSample> samples, TimeNs end_ns,
                const Eigen::Vector3d& gravity_W_m_s2, const Deficit& deficit_rad_s = Deficit::Zero());
-  /// The same with gravity of this magnitude along -z.
+  /// Same, with gravity of this magnitude along -z.
   Status build(const MotionState& start, std::span<const MotionSample> samples, TimeNs end_ns, double gravity_m_s2,
                const Deficit& deficit_rad_s = Deficit::Zero()) {
     return build(start, samples, end_ns, Eigen::Vector3d(0.0, 0.0, -gravity_m_s2), deficit_rad_s);
@@ -87,31 +86,31 @@ class SweepTrajectory {
   TimeNs start_ns() const { return start_.time_ns; }
   double duration_s() const { return duration_s_; }
 
-  /// State at `t_s` seconds after the start. Up to kBeyond_s before the start and after the end the motion of the first
-  /// or last sample goes on (a clock may be that wrong); t_s is clamped there. `hint` remembers the interval between
-  /// calls in time order and may hold anything in [0, intervals()); any order is right.
+  /// Evaluates the motion at `t_s` seconds after the start. Outside of the segment, the motion of the first or last
+  /// sample is extrapolated by up to kBeyond_s, which covers errors of the time offset. `hint` is the interval of the
+  /// previous call and speeds up calls in time order. Any value in [0, intervals()) is valid.
   static constexpr double kBeyond_s = 0.02;
   Instant at(double t_s, std::size_t& hint) const;
-  /// S(t) + R(t) x of each point: what at() says, bit for bit, of several at a time.
+  /// Computes S(t) + R(t) x of each point: the result of at(), bit for bit, faster for several points.
   void levers(std::span<const SweepPoint> points, std::span<Eigen::Vector3f> levers_W_m) const;
   DeficitDerivative deficit_derivative(double t_s, std::size_t& hint) const;
   std::size_t intervals() const { return intervals_.size(); }
-  /// End of interval i in seconds after the start.
+  /// Returns the end of interval i in seconds after the start.
   double interval_end_s(std::size_t i) const { return intervals_[i].start_s + intervals_[i].length_s; }
 
-  /// Position of a point at lever u(t) = S(t) + R(t) x: p_0 + v_0 t + g t^2 / 2 + u.
+  /// Returns p_0 + v_0 t + g t^2 / 2. The position of a point is this plus its lever u(t) = S(t) + R(t) x.
   Eigen::Vector3d base_m(double t_s) const {
     return start_.p_WI_m + t_s * start_.v_WI_m_s + (0.5 * t_s * t_s) * gravity_W_m_s2_;
   }
 
-  /// The same as at(), and the velocity in W of a point that is fixed at x_I in the IMU's axes.
+  /// Same as at(), and also computes the velocity in W of a point that is fixed at x_I in the IMU's axes.
   Instant at(double t_s, const Eigen::Vector3d& x_I_m, std::size_t& hint, Eigen::Vector3d& velocity_m_s) const;
 
-  /// Full state at t_s within the segment, its covariance propagated from the start's without noise added.
+  /// Returns the full state at t_s within the segment, with the covariance propagated without process noise.
   MotionState state(double t_s) const;
 
-  /// First-order effect on the state (position, attitude, velocity) at t_s of the state at the start, of the deficit
-  /// rate, and of gravity.
+  /// First-order derivatives of the state (position, attitude, velocity) at t_s by start state, deficit rate and
+  /// gravity.
   struct Transition {
     Eigen::Matrix<double, 9, 9> by_start;
     Eigen::Matrix<double, 9, kDeficit> by_deficit_s;
@@ -119,11 +118,11 @@ class SweepTrajectory {
   };
   Transition transition(double t_s) const;
 
-  /// Magnitude of the saturation deficit's share in the first and the last interval, 0 on axes not clipped there.
+  /// Return |s_j| of the saturation deficit in the first and the last interval; 0 for axes not clipped there.
   Eigen::Vector3d deficit_share_at_start() const { return intervals_.front().deficit_share.cwiseAbs(); }
   Eigen::Vector3d deficit_share_at_end() const { return intervals_.back().deficit_share.cwiseAbs(); }
 
-  /// Bit j set: axis j was clipped somewhere in the segment.
+  /// Bit j is set if axis j was clipped anywhere in the segment.
   std::uint8_t clipped_axes() const { return clipped_axes_; }
 
  private:
@@ -135,7 +134,7 @@ class SweepTrajectory {
     Eigen::Vector3d deficit_share;                     // s_j where axis j is clipped, 0 elsewhere
     Eigen::Matrix<double, kKnots, 1> knot_weight =
         Eigen::Matrix<double, kKnots, 1>::Zero();                 // of each knot's deficit in this interval
-    ByDeficit deficit_attitude, deficit_v, deficit_p, deficit_a;  // derivatives at start_s; of the force by attitude
+    ByDeficit deficit_attitude, deficit_v, deficit_p, deficit_a;  // derivatives at start_s
   };
   const Interval& interval_at(double t_s, std::size_t& hint) const;
   static ByDeficit gained_by_deficit(const Interval& now, double s);

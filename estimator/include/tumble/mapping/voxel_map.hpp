@@ -21,27 +21,26 @@ struct Neighbours {
   static constexpr int kMax = 32;
   int count = 0;
   std::array<float, kMax> distance2_m2;
-  std::array<std::uint32_t, kMax> index;  ///< of the point in its VoxelMap
+  std::array<std::uint32_t, kMax> index;  ///< index of the point in its VoxelMap
 };
 
-/// Points in the world, grown sweep by sweep, searched by position.
+/// Stores points in the world, extended sweep by sweep, with nearest-neighbour search.
 ///
-/// Cells of a cubic grid hold their points in chunks of sixteen, coordinate by coordinate, so that distances are
-/// computed over contiguous floats; groups of 8x8x8 cells are found by one look-up in a hash table. Points are thinned
-/// to at most one per cube of the spacing. Copies are independent and equal. Coordinates are floats: a map is a few
-/// kilometres wide.
+/// Cells of a cubic grid store their points in chunks of sixteen, one array per coordinate, so that distances are
+/// computed over contiguous floats. One hash look-up finds a group of 8x8x8 cells. At most one point is kept per cube
+/// of the spacing. Copies are independent and equal. Coordinates are floats: a map is a few kilometres wide.
 class VoxelMap {
  public:
-  /// Mark of a point that is on no known scan line.
+  /// Mark of a point without a known scan line.
   static constexpr std::uint32_t kNoLine = 0xffffffffu;
-  /// Mark of no point.
+  /// Invalid point index.
   static constexpr std::uint32_t kNoPoint = 0xffffffffu;
 
   struct Params {
     double voxel_m = 0.5;    ///< edge of a cell; a few times the spacing searches fastest
     double spacing_m = 0.1;  ///< at most one point is kept per cube of this edge; 0 keeps all
 
-    /// Every number of it, stated once.
+    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.voxel_m, {"voxel_m", "m", 0.01, 100.0, "edge of a cell; search is fastest at a few times the spacing"});
@@ -52,57 +51,58 @@ class VoxelMap {
 
   explicit VoxelMap(const Params& params);
 
-  /// Adds a point unless its cube is taken. `sigma_m` is the uncertainty of its position; `sweep` and `line` are marks
-  /// that come back from sweep() and line(). Returns whether it was added. Points that are not finite or beyond 2^20
-  /// cells are not added.
+  /// Adds a point unless its cube is occupied. `sigma_m` is the uncertainty of its position. `sweep` and `line` are
+  /// labels that sweep() and line() return. Returns whether the point was added. Points that are not finite or beyond
+  /// 2^20 cells are not added.
   bool insert(const Eigen::Vector3f& position_W_m, float sigma_m, std::uint32_t sweep, std::uint32_t line = kNoLine) {
     return add(position_W_m, sigma_m, sweep, line) != kNoPoint;
   }
 
-  /// The same; returns the point's index, or kNoPoint where it was not added.
+  /// Same, but returns the point's index, or kNoPoint if it was not added.
   std::uint32_t add(const Eigen::Vector3f& position_W_m, float sigma_m, std::uint32_t sweep, std::uint32_t line);
-  /// Whether add() would find the place taken, or out of the map's range: what a point is worth need not be known then.
+  /// Returns whether add() would reject a point: its cube is occupied or it is out of the map's range. Lets callers
+  /// skip computing a point's properties.
   bool is_taken(const Eigen::Vector3f& position_W_m) const;
 
-  /// Moves a point that is now known better. Where it would leave its cell it stays where it was, and false is
-  /// returned.
+  /// Moves a point to a refined position. Returns false and leaves the point unchanged if it would leave its cell.
   bool move(std::uint32_t index, const Eigen::Vector3f& position_W_m);
 
-  /// A sweep saw through the place of a point, or saw the point again: each takes back one of the other.
+  /// Counts a sweep that saw through a point's position or observed the point again. The two kinds cancel each other.
   void count_sight(std::uint32_t index, bool through);
 
-  /// The k <= Neighbours::kMax nearest points within `radius_m`; equal distances in order of insertion within a cell.
-  /// Exact. Does not allocate; cost grows with the number of cells that the final radius touches.
+  /// Finds the k <= Neighbours::kMax nearest points within `radius_m`. Equal distances within a cell are in order of
+  /// insertion. Exact. Does not allocate. The cost grows with the number of cells that the final radius touches.
   void nearest(const Eigen::Vector3f& query_W_m, int k, float radius_m, Neighbours& found) const;
 
-  /// Forgets the points farther than `radius_m` from `centre` and gives their memory back. Indices change; the sweeps
-  /// that remain are renumbered in order, and the old number of each is returned. O(number of points).
+  /// Deletes the points farther than `radius_m` from `centre` and frees their memory. Indices change. The remaining
+  /// sweeps are renumbered in order; returns the old number of each. O(number of points).
   std::vector<std::uint32_t> keep_within(const Eigen::Vector3f& centre_W_m, float radius_m);
 
-  /// Forgets the points of this sweep and later ones. Indices change, sweeps keep their numbers. O(number of points).
+  /// Deletes the points of `first_sweep` and later sweeps. Indices change; sweeps keep their numbers. O(number of
+  /// points).
   void keep_before(std::uint32_t first_sweep);
 
-  /// Memory held [bytes].
+  /// Returns the memory in use [bytes].
   std::size_t bytes() const;
 
-  /// The points, and which cubes of the spacing are taken: 25 bytes a point and 8 a cube. What finds them is built
-  /// anew.
+  /// Saves the points and the occupied cubes: 25 bytes per point and 8 per cube. The search structure is rebuilt on
+  /// loading.
   void save(StateWriter& out) const;
-  /// In place of what there is, into a map of the same parameters. Trouble of the reader: `out_of_range` where points
-  /// lie where none can.
+  /// Replaces the contents of a map of the same parameters. The reader reports `out_of_range` for positions that are
+  /// not possible.
   void load(StateReader& in);
   static void describe(StateLayout& out);
 
   std::size_t size() const { return sigma_m_.size() - vacant_; }
-  /// Indices handed out are below this; those that exists() refuses are free places inside of chunks.
+  /// Upper bound of the indices in use. Indices for which exists() is false are free slots of chunks.
   std::uint32_t index_end() const { return static_cast<std::uint32_t>(sigma_m_.size()); }
   bool exists(std::uint32_t index) const { return sigma_m_[index] >= 0.0f; }
   Eigen::Vector3f position_W_m(std::uint32_t index) const;
   float sigma_m(std::uint32_t index) const { return sigma_m_[index]; }
   std::uint32_t sweep(std::uint32_t index) const { return sweep_[index]; }
-  /// Scan line of a point: returns of one ring while the sensor holds its attitude share a number.
+  /// Returns the scan line of a point. Returns of one ring share a number while the sensor's attitude is constant.
   std::uint32_t line(std::uint32_t index) const { return line_[index]; }
-  /// Sweeps that saw through its place, less those that saw it; at most 255, at least 0.
+  /// Returns the number of sweeps that saw through the point minus those that observed it, within 0 and 255.
   std::uint8_t seen_through(std::uint32_t index) const { return seen_through_[index]; }
 
  private:
@@ -117,10 +117,10 @@ class VoxelMap {
     static constexpr int kBits = 3, kMask = (1 << kBits) - 1;  // 8 cells along each edge
     static std::size_t row_of(int y, int z);
     static std::size_t place_of(const Eigen::Vector3i& cell);
-    static Eigen::Vector3i of(const Eigen::Vector3i& cell);  // which group
+    static Eigen::Vector3i of(const Eigen::Vector3i& cell);  // group of a cell
 
     std::array<std::uint32_t, 1u << (3 * kBits)> first;  // chunk of each cell
-    std::array<std::uint8_t, 1u << (2 * kBits)> rows{};  // a bit for each cell along x that holds points
+    std::array<std::uint8_t, 1u << (2 * kBits)> rows{};  // bit mask of the occupied cells along x
   };
   class Rows;
 
@@ -133,12 +133,12 @@ class VoxelMap {
 
   Params params_;
   float cells_per_m_ = 0.0f;
-  float cubes_per_m_ = 0.0f;  // of the spacing; of the cells where all are kept
+  float cubes_per_m_ = 0.0f;  // for cubes of the spacing; for cells if all points are kept
   SpatialHash groups_of_;
   SpatialHash taken_;
   std::vector<Group> groups_;
   std::vector<Chunk> chunks_;
-  std::vector<float> sigma_m_;  // per place in the chunks; negative: free
+  std::vector<float> sigma_m_;  // per slot of the chunks; negative: free
   std::vector<std::uint32_t> sweep_, line_;
   std::vector<std::uint8_t> seen_through_;
   std::size_t vacant_ = 0;

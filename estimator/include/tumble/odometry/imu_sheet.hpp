@@ -5,8 +5,10 @@
 
 namespace tumble {
 
-/// What the data sheet of an IMU says. A range of 0 is not stated: rails are found as they show themselves either way.
-/// Data sheets state a gyro's range in degrees a second, 250 to 4000: one beyond 100 rad/s (5730) was not converted.
+/// Data sheet of an IMU. A range of 0 means not stated. Saturation levels are detected from the readings in either
+/// case.
+/// Data sheets state a gyro's range in degrees per second, 250 to 4000. A value above 100 rad/s (5730 deg/s) is
+/// rejected because it was probably not converted.
 struct ImuSheet {
   double rate_hz = 100.0;
   double gyro_range_rad_s = 0.0;
@@ -14,7 +16,7 @@ struct ImuSheet {
   double gyro_noise_rad_s_sqrt_hz = 5.236e-4;
   double accel_noise_m_s2_sqrt_hz = 5.9e-4;
 
-  /// Every number of it, stated once.
+  /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.rate_hz, {"rate_hz", "Hz", 1.0, 1e5, "samples per second", Rank::first});
@@ -29,14 +31,15 @@ struct ImuSheet {
   }
 };
 
-/// Below this a reading is one for sure, given the range that the device states; infinite where it states none (0). A
-/// calibration moves a rail by its error of scale, which 2 % leaves room for.
+/// Returns the largest reading that is certainly unsaturated, for the range that the device states. Returns infinity if
+/// no range is stated (0). The margin of 2 % covers the scale correction that a device's calibration applies to its
+/// saturation level.
 double sure_range(double stated_range);
 
-/// Sheets of devices that the harness has models of, with the sources of each number: models/sensors/NAME.yaml.
+/// Data sheets of devices that the harness models. Each number's source: models/sensors/NAME.yaml.
 namespace sheets {
 
-/// Xsens MTi-30, fifth generation (20 g); its gyro is stated to 450 deg/s.
+/// Xsens MTi-30, fifth generation (20 g); stated gyro range 450 deg/s.
 ImuSheet mti30();
 /// VectorNav VN-100.
 ImuSheet vn100();

@@ -5,12 +5,12 @@
 
 namespace tumble {
 
-/// What the data sheet of a lidar says. Returns outside of the range are dropped.
+/// Data sheet of a lidar. Returns out of its range are dropped.
 struct LidarSheet {
   double range_min_m = 0.3;
   double range_max_m = 100.0;
 
-  /// Every number of it, stated once.
+  /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.range_min_m, {"range_min_m", "m", 0.0, 10.0, "returns nearer than this are dropped", Rank::first});
@@ -18,7 +18,7 @@ struct LidarSheet {
   }
 };
 
-/// Sheets of devices that the harness has models of, with the sources of each number: models/sensors/NAME.yaml.
+/// Data sheets of devices that the harness models. Each number's source: models/sensors/NAME.yaml.
 namespace sheets {
 
 /// RoboSense RS-16.

@@ -10,7 +10,9 @@
 #include <vector>
 
 #include "tumble/angular_velocity/detail/frozen_axes.hpp"
+#include "tumble/attitude/detail/rest_gravity.hpp"
 #include "tumble/attitude/imu_merge.hpp"
+#include "tumble/common/outlier_filter.hpp"
 #include "tumble/common/pose.hpp"
 #include "tumble/common/sample_clock.hpp"
 #include "tumble/odometry/detail/unit_rails.hpp"
@@ -19,40 +21,40 @@
 
 namespace tumble {
 
-/// Pose of a rolling sphere from one to four IMUs, through grip, slip, bumps and slopes: live, and smoothed with what
-/// follows within `lag_s`. UnitRails flags what a device clips without saying so, ImuMerge makes the IMUs one,
-/// RollingSmoother (with its RollingFilter) does the rest.
+/// Estimates the pose of a rolling sphere from one to four IMUs, through grip, slip, bumps and slopes: live, and
+/// smoothed with the data of the following `lag_s`. UnitRails flags readings that a device clips without reporting it,
+/// ImuMerge fuses the IMUs, and RollingSmoother (with its RollingFilter) estimates the motion.
 ///
-/// World: z up, origin at the sphere's centre at the first sample, yaw 0 there. Begin with a second of rest. State of
-/// half a megabyte, 0.1 for each IMU, and 11 KiB for each 0.02 s of lag; a sample that ends no block
-/// (RollingSmoother::Params::block_s) allocates nothing once the first have come, but for poses that nobody takes. A
-/// call needs 64 KiB of stack at most. No threads, no files, no printing. Copies carry all state. Not modelled: see the
-/// classes named.
+/// World: z up, origin at the sphere's centre at the first sample, yaw 0 there. Start with one second at rest.
+///
+/// Cost: the state takes half a megabyte, plus 0.1 MB per IMU and 11 KiB per 0.02 s of lag. A sample that ends no block
+/// (RollingSmoother::Params::block_s) allocates nothing after start-up, except for poses not yet fetched by take(). A
+/// call needs at most 64 KiB of stack. No threads, no files, no printing. Copies contain the complete state. Not
+/// modelled: see the classes named above.
 class RollingOdometry {
  public:
   /// One IMU of the sphere.
   struct Unit {
     ImuSheet sheet;
-    /// The unit in axes of the sphere, from its centre: a point in axes of the sphere is T_BI times one of the unit's.
-    /// It lies within the sphere.
+    /// Pose of the IMU, which is inside the sphere, in axes from the sphere's centre: x_B = T_BI x_I.
     Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();
   };
   struct Params {
-    double radius_m = 0.0;    ///< has no default
-    std::vector<Unit> units;  ///< 1 to ImuMerge::kImus; has no default
-    /// Of the place that T_BI counts from, about the true centre: standard deviation. It is estimated.
+    double radius_m = 0.0;    ///< required, no default
+    std::vector<Unit> units;  ///< 1 to ImuMerge::kImus; required, no default
+    /// Standard deviation of the origin of T_BI about the sphere's true centre. The offset is estimated.
     double centre_sigma_m = 6e-3;
     double gravity_m_s2 = 9.80665;
-    double lag_s = 0.0;  ///< take() gives poses smoothed with what follows for so long; 0: live poses
+    double lag_s = 0.0;  ///< lag of the smoothed poses of take(); 0: live poses
 
-    /// What few need. Of the same numbers as above those above count.
+    /// Parameters that few users change. Where both structs contain a number, the outer struct has priority.
     struct Expert {
       ImuMerge::Params merge;
       RollingSmoother::Params rolling;
-      SampleClock::Params stamps;  ///< of stamps that a host put on the samples
+      SampleClock::Params stamps;  ///< correction of stamps that a host assigned
     } expert;
 
-    /// Every number of it, stated once.
+    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.radius_m, {"radius_m", "m", 1e-3, 100.0, "radius of the sphere", Rank::first});
@@ -68,13 +70,13 @@ class RollingOdometry {
     }
   };
   struct Pose {
-    PoseState pose;  ///< of the sphere's centre, in axes of the sphere; of a live one the attitude has no covariance
+    PoseState pose;  ///< sphere's centre, sphere axes; live poses have no attitude covariance
     RollingMode mode = RollingMode::grip;
     bool at_rest = false;
-    bool uncertain = false;  ///< in an event that made the position uncertain (RollingModeParams::uncertain_m)
+    bool uncertain = false;  ///< an event made the position uncertain (RollingModeParams::uncertain_m)
   };
 
-  /// Throws InvalidParams on a parameter outside of its bound.
+  /// Throws InvalidParams if a parameter is out of bounds.
   explicit RollingOdometry(const Params& params);
   RollingOdometry(const RollingOdometry& other);
   RollingOdometry& operator=(const RollingOdometry& other);
@@ -82,68 +84,80 @@ class RollingOdometry {
   RollingOdometry& operator=(RollingOdometry&&) noexcept = default;
   ~RollingOdometry() = default;
 
-  /// Takes what all units read at one time (the first's stamp counts, and where a host jitters what SampleClock makes
-  /// of it); one that has nothing to say gives NaN. On
-  /// trouble the state is as it was: `too_few` (units, or one that has something to say), `time_order`, `degenerate`
-  /// (no gravity in the first sample), `gap` (more than a second: the way is not known any more, and the run is over
-  /// until reset()), `out_of_range` after finish() and where the only unit that is heard has a frozen axis.
+  /// Processes simultaneous readings of all units. The stamp of the first counts, corrected by SampleClock if a host's
+  /// stamps jitter. A unit without a reading is passed as NaN. OutlierFilter rejects single wild readings of each unit.
+  /// It may delay the samples of all units by one; newest() is then one sample older. On error the state is unchanged:
+  /// `too_few` (wrong number of units, or no reading), `time_order`, `degenerate` (no gravity in the first sample),
+  /// `gap` (more than a second: the run ends until reset()), `out_of_range` (after finish(), or the only unit with
+  /// readings has a frozen axis).
   Status add_imus(std::span<const ImuSample> samples);
-  /// The same of a sphere with one.
+  /// Same for a sphere with one IMU.
   Status add_imu(const ImuSample& sample) { return add_imus({&sample, 1}); }
 
-  /// Pose at the newest sample by what came before it. Nothing before the first.
+  /// Returns the pose at the newest sample from all data so far; nothing before the first sample.
   std::optional<Pose> newest() const;
 
-  /// The next pose of those given out once each, in order of time: lag_s old, or live ones without a lag.
+  /// Returns the next pose in time order, each pose once. Poses are smoothed and lag_s old, or live if the lag is 0.
   std::optional<Pose> take();
 
-  /// Smooths what is still within the lag: the run has ended, until reset().
+  /// Ends the run and smooths the poses still within the lag. add_imus() is rejected until reset().
   void finish();
 
-  /// Begins a new run: at the origin, at rest. Poses that wait for take() stay.
+  /// Starts a new run at the origin and at rest. Poses not yet fetched by take() remain available.
   void reset();
 
-  /// Whether the units can be believed just now: `ok`, or `out_of_range` with unit and axis by name that has frozen
-  /// (FrozenAxes), for how long and the bound. What that unit reads is left out meanwhile; where it is the only one
-  /// that is heard, add_imus() says so and takes nothing in.
-  Status doubt() const { return doubt(frozen_); }
+  /// Reports whether the readings are plausible now. Returns `ok`, or `out_of_range` with a finding: the unit and axis
+  /// that is frozen (FrozenAxes) and the duration, or a force at rest that differs from gravity (RestGravity). The
+  /// readings of a frozen unit are ignored. If no other unit has readings, add_imus() rejects the sample.
+  Status doubt() const;
 
-  /// What the IMUs say of each other: frozen, disagreeing, late ones.
+  /// Returns the state of the IMU fusion: frozen, disagreeing and delayed units.
   const ImuMerge::State& units() const { return *merge_state_; }
 
-  /// As TumblingOdometry::mended_jitter_s: of the stamps [s].
+  /// Returns the number of readings that OutlierFilter rejected, over all units.
+  std::size_t rejected_readings() const;
+  /// Returns the jitter of the stamps [s]; see TumblingOdometry::mended_jitter_s.
   std::optional<double> mended_jitter_s() const;
 
-  /// As TumblingOdometry::save and load: a state of up to a megabyte, less at rest, and what the lag holds.
+  /// Save, load, saved parameters: see TumblingOdometry. The size is up to a megabyte, less at rest, plus the lag's
+  /// data.
   std::vector<std::byte> save() const;
   Status load(std::span<const std::byte> bytes);
   static Status saved_params(std::span<const std::byte> bytes, Params& params);
 
-  /// Stated once, in the library's own sources: state_visitor.hpp.
+  /// Visits every member of the state. Defined in the library's sources: state_visitor.hpp.
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
 
  private:
   using Frozen = std::array<FrozenAxes::State, ImuMerge::kImus>;
+  using Outliers = std::array<OutlierFilter::State, ImuMerge::kImus>;
 
   RollingOdometry(const Params& params, const ImuMerge::Params& merged);
 
+  Status add_held(std::span<const ImuSample> next);
+  Status add_inliers(std::span<const ImuSample> samples);
   Status take_in(const ImuSample& merged);
   Status leave_out_frozen(const Frozen& frozen, std::span<ImuSample> samples) const;
-  Status doubt(const Frozen& frozen) const;
+  Status frozen_axis(const Frozen& frozen) const;
 
   Params params_;
   SampleClock clock_;
-  SampleClock::State stamps_;  ///< of the samples taken in
+  SampleClock::State stamps_;  ///< of accepted samples
   ImuMerge merge_;
   RollingSmoother smoother_;
   UnitRails rails_;
   std::unique_ptr<ImuMerge::State> merge_state_;
-  std::unique_ptr<ImuMerge::State> merged_state_;  ///< memory for the next one
+  std::unique_ptr<ImuMerge::State> merged_state_;  ///< buffer for the next state
   std::unique_ptr<RollingSmoother::State> state_;
   UnitRails::State rails_state_;
-  std::vector<FrozenAxes> watches_;  ///< of the units
+  std::vector<OutlierFilter> filters_;  ///< one per unit
+  Outliers outliers_{};
+  std::optional<UnitRails::Samples> held_;  ///< samples of all units while OutlierFilter delays one of them
+  std::vector<FrozenAxes> watches_;         ///< one per unit
   Frozen frozen_{};
+  RestGravity gravity_;
+  std::array<RestGravity::Size, ImuMerge::kImus> gravity_state_{};
   std::vector<RollingEstimate> done_;
   std::size_t taken_ = 0;
   bool live_ = true, finished_ = false;

@@ -14,8 +14,8 @@
 #include "tumble/rolling/rolling_filter.hpp"
 #include "tumble/rolling/rolling_smoother.hpp"
 
-/// States of streams as bytes that somebody keeps, for a robot that reboots. The doors have save() and load() of their
-/// own.
+/// Serialisation of stream states, for example to resume after a reboot. TumblingOdometry and RollingOdometry have
+/// their own save() and load().
 namespace tumble {
 
 template <class Stream>
@@ -23,21 +23,24 @@ concept SavedStream =
     std::same_as<Stream, RateStream> || std::same_as<Stream, RegimeStream> || std::same_as<Stream, CarriedStream> ||
     std::same_as<Stream, CarriedLive> || std::same_as<Stream, RollingFilter> || std::same_as<Stream, RollingSmoother>;
 
-/// A state and the parameters of the stream that it is of, as bytes that are the same on every machine, with a
-/// checksum: a stream of the same parameters that loads them goes on with the same bits.
+/// Serialises a state and the parameters of its stream, with a checksum. The bytes are the same on every machine. A
+/// stream of the same parameters that loads them continues with bit-identical results.
 template <SavedStream Stream>
 std::vector<std::byte> save_state(const typename Stream::Params& params, const typename Stream::State& state);
 
-/// What save_state() was given, in place of what is in `state`. On trouble that is as it was: `too_few` (bytes that end
-/// early), `non_finite`, `time_order`, `gap`, `out_of_range`, with the field, what the bytes say and the bound.
-/// Parameters that are not those of the bytes are trouble too: the first that differs, the one saved and the one here.
-/// Bytes of another stream or version of the library, or damaged ones, are refused. Throws InvalidParams as the
-/// stream's constructor.
+/// Replaces `state` by the state that save_state() wrote. On error `state` is unchanged. Errors name the field, the
+/// stored value and the bound:
+/// - `too_few`: truncated bytes.
+/// - `non_finite`, `time_order`, `gap`, `out_of_range`: the stored state is invalid.
+/// - The first parameter that differs: the stored value and the value of this stream.
+/// - Bytes of another stream or library version, and damaged bytes, are rejected.
+///
+/// Throws InvalidParams as the stream's constructor does.
 template <SavedStream Stream>
 Status load_state(std::span<const std::byte> bytes, const typename Stream::Params& params,
                   typename Stream::State& state);
 
-/// The parameters that such bytes are of, to make a stream of; on trouble `params` are as they were.
+/// Reads the parameters stored in a saved state. On error `params` is unchanged.
 template <SavedStream Stream>
 Status saved_params(std::span<const std::byte> bytes, typename Stream::Params& params);
 

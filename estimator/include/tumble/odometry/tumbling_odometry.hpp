@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "tumble/common/outlier_filter.hpp"
 #include "tumble/common/sample_clock.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 #include "tumble/odometry/detail/odometry_pass.hpp"
@@ -16,114 +17,121 @@
 
 namespace tumble {
 
-/// Pose, velocity and map of a body that tumbles, from one IMU whose gyro may clip and a lidar whose sweeps are bent:
-/// causal, sample by sample. SampleClock tells when a sample was taken, where a host stamps; RegimeStream gives each
-/// sample its angular velocity, clipped or not, when it is `lag_s` old; LidarInertialOdometry takes samples and sweeps
-/// as their rates become known.
+/// Estimates pose, velocity and map of a tumbling body from one IMU, whose gyro may saturate, and a lidar with skewed
+/// sweeps. The estimation is causal. SampleClock corrects stamps that a host assigned. RegimeStream estimates each
+/// sample's angular velocity with a delay of `lag_s`. LidarInertialOdometry then processes samples and sweeps.
 ///
-/// Of each sweep there are three words: newest() places the IMU at any time, by inertia from the last sweep that was
-/// registered on; take() gives the sweep at most lag_s after its end, registered (`report.pose`); and the sweep after
-/// it brings its last word (`report.smoothed`), at ten a second at most 0.3 s after its end. Poses bear times of the
-/// IMU's clock and stand in the world of LidarInertialOdometry: z up, origin and yaw at the IMU at the first sample.
-/// Begin at rest, half a second or more: it levels the attitude. Once, some seconds after the motion began, map and
-/// pose move to where a second pass over those seconds puts them, with the rig and the calibration that they told
-/// (SecondPass); poses given out before stay. A lidar that is silent for a second is made up for by inertia, a sweep
-/// without points.
+/// Three poses of increasing accuracy are reported. newest() predicts the IMU's pose at the newest sample by inertial
+/// integration from the last registered sweep. take() returns a sweep registered to the map (`report.pose`), at most
+/// lag_s after its end. The next sweep brings its final pose (`report.smoothed`): at most 0.3 s after its end, at ten
+/// sweeps per second. Stamps of poses are in the IMU's clock. World: see LidarInertialOdometry; the first sweep with
+/// enough points starts the map and has no pose error, and there are no poses before it. Start with at least half a
+/// second at rest, which levels the attitude.
 ///
-/// An IMU sample costs one step of the stream, and now and then a sweep's registration; one that ends no sweep
-/// allocates nothing once the first have come. While the second pass runs a sweep costs up to four registrations, and
-/// five more once, as it catches up. Memory is bounded by the lag, the map's radius, `sweeps_max` and what the second
-/// pass remembers, but for 12 bytes a sweep while the body stays within ten metres; a call needs 64 KiB of stack at
-/// most. No threads, files, printing. Copies carry all state: runs may be split. Not modelled: see the two classes.
+/// Some seconds after motion starts, SecondPass processes those seconds again with the calibration estimated so far.
+/// Map and pose then switch once to its result; earlier poses are not changed. If the lidar is silent for a second,
+/// inertial integration continues and reports a sweep without points.
+///
+/// Cost: an IMU sample costs one step of the stream, and sometimes the registration of a sweep. A sample that ends no
+/// sweep allocates nothing after start-up. While the second pass runs, a sweep costs up to four registrations, and once
+/// five more at its end. Memory is bounded by the lag, the map radius, `sweeps_max` and the buffer of the second pass,
+/// plus 12 bytes per sweep within ten metres. A call needs at most 64 KiB of stack.
+///
+/// The class uses no threads and no files and prints nothing. Copies contain the complete state, so a run may be split.
+/// Not modelled: see RegimeStream and LidarInertialOdometry.
 class TumblingOdometry {
  public:
   using Params = TumblingParams;
 
-  /// What became of a sweep.
+  /// Result of one sweep.
   struct Sweep {
-    Status status;  ///< of LidarInertialOdometry::add_sweep; where it could not be placed `report.trajectory` is empty
+    Status status;  ///< as LidarInertialOdometry::add_sweep; without a pose, `report.trajectory` is empty
     LidarInertialOdometry::SweepReport report;
   };
 
-  /// Throws InvalidParams on a parameter outside of its bound, a lever arm that was not stated and a box of the own
-  /// body whose corners are swapped.
+  /// Throws InvalidParams if a parameter is out of bounds, the lever arm is not set, or the own-body box is invalid.
   explicit TumblingOdometry(const Params& params);
 
-  /// Takes a sample of the IMU, in order of time. Sweeps whose rates are known with it are registered now. On trouble
-  /// (`non_finite`, `time_order`, `gap`) the state is as it was, but that the sample after a gap beyond the stream's
-  /// bound, a second, is held back: when the next one bears it out the rates begin anew with what is known of the rig
-  /// (gaps() counts), and the mapper bridges the gap by inertia; one stamp that is wrong costs one sample.
+  /// Processes an IMU sample; stamps must increase. Registers the sweeps whose rates become available. On `non_finite`,
+  /// `time_order` or `gap` the state is unchanged, with one exception. The sample after a gap of more than a second
+  /// waits for confirmation by the next one. The rates then restart with the current calibration (gaps() counts them),
+  /// and the mapper bridges the gap by inertial integration. A single wrong stamp thus costs one sample.
+  /// OutlierFilter rejects single wild readings. It may delay a sample by one; newest() is then one sample older.
   Status add_imu(const ImuSample& sample);
-  /// Takes a sweep of points fired in [start_ns, end_ns], at any time after its last point; they are copied. Those from
-  /// before the last sweep's end are left out: stamps jitter. Trouble that leaves the state as it was: `time_order` (an
-  /// end before its start, or more than half of it before that end), `out_of_range` (the offset of a point beyond the
-  /// sweep; an end more than a second after the newest sample; too many that wait). What the mapper makes: take().
+  /// Processes a sweep of points fired in [start_ns, end_ns], at any time after its last point. The points are copied.
+  /// Points from before the end of the last sweep are dropped because stamps jitter. On error the state is unchanged.
+  /// `time_order`: the end is before the start, or half of the sweep is before the end of the last sweep.
+  /// `out_of_range`: a point is beyond the sweep, the end is a second after the newest sample, a stamp is beyond 100
+  /// years, or too many sweeps wait.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points);
-  /// What an odometer of the robot's says, if it has one (detail/odometer_reading.hpp), before its sweep is registered,
-  /// which is lag_s after the sweep's end: of each sweep, from the end of the one before, the last reading counts.
-  /// Trouble leaves the state as it was: `empty` (no sample yet), `non_finite`, `time_order` (its sweep is gone),
-  /// `out_of_range` (a deviation not above 0, a second ahead of the newest sample, 1024 that wait).
+  /// Processes an odometer reading (detail/odometer_reading.hpp). The reading must arrive before its sweep is
+  /// registered, which is lag_s after the sweep's end. The last reading of a sweep counts. On error the state is
+  /// unchanged: `empty` (no IMU sample yet), `non_finite`, `time_order` (the sweep is already registered),
+  /// `out_of_range` (standard deviation not above 0, stamp a second ahead of the newest sample, or 1024 readings wait).
   Status add_velocity(const VelocityReading& velocity);
   Status add_motion(const MotionReading& motion);
-  /// The next sweep that was registered, in order; nothing when there is none yet.
+  /// Returns the next registered sweep, in order, or nothing.
   std::optional<Sweep> take();
-  /// Settles what there is: at the end of a run, or at a halt. Sweeps that the IMU covers are registered; take() gives
-  /// them, and mapper().open_trajectories() the last word of those still in the window. What comes later begins the
-  /// rates anew, with what is known of the rig.
+  /// Registers all sweeps that the IMU covers, at the end of a run or during a halt. take() then returns them, and
+  /// mapper().open_trajectories() the final poses of sweeps in the window. Later rates restart with the current
+  /// calibration.
   void finish();
 
-  /// Pose and velocity of the IMU at its newest sample, by inertia from the last sweep that was registered, with
-  /// covariance. `empty` before that. Allocates; O(samples since then).
+  /// Predicts pose and velocity of the IMU at its newest sample, with covariance, by inertial integration from the last
+  /// registered sweep. Returns `empty` before the first sweep. Allocates; O(samples since the last sweep).
   Status newest(PoseState& pose) const;
-
-  /// Whether what it is told can be believed just now: `ok`, or `out_of_range` with the axis of the IMU by name that
-  /// has frozen and for how long, with an accelerometer of the other sense (FlightSense), with the scale of the
-  /// lidar's ranges where the IMU contradicts it (SweepScale), with what says that it no longer knew where on its map
-  /// it was (Localisation), which is for good, or with how far the lidar's calibration moved (GivenCalibration). It
-  /// goes on either way: rates that nothing is known of have a wide deviation; a map of another scale is one.
+  /// Reports whether the inputs and the pose are plausible now. Estimation continues in either case. Returns `ok`, or
+  /// `out_of_range` with a finding: a frozen IMU axis and its duration, an inverted accelerometer (FlightSense), a
+  /// wrong unit of the accelerometer after a second of rest (RestGravity), a wrong scale of the lidar's ranges
+  /// (SweepScale), tracking failure (Localisation, permanent), or too large a change of the lidar's calibration
+  /// (GivenCalibration).
   Status doubt() const;
-  /// By how much the lidar's ranges are longer than the IMU has it, as far as the motion told.
+  /// Returns the estimated range scale of the lidar relative to the IMU, as far as the motion determines it.
   const SweepScale& sweep_scale() const { return pass_.sweep_scale(); }
-  /// Time of the newest sample that was taken in.
+  /// Returns the time of the newest accepted sample.
   std::optional<TimeNs> newest_ns() const { return newest_ns_; }
-  /// Rate of the newest sample, if any: provisional where the gyro clips, since what follows tells most of it.
+  /// Returns the rate of the newest sample, if any. While the gyro is saturated, the rate is provisional.
   std::optional<RateState> newest_rate() const { return pass_.rates().rate().newest(pass_.rate_state().rate); }
-  /// Latest smoothed rate, lag_s old, or a sample less where a sweep waited for it. Nothing while the lag fills.
+  /// Returns the latest smoothed rate, about lag_s old. Empty while the lag fills.
   const std::optional<RateState>& smoothed_rate() const { return pass_.smoothed_rate(); }
-  /// What is known of the IMU on the body: lever arm, biases, elements.
+  /// Returns the estimated calibration of the IMU on the body: lever arm, biases and sensing elements.
   RigCalibration rig() const { return pass_.rates().rate().calibration(pass_.rate_state().rate); }
   const KnownRails& rails() const { return pass_.rate_state().rate.rails.known; }
-  /// Gaps of the IMU after which the rates began anew.
+  /// Returns the number of IMU gaps after which the rates restarted.
   std::size_t gaps() const { return gaps_; }
-  /// Whether the map and the pose are those of the second pass (SecondPass).
+  /// Returns the number of samples that OutlierFilter rejected because of wild readings or stamps.
+  std::size_t rejected_readings() const { return outliers_.rejected; }
+  /// Returns whether map and pose are those of the second pass (SecondPass).
   bool passed_again() const { return again_.taken(); }
-  /// Samples that the mapper refused with their rates, sweeps that nobody took in time, an odometer's readings that
-  /// reach from one sweep into the next, and are not used: 0 unless something is wrong.
+  /// Return the numbers of samples that the mapper rejected, of sweeps not fetched in time, of sweeps that ended before
+  /// the IMU's first sample, and of odometer readings that span two sweeps. All are 0 in normal operation.
   std::size_t refused_samples() const { return pass_.refused_samples(); }
   std::size_t dropped_sweeps() const { return dropped_sweeps_; }
+  std::size_t early_sweeps() const { return early_sweeps_; }
   std::size_t unused_readings() const { return readings_.straddling(); }
-  /// Standard deviation of the IMU's stamps about a regular clock [s], while that clock's times count for them.
+  /// Returns the standard deviation of the IMU's stamps about a regular clock [s], while stamps are corrected.
   std::optional<double> mended_jitter_s() const;
-  /// The map, and all that the mapper tells beside.
+  /// Returns the mapper: the map and further results.
   const LidarInertialOdometry& mapper() const { return pass_.mapper(); }
 
-  /// All that it knows, map, rig, second pass and what waits for take() included, as bytes that are the same on every
-  /// machine: one of the same parameters that loads them goes on with the same bits. A checksum is with them. Two
-  /// states are equal when their bytes are. What a map costs: docs/tutorials/your_robot.md.
+  /// Saves the complete state: map, calibration, second pass and sweeps not yet fetched by take(). The bytes are the
+  /// same on every machine and include a checksum. An object of the same parameters that loads them continues with
+  /// bit-identical results. Two states are equal if their bytes are. Size of a saved map: docs/tutorials/your_robot.md.
   std::vector<std::byte> save() const;
-  /// Goes on from where save() was called, in place of what is here. On trouble this is as it was: `too_few` (bytes
-  /// that end early), `non_finite`, `time_order`, `gap`, `out_of_range`, with the field, what the bytes say and the
-  /// bound. So are parameters that are not those of the state, bytes of another version of the library, damaged ones.
+  /// Replaces this state by a saved one. On error this state is unchanged. Errors name the field, the stored value and
+  /// the bound: `too_few` (truncated bytes), `non_finite`, `time_order`, `gap`, `out_of_range`. Other parameters,
+  /// another library version and damaged bytes are errors, too.
   Status load(std::span<const std::byte> bytes);
-  /// The parameters that such bytes are of, to make one of; on trouble `params` are as they were.
+  /// Reads the parameters stored in a saved state. On error `params` is unchanged.
   static Status saved_params(std::span<const std::byte> bytes, Params& params);
-  /// Stated once, in the library's own sources: state_visitor.hpp.
+  /// Visits every member of the state. Defined in the library's sources: state_visitor.hpp.
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
 
  private:
   Status check_state() const;
   Status add_reading(const OdometerReading& reading);
+  Status add_inlier(const ImuSample& sample);
   Status take_in(const ImuSample& sample);
   void register_sweep(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points);
   bool is_due(TimeNs end_ns) const;
@@ -133,18 +141,20 @@ class TumblingOdometry {
   void begin_rates();
 
   Params params_;
+  OutlierFilter filter_;
+  OutlierFilter::State outliers_;
   SampleClock clock_;
-  SampleClock::State stamps_;  ///< of the samples taken in
+  SampleClock::State stamps_;  ///< of accepted samples
   OdometryPass pass_;
   SecondPass again_;
-  std::optional<TimeNs> newest_ns_;      ///< of the samples taken in
-  std::optional<ImuSample> after_gap_;   ///< held back
-  std::optional<TimeNs> registered_ns_;  ///< end of the last sweep that was registered; the first sample before that
-  std::size_t gaps_ = 0, dropped_sweeps_ = 0;
+  std::optional<TimeNs> newest_ns_;      ///< of accepted samples
+  std::optional<ImuSample> after_gap_;   ///< first sample after a gap, not yet confirmed
+  std::optional<TimeNs> registered_ns_;  ///< end of the last registered sweep; before that, the first sample
+  std::size_t gaps_ = 0, dropped_sweeps_ = 0, early_sweeps_ = 0;
   std::deque<WaitingSweep> waiting_;
   WaitingReadings readings_;
   std::deque<Sweep> done_;
-  std::optional<TimeNs> sweep_end_ns_;  ///< of the last sweep taken in
+  std::optional<TimeNs> sweep_end_ns_;  ///< of the last accepted sweep
 };
 
 }  // namespace tumble

@@ -17,20 +17,21 @@
 
 namespace tumble {
 
-/// What few need of TumblingParams. Of the same numbers those of TumblingParams count, and gravity_m_s2 for all parts.
+/// Parameters of TumblingOdometry that few users change. Where TumblingParams contains the same number, TumblingParams
+/// has priority. gravity_m_s2 applies to all parts.
 struct TumblingExpertParams {
   double gravity_m_s2 = 9.80665;
-  /// Sweeps that may wait for the IMU, beside those that the lag holds back; and for take(), the oldest being
-  /// dropped.
+  /// Maximum number of sweeps that wait for IMU samples, in addition to those within the lag. Also the maximum number
+  /// that wait for take(); the oldest is dropped.
   std::size_t sweeps_max = 16;
-  /// With a device that is taken for what its sheet says until the readings tell otherwise (`uncalibrated` 0.003): what
-  /// is open of it widens each rate, and sweeps are placed by them before the readings have told.
+  /// Rate estimation. `uncalibrated` 0.003 assumes the device's data sheet until readings show otherwise. The
+  /// uncertainty of the calibration widens each rate, since sweeps use the rates before the calibration is estimated.
   RegimeStream::Params rate = rate_defaults();
-  /// With gravity's direction and what the rails hid of the rate among the unknowns.
+  /// Mapping. Gravity's direction and the saturation deficit are among the unknowns.
   OdometryParams mapping = mapping_defaults();
-  /// Of stamps that a host put on the IMU's samples.
+  /// Correction of stamps that a host assigned to the IMU's samples.
   SampleClock::Params stamps;
-  /// The second pass over the first seconds of motion, with what they told of rig and calibration.
+  /// Second pass over the first seconds of motion, with the calibration estimated from them.
   SecondPass::Params again;
   static OdometryParams mapping_defaults();
   static RegimeStream::Params rate_defaults();
@@ -46,36 +47,35 @@ struct TumblingExpertParams {
   }
 };
 
-/// Of TumblingOdometry.
+/// Parameters of TumblingOdometry.
 struct TumblingParams {
   ImuSheet imu;
-  /// From the body's centre of mass to the IMU, in IMU axes: what turns rates into forces; and how well it is known
-  /// (standard deviation per axis). It is estimated. Has no default: zero is an IMU at the centre of mass.
+  /// Lever arm from the body's centre of mass to the IMU, in IMU axes, and its standard deviation per axis. The lever
+  /// arm relates rates to forces and is estimated. There is no default: zero would mean an IMU at the centre of mass.
   Eigen::Vector3d lever_arm_I_m = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
   double lever_arm_sigma_m = 0.01;
   Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< lidar in IMU axes
-  /// Of T_IL and of the lidar's clock: standard deviations, both are estimated; 0: exact.
+  /// Standard deviations of T_IL and of the lidar's time offset. Both are estimated; 0: exact.
   double mount_sigma_rad = 0.01;
   double mount_sigma_m = 0.006;
   double time_offset_sigma_s = 0.003;
   LidarSheet lidar;
-  /// Returns inside are the robot's own; Eigen's empty box, as here: none are. One whose corners are swapped is
-  /// refused.
+  /// Returns inside this box hit the robot itself and are dropped. Eigen's empty box, the default, keeps all returns. A
+  /// box with swapped corners is rejected.
   Eigen::AlignedBox3d own_body_L;
-  double lag_s =
-      0.2;  ///< how old a sample is when its rate is given out; a sweep waits no longer, two samples at least
+  double lag_s = 0.2;  ///< age of a sample when its rate is reported; sweeps wait as long, at least two samples
 
   using Expert = TumblingExpertParams;
-  Expert expert;  ///< what few need
+  Expert expert;  ///< parameters that few users change
 
-  /// T_IL and the clock, as sure as they are given.
+  /// Returns T_IL and the time offset with their stated standard deviations.
   GivenCalibration given_calibration() const {
     GivenCalibration out{{}, mount_sigma_rad, mount_sigma_m, time_offset_sigma_s};
     out.calibration.T_IL = T_IL;
     return out;
   }
 
-  /// Every number of it, stated once.
+  /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit.group("imu_", p.imu);

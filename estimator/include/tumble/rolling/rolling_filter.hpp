@@ -13,24 +13,27 @@
 
 namespace tumble {
 
-/// Pose of a rolling sphere from one IMU, through slip, slide and bumps, on a floor that is level or has slopes; live.
+/// Estimates the pose of a rolling sphere from one IMU, live, through slip, slide and bumps, on a floor that is level
+/// or sloped.
 ///
-/// While the sphere grips, rolling is a velocity measurement; it calibrates tilt, biases, scale, misalignment, delay
-/// and lever arm of the IMU, so that the seconds without grip can be integrated. Whether it grips is inferred: a Kalman
-/// filter of the errors per hypothesis about the past modes, kept until what follows decides. The position is part of
-/// each filter's state, so that the grip after an event mends the way made in it; older estimates are not revised
-/// (RollingSmoother does that). While it stands still the position that is given out does too: what rest teaches of the
-/// way before is taken up when the motion goes on, or at once where another hypothesis becomes the best.
+/// While the sphere grips, the rolling constraint is a velocity measurement. This measurement calibrates tilt, biases,
+/// scale, misalignment, delay and lever arm of the IMU, so that the seconds without grip can be integrated. The mode of
+/// contact is estimated: each hypothesis about the past modes has its own error-state Kalman filter until later data
+/// decide between them. Each filter contains the position. Grip after an event therefore also corrects the displacement
+/// during the event. Earlier estimates are not revised (RollingSmoother does this).
 ///
-/// Readings count by their time: those of a fast IMU are averaged to RollingExpertParams::reading_s before anything is
-/// decided by them, and the estimate between two averages is the last one, carried on. Over a gap of up to gap_max_s
-/// the rate is interpolated and the force unknown, which the covariance shows. A start in motion is told and believed
-/// less.
+/// While the sphere is at rest, the reported position is constant. Corrections of the earlier path from measurements at
+/// rest are applied when motion resumes. Corrections are applied immediately if another hypothesis becomes the most
+/// probable.
 ///
-/// While the gyro stands at its rail the attitude is unknown to that extent, and rolling says nothing: the position is
-/// then bounded by the covariance alone. The state needs 430 KiB.
+/// Readings of a fast IMU are averaged to RollingExpertParams::reading_s before they are processed. Between two
+/// averages the estimate is extrapolated. Over a gap of up to gap_max_s the rate is interpolated and the force is
+/// unknown; the covariance accounts for both. A start in motion is detected and has a larger initial uncertainty.
 ///
-/// Not modelled: a floor that moves or gives way, wheels of the world under it. Heading drifts.
+/// While the gyro is saturated, the attitude is uncertain and the rolling constraint is not usable. Only the covariance
+/// then describes the position's error. The state needs 430 KiB.
+///
+/// Not modelled: a floor that moves or yields, moving platforms. The heading drifts.
 class RollingFilter {
  public:
   static constexpr int kStates = 40;
@@ -39,43 +42,42 @@ class RollingFilter {
   using Vector = Eigen::Matrix<double, kStates, 1>;
   using Covariance = Eigen::Matrix<double, kStates, kStates>;
 
-  /// One assumption about which modes there were, and what follows from it.
+  /// One assumption about the sequence of modes, with its estimate.
   struct Hypothesis {
     Vector x = Vector::Zero();  ///< errors: attitude (W), velocity and position of the IMU, constants
     Covariance P = Covariance::Zero();
     Eigen::Vector3d u_W_m_s = Eigen::Vector3d::Zero();  ///< contact velocity at the last node
-    double log_weight = 0.0;                            ///< of its probability; the best one's is zero
-    std::int64_t switched_node = 0;                     ///< since when it is in its mode
-    std::int32_t parent = 0;                            ///< its place among the hypotheses of the node before
+    double log_weight = 0.0;                            ///< log probability; the most probable one has zero
+    std::int64_t switched_node = 0;                     ///< node at which its current mode began
+    std::int32_t parent = 0;                            ///< index of its parent at the previous node
     RollingMode mode = RollingMode::grip;
     bool operator==(const Hypothesis&) const = default;
   };
 
   struct State {
-    // The estimate at the last sample, by the best hypothesis.
+    // The estimate at the last sample, by the most probable hypothesis.
     Eigen::Vector3d p_WG_m = Eigen::Vector3d::Zero();
     Eigen::Vector3d v_WG_m_s = Eigen::Vector3d::Zero();
     Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
     Eigen::Matrix3d position_covariance_m2 = Eigen::Matrix3d::Zero();  ///< at the last node, over all hypotheses
     Eigen::Vector3d contact_velocity_m_s = Eigen::Vector3d::Zero();    ///< at the last node, W
     RollingMode mode = RollingMode::grip;
-    double slip_probability = 0.0;  ///< that the contact moves, over all hypotheses, at the last node
-    double bump_probability = 0.0;  ///< the part of it in which the sphere hops
+    double slip_probability = 0.0;  ///< probability that the contact moves, over all hypotheses, at the last node
+    double bump_probability = 0.0;  ///< part of slip_probability in which the sphere hops
     bool at_rest = false;
-    bool spins_in_place =
-        false;               ///< at rest but for a slow turn about the contact, which says nothing of the gyro's bias
-    bool uncertain = false;  ///< in an event in which the position's sigma has grown by more than uncertain_m
+    bool spins_in_place = false;  ///< slow rotation about the contact at rest, which does not allow a gyro bias update
+    bool uncertain = false;  ///< in an event that increased the position's standard deviation by more than uncertain_m
     bool started_in_motion = false;
-    std::int64_t gaps = 0;  ///< bridged
+    std::int64_t gaps = 0;  ///< bridged gaps
     double gap_longest_s = 0.0;
-    // What the hypotheses have in common: they hold their errors about it.
+    // Common linearisation point of all hypotheses.
     RollingNominal nominal;
     RollingSums sums;
-    ImuAverage average;                                          ///< of the readings since the last one that was taken
-    Eigen::Matrix3d pruned_spread_m2 = Eigen::Matrix3d::Zero();  ///< of hypotheses given up at the last node
+    ImuAverage average;                                          ///< of the readings since the last processed average
+    Eigen::Matrix3d pruned_spread_m2 = Eigen::Matrix3d::Zero();  ///< spread of the hypotheses pruned at the last node
     RestDetector::State rest;
     Eigen::Vector3d slow_rate_rad_s = Eigen::Vector3d::Zero();
-    bool held = false;             ///< it stands still, and so does the position that is given out
+    bool held = false;             ///< the sphere is at rest and the reported position is constant
     double before_event_m2 = 0.0;  ///< horizontal variance of the position at the last node without an event
     Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero();
     std::array<Hypothesis, kHypotheses> hypotheses{};
@@ -88,24 +90,24 @@ class RollingFilter {
 
   explicit RollingFilter(const Params& params);
 
-  /// Takes a sample. The first one levels the attitude (yaw 0) and puts the centre at the origin, at rest; a second of
-  /// rest should follow. On trouble the state is unchanged. No allocation; about kHypotheses * kStates^2 * 40
+  /// Processes a sample. The first sample levels the attitude (yaw 0) and sets the centre to the origin, at rest. A
+  /// second of rest should follow. On error the state is unchanged. No allocation; about kHypotheses * kStates^2 * 40
   /// operations per node.
   Status step(const ImuSample& sample, State& state) const {
     return step(sample, state, [](const State&) {});
   }
 
-  /// The same, and `closed(state)` after each node that it closes: several, where the sample ends a gap.
+  /// Same, and calls `closed(state)` after each completed node. A sample that ends a gap completes several nodes.
   template <typename Closed>
   Status step(const ImuSample& sample, State& state, Closed closed) const {
     return step_with(sample, state,
                      Listener{&closed, [](void* to, const State& at) { (*static_cast<Closed*>(to))(at); }});
   }
 
-  /// What a state says at its last sample. Of the covariance the position's alone is known, the rest is zero.
+  /// Returns the estimate at the last sample. Only the covariance of the position is available; the rest is zero.
   static RollingEstimate estimate(const State& state);
 
-  /// What holds of every state that step() left, for one that comes from elsewhere; the first that does not.
+  /// Checks the invariants of a state that was loaded from outside. Returns the first violation.
   static Status check_state(const State& state);
 
  private:

@@ -8,36 +8,35 @@
 
 namespace tumble {
 
-/// How the sphere meets the floor.
+/// Mode of contact between sphere and floor.
 enum class RollingMode : std::uint8_t {
-  grip,     ///< the contact point stands still, the floor is level
-  slip,     ///< it moves along the floor: spinning too fast or sliding
-  bump,     ///< it also rises or falls: an obstacle, or the air
-  incline,  ///< it stands still on a slope, which is estimated
-  rough,    ///< it stands still, the floor goes up and down about the level
+  grip,     ///< the contact point does not move; the floor is level
+  slip,     ///< the contact point moves along the floor: the sphere spins too fast or slides
+  bump,     ///< the contact point also rises or falls: an obstacle, or flight
+  incline,  ///< the contact point does not move; the floor is a slope, which is estimated
+  rough,    ///< the contact point does not move; the floor rises and falls about the level
 };
 inline constexpr int kRollingModes = 5;
 
-/// Whether the contact point may move in this mode.
+/// Returns whether the contact point may move in this mode.
 inline bool slips(RollingMode mode) {
   return mode == RollingMode::slip || mode == RollingMode::bump;
 }
 
-/// Pose of a rolling sphere's centre G at one sample, with what is known of the contact.
+/// Pose of a rolling sphere's centre G at one sample, with the state of contact.
 struct RollingEstimate {
   TimeNs time_ns = 0;
   Eigen::Vector3d p_WG_m = Eigen::Vector3d::Zero();
   Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
   Eigen::Vector3d v_WG_m_s = Eigen::Vector3d::Zero();
-  /// Of (position error [m], attitude error [rad]), W, at the node that follows.
+  /// Covariance of (position error [m], attitude error [rad]), W, at the following node.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
   RollingMode mode = RollingMode::grip;
   bool at_rest = false;
-  bool uncertain =
-      false;  ///< in an event that the position's sigma grew by more than RollingModeParams::uncertain_m in
+  bool uncertain = false;  ///< in an event that made the position uncertain, see RollingModeParams::uncertain_m
 };
 
-/// The trajectory and the constants about which errors are held.
+/// Trajectory and constants that serve as linearisation point of the errors.
 struct RollingNominal {
   Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
   Eigen::Vector3d v_WI_m_s = Eigen::Vector3d::Zero();
@@ -50,11 +49,11 @@ struct RollingNominal {
   Eigen::Vector3d lever_arm_error_m = Eigen::Vector3d::Zero();
   Eigen::Vector2d slope = Eigen::Vector2d::Zero();  ///< horizontal part of the floor's unit normal, W
   double radius_error_m = 0.0;
-  Eigen::Vector3d last_rate_I_rad_s = Eigen::Vector3d::Zero();  ///< as it was read last
+  Eigen::Vector3d last_rate_I_rad_s = Eigen::Vector3d::Zero();  ///< last reading
   bool operator==(const RollingNominal&) const = default;
 };
 
-/// Integrals since the last node: of R, R f, R (x) f^T, R (x) w^T, R (w x f), w, f, |w|^2.
+/// Integrals since the last node of R, R f, R (x) f^T, R (x) w^T, R (w x f), w, f, |w|^2.
 struct RollingSums {
   Eigen::Matrix3d R_s = Eigen::Matrix3d::Zero();
   Eigen::Vector3d f_W_m_s = Eigen::Vector3d::Zero();
@@ -62,13 +61,13 @@ struct RollingSums {
   Eigen::Vector3d R_wxf = Eigen::Vector3d::Zero();
   Eigen::Vector3d w_I_rad = Eigen::Vector3d::Zero(), f_I_m_s = Eigen::Vector3d::Zero();
   double rotated_rad2_s = 0.0;
-  double rate_clipped_s = 0.0, force_clipped_s = 0.0;  ///< with a reading that says nothing
-  double recovered_s = 0.0;                            ///< with a rate that was recovered
-  double impact_m_s = 0.0;                             ///< of | |f| - g | beyond the usual
-  double unexplained_impact_m_s = 0.0;                 ///< the same without what the turning may explain
+  double rate_clipped_s = 0.0, force_clipped_s = 0.0;  ///< duration of saturated readings
+  double recovered_s = 0.0;                            ///< duration of recovered rates
+  double impact_m_s = 0.0;                             ///< integral of | |f| - g | above the usual level
+  double unexplained_impact_m_s = 0.0;                 ///< same, without the part that rotation may explain
   Eigen::Vector3d subsample_saturation_W_m_s =
-      Eigen::Vector3d::Zero();  ///< sigma of what a rail took unseen, along the force
-  // of a gap: its length, variance of the turning, of the rate times time, and of the velocity
+      Eigen::Vector3d::Zero();  ///< standard deviation of the force lost to subsample saturation, along the force
+  // Of a gap: its length, and the variances of the angle, of rate times time, and of the velocity.
   double gap_s = 0.0, gap_rad2 = 0.0, gap_rate_rad2_s = 0.0, gap_speed_m2_s2 = 0.0;
   double node_s = 0.0;
   bool operator==(const RollingSums&) const = default;

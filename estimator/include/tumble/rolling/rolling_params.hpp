@@ -11,15 +11,16 @@
 
 namespace tumble {
 
-/// What few need of RollingParams, by meaning. Fields bear the names that they have in tables and on command lines.
+/// Parameters of RollingParams that few users change, grouped by meaning. Field names equal those in tables and on
+/// command lines.
 struct RollingExpertParams {
-  double node_s = 0.02;  ///< time between two measurements
-  /// Readings are averaged to this length, at which all thresholds here are meant; zero: taken as they come. A slower
-  /// IMU's are longer as they are.
+  double node_s = 0.02;  ///< time between two measurement updates
+  /// Readings are averaged to this duration, for which all thresholds here are set. Zero: no averaging. Readings of a
+  /// slower IMU are used unchanged.
   double reading_s = 4e-3;
-  /// Rest; its readings are the means of nodes. 0.02 rad/s in all, shared by the axes, is 3 mm/s of the sphere. The
-  /// bounds are measured: as loose as 0.02 an axis, a sphere that is about to stand drifts by half as much again.
-  /// What is left between them and bounds on the norm is up to 40 um of drift, of either sign.
+  /// Rest detection on the means of nodes. The total rate bound of 0.02 rad/s, shared by the axes, is 3 mm/s of the
+  /// sphere. The bounds are measured: with 0.02 rad/s per axis, the drift of a sphere that comes to rest is half as
+  /// large again. The difference from bounds on the norm is at most 40 um of drift, of either sign.
   RestDetector::Params rest = {
       .rate_max_rad_s = 0.0115, .rate_spread_rad_s = 0.016, .force_spread_m_s2 = 0.15, .rest_s = 0.4, .memory_s = 0.1};
   RollingPriorParams prior = {};
@@ -43,23 +44,23 @@ struct RollingExpertParams {
   }
 };
 
-/// What the sphere, its IMU and the floor are like; shared by the live filter and the smoother.
+/// Properties of the sphere, its IMU and the floor, shared by the live filter and the smoother.
 struct RollingParams {
-  double radius_m = 0.0;                                  ///< has no default
-  double radius_sigma_m = 0.0;                            ///< 0: it is known
+  double radius_m = 0.0;                                  ///< required, no default
+  double radius_sigma_m = 0.0;                            ///< 0: exactly known
   Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< from centre to IMU, sensor axes; length up to 10
   double lever_arm_sigma_m = 2e-3;
-  std::optional<Eigen::Quaterniond> q_WI_start = {};  ///< attitude at the first sample; levelled when not given
+  std::optional<Eigen::Quaterniond> q_WI_start = {};  ///< attitude at the first sample; empty: levelled by gravity
   double gravity_m_s2 = 9.80665;
-  /// Readings from here on are clipped, as those are that the device flags: they say no more than that.
+  /// Readings from this value on are clipped, in addition to those that the device flags.
   double gyro_range_rad_s = 1e3;
   double accel_range_m_s2 = 1e5;
-  double speed_max_m_s = 2.5;  ///< what the sphere is able to: no grip is believed that would make it roll faster
+  double speed_max_m_s = 2.5;  ///< maximum speed of the sphere; grip at a higher speed is rejected
 
   using Expert = RollingExpertParams;
-  Expert expert = {};  ///< what few need
+  Expert expert = {};  ///< parameters that few users change
 
-  /// Every number of it, stated once.
+  /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.radius_m, {"radius_m", "m", 1e-12, 10.0, "radius of the sphere"});
@@ -76,7 +77,7 @@ struct RollingParams {
   }
 };
 
-/// Throws InvalidParams when a parameter is outside of its bound.
+/// Throws InvalidParams if a parameter is out of bounds.
 void require_valid(const RollingParams& params);
 
 }  // namespace tumble

@@ -15,35 +15,36 @@
 
 namespace tumble {
 
-/// RollingFilter with what came after taken into account: with a fixed lag, or over the whole run.
+/// Smooths the estimates of RollingFilter with later data: with a fixed lag, or over the whole run.
 ///
-/// The modes are those of the live filter's best hypothesis at the time of smoothing; with them frozen, one Kalman
-/// filter runs over the stored samples again, and the modified Bryson-Fraser smoother (Bierman 1977) back: it needs no
-/// inverse and no more than the filter's own gains. A sample between two nodes takes the errors of both, in
-/// proportion to time.
+/// The modes are those of the live filter's most probable hypothesis at the time of smoothing. With these modes fixed,
+/// one Kalman filter runs forward over the stored samples. The modified Bryson-Fraser smoother (Bierman 1977) then runs
+/// backward. This smoother needs no inverse and only the filter's gains. A sample between two nodes receives the
+/// interpolated errors of both.
 ///
-/// With a fixed lag the position stands still while the sphere does: what rest teaches of the way before is taken up
-/// when the motion goes on, since the estimates of that way are out. Over the whole run the way itself is mended.
+/// With a fixed lag, the position is constant while the sphere is at rest. Corrections of the earlier path are applied
+/// when motion resumes because the estimates of this path are already reported. Over the whole run, the path itself is
+/// corrected.
 ///
 /// Source: the reference study of this project on slip; the smoother as G. J. Bierman, Factorization Methods for
-/// Discrete Sequential Estimation, 1977. Not modelled: doubt about the modes, other than the spread of positions that
-/// the live filter gives up at rest.
+/// Discrete Sequential Estimation, 1977. Not modelled: uncertainty of the modes, other than the spread of positions
+/// that the live filter prunes at rest.
 class RollingSmoother {
  public:
   static constexpr double kWholeRun = 1e9;
 
   struct Params {
     RollingParams filter = {};
-    /// Noise of the last pass, as a share of the filter's; the covariance that it states is of the filter's.
+    /// Process noise of the final pass as a fraction of the filter's; the reported covariance uses the filter's.
     double path_noise = 0.65;
-    double lag_s = kWholeRun;    ///< how long an estimate may wait for what follows
-    double block_s = 0.2;        ///< estimates are given out in blocks of this length
-    double rate_max_hz = 500.0;  ///< of the samples: storage set aside for the lag
-    /// Above zero: horizontal distance of the centre from the start to the end of the run, known from elsewhere, and
-    /// its sigma. With a prior on the radius it tells the radius.
+    double lag_s = kWholeRun;    ///< delay of an estimate behind the newest sample
+    double block_s = 0.2;        ///< estimates are reported in blocks of this length
+    double rate_max_hz = 500.0;  ///< rate of the samples, for the preallocated memory of the lag
+    /// Horizontal distance of the centre from the start to the end of the run, from an external measurement, and its
+    /// standard deviation. Together with a prior on the radius, it determines the radius. 0: unknown.
     double known_distance_m = 0.0, known_distance_sigma_m = 5e-3;
 
-    /// Every number of it, stated once.
+    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.filter);
@@ -60,27 +61,27 @@ class RollingSmoother {
     }
   };
 
-  /// The modes of all hypotheses at a node, and which of the node before each came from.
+  /// The modes of all hypotheses at a node, and the parent of each at the previous node.
   struct Step {
     std::array<std::uint8_t, RollingFilter::kHypotheses> parent{};
     std::array<RollingMode, RollingFilter::kHypotheses> mode{};
     Eigen::Matrix3d spread_m2 = Eigen::Matrix3d::Zero();
-    double rest_s = 0.0;  ///< quiet for so long
+    double rest_s = 0.0;  ///< duration of the rest so far
     bool at_rest = false;
     bool spins_in_place = false;
     bool operator==(const Step&) const = default;
   };
-  /// The last pass at the node up to which estimates are out.
+  /// Final pass at the node up to which estimates are reported.
   struct Committed {
     RollingNominal nominal;
     RollingFilter::Covariance P = RollingFilter::Covariance::Zero();
     RollingMode mode = RollingMode::grip;
     double event_variance_m2 = 0.0;                         ///< of the position, when the event began
     Eigen::Vector3d held_p_WG_m = Eigen::Vector3d::Zero();  ///< while `held`
-    bool held = false;                                      ///< it stands still, and so does the position given out
+    bool held = false;                                      ///< at rest, with constant reported position
     TimeNs last_time_ns = 0;
     Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero();
-    // of the gap that the node lies in, if it does
+    // Rate of the gap that contains the node, if any.
     Eigen::Vector3d gap_rate_rad_s = Eigen::Vector3d::Zero();
     TimeNs gap_start_ns = 0;
     int gap_piece = 0;
@@ -92,40 +93,40 @@ class RollingSmoother {
     Committed committed;
     std::vector<ImuSample> samples;  ///< after the committed node
     std::vector<Step> steps;
-    RollingNominal learnt;        ///< constants as known at the newest node that was smoothed
-    double radius_sigma_m = 0.0;  ///< of the radius there
+    RollingNominal learnt;        ///< constants at the newest smoothed node
+    double radius_sigma_m = 0.0;  ///< standard deviation of the radius at that node
     bool operator==(const State& other) const;
   };
 
   explicit RollingSmoother(const Params& params);
 
-  /// What works on State::live: by itself where live poses are all that is asked for.
+  /// Returns the filter that updates State::live. The filter can be used alone if only live poses are needed.
   const RollingFilter& filter() const { return filter_; }
 
-  /// Takes a sample; appends estimates that are old enough to `out`, if any. On trouble the state is unchanged. Storage
-  /// for the lag is set aside with the first sample; no allocation later but by `out` and the work of a block, and,
-  /// beyond rate_max_hz, a million samples or with kWholeRun, as the run grows (64 bytes per sample, 152 per node). The
-  /// work of a block is done in the sample that ends it; it holds some 14 KiB for each node of lag and block, or 4 MiB
-  /// and 0.3 KiB for each node where they are many.
+  /// Processes a sample and appends estimates that are older than the lag to `out`. On error the state is unchanged.
+  /// The first sample allocates the memory of the lag. Later, only `out` and the processing of a block allocate. In
+  /// addition the run's memory grows (64 bytes per sample, 152 per node) beyond rate_max_hz, beyond a million samples,
+  /// or with kWholeRun. The sample that ends a block does the block's computations. Such a sample needs 14 KiB per node
+  /// of lag and block, or 4 MiB plus 0.3 KiB per node if there are many nodes.
   Status step(const ImuSample& sample, State& state, std::vector<RollingEstimate>& out) const;
 
-  /// Gives the estimates that are still owed, one after the other in the order of time, all smoothed with what there
-  /// is. The run has ended. A whole run of N nodes needs 4 MiB + N * 0.3 KiB beside the state while it lasts.
+  /// Ends the run and passes the remaining estimates to `take`, in time order, smoothed with all data. For a whole run
+  /// of N nodes it temporarily needs 4 MiB + N * 0.3 KiB in addition to the state.
   using Take = std::function<void(const RollingEstimate&)>;
   void finish(State& state, const Take& take) const;
   void finish(State& state, std::vector<RollingEstimate>& out) const;
 
-  /// The same with modes known from elsewhere, one per sample of a whole run that `state` took with kWholeRun.
+  /// Same, with externally known modes, one per sample of a whole run that `state` processed with kWholeRun.
   void finish(std::span<const RollingMode> known, State& state, const Take& take) const;
 
-  /// What holds of every state that step() left, for one that comes from elsewhere; the first that does not. A state
-  /// with a lag of samples that came more than four times as fast as rate_max_hz is refused.
+  /// Checks the invariants of a state that was loaded from outside. Returns the first violation. Rejects a state with a
+  /// lag whose samples exceed four times rate_max_hz.
   Status check_state(const State& state) const;
 
  private:
   struct Path;
 
-  /// Samples that the lag has storage for.
+  /// Returns the number of samples for which the lag has preallocated memory.
   std::size_t samples_set_aside() const;
   Path best_path(const State& state) const;
   void run_window(const Path& path, std::size_t emitted, State& state, const Take& take) const;

@@ -24,28 +24,30 @@ using Corner = System::Corner;
 using Conditional = System::Conditional;
 using Marginal = System::Marginal;
 
-inline constexpr int kErrors = 29;  ///< errors of a device, common to all blocks: see SensorErrors
+inline constexpr int kErrors = 29;  ///< sensor errors, common to all blocks: see SensorErrors
 
-/// What each of kErrors common errors adds to the gradient of a block, of the border; once solved, to their steps.
+/// Derivative of a block's or the border's gradient by each of the kErrors common errors. After solving, derivative of
+/// the steps.
 using ErrorMatrix = Eigen::Matrix<double, kState, kErrors>;
 using BorderErrors = Eigen::Matrix<double, kBorder, kErrors>;
 
-/// As in ArrowSystem.
+/// Same as in ArrowSystem.
 bool eliminate(Block& block, Block* next, Corner& corner);
 bool solve_corner(const Corner& corner, BorderVector& step, BorderMatrix& covariance);
 StateVector back_substitute(const Block& block, const StateVector* next_step, const BorderVector& border_step);
 Conditional back_conditional(const Block& block, const Conditional* next);
 Marginal marginal(const Conditional& conditional, const BorderMatrix& border_covariance);
 
-/// The same for errors: takes those of an eliminated `block` forward, to the next (null for the last) and the border.
+/// Eliminates the error columns of an already eliminated `block` into the next block (null for the last) and the
+/// border.
 void eliminate_errors(const Block& block, ErrorMatrix& errors, ErrorMatrix* next, BorderErrors& border);
 
-/// How an eliminated block moves with each error, from eliminate_errors(), given the same of the next block (null for
-/// the last) and of the border.
+/// Returns the derivative of an eliminated block by each error, after eliminate_errors(). Needs the same derivatives of
+/// the next block (null for the last) and of the border.
 ErrorMatrix back_substitute_errors(const Block& block, const ErrorMatrix& errors, const ErrorMatrix* next_moved,
                                    const BorderErrors& border_moved);
 
-/// The rates' part (the first three rows and columns) of marginal().state, at less cost.
+/// Returns the covariance of the rates (first three rows and columns) of marginal().state, at lower cost.
 Eigen::Matrix3d rate_covariance(const Conditional& conditional, const BorderMatrix& border_covariance);
 
 }  // namespace arrow

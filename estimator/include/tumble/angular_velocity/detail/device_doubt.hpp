@@ -7,50 +7,50 @@
 
 namespace tumble {
 
-/// What is open of a device's errors by evidence that still grows: a mixture of two devices, one as its sheet says and
-/// one that nobody has calibrated (SensorErrorSizes, all at once), the form of fit_sensor_errors() that a stream can
-/// afford. rate_stream.md (R103), (R104).
+/// Computes the uncertainty of a device's sensor errors from growing evidence. The prior is a mixture of two devices:
+/// one that matches its data sheet, and one that is uncalibrated (SensorErrorSizes, all sizes together). A stream uses
+/// this class instead of fit_sensor_errors(), which costs more. rate_stream.md (R102), (R103).
 class DeviceDoubt {
  public:
-  /// Samples err in common (what the model of flight misses lasts longer than one of them): the share that is believed
-  /// of what they say of where the errors lie, as in fit_sensor_errors().
+  /// Weight of the samples' evidence about the errors. Sample errors are correlated, because errors of the flight model
+  /// last longer than a sample. Same as in fit_sensor_errors().
   static constexpr double kBelieved = 0.03;
 
   struct Open {
-    /// About the errors that readings are corrected for.
+    /// Covariance about the errors for which readings are corrected.
     SensorErrors::Matrix covariance = SensorErrors::Matrix::Zero();
-    double unlike = 0.0;  ///< probability of a device that is not as on its sheet
+    double unlike = 0.0;  ///< probability that the device does not match its data sheet
   };
 
-  /// Scratch space of open(), which is no small part of what a thread of a robot has as its stack.
+  /// Buffers of ask(). The buffers are too large for the small stack of a robot's thread.
   struct Work {
     SensorErrors::Matrix system, about_corrected;
   };
 
-  /// `uncalibrated`: probability beforehand of a device that nobody has calibrated.
+  /// `uncalibrated`: prior probability of an uncalibrated device.
   DeviceDoubt(const SensorErrorSizes& sizes, double uncalibrated);
 
-  /// O(1): two systems of 29 unknowns; no allocation. Of evidence that is no number what was open before all.
-  /// `unlike`: the device is known to be none that is as its sheet says.
+  /// Computes `open` from the evidence. O(1): two systems of 29 unknowns; no allocation. For non-finite evidence,
+  /// returns the prior. `unlike`: the device is known not to match its data sheet.
   void ask(const SensorErrorEvidence& evidence, Work& work, Open& open, bool unlike = false) const;
 
-  /// How likely triads are that are sampled as alike as the sheet has it against such that are not, by a delay that
-  /// was measured, with its deviation, less what is given. rate_stream.md (R109).
+  /// Returns the likelihood ratio of synchronous triads, as the data sheet states, against asynchronous ones. `delay_s`
+  /// is a measured delay minus the known one, with its standard deviation. rate_stream.md (R106).
   double odds_of_sheet(double delay_s, double sigma_s) const;
 
-  /// The delay by `evidence` about the errors that are corrected for, this among them, of a device that may have any
-  /// within `reach_s`: rate_stream.md (R110), less what is corrected for. 0 where the evidence is indefinite. O(1), no
-  /// allocation.
+  /// Returns the additional delay, beyond the one already corrected, that `evidence` implies for a device with any
+  /// delay within `reach_s`: rate_stream.md (R107). Returns 0 if the evidence is indefinite. O(1), no allocation.
   double further_delay_s(const SensorErrorEvidence& evidence, double reach_s) const;
 
-  /// Before all evidence.
+  /// Resets to the prior.
   void forget(Open& open) const;
 
-  /// What both triads may be late by in common, which no evidence tells of a device unlike its sheet: variance [s^2].
+  /// Returns the variance of a delay common to both triads [s^2]. No evidence determines it for a device that does not
+  /// match its data sheet.
   double shared_delay_s2(const Open& open) const;
 
  private:
-  SensorErrors::Vector sheet_, unknown_;  ///< deviations
+  SensorErrors::Vector sheet_, unknown_;  ///< standard deviations
   double uncalibrated_;
 };
 

@@ -12,22 +12,23 @@
 
 namespace tumble {
 
-/// Whether the accelerometer's axes have the sense and the names that they say, and the gyro its sense and scale.
-/// Forces of a mirrored world (all three axes flipped, one flipped, two swapped) show neither in gravity at rest nor in
-/// its turning.
+/// Detects wrong signs or swapped axes of the accelerometer, and wrong sign or scale of the gyro. Mirrored forces (all
+/// three axes flipped, one flipped, two swapped) show neither in gravity at rest nor in its rotation.
 ///
-/// In free flight the force at the lever arm t from the centre of mass is a x t + w x (w x t) and nothing else.
-/// Readings that are this within `share`, or would be of another sensor (`kSenses`), for `run_s` at a time are flight
-/// as that sensor reads it; on the ground none lasts. Where one axis of the gyro is at its rail, the force along the
-/// lever arm, which is -|w x t|^2 whatever the angular acceleration, tells its rate, and the other two components
-/// whether it is flight. A hand that swings a body about itself makes the forces of a flight by a lever arm of its own:
-/// of a body that is perhaps held only forces of the other sense and twice the rate are told, by rates that were read.
-/// Not seen: a body that never flies and spins, whose IMU sits at its centre of mass, or two of
-/// whose gyro's axes clip throughout its flights. A lever arm of the other sense looks the same.
+/// In free flight the force at the lever arm t from the centre of mass is only a x t + w x (w x t). The readings are
+/// compared with this force for the true sensor and for each alternative in `kSenses`. Agreement within `share` for
+/// `run_s` counts as flight measured by that sensor. No such agreement lasts on the ground. If one axis of the gyro is
+/// saturated, the force along the lever arm, -|w x t|^2 for any angular acceleration, determines its rate. The other
+/// two components of the force verify flight.
+///
+/// A person who swings a body can produce the forces of a flight with a different lever arm. For a body that may be
+/// hand-held, the class therefore reports only inverted accelerometers and a half-scale gyro, from unsaturated rates.
+/// Not detected: a body that never flies while spinning, an IMU at the centre of mass, or two clipped gyro axes in all
+/// flights. An inverted lever arm looks the same.
 class FlightSense {
  public:
-  /// As it says; of the accelerometer, then of the gyro: all axes flipped, x, y or z flipped, x and y, y and z or z and
-  /// x swapped; a gyro that reads half of what it should.
+  /// True sensor; accelerometer, then gyro: all axes flipped, x, y or z flipped, x and y, y and z or z and x swapped; a
+  /// gyro with half scale.
   static constexpr std::size_t kSenses = 17, kHalved = 16;
 
   enum class Body { perhaps_held, thrown };
@@ -35,18 +36,18 @@ class FlightSense {
   struct Params {
     Body body = Body::perhaps_held;
     Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< from the centre of mass to the IMU, IMU axes
-    double gyro_range_rad_s = 0.0;                          ///< as the device states it; 0: not stated
-    double reading_s = 0.01;                                ///< readings are averaged to this length
-    double force_min_m_s2 = 2.5;                            ///< that turning makes, to count
-    double share = 0.25;                                    ///< of it, by which the reading may differ
-    double run_s = 0.02;                                    ///< and for how long at least
-    double against_s = 0.1;                                 ///< of flight by another sensor, from which on it is told,
-    double halved_s = 0.3;      ///< of flight by twice the rate, likewise (a hand may make 0.15 s)
-    double against_with = 4.0;  ///< and so many times what there is of the right one,
-    double thrown_with = 2.0;   ///< of a body that nobody holds
-    double gap_max_s = 0.1;     ///< after a longer one it begins anew
+    double gyro_range_rad_s = 0.0;                          ///< stated by the device; 0: not stated
+    double reading_s = 0.01;                                ///< averaging time of readings
+    double force_min_m_s2 = 2.5;                            ///< minimum force due to rotation
+    double share = 0.25;                                    ///< tolerance as a fraction of this force
+    double run_s = 0.02;                                    ///< minimum duration of agreement
+    double against_s = 0.1;                                 ///< minimum total flight time of an alternative sensor,
+    double halved_s = 0.3;      ///< same for a half-scale gyro (hand-held motion may give 0.15 s)
+    double against_with = 4.0;  ///< as a multiple of the true sensor's flight time,
+    double thrown_with = 2.0;   ///< same for a body that is certainly not hand-held
+    double gap_max_s = 0.1;     ///< a longer gap resets the current run
 
-    /// Every number of it, stated once.
+    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.lever_arm_m,
@@ -71,33 +72,33 @@ class FlightSense {
       visit(p.gap_max_s, {"gap_max_s", "s", 1e-3, 1e3, "longest gap between samples within a flight"});
     }
   };
-  /// One mean reading.
+  /// One averaged reading.
   struct Reading {
     TimeNs time_ns = 0;
     Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero(), force_m_s2 = Eigen::Vector3d::Zero();
-    /// Sign of the gyro's axes that are at their rail, else 0.
+    /// Sign of each saturated gyro axis, otherwise 0.
     Eigen::Vector3d at_rail = Eigen::Vector3d::Zero();
-    bool known = false;  ///< no axis met its rail in a part of it only
+    bool known = false;  ///< no axis was saturated for a part of the window only
     bool operator==(const Reading&) const = default;
   };
   struct State {
     ImuAverage average;
-    std::array<Reading, 2> before{};        ///< the last but one, the last
-    int readings = 0;                       ///< in a row, two at most
-    std::array<double, kSenses> run_s{};    ///< of the flight that is on, by each of the senses
-    std::array<double, kSenses> flown_s{};  ///< in all
+    std::array<Reading, 2> before{};        ///< last but one, last
+    int readings = 0;                       ///< consecutive readings, at most two
+    std::array<double, kSenses> run_s{};    ///< current flight duration of each alternative
+    std::array<double, kSenses> flown_s{};  ///< total flight duration of each alternative
     TimeNs last_time_ns = 0;
     bool started = false;
     bool operator==(const State&) const = default;
   };
 
-  /// Throws InvalidParams on a parameter outside of its bound.
+  /// Throws InvalidParams if a parameter is out of bounds.
   explicit FlightSense(const Params& params);
 
-  /// Takes a reading; one that is not finite or out of order is passed over. O(1), no allocation.
+  /// Processes a reading. Ignores readings that are not finite or out of order. O(1), no allocation.
   void step(const ImuSample& sample, State& state) const;
 
-  /// `out_of_range` where flights were those of another sensor.
+  /// Returns `out_of_range` if the flights match another sensor.
   Status verdict(const State& state) const;
 
  private:

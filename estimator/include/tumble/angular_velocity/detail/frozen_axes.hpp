@@ -11,28 +11,28 @@
 
 namespace tumble {
 
-/// Finds single axes of an IMU that have stopped reading, sample by sample.
+/// Detects single axes of an IMU that have stopped updating, sample by sample.
 ///
-/// An axis has frozen that repeats one reading to the last bit for `frozen_s` and ten times as long as it ever did
-/// before, after as long of readings that change, while another axis of its triad changes from sample to sample and by
-/// far more than a quantum of this one. Not told from a sound one by that: an axis that never moved or held its reading
-/// as long before (a coarse quantum at rest, a simulation without noise).
+/// An axis is frozen if it repeats one reading bit for bit for `frozen_s`, and for ten times its longest earlier
+/// repetition. The axis must have changed for as long before. Another axis of its triad must change from sample to
+/// sample, by far more than the quantisation of this axis. Not detected: an axis that never changed or repeated its
+/// reading as long before (coarse quantisation at rest, simulation without noise).
 ///
-/// A reading at the rail (0.9 of the stated range, flagged by the device, or the highest or lowest of the axis so far
-/// from 0.5 of the range on) may repeat. It has frozen where all other axes of both triads say for `rail_still_s` that
-/// the body rests: one that turns or is pushed so hard does not. On a body that never comes to rest it has frozen where
-/// it repeats the rail for `rail_held_s` while another axis of its triad moves: either that, or the range is not one
-/// for such a spin, and of either nothing is known of the axis. Not told: one on a body that spins about this axis so
-/// evenly that no other one moves.
+/// A saturated reading may repeat. A reading counts as saturated from 0.9 of the stated range on, or if the device
+/// flags it. The extreme reading of an axis counts from 0.5 of the range on. A saturated axis is frozen if all other
+/// axes of both triads indicate rest for `rail_still_s`. Reason: a body with such a rate or force is not at rest. On a
+/// body that is never at rest, the axis is frozen after `rail_held_s` if another axis of its triad changes. Either it
+/// is frozen or the range is too small for the spin; in both cases its rate is unknown. Not distinguished: a body that
+/// spins so evenly about this axis that no other axis changes.
 class FrozenAxes {
  public:
   struct Params {
-    double gyro_range_rad_s = 0.0, accel_range_m_s2 = 0.0;  ///< as the device states them; 0: not stated
-    double frozen_s = 0.5;      ///< longest time for which a sound axis repeats its reading while the body moves
-    double rail_still_s = 1.5;  ///< of rest by all other axes, while one reads its rail
-    double rail_held_s = 5.0;   ///< of one reading at the rail while the body moves: flights last a third of it
+    double gyro_range_rad_s = 0.0, accel_range_m_s2 = 0.0;  ///< stated by the device; 0: not stated
+    double frozen_s = 0.5;                                  ///< longest repetition of a sound axis while the body moves
+    double rail_still_s = 1.5;                              ///< rest on all other axes while one is saturated
+    double rail_held_s = 5.0;  ///< saturated repetition while the body moves: flights last a third of this
 
-    /// Every number of it, stated once.
+    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.gyro_range_rad_s,
@@ -48,22 +48,22 @@ class FrozenAxes {
              "an axis that repeats one reading at its rail for this long, while others move, is frozen"});
     }
   };
-  /// One axis of one triad.
+  /// State of one axis of one triad.
   struct Axis {
     double reading = 0.0;
-    TimeNs since_ns = 0;       ///< first sample with this reading
-    double held_s = 0.0;       ///< since then
-    bool flagged = false;      ///< by the device, meanwhile
-    bool frozen = false;       ///< it is, with this reading
-    bool ever_frozen = false;  ///< it was, with this or another
-    double longest_s = 0.0;    ///< of sound holds before
-    double moved_s = 0.0;      ///< of readings that change
-    double quantum = 0.0;      ///< smallest change that was seen; 0: none yet
+    TimeNs since_ns = 0;       ///< first sample with the current reading
+    double held_s = 0.0;       ///< duration of the current reading
+    bool flagged = false;      ///< flagged by the device during the current reading
+    bool frozen = false;       ///< frozen at the current reading
+    bool ever_frozen = false;  ///< was frozen at this or another reading
+    double longest_s = 0.0;    ///< longest earlier repetition of a sound reading
+    double moved_s = 0.0;      ///< total time with changing readings
+    double quantum = 0.0;      ///< smallest observed change; 0: none yet
     double lowest = 0.0, highest = 0.0;
-    /// Of the two other axes of the triad, in turn, during the hold.
+    /// Of the two other axes of the triad, in turn, during the repetition.
     std::array<double, 2> other_low{}, other_high{}, other_changes{};
-    double samples = 0.0;  ///< of the hold, but the first
-    double still_s = 0.0;  ///< for which the body seems to rest, during the hold
+    double samples = 0.0;  ///< number of repeated samples
+    double still_s = 0.0;  ///< time during the repetition in which the other axes indicate rest
     std::array<double, 6> still_at{};
     bool operator==(const Axis&) const = default;
   };
@@ -71,24 +71,24 @@ class FrozenAxes {
     std::array<Axis, 6> axes;  ///< gyro x, y, z; accelerometer x, y, z
     std::array<double, 6> before{};
     TimeNs last_time_ns = 0;
-    double fastest_rad_s = 0.0;  ///< that the gyro has read
+    double fastest_rad_s = 0.0;  ///< largest rate that the gyro has read
     bool started = false;
     bool operator==(const State&) const = default;
   };
 
-  /// Throws InvalidParams on a parameter outside of its bound.
+  /// Throws InvalidParams if a parameter is out of bounds.
   explicit FrozenAxes(const Params& params);
 
-  /// Takes a reading; one that is not finite or out of order is passed over. O(1), no allocation.
+  /// Processes a reading. Ignores readings that are not finite or out of order. O(1), no allocation.
   void step(const ImuSample& sample, State& state) const;
 
   static const Axis& axis(Triad triad, int axis, const State& state);
 
-  /// `out_of_range` with the axis that is frozen now by name, for how long and the bound; `ok` where none is.
+  /// Returns `out_of_range` with the name of the axis that is frozen now, the duration and the bound; `ok` otherwise.
   Status verdict(const State& state) const;
 
-  /// Variance of the axes of a rate at `time_ns` by what is frozen now: of a frozen axis of the gyro nothing is known
-  /// but that it turns no faster than anything that was read. Zero of the others.
+  /// Returns the variance of a rate at `time_ns` due to axes that are frozen now. The rate on a frozen gyro axis is
+  /// unknown up to the largest rate read so far. Zero for other axes.
   Eigen::Vector3d rate_variance_rad2_s2(TimeNs time_ns, const State& state) const;
 
  private:

@@ -9,32 +9,33 @@
 
 namespace tumble {
 
-/// One triad's part of a sample, as it is when the sample arrives: of a sensor that is slower than the log a reading
-/// that was said before, or one that came at some time since the last sample (sample and hold).
+/// State of one triad's sample at arrival. If the sensor is slower than the log (sample and hold), the sample repeats
+/// an earlier reading, or contains one that arrived since the last sample.
 struct HeldReading {
-  bool repeats = false;         ///< the reading of the sample before
-  double age_samples = 0.0;     ///< mean time for which it has waited
-  double period_samples = 1.0;  ///< from one reading to the next; 1: each sample has a reading of its own
-  Eigen::Vector3d change = Eigen::Vector3d::Zero();  ///< from the reading before it [unit of the triad]
+  bool repeats = false;                              ///< repeats the reading of the previous sample
+  double age_samples = 0.0;                          ///< mean age of the reading
+  double period_samples = 1.0;                       ///< samples per reading; 1: each sample has its own reading
+  Eigen::Vector3d change = Eigen::Vector3d::Zero();  ///< change from the previous reading [unit of the triad]
 
   bool held() const { return period_samples > 1.0; }
-  /// By how much the middle of a window as long as the period, which ended when the reading was taken, lies before that
-  /// of the sample's own.
+  /// Returns how far the middle of the reading's window lies before the middle of the sample's window. The reading's
+  /// window has the length of the period and ends when the reading is taken.
   double behind_samples() const { return held() ? age_samples + 0.5 * (period_samples - 1.0) : 0.0; }
-  /// What the triad may have changed by in that time, at the slope of the last change.
+  /// Returns the change of the triad during that time, extrapolated with the slope of the last change.
   Eigen::Vector3d stale() const;
   bool operator==(const HeldReading&) const = default;
 };
 
-/// Tells a log that is faster than its sensor as the samples arrive: the causal form of find_held, without the phase of
-/// the sensor's clock, so that a new reading is half a sample old, +- 0.29 of one. docs/maths/rate_stream.md (R97).
+/// Detects a log that is faster than its sensor, causally. HoldWatch is the causal form of find_held. HoldWatch does
+/// not estimate the phase of the sensor's clock, so a new reading has an age of 0.5 +- 0.29 samples.
+/// docs/maths/rate_stream.md (R95).
 class HoldWatch {
  public:
-  /// Of one triad.
+  /// State of one triad.
   struct Memory {
     Eigen::Vector3d reading = Eigen::Vector3d::Zero();
-    double said = 0.0;                    ///< samples in a row that say it
-    double moving = 0.0, repeated = 0.0;  ///< samples in motion, those of them that repeat; forgotten slowly
+    double said = 0.0;                    ///< consecutive samples with this reading
+    double moving = 0.0, repeated = 0.0;  ///< samples in motion; those of them that repeat; both decay slowly
     HeldReading now;
     bool operator==(const Memory&) const = default;
   };
@@ -44,8 +45,8 @@ class HoldWatch {
     bool operator==(const State&) const = default;
   };
 
-  /// Takes the next finite sample. O(1), no allocation. A gyro that is `clipped` may repeat whatever its own rate is:
-  /// such a sample is not counted.
+  /// Processes the next finite sample. O(1), no allocation. A `clipped` gyro repeats whatever its update rate, so such
+  /// samples are not counted.
   void observe(const ImuSample& sample, bool clipped, State& state) const;
 };
 

@@ -6,13 +6,12 @@
 
 namespace tumble {
 
-/// How high a rail lies at the least, element by element and side by side, by what was read: nothing is read beyond
-/// one. rails.md (R75)
+/// Lower bounds of the saturation levels, per element and side: no reading exceeds its level. rails.md (R75)
 class LeastRails {
  public:
   void add(const Eigen::Vector3d& rate_rad_s);
-  /// Whether a reading of element `axis` is short of any rail that the element can have on that side, by more than what
-  /// a tilt and the noise of rails make of it.
+  /// Returns whether a reading of element `axis` is below any possible saturation level of the element on that side.
+  /// The margin covers the tilt and the noise of levels.
   bool refute(const Eigen::Vector3d& rate_rad_s, Eigen::Index axis) const;
   bool operator==(const LeastRails&) const = default;
 
@@ -23,7 +22,7 @@ class LeastRails {
 
  private:
   std::array<Eigen::Vector3d, 2> rad_s_{Eigen::Vector3d::Zero(),
-                                        Eigen::Vector3d::Zero()};  // of negative, positive side
+                                        Eigen::Vector3d::Zero()};  // negative side, positive side
 };
 
 }  // namespace tumble

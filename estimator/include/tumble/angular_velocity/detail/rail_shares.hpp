@@ -3,18 +3,17 @@
 
 namespace tumble {
 
-/// Shares of a range or of a rail by which a reading is taken to be at a rail, or to be free of it. Heuristic.
+/// Fractions of a range or a saturation level that separate saturated from free readings. Heuristic.
 
-/// Of the range that a device states: below it no rail is looked for, and none is heard. rails.md (R67). A rail lies at
-/// what is stated or beyond (of one at hand at 1.4 times); so much less is left to a device that does not keep its
-/// word.
+/// Lowest accepted saturation level as a fraction of the stated range. rails.md (R67). Saturation levels are usually at
+/// the stated range or above (1.4 times for one device); the margin covers devices below their data sheet.
 inline constexpr double kStatedRailMin = 0.85;
 
-/// Of a rail, below it: what a calibration (its scale), a tilted element's neighbours in time and motion beside make of
-/// where a reading at it stands. Further below a reading is one for sure. rails.md (R54), (R75), rate_stream.md (R94).
+/// Margin below a saturation level, as a fraction. The margin covers the scale of the calibration, neighbours along a
+/// tilted plane, and motion. Readings further below are certainly free. rails.md (R54), (R75), rate_stream.md (R93).
 inline constexpr double kBesideRail = 0.02;
 
-/// Of a rail: readings closer than this are equal, as RailDetector has it.
+/// Readings closer than this fraction of the level are equal, as in RailDetector.
 inline constexpr double kEqualShare = 2e-5;
 
 }  // namespace tumble

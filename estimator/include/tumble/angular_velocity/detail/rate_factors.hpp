@@ -14,40 +14,41 @@ struct RateKnot {
   bool operator==(const RateKnot&) const = default;
 };
 
-/// A residual of three rows with its derivatives by (rate, acceleration) and by the constants of the rig.
+/// Residual of three rows with its derivatives by (rate, acceleration) and by the calibration constants.
 struct RateFactor {
   Eigen::Vector3d residual;
   Eigen::Matrix<double, 3, 6> by_knot;
   Eigen::Matrix<double, 3, RigConstants::kSize> by_rig;
 };
 
-/// Gyro while no element clips: rate + bias - reading [rad/s].
+/// Residual of the gyro while no element clips: rate + bias - reading [rad/s].
 RateFactor gyro_factor(const RateKnot& knot, const RigConstants& rig, const Eigen::Vector3d& reading_rad_s);
 
-/// Gyro while an element clips, element by element: m_j . (rate + bias - reading) [rad/s]. Of a free element noise; of
-/// the one that clips what its rail hides, whatever the device makes of it on the other axes.
+/// Residual of the gyro while an element clips, per element: m_j . (rate + bias - reading) [rad/s]. For a free element
+/// it is noise. For the clipped element it is the saturation deficit, independent of the device's cross-axis
+/// compensation.
 RateFactor element_factor(const RateKnot& knot, const RigConstants& rig, const Eigen::Vector3d& reading_rad_s);
 
-/// Free flight seen by the accelerometer, whose specific force vanishes at the centre of mass [m/s^2]:
-/// alpha x t + w x (w x t) + bias - reading.
+/// Residual of the accelerometer in free flight [m/s^2]: alpha x t + w x (w x t) + bias - reading. The specific force
+/// at the centre of mass is zero.
 RateFactor flight_factor(const RateKnot& knot, const RigConstants& rig, const Eigen::Vector3d& reading_m_s2);
 
-/// The same for an accelerometer that is `delay_s` late: of the earlier instant to which Euler's equation without
-/// torque takes the knot back, w - d alpha + d^2/2 j and alpha - d j with the angular jerk j. Also by inertia.
-/// `by_delay` (may be null): the residual's derivative by the delay.
+/// Same for an accelerometer that is `delay_s` late. Euler's equation without torque propagates the knot back to the
+/// earlier time. The result is w - d alpha + d^2/2 j and alpha - d j, with the angular jerk j. The residual also
+/// depends on the inertia. `by_delay` (may be null) receives the derivative by the delay.
 RateFactor late_flight_factor(const RateKnot& knot, const RigConstants& rig, const Eigen::Vector3d& reading_m_s2,
                               double delay_s, Eigen::Vector3d* by_delay);
 
-/// The same residual with its derivatives by lever arm and accelerometer's bias alone, all others zero: for who asks
-/// how well a sample fits, and moves nothing.
+/// Same residual with derivatives by lever arm and accelerometer bias only; all others are zero. For callers that only
+/// evaluate how well a sample fits.
 RateFactor late_flight_by_rig(const RateKnot& knot, const RigConstants& rig, const Eigen::Vector3d& reading_m_s2,
                               double delay_s);
 
-/// Second derivative by time of the specific force at the lever arm in free flight [m/s^4]: half of it, times the
-/// variance of a window, is what the window adds to the reading.
+/// Returns the second time derivative of the specific force at the lever arm in free flight [m/s^4]. Half of it, times
+/// the variance of a window, is the window's effect on a reading.
 Eigen::Vector3d flight_curvature(const RateKnot& knot, const RigConstants& rig);
 
-/// Free flight by Euler's equation without torque, with the inertia scaled to trace 3 [rad/s^2]: J alpha + w x J w.
+/// Residual of Euler's equation without torque, with the inertia scaled to trace 3 [rad/s^2]: J alpha + w x J w.
 RateFactor euler_factor(const RateKnot& knot, const RigConstants& rig);
 
 }  // namespace tumble

@@ -7,14 +7,14 @@
 /// Groups of RateModelParams::Expert.
 namespace tumble {
 
-/// What readings are off by beside their noise.
+/// Errors of readings other than noise.
 struct RateReadingParams {
-  /// Scale and misalignment of the accelerometer, as a share of the force.
+  /// Scale and misalignment of the accelerometer, as a fraction of the force.
   double accel_scale_error = 1e-3;
-  /// What a gyro's bandwidth and its clock leave open of the time of a reading (a first-order low-pass at 415 Hz is
-  /// 0.38 ms late): counted in the covariance, times the angular acceleration.
+  /// Uncertainty of a reading's time due to the gyro's bandwidth and clock (a first-order low-pass at 415 Hz delays by
+  /// 0.38 ms). Included in the covariance, multiplied by the angular acceleration.
   double gyro_time_sigma_s = 2.5e-4;
-  double rail_sigma_rad_s = 0.05;  ///< softness of the bound that a clipped reading is
+  double rail_sigma_rad_s = 0.05;  ///< softness of the bound given by a clipped reading
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -27,12 +27,12 @@ struct RateReadingParams {
   }
 };
 
-/// A body that flies: no force but at its position on the rig, no torque.
+/// Flight: no force at the centre of mass and no torque.
 struct RateFlightParams {
-  double sigma_m_s2 = 0.02;  ///< what the model misses of the specific force (drag, bias in motion), besides noise
-  double euler_sigma_rad_s2 = 0.3;  ///< what Euler's equation without torque misses of the angular acceleration
+  double sigma_m_s2 = 0.02;         ///< error of the specific force besides noise (drag, bias in motion)
+  double euler_sigma_rad_s2 = 0.3;  ///< error of the angular acceleration from Euler's equation without torque
   double jerk_psd_rad2_s5 = 1e4;    ///< density of the white angular jerk
-  double threshold = 5.0;           ///< a sample whose residuals exceed this many standard deviations counts as contact
+  double threshold = 5.0;           ///< samples whose residuals exceed this many standard deviations are contact
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -48,20 +48,21 @@ struct RateFlightParams {
   }
 };
 
-/// A body that is struck: a force that nobody knows.
+/// Contact: an unknown force acts on the body.
 struct RateContactParams {
-  /// The jerk grows by what the force can do to the angular acceleration: rad/s^2 per m/s^2 of specific force that the
-  /// flight model cannot explain.
+  /// Growth of the jerk per contact force: rad/s^2 of angular acceleration per m/s^2 of specific force that the flight
+  /// model does not explain.
   double gain_rad_m = 4.0;
-  /// Impacts are no Gaussian noise: what a fit through one claims to know is widened by this factor.
+  /// Inflation of the standard deviation during impacts, because impacts are not Gaussian.
   double sigma_factor = 1.3;
-  /// Euler's equation: a force F turns the body across itself, by up to about this times |F| (mass times distance of
-  /// the contact over a third of the trace of the inertia) ....
+  /// Euler's equation: a force F causes an angular acceleration across its direction of up to about this times |F|. The
+  /// value is mass times the distance of the contact, over a third of the trace of the inertia.
   double lever_rad_m = 5.0;
-  /// ... and about its own direction by a share of that (several contacts, a contact that moves in a window).
+  /// Angular acceleration about the force's direction, as a fraction of that (several contacts, or a contact that moves
+  /// within a window).
   double twist_share = 0.3;
-  /// The unknown force is taken for zero with a standard deviation of this times itself (a prior that is flat in its
-  /// logarithm has 0.58); 0: nothing is assumed of it.
+  /// The unknown force has mean zero and a standard deviation of this times itself. A prior that is flat in the
+  /// logarithm has 0.58. 0: no prior.
   double force_share = 1.0;
 
   template <class Self, class Visitor>
@@ -80,15 +81,16 @@ struct RateContactParams {
   }
 };
 
-/// What few need of RateModelParams, by meaning. Fields bear the names that they have in tables and on command lines.
+/// Parameters of RateModelParams that few users change, grouped by meaning. Field names equal those in tables and on
+/// command lines.
 struct RateModelExpertParams {
-  /// What the model misses of a force, a torque or a rate lasts so long: samples that come faster say it once between
-  /// them, and their noise alone averages out.
+  /// Duration of model errors of a force, a torque or a rate. Faster samples share one such error; only their noise
+  /// averages out.
   double model_error_s = 0.01;
-  /// A body at rest still trembles, and rest may be found where there is none: deviation of its rate from zero, taken
-  /// anew with each sample.
+  /// Standard deviation of the rate from zero at rest, independent for each sample. The value covers vibration at rest
+  /// and false detections of rest.
   double rest_sigma_rad_s = 0.01;
-  SensorErrorSizes error_sizes = {};  ///< what is left open of RateModelParams::errors
+  SensorErrorSizes error_sizes = {};  ///< uncertainty of RateModelParams::errors
   RateReadingParams readings = {};
   RateFlightParams flight = {};
   RateContactParams contact = {};

@@ -8,16 +8,16 @@
 /// Groups of RateSmoother::Params::Expert.
 namespace tumble {
 
-/// A descent to the most likely rates.
+/// Gauss-Newton descent to the most likely rates.
 struct RateDescentParams {
   int iterations_max = 15;
-  double tolerance_rad_s = 2e-3;  ///< stop when no rate changes by more
+  double tolerance_rad_s = 2e-3;  ///< converged if no rate changes by more
   double step_max_rad_s = 10.0;   ///< longest step of a rate in one iteration
-  double widen_first = 8.0;       ///< threshold of contact in the first iteration, halved in each
-  /// Iterations after convergence in which the bounds of samples in contact are those of a truncated distribution
-  /// instead of hard bounds, which gives them an honest covariance.
+  double widen_first = 8.0;       ///< multiplier of the contact threshold in the first iteration, halved in each
+  /// Iterations after convergence with truncated distributions instead of hard bounds for samples in contact. These
+  /// iterations make the covariance of such samples consistent.
   int bound_iterations = 3;
-  double bound_damping = 0.5;  ///< share of a new bound taken over in each of them
+  double bound_damping = 0.5;  ///< weight of a new bound in each of them
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -35,15 +35,15 @@ struct RateDescentParams {
   }
 };
 
-/// What few need of RateSmootherParams, by meaning. Fields bear the names that they have in tables and on command
-/// lines.
+/// Parameters of RateSmootherParams that few users change, grouped by meaning. Field names equal those in tables and on
+/// command lines.
 struct RateSmootherExpertParams {
-  RailPlaneFinder::Params planes = {};  ///< without a stated range of its own: that of RateSmootherParams::rails
-  RailPlaneFinder::Params accel_planes = RailPlaneFinder::Params::for_accelerometer();  ///< likewise
+  RailPlaneFinder::Params planes = {};  ///< without a stated range, that of RateSmootherParams::rails applies
+  RailPlaneFinder::Params accel_planes = RailPlaneFinder::Params::for_accelerometer();  ///< same for the accelerometer
   RestDetector::Params rests = {};
   RateDescentParams descent = {};
-  /// Most descents, each with readings corrected for what the one before has told of the device; 1: the device's
-  /// errors are counted in the covariance and not estimated.
+  /// Maximum number of descents. Each uses readings corrected by the sensor errors of the previous one. 1: sensor
+  /// errors are included in the covariance but not estimated.
   int error_rounds_max = 3;
 
   template <class Self, class Visitor>

@@ -8,18 +8,18 @@
 /// Groups of RateStream::Params::Expert.
 namespace tumble {
 
-/// How much less a rig without calibration counts while few samples of flight, n, have been learnt from; one that is
-/// shorter than `model_error_s` counts for its part of it.
+/// Inflation of the calibration's uncertainty while it is estimated from few samples of flight, n. A sample shorter
+/// than `model_error_s` counts as a fraction.
 struct RigInflationParams {
-  /// Its covariance, but for the gyro's bias and never beyond that beforehand, counts 1 + covariance / (1 + n /
-  /// samples) times.
+  /// Inflation of the covariance by 1 + covariance / (1 + n / samples), except for the gyro's bias, and never beyond
+  /// the prior.
   double covariance = 60.0;
   double samples = 30.0;
-  /// What contact tells of a rate beyond the rail rests on a rig that flight has to tell: its deviation is at least
-  /// this share of what lies beyond the rail, over 1 + n / samples.
+  /// Rates beyond saturation that are recovered during contact depend on the calibration. The standard deviation of
+  /// such rates is at least this fraction of the deficit, divided by 1 + n / samples.
   double contact = 0.5;
-  /// Of a run of clipped samples in contact: the deviation is at least this share of what a parabola with the slopes at
-  /// the run's ends hides, less what the estimate has of it.
+  /// Rule for a run of clipped samples in contact. A parabola with the slopes at the run's ends predicts a deficit. The
+  /// standard deviation is at least this fraction of the predicted deficit, minus the estimated deficit.
   double slopes = 1.0;
 
   template <class Self, class Visitor>
@@ -37,18 +37,19 @@ struct RigInflationParams {
   }
 };
 
-/// What few need of RateStreamParams, by meaning. Fields bear the names that they have in tables and on command lines.
+/// Parameters of RateStreamParams that few users change, grouped by meaning. Field names equal those in tables and on
+/// command lines.
 struct RateStreamExpertParams {
-  RailPlaneFinder::Params planes = {};  ///< without a stated range of its own: that of RateStreamParams::rails
-  RailPlaneFinder::Params accel_planes = RailPlaneFinder::Params::for_accelerometer();  ///< likewise
+  RailPlaneFinder::Params planes = {};  ///< without a stated range, that of RateStreamParams::rails applies
+  RailPlaneFinder::Params accel_planes = RailPlaneFinder::Params::for_accelerometer();  ///< same for the accelerometer
   RestDetector::Params rests = {};
-  double widen_first = 8.0;      ///< threshold of contact for a new clipped sample, halved with each step
+  double widen_first = 8.0;      ///< contact threshold's factor for a new clipped sample, halved in each step
   double step_max_rad_s = 10.0;  ///< longest step of a rate at one sample
-  int bound_age = 3;             ///< steps after which the bounds of a sample in contact are softened
-  double bound_damping = 0.5;    ///< share of a new bound taken over in each step
-  int flight_run_min = 6;        ///< a flight of fewer samples in a row says nothing of the rig
+  int bound_age = 3;             ///< steps after which the bounds of a sample in contact become soft
+  double bound_damping = 0.5;    ///< weight of a new bound in each step
+  int flight_run_min = 6;        ///< minimum consecutive flight samples that update the calibration
   RigInflationParams inflation = {};
-  /// Share of the devices that nobody has calibrated, before the readings tell; 0: a device is as its sheet says.
+  /// Prior probability of an uncalibrated device; 0: the device matches its data sheet.
   double uncalibrated = 0.3;
 
   template <class Self, class Visitor>

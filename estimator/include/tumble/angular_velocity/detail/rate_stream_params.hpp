@@ -12,30 +12,32 @@
 
 namespace tumble {
 
-/// Of RateStream.
+/// Parameters of RateStream.
 struct RateStreamParams {
-  /// Narrower than by default in two priors, since a stream answers before the data outweigh them: 2 mg of bias as
-  /// after a factory calibration, the inertia of a box (3 : 2 : 2 is one deviation off, a disc 1.8, a rod 3.6).
+  /// Two priors are narrower than by default because a stream reports before the data outweigh them. The bias of 2 mg
+  /// is that after a factory calibration. The inertia is that of a box: 3 : 2 : 2 is at one standard deviation, a disc
+  /// at 1.8, a rod at 3.6.
   RateModelParams model = {.accel_bias_sigma_m_s2 = 0.02, .inertia_sigma = 0.15};
   RailDetector::Params rails = {};
   double period_s = 0.01;                    ///< nominal time between samples
   double lag_s = 0.2;                        ///< length of the window; [2 period_s, lag_max_s()]
-  double recovered_sigma_rad_s = 0.5;        ///< as in RateSmootherParams
-  double calibration_mahalanobis_max = 1.5;  ///< beyond this what was learnt of the rig is dropped
+  double recovered_sigma_rad_s = 0.5;        ///< same as in RateSmootherParams
+  double calibration_mahalanobis_max = 1.5;  ///< beyond this distance the estimated calibration is reset
   double gap_max_s = 1.0;                    ///< longest time between samples
-  double step_s = 0.005;                     ///< least time between Gauss-Newton steps; 0: with each sample
+  double step_s = 0.005;                     ///< minimum time between Gauss-Newton steps; 0: with each sample
 
-  /// What an earlier run has told of the device, taken as it is in place of model.errors. Else those are corrected for,
-  /// and what is open of them is asked of the readings. Shared, as few have it and copies of Params are many.
+  /// Sensor errors from an earlier run, used unchanged instead of model.errors. If empty, readings are corrected by
+  /// model.errors, and the remaining uncertainty is estimated from the readings. Shared because Params are copied often
+  /// and few contain it.
   std::shared_ptr<const KnownSensorErrors> learnt_errors;
 
   using Expert = RateStreamExpertParams;
-  Expert expert = {};  ///< what few need
+  Expert expert = {};  ///< parameters that few users change
 
-  /// Of 4096 samples, the most that a window holds.
+  /// Returns the duration of 4096 samples, the maximum of a window, and at most 10 s.
   double lag_max_s() const { return std::min(10.0, 4096.0 * period_s); }
 
-  /// Every number of it, stated once.
+  /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit.group("", p.model);

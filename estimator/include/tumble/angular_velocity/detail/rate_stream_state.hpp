@@ -26,58 +26,58 @@
 /// State of RateStream.
 namespace tumble {
 
-/// What the accelerometer read at the stamp of a sample.
+/// Accelerometer reading at the stamp of a sample.
 struct RateStreamForce {
   Eigen::Vector3d force_m_s2 = Eigen::Vector3d::Zero();
-  std::uint8_t device_clip_flags = 0;  ///< the accelerometer's bits
-  std::uint8_t clipped = 0;            ///< axes at an upright rail, as Clipping::accel
+  std::uint8_t device_clip_flags = 0;  ///< flags of the accelerometer
+  std::uint8_t clipped = 0;            ///< clipped axes, as Clipping::accel
   bool operator==(const RateStreamForce&) const = default;
 };
 
 /// A sample in the window.
 struct RateStreamKnot {
-  RateObservation observation;  ///< with the force of its own instant, where the accelerometer is late: `read`
+  RateObservation observation;  ///< with the force at its own time if the accelerometer is delayed: `read`
   RateStreamForce read;
-  Clipping by_upright_rails;  ///< what the device and upright rails say; the observation's knows planes too
+  Clipping by_upright_rails;  ///< by flags and equal readings; the observation also uses planes
   RateEstimate estimate;
   Eigen::Matrix3d covariance_rad2_s2 = Eigen::Matrix3d::Zero();
-  /// By how much the size of each axis has grown in each of the two steps up to this sample, the lesser; 0 or more.
+  /// Growth of each axis's magnitude in the two steps up to this sample; the smaller of the two, at least 0.
   Eigen::Vector3d approach_rad_s = Eigen::Vector3d::Zero();
   int age = 0;
-  bool repeats = false;   ///< its gyro says the reading of the sample before again: HoldWatch
-  HeldReading held;       ///< of its gyro; as if none was held at rest
-  std::uint8_t near = 0;  ///< axes that may have met a rail in a part of the reading's window: rails.md (R76)
+  bool repeats = false;   ///< the gyro repeats the previous reading: HoldWatch
+  HeldReading held;       ///< of the gyro; at rest as if nothing repeats
+  std::uint8_t near = 0;  ///< axes that may have been saturated for a part of the reading's window: rails.md (R76)
 };
 
-/// How much later than the gyro the accelerometer speaks: rate_stream.md (R107) to (R110).
+/// Delay of the accelerometer relative to the gyro: rate_stream.md (R104) to (R107).
 struct RateStreamDelay {
   StrokeSums strokes;
-  double in_use_s = 0.0;           ///< that readings are taken with; what is given of the device until one is found
-  double told_s = 0.0;             ///< by strokes and by what the readings tell of the device, as asked last
-  bool found = false;              ///< it is not what is given
-  TriadDelay guess;                ///< by strokes alone, as they told it last
-  std::optional<TimeNs> asked_ns;  ///< when strokes were
+  double in_use_s = 0.0;           ///< delay that is applied; the prior until a delay is found
+  double told_s = 0.0;             ///< latest estimate from impacts and from sensor-error evidence
+  bool found = false;              ///< differs from the prior
+  TriadDelay guess;                ///< latest estimate from impacts alone
+  std::optional<TimeNs> asked_ns;  ///< time of the last estimate from impacts
   bool operator==(const RateStreamDelay&) const = default;
 };
 
-/// What all that left the window tells of the device's errors, and how it moves with them: rate_stream.md (R101).
+/// Evidence about sensor errors from all samples that left the window, and its derivatives: rate_stream.md (R100).
 struct RateStreamDevice {
   struct Work {
     arrow::BorderErrors border, of_rig;
     SensorErrorEvidence told;
     DeviceDoubt::Work doubt;
   };
-  arrow::ErrorMatrix prior = arrow::ErrorMatrix::Zero();     ///< what each adds to the gradient of the oldest sample
-  arrow::BorderErrors corner = arrow::BorderErrors::Zero();  ///< of the rig
+  arrow::ErrorMatrix prior = arrow::ErrorMatrix::Zero();     ///< derivative of the oldest sample's gradient
+  arrow::BorderErrors corner = arrow::BorderErrors::Zero();  ///< derivative of the calibration's gradient
   SensorErrorEvidence evidence;
-  DeviceDoubt::Open open;          ///< by the evidence, as asked last
-  std::optional<TimeNs> asked_ns;  ///< when
+  DeviceDoubt::Open open;          ///< latest uncertainty from the evidence
+  std::optional<TimeNs> asked_ns;  ///< time of the latest update
   RateStreamDelay delay;
-  std::vector<arrow::ErrorMatrix> moved;  ///< scratch space: d(sample) / d(errors)
-  Work work;                              ///< scratch space
+  std::vector<arrow::ErrorMatrix> moved;  ///< buffer: d(sample) / d(errors)
+  Work work;                              ///< buffer
 };
 
-/// All that evolves; made by RateStream::start(). Copyable; RateStream::equal() compares.
+/// Complete state, created by RateStream::start(). Copyable; RateStream::equal() compares.
 struct RateStreamState {
   RailWatch::State rails;
   RestDetector::State rests;
@@ -87,27 +87,28 @@ struct RateStreamState {
   std::vector<RateStreamKnot> window;  ///< oldest first
   RigConstants rig;
   RigConstants::Matrix rig_covariance;
-  // what is known of the oldest sample and of the rig from all that left the window, about a point
+  // Prior on the oldest sample and on the calibration, from all samples that left the window, about a linearisation
+  // point.
   arrow::Block prior;
   arrow::Corner prior_corner;
-  /// One. Not inside of the state, which passes through threads of little stack.
+  /// One element. On the heap because the state passes through threads with a small stack.
   std::vector<RateStreamDevice> device = std::vector<RateStreamDevice>(1);
   std::array<Eigen::Vector3d, 2> extremes{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};  ///< of readings so far
-  LeastRails least;  ///< by the readings so far
-  /// Of a run of readings at a possible rail that left in part: RateStreamKnot::approach_rad_s before it, and how many
-  /// left.
+  LeastRails least;  ///< lower bounds from the readings so far
+  /// For a run of readings at a possible saturation level that has partly left the window:
+  /// RateStreamKnot::approach_rad_s before it, and the number of samples that left.
   Eigen::Vector3d entry_rad_s = Eigen::Vector3d::Zero(), entry_samples = Eigen::Vector3d::Zero();
-  std::optional<RateKnot> left;  ///< the sample that left last, and when it was read
+  std::optional<RateKnot> left;  ///< the sample that left last, and its time
   TimeNs left_ns = 0;
   RateKnot prior_knot;
   RigConstants prior_rig;
   std::size_t samples = 0;
   std::size_t waiting = 0;         ///< samples since the last step
-  std::size_t learnt_from = 0;     ///< samples of flight that left the window and told of the rig
-  std::size_t flight_run = 0;      ///< samples of flight in a row that left the window last
-  std::size_t rig_resets = 0;      ///< times that what was learnt of the rig was dropped
-  std::size_t failures = 0;        ///< steps whose system was not positive definite and was skipped
-  std::vector<arrow::Block> work;  ///< scratch space, no part of the state proper
+  std::size_t learnt_from = 0;     ///< flight samples that left the window and updated the calibration
+  std::size_t flight_run = 0;      ///< consecutive flight samples among those that left last
+  std::size_t rig_resets = 0;      ///< number of resets of the calibration
+  std::size_t failures = 0;        ///< number of skipped steps, whose system was not positive definite
+  std::vector<arrow::Block> work;  ///< buffer, not part of the state
 };
 
 }  // namespace tumble

@@ -8,11 +8,11 @@
 
 namespace tumble {
 
-/// What every estimator over a whole recording asks of it: `empty`, `too_few` below `count_min` samples, and what
-/// check_samples() finds; ok otherwise. O(N).
+/// Checks the input of an estimator over a whole recording. Returns `empty`, `too_few` (less than `count_min` samples),
+/// the errors of check_samples(), or ok. O(N).
 Status check_recording(std::span<const ImuSample> samples, std::size_t count_min, double gap_max_s);
 
-/// Median time between samples, at least 1 us and at most 10 s; needs two samples. O(N).
+/// Returns the median time between samples, limited to 1 us and 10 s; needs two samples. O(N).
 double median_period_s(std::span<const ImuSample> samples);
 
 }  // namespace tumble

@@ -7,28 +7,29 @@
 
 namespace tumble {
 
-/// What a window lost that met the rail for a part of its length only: its mean lies below the rail and is a reading
-/// after all, a little short.
+/// Deficit of a window that is saturated for a part of its length. The mean of such a window is below the saturation
+/// level, so the reading is still a measurement, slightly too small.
 struct SubsampleSaturation {
   bool saturated = false;
   double lost_rad_s = 0.0;   ///< expected |truth| - |reading|
   double sigma_rad_s = 0.0;  ///< its standard deviation
 };
 
-/// Loss of a flagged reading from its free neighbour. A rate that passes the rail c with constant slope within the
-/// window (D per window) and in the neighbouring one: with the clipped share p of the window the reading is
-/// m = c - (1-p)^2 D/2, the loss p^2 D/2 and the neighbour m + p^2 D/2 - D; p follows from (c - m) / (m - neighbour) in
-/// closed form. None when the reading stands at the rail, when it is within its noise of the neighbour, or when
-/// more than kShareMax of the window is hidden.
-/// `neighbour_rad_s`: the smaller of the neighbours' readings, signed so that the rail is positive. What it does not
-/// model: a slope that changes within the two windows; sigma allows for it (measured on impacts of tumbling bodies).
+/// Estimates the deficit of a flagged reading from its free neighbour. The rate passes the level c with constant slope
+/// (D per window) within this window and the neighbouring one. With the clipped fraction p of the window, the reading
+/// is m = c - (1-p)^2 D/2, the deficit p^2 D/2 and the neighbour m + p^2 D/2 - D. The fraction p follows from (c - m) /
+/// (m - neighbour) in closed form. The deficit is zero if the reading is at the level or within noise of the neighbour.
+/// The deficit is also zero if more than kShareMax of the window is hidden. `neighbour_rad_s`: the smaller of the
+/// neighbours' readings, with a sign for which the level is positive. Not modelled: a slope that changes within the two
+/// windows; sigma covers it (measured on impacts of tumbling bodies).
 SubsampleSaturation subsample_saturation(double reading_rad_s, double neighbour_rad_s, double rail_rad_s,
                                          double noise_rad_s);
 
-/// The smaller of what the samples beside (null where there is none) read by `read`, of one that is flagged on the axis
-/// only where the step to it is twice what `reading_rad_s` lies below the rail, so that most of its window was free;
-/// the rail where there is none. A rate of constant slope that passes the rail in this window was free in the one
-/// before; readings that sink one by one along a tilted rail, all of them flagged, are no rates. rails.md (R70).
+/// Returns the smaller neighbouring reading, as evaluated by `read` (neighbours may be null), or the level if there is
+/// none. A neighbour that is flagged on the axis counts only if most of its window was free. The criterion is a step to
+/// it of twice the distance of `reading_rad_s` from the level. Reason: a rate of constant slope that passes the level
+/// in this window was free in the one before. Readings that decrease one by one along a tilted plane, all of them
+/// flagged, are not rates. rails.md (R70).
 template <class Read>
 double free_neighbour(double reading_rad_s, double rail_rad_s, int axis, const ImuSample* before,
                       const ImuSample* after, const Read& read) {

@@ -10,7 +10,7 @@ namespace tumble {
 /// The two sensors of an IMU.
 enum class Triad : std::uint8_t { gyro, accelerometer };
 
-/// The reading of one of them, rad/s or m/s^2.
+/// Returns the reading of a triad, rad/s or m/s^2.
 inline const Eigen::Vector3d& reading_of(const ImuSample& sample, Triad triad) {
   return triad == Triad::gyro ? sample.angular_velocity_rad_s : sample.specific_force_m_s2;
 }

@@ -8,8 +8,8 @@ struct NormalMoments {
   double mean = 0.0, variance = 1.0;
 };
 
-/// Moments of a normal distribution of which only what lies beyond `bound` is left, the bound itself being known with
-/// variance `softness2`: the step of expectation propagation (Minka 2001).
+/// Returns the moments of a normal distribution truncated below `bound`. The bound has the variance `softness2`.
+/// Expectation propagation uses these moments (Minka 2001).
 NormalMoments truncated_below(const NormalMoments& from, double bound, double softness2);
 
 /// A Gaussian factor, as precision and precision * mean.
@@ -17,8 +17,9 @@ struct NormalSite {
   double precision = 0.0, shift = 0.0;
 };
 
-/// The site with which `marginal` has the moments that truncation at `bound` gives it, `now` being the site in it;
-/// damped: `share` in (0, 1] of the new. The marginal without its site is taken to be no wider than sqrt(`widest2`).
+/// Returns the site that gives `marginal` the moments of a truncation at `bound`. `now` is the current site. The update
+/// is damped: `share` in (0, 1] is the weight of the new site. The standard deviation of the marginal without its site
+/// is limited to sqrt(`widest2`).
 NormalSite refined_bound(const NormalMoments& marginal, const NormalSite& now, double bound, double softness2,
                          double widest2, double share);
 

@@ -12,16 +12,16 @@
 
 namespace tumble {
 
-/// CarriedStream, which has to be told what is at a rail, with what its samples have shown of the rails: angular
-/// velocity of a body that is known to be carried, from one IMU alone. With each rail that becomes known the window is
-/// read again. Not modelled: a body that flies or touches, which RegimeStream tells apart.
+/// Estimates the angular velocity of a body that is known to be hand-held, from a single IMU. The class detects
+/// saturation levels for CarriedStream, which does not. After each detection the window is processed again. Not
+/// modelled: flight and contact, which RegimeStream distinguishes.
 class CarriedLive {
  public:
   struct Params {
     CarriedStream::Params stream;
     RailWatch::Params rails;
 
-    /// Every number of it, stated once.
+    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.stream);
@@ -32,24 +32,24 @@ class CarriedLive {
     CarriedStream::State stream;
     RailWatch::State rails;
     HoldWatch::State holds;
-    bool news = false;             ///< of the rails, by the last sample
-    std::vector<ClipSigns> signs;  ///< scratch space, no part of the state proper
+    bool news = false;             ///< whether the last sample changed the known levels
+    std::vector<ClipSigns> signs;  ///< buffer, not part of the state
   };
 
-  /// Throws InvalidParams on a parameter outside of its bound.
+  /// Throws InvalidParams if a parameter is out of bounds.
   explicit CarriedLive(const Params& params);
 
-  /// A state before the first sample.
+  /// Returns the state before the first sample.
   State start() const;
 
-  /// Takes one sample; `out`: rate of the sample that is `lag_s` old, empty while the window fills. Trouble:
-  /// `non_finite`, `time_order`, `gap`; of the rails no more is learnt then, and `out` is empty.
+  /// Processes one sample. `out`: rate of the sample that is `lag_s` old; empty while the window fills. On error
+  /// (`non_finite`, `time_order`, `gap`) the saturation levels are not updated and `out` is empty.
   Status push(const ImuSample& sample, State& state, std::optional<RateState>& out) const;
 
-  /// Rates of the samples that push() has not given out, oldest first, appended to `out`.
+  /// Appends the rates of the samples that are not yet reported to `out`, oldest first.
   void flush(const State& state, std::vector<RateState>& out) const { stream_.flush(state.stream, out); }
 
-  /// What holds of every state that push() left, for one that comes from elsewhere; the first that does not.
+  /// Checks the invariants of a state that was loaded from outside. Returns the first violation.
   Status check_state(const State& state) const;
 
  private:

@@ -8,14 +8,13 @@
 
 namespace tumble {
 
-/// Errors of several accelerometers on one rigid body, told by what they disagree in.
+/// Estimates the errors of several accelerometers on one rigid body from their differences.
 ///
-/// Turning fast, units at different positions measure large forces that cancel in their mean; what scale and
-/// misalignment make of those forces does not. A Kalman filter holds, for each unit, bias, scale and misalignment, and
-/// the error of its place: f_k = c + A p_k + b_k + M_k f_k + A dp_k, A = [a]x + [w]x[w]x, and measures each unit's
-/// difference from the mean of all, averaged over kSpan_s (all of it is linear, so the average loses nothing but what
-/// turns within it). What all units share shows in no difference and stays about zero: it is left to the user of the
-/// mean.
+/// In fast rotation, units at different positions measure large forces that cancel in their mean. The effects of scale
+/// and misalignment do not cancel. For each unit, a Kalman filter estimates bias, scale and misalignment, and position
+/// error: f_k = c + A p_k + b_k + M_k f_k + A dp_k, A = [a]x + [w]x[w]x. The measurement is each unit's difference from
+/// the mean of all, averaged over kSpan_s. The model is linear, so averaging only loses rotation within the span.
+/// Errors common to all units do not show in the differences and remain about zero.
 ///
 /// Not modelled: errors that change, a body that bends.
 class ForceErrors {
@@ -28,14 +27,14 @@ class ForceErrors {
   using Covariance = Eigen::Matrix<double, kStates, kStates>;
 
   struct Params {
-    std::array<Eigen::Vector3d, kUnits> p_C_m{};  ///< places of the units
+    std::array<Eigen::Vector3d, kUnits> p_C_m{};  ///< positions of the units
     int count = 1;                                ///< bound [1, kUnits]
     double bias_sigma_m_s2 = 0.05;                ///< prior; bound [0, 1e3]
     double scale_sigma = 4e-3;                    ///< prior of each entry of M; bound [0, 1]
     double position_sigma_m = 1.5e-3;             ///< prior; bound [0, 10]
     double noise_m_s2 = 0.06;                     ///< of one difference, over a span; bound (0, 1e3]
-    double acceleration_share = 0.02;  ///< more, of what the angular acceleration makes of the distance; bound [0, 1]
-    double doubt = 5.0;                ///< sigmas beyond which a difference is no error of these; bound (0, 1e3]
+    double acceleration_share = 0.02;  ///< additional, per lever-arm force of the angular acceleration; bound [0, 1]
+    double doubt = 5.0;                ///< differences beyond this many sigmas have another cause; bound (0, 1e3]
   };
   struct State {
     Vector x = Vector::Zero();
@@ -51,18 +50,18 @@ class ForceErrors {
     bool operator==(const State&) const = default;
   };
 
-  /// Throws InvalidParams when a parameter is outside of its bound.
+  /// Throws InvalidParams if a parameter is out of bounds.
   explicit ForceErrors(const Params& params);
 
-  /// `forces_m_s2` of all units in common axes C, as measured over `dt_s`, with rate and angular acceleration at their
-  /// time. Once in kSpan_s the filter is updated; O((kPerUnit count)^2), no allocation.
+  /// Processes `forces_m_s2` of all units in common axes C, measured over `dt_s`, with rate and angular acceleration at
+  /// their time. Updates the filter once per kSpan_s; O((kPerUnit count)^2), no allocation.
   void learn(std::span<const Eigen::Vector3d> forces_m_s2, const Eigen::Vector3d& rate_rad_s,
              const Eigen::Vector3d& acceleration_rad_s2, double dt_s, State& state) const;
 
-  /// The force of unit `k` without its own bias, scale and misalignment.
+  /// Returns the force of unit `k` corrected for its bias, scale and misalignment.
   static Eigen::Vector3d corrected(int k, const Eigen::Vector3d& force_m_s2, const State& state);
 
-  /// The error of its position.
+  /// Returns the position error of unit `k`.
   static Eigen::Vector3d position_error_m(int k, const State& state) {
     return state.x.segment<3>(kPerUnit * k + kPerUnit - 3);
   }

@@ -6,14 +6,14 @@
 /// Groups of ImuMerge::Params::Expert.
 namespace tumble {
 
-/// Where a reading is off from the others', and left out of its sample.
+/// Outliers: a reading far from those of the others is excluded from its sample.
 struct ImuOutlierParams {
-  double rate_rad_s = 0.15;  ///< from the median
-  double rate_share = 0.03;  ///< more, as a share of the rate
-  double force_m_s2 = 3.0;   ///< from the median
-  /// A reading from this share of the range on may hide a rail met within its sample.
+  double rate_rad_s = 0.15;  ///< difference from the median
+  double rate_share = 0.03;  ///< additional, as a fraction of the rate
+  double force_m_s2 = 3.0;   ///< difference from the median
+  /// A reading above this fraction of the range may have been saturated within its sample.
   double subsample_saturation_share = 0.15;
-  double hidden_force_m_s2 = 3.0;  ///< by which it then may disagree with another
+  double hidden_force_m_s2 = 3.0;  ///< such a reading may differ from another by this much
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -31,14 +31,14 @@ struct ImuOutlierParams {
   }
 };
 
-/// A unit that is frozen: a reading that lasts while the others move, or a force while gravity turns. Sample and hold
-/// is shorter.
+/// Frozen units: a reading that repeats while the others change, or a force that repeats while gravity rotates.
+/// Repetition by sample and hold is shorter.
 struct FrozenImuParams {
   double after_s = 0.1;
-  double rate_rad_s = 0.03;  ///< by which the others move
+  double rate_rad_s = 0.03;  ///< minimum change of the others
   double force_m_s2 = 0.3;
-  double turned_rad = 1.0;      ///< and gravity turns, also where all repeat themselves
-  double thawed_after_s = 0.5;  ///< of readings that change
+  double turned_rad = 1.0;      ///< minimum rotation of gravity, also if all units repeat their readings
+  double thawed_after_s = 0.5;  ///< duration of changing readings after which a unit is used again
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -55,10 +55,10 @@ struct FrozenImuParams {
   }
 };
 
-/// A unit that is off from the median, as a mean over half a second, for so long that it is left out for good.
+/// A unit whose mean over half a second differs from the median for long enough is excluded permanently.
 struct DisagreeingImuParams {
   double rate_rad_s = 0.1;
-  double rate_share = 0.06;  ///< more, as a share of the rate
+  double rate_share = 0.06;  ///< additional, as a fraction of the rate
   double force_m_s2 = 1.0;
   double after_s = 0.3;
 
@@ -74,7 +74,8 @@ struct DisagreeingImuParams {
   }
 };
 
-/// What few need of ImuMergeParams, by meaning. Fields bear the names that they have in tables and on command lines.
+/// Parameters of ImuMergeParams that few users change, grouped by meaning. Field names equal those in tables and on
+/// command lines.
 struct ImuMergeExpertParams {
   ImuOutlierParams outliers = {};
   FrozenImuParams frozen = {};

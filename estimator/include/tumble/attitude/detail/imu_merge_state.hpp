@@ -14,7 +14,7 @@
 /// State of ImuMerge.
 namespace tumble {
 
-/// How long a triad has given the same reading, what the others gave when it began, and how far all have turned since.
+/// Repetition of a triad's reading: its duration, the others' readings at its start, and the rotation since.
 struct ImuHold {
   Eigen::Vector3d reading = Eigen::Vector3d::Zero(), others = Eigen::Vector3d::Zero();
   Eigen::Vector3d turned_rad = Eigen::Vector3d::Zero();
@@ -23,48 +23,48 @@ struct ImuHold {
   bool operator==(const ImuHold&) const = default;
 };
 
-/// Errors of one unit's rate about the mean of all.
+/// Errors of one unit's rate relative to the mean of all.
 struct ImuMergeUnit {
   static constexpr int kErrors = 13;  ///< bias, scale and misalignment, time offset
 
   Eigen::Matrix<double, kErrors, 1> x = Eigen::Matrix<double, kErrors, 1>::Zero();
   Eigen::Matrix<double, kErrors, kErrors> P = Eigen::Matrix<double, kErrors, kErrors>::Zero();
-  ImuAverage window;  ///< of its readings, since the last one closed
-  /// Means over the last window; of one that was silent what the others make of it.
+  ImuAverage window;  ///< of its readings since the last window
+  /// Means over the last window; for an absent unit, the values predicted from the others.
   Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero(), last_force_m_s2 = Eigen::Vector3d::Zero();
-  double suspect_s = 0.0;     ///< for so long it is still left out of the force
-  std::int64_t left_out = 0;  ///< windows
+  double suspect_s = 0.0;     ///< remaining time for which it is excluded from the force
+  std::int64_t left_out = 0;  ///< number of windows
   ImuHold rate_hold, force_hold;
   double thawing_s = 0.0;
   double misfit_rate_rad_s = 0.0, misfit_force_m_s2 = 0.0, misfits_s = 0.0;
   TimeNs misfits_since_ns = 0;
   bool frozen = false, disagrees = false;
-  std::int64_t absent = 0;  ///< samples that were not finite
+  std::int64_t absent = 0;  ///< number of samples that were not finite
   TimeNs frozen_since_ns = 0, disagrees_since_ns = 0, absent_since_ns = 0;
   bool left_out_for_long() const { return frozen || disagrees; }
   double offset_s() const { return x[kErrors - 1]; }
   bool operator==(const ImuMergeUnit&) const = default;
 };
 
-/// All that evolves.
+/// Complete state.
 struct ImuMergeState {
   static constexpr int kImus = 4;
-  static constexpr int kLearnFrom = 3;  ///< so many windows make an angular acceleration
+  static constexpr int kLearnFrom = 3;  ///< windows needed for an angular acceleration
 
   std::array<ImuMergeUnit, kImus> units{};
   ForceErrors::State forces;
   RateRecovery::State recovery;
-  Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();         ///< merged, mean over the last window
-  Eigen::Vector3d rate_before_rad_s = Eigen::Vector3d::Zero();  ///< and over the one before
+  Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();         ///< merged mean over the last window
+  Eigen::Vector3d rate_before_rad_s = Eigen::Vector3d::Zero();  ///< merged mean over the window before
   double rotation_rate_rad_s = 0.0;                             ///< mean of the rate over half a second
-  double window_s = 0.0;                                        ///< length of the one that is open
-  double length_s = 0.0, length_before_s = 0.0;                 ///< of the last windows
-  double arm_product = 0.0, arm_square_m2_s3 = 0.0;             ///< of arm_share()
+  double window_s = 0.0;                                        ///< length of the current window
+  double length_s = 0.0, length_before_s = 0.0;                 ///< of the last two windows
+  double arm_product = 0.0, arm_square_m2_s3 = 0.0;             ///< sums for arm_share()
   UnitSenses senses;
   std::int64_t samples = 0, windows = 0;
-  int free_windows = kLearnFrom;  ///< since a gyro was clipped or a unit silent, at most kLearnFrom
+  int free_windows = kLearnFrom;  ///< windows since a gyro was clipped or a unit absent, at most kLearnFrom
   TimeNs last_time_ns = 0;
-  bool all_frozen = false;  ///< that were heard in the last window
+  bool all_frozen = false;  ///< all units that were present in the last window
   bool operator==(const ImuMergeState&) const = default;
 };
 

@@ -6,10 +6,10 @@
 /// Groups of ImuPlausibility::Params::Expert.
 namespace tumble {
 
-/// Size of a steady force as a share of gravity.
+/// Magnitude of a constant force as a fraction of gravity.
 struct SteadyForceParams {
-  double share_min = 0.5, share_max = 2.0;  ///< mean of steady windows
-  int windows_min = 5;                      ///< steady ones, to say something of it
+  double share_min = 0.5, share_max = 2.0;  ///< bounds of the mean over constant windows
+  int windows_min = 5;                      ///< minimum number of constant windows
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -21,18 +21,19 @@ struct SteadyForceParams {
   }
 };
 
-/// How gravity's direction turns beside what the gyro says.
+/// Rotation of gravity's direction compared with the gyro.
 struct GravityRotationParams {
-  /// Slope of gravity's turning over the gyro's; pendulums and wands leave 0.75 to 1.21.
+  /// Slope of gravity's rotation over the gyro's. Pendulums and hand-held wands give 0.75 to 1.21.
   double slope_min = 0.65, slope_max = 1.5;
-  double rotation_min_rad2 = 0.5;    ///< sum of squares below which nothing is said of it
-  double rotation_least_rad = 0.15;  ///< of a window, to count as turning
-  /// So many of them: in one or two a push may pass for gravity, or what a rig that spins in flight feels at its
-  /// position.
+  double rotation_min_rad2 = 0.5;    ///< minimum sum of squares for a decision
+  double rotation_least_rad = 0.15;  ///< minimum rotation of a window
+  /// Minimum number of rotating windows. In one or two windows, a push may be mistaken for gravity, or the centripetal
+  /// force of a spin in flight.
   double rotated_windows_min = 5.0;
-  /// Of what the gyro leaves unexplained, by one of the slope's scale, where that is not between 0 and 1.
+  /// Maximum residual of a gyro with the slope's scale, as a fraction of the actual gyro's residual, for slopes outside
+  /// of 0 to 1.
   double unexplained_share_max = 0.75;
-  double still_share = 1e-6;  ///< of the gyro's turning; a spin in flight leaves 0.006 and less
+  double still_share = 1e-6;  ///< fraction of the gyro's rotation; a spin in flight gives up to 0.006
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -54,10 +55,10 @@ struct GravityRotationParams {
   }
 };
 
-/// When axes are named otherwise than they say.
+/// Detection of wrong axis labels.
 struct AxisNamingParams {
-  double unexplained_share_max = 0.33;  ///< of what the naming at hand leaves unexplained, by a better one
-  double unexplained_least = 0.01;      ///< unexplained share from which on namings are compared
+  double unexplained_share_max = 0.33;  ///< maximum residual of better labels, as a fraction of the current residual
+  double unexplained_least = 0.01;      ///< minimum unexplained fraction for which labels are compared
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -68,11 +69,11 @@ struct AxisNamingParams {
   }
 };
 
-/// A triad that repeats its reading.
+/// Detection of a triad that repeats its reading.
 struct FrozenTriadParams {
-  double repeats_s = 1.0;          ///< for so long it may be frozen, after as long of moving ones
-  double longest_share = 10.0;     ///< and lasts so many times longer than any did before
-  double unexplained_least = 0.5;  ///< of gravity's turning, for a gyro that never moved
+  double repeats_s = 1.0;          ///< minimum duration, after as long with changing readings
+  double longest_share = 10.0;     ///< minimum ratio to the longest earlier repetition
+  double unexplained_least = 0.5;  ///< of gravity's rotation, for a gyro that never changed
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -86,7 +87,7 @@ struct FrozenTriadParams {
   }
 };
 
-/// What few need of ImuPlausibilityParams, by meaning.
+/// Parameters of ImuPlausibilityParams that few users change, grouped by meaning.
 struct ImuPlausibilityExpertParams {
   SteadyForceParams force = {};
   GravityRotationParams turning = {};

@@ -8,10 +8,10 @@
 
 namespace tumble {
 
-/// Second-order Butterworth low-pass of a vector, bilinear, corner sqrt(2) / (2 pi tau).
-/// Until tau has passed the output is the mean of what came so far, so that no single sample sets the start.
-/// The state is the output and its slope, not the taps of a biquad: at a constant period the same transfer function,
-/// and a period that changes leaves no transient.
+/// Filters a vector by a second-order Butterworth low-pass (bilinear, corner frequency sqrt(2) / (2 pi tau)).
+/// Until tau has passed, the output is the mean of all inputs, so that no single sample determines the start.
+/// The state is the output and its slope, not the taps of a biquad. At a constant period the transfer function is the
+/// same, and a changing period causes no transient.
 template <int Rows>
 struct LowPass {
   using Vector = Eigen::Matrix<double, Rows, 1>;
@@ -22,7 +22,7 @@ struct LowPass {
   double averaged_s = 0.0;
   double samples = 0.0;
 
-  /// Takes the next input, `dt_s` after the last one. `warp` as low_pass_warp() gives it for tau and dt.
+  /// Processes the next input, `dt_s` after the previous one. `warp` is the result of low_pass_warp() for tau and dt.
   void advance(const Vector& next, double tau_s, double dt_s, double warp) {
     if (averaged_s < tau_s) {
       samples += 1.0;
@@ -41,7 +41,8 @@ struct LowPass {
   bool operator==(const LowPass&) const = default;
 };
 
-/// tan(pi f_c dt) for LowPass; bounded where dt is so long against tau that the filter has nothing left to smooth.
+/// Returns tan(pi f_c dt) for LowPass. The value is bounded if dt is so long compared to tau that nothing is left to
+/// smooth.
 inline double low_pass_warp(double tau_s, double dt_s) {
   return std::tan(std::min(dt_s / (std::numbers::sqrt2 * tau_s), 1.5));
 }

@@ -13,27 +13,27 @@
 
 namespace tumble {
 
-/// Of PivotCheck.
+/// Parameters of PivotCheck.
 struct PivotCheckParams {
   double gravity_m_s2 = 9.80665;
-  double accel_range_m_s2 = 0.0;    ///< as the device states it; 0: not stated
-  double reading_s = 0.01;          ///< readings are averaged to this length
-  double segment_s = 2.0;           ///< of motion that is explained at once, and half of it at least
-  double rotation_least_rad = 1.0;  ///< within a segment, to count
-  double explains_m_s = 0.3;        ///< root mean square of a velocity below which a segment is explained
-  double noise_m_s = 0.03;          ///< nothing is explained better than so
-  double evidence_least = 5.0;      ///< sum over the segments of the logarithm of the ratio of squares, and
-  double evidence_of_each = 0.6;    ///< on the average of a segment at least
-  double segments_least = 6.0;      ///< that are explained better; each moment is in two
-  double better_over_worse = 4.0;   ///< and so many for each that is explained worse
-  double arm_most_m = 0.25;         ///< of a segment that tells the scale
-  double scale_off = 0.025;         ///< and five deviations, by which the scale differs from 1
+  double accel_range_m_s2 = 0.0;    ///< stated by the device; 0: not stated
+  double reading_s = 0.01;          ///< averaging time of readings
+  double segment_s = 2.0;           ///< duration of a segment of motion, and half of it at least
+  double rotation_least_rad = 1.0;  ///< minimum rotation within a segment
+  double explains_m_s = 0.3;        ///< rms velocity below which the rates explain a segment
+  double noise_m_s = 0.03;          ///< rms velocity below which segments explain equally well
+  double evidence_least = 5.0;      ///< minimum sum over the segments of the log ratio of squares,
+  double evidence_of_each = 0.6;    ///< and minimum mean per segment
+  double segments_least = 6.0;      ///< minimum number of better explained segments; each moment is in two
+  double better_over_worse = 4.0;   ///< minimum ratio of better to worse explained segments
+  double arm_most_m = 0.25;         ///< maximum pivot distance of segments that determine the scale
+  double scale_off = 0.025;         ///< minimum difference of the scale from 1, in addition to five deviations
   double scale_deviations = 5.0;
-  double scale_segments_least = 10.0;  ///< and this share of those that the rates explain: others hang on a rod
+  double scale_segments_least = 10.0;  ///< minimum number, and fraction of explained segments; others hang on a rod
   double scale_share_least = 0.5;
-  double gap_max_s = 0.1;  ///< a longer one ends a segment
+  double gap_max_s = 0.1;  ///< a longer gap ends a segment
 
-  /// Every number of it, stated once.
+  /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-12, 100.0, "strength of gravity"});
@@ -65,39 +65,38 @@ struct PivotCheckParams {
   }
 };
 
-/// Whether rates can be believed of a body that never rests but is held: by a hand, by a hinge, by the ground that it
-/// rocks on. Over a second or two it turns about a point of itself that hardly moves. The forces, turned by the rates,
-/// then add to gravity for the time, and to what the turning makes of the way to that point, and to nothing else. Where
-/// they do not, but would with axes or signs of the gyro named otherwise, or with half or twice its rate, segment after
-/// segment, the rates are not what they claim. Where the point is near the sensor, as in a hand, the same tells the
-/// gyro's scale to a per cent.
+/// Checks the plausibility of rates for a body that never rests but is held: by a hand, a hinge, or the ground on which
+/// it rocks. Over a second or two, such a body rotates about one of its points, which hardly moves. The forces, rotated
+/// by the rates, then integrate to gravity times the duration plus the effect of rotation about this pivot. If they do
+/// not, but would with relabelled or inverted gyro axes or with half or twice the rate, in many segments, the rates are
+/// wrong. If the pivot is near the sensor, as in hand-held motion, the gyro's scale is determined to a per cent.
 ///
-/// The equations are imu_merge.md (I24), (I25), (I26), (I27). Only what the gyro measured counts: a segment ends where
-/// it was at its rail. Not seen: a body that flies or rolls on, which no reading explains; turning about one axis
-/// alone, which several namings explain alike; an accelerometer with all three axes flipped, whose pivot lies on the
-/// other side.
+/// The equations are imu_merge.md (I27), (I28), (I29), (I30). Only measured rates count: a segment ends where the gyro
+/// saturates. Not detected: a body that flies or rolls, which no alternative explains; rotation about one axis only,
+/// which several labels explain equally; an accelerometer with all three axes flipped, whose pivot is on the opposite
+/// side.
 class PivotCheck {
  public:
   using Params = PivotCheckParams;
 
-  /// What all segments say.
+  /// Result over all segments.
   struct Found {
-    int reading = 0;                    ///< of the gyro, that explains most, by number; 0: as it is
-    double evidence = 0.0;              ///< for it, against the rates as they are: sum of logarithms, more is better
-    std::size_t counted = 0;            ///< segments that it or the rates as they are explain
+    int reading = 0;                    ///< number of the gyro alternative that explains most; 0: as it is
+    double evidence = 0.0;              ///< evidence against the unchanged rates: sum of logarithms
+    std::size_t counted = 0;            ///< segments that it or the unchanged rates explain
     std::size_t better = 0, worse = 0;  ///< of those, by more than a fifth of the residual
-    double scale = 1.0;                 ///< by which the rates explain most, of segments with a near pivot
+    double scale = 1.0;                 ///< best scale of the rates, from segments with a near pivot
     double scale_sigma = std::numeric_limits<double>::infinity();
-    std::size_t scale_segments = 0, explained = 0;  ///< and all that the rates as they are explain
+    std::size_t scale_segments = 0, explained = 0;  ///< number of these segments; all that the unchanged rates explain
   };
 
-  /// Throws InvalidParams when a parameter is outside of its bound.
+  /// Throws InvalidParams if a parameter is out of bounds.
   explicit PivotCheck(const Params& params);
 
-  /// `rates`: what an estimate gives for each of the samples. O(samples).
+  /// `rates`: estimated rate of each sample. O(samples).
   Found find(std::span<const ImuSample> samples, std::span<const RateState> rates) const;
 
-  /// `out_of_range` where another reading of the gyro explains clearly more, or its scale is off.
+  /// Returns `out_of_range` if another alternative of the gyro explains clearly more, or its scale is wrong.
   Status verdict(const Found& found) const;
 
  private:

@@ -11,71 +11,72 @@
 
 namespace tumble {
 
-/// The rate of a body beyond the range of its gyros, from what the turning does to several accelerometers on it.
+/// Estimates the rate of a body beyond its gyros' range from the differences of several accelerometers.
 ///
-/// An extended Kalman filter of rate, angular acceleration and the specific force at the units' mean position, which
-/// turns in the body as gravity does, with the error of each unit's lever arm: f_k = c + a x r_k + w x (w x r_k). It
-/// runs while a gyro is clipped or reads more than kFast of its range, so that the lever arms are learnt before the
-/// gyro stands at its rail. A reading is clipped where its flag says so (which whoever has judged the unit sets, see
-/// ClippingFinder: a device that flags nothing may clip below its range) and from the range on; of gyro and
-/// accelerometer, such readings are bounds and no measurements.
+/// An extended Kalman filter estimates rate, angular acceleration, specific force at the units' mean position, and each
+/// unit's lever arm error: f_k = c + a x r_k + w x (w x r_k). The force rotates in the body as gravity does. The filter
+/// runs while a gyro is clipped or reads more than kFast of its range. The lever arms are thus calibrated before the
+/// gyro saturates. A reading is clipped if flagged or beyond the range. ClippingFinder sets flags for devices that clip
+/// below their range without reporting it. Clipped readings of gyro and accelerometer are bounds, not measurements.
 ///
-/// Not modelled: errors of scale (the gyro's is what the lever arms are learnt with), units that share a position,
-/// which tell nothing. An impact on the body reads as a spell of doubt, not as a rate.
+/// Not modelled: scale errors (the gyro's scale calibrates the lever arms), units at the same position, which provide
+/// no information. An impact increases the uncertainty and does not appear as a rate.
 class RateRecovery {
  public:
   static constexpr int kUnits = 4;
   static constexpr int kStates = 9 + 3 * kUnits;
-  /// Shorter readings are noisier by the square root of their shortness, and say no more by being many.
+  /// Reference length of readings. The noise of shorter readings grows with the inverse root of their length, so their
+  /// number adds no information.
   static constexpr double kReading_s = 4e-3;
-  static constexpr double kFast = 0.5;  ///< share of the gyro's range from which on the filter runs
+  static constexpr double kFast = 0.5;  ///< fraction of the gyro's range above which the filter runs
   using Vector = Eigen::Matrix<double, kStates, 1>;
   using Covariance = Eigen::Matrix<double, kStates, kStates>;
 
-  /// What readings over kReading_s are off by.
+  /// Standard deviations of readings over kReading_s.
   struct ReadingNoise {
     double rate_rad_s = 0.03;    ///< bound (0, 10]
-    double rate_share = 0.003;   ///< more, as a share of the reading; bound [0, 1]
+    double rate_share = 0.003;   ///< additional, as a fraction of the reading; bound [0, 1]
     double force_m_s2 = 0.3;     ///< bound (0, 1e3]
-    double force_share = 0.004;  ///< more, as a share of the reading; bound [0, 1]
+    double force_share = 0.004;  ///< additional, as a fraction of the reading; bound [0, 1]
   };
   struct Params {
-    std::array<Eigen::Isometry3d, kUnits> T_CI{};   ///< mountings of the units, about their mean position
+    std::array<Eigen::Isometry3d, kUnits> T_CI{};   ///< mountings of the units relative to their mean position
     int count = 1;                                  ///< bound [1, kUnits]
-    double gyro_range_rad_s = 1e3;                  ///< from here on a reading is at its rail; bound (0, 1e3]
+    double gyro_range_rad_s = 1e3;                  ///< readings from this value on are saturated; bound (0, 1e3]
     double accel_range_m_s2 = 1e5;                  ///< bound (0, 1e5]
     double lever_arm_sigma_m = 1.5e-3;              ///< prior; bound (0, 10]
     double acceleration_walk_rad_s2_sqrts = 200.0;  ///< of the angular acceleration; bound (0, 1e6]
     double force_walk_m_s2_sqrts = 25.0;            ///< of the common force; bound (0, 1e6]
-    double recovered_sigma_rad_s = 1.0;             ///< a rate known no better than this stays clipped; bound (0, 1e3]
+    double recovered_sigma_rad_s = 1.0;             ///< rates with larger sigma remain clipped; bound (0, 1e3]
     ReadingNoise noise;
-    /// Along what the elements of the units sense: while one clips, the axes beside it are off by what it hides, and
-    /// the free ones are read along their rows.
+    /// Sensing directions of the units' elements. While one clips, the other axes are corrupted by its deficit, and
+    /// free elements are used along their rows.
     std::array<ElementRows, kUnits> gyro_elements{}, accel_elements{};
   };
   struct State {
-    Vector x = Vector::Zero();  ///< rate, angular acceleration, force (C), lever arms of the units in error
+    Vector x = Vector::Zero();  ///< rate, angular acceleration, force (C), lever arm errors of the units
     Covariance P = Covariance::Zero();
     bool started = false;  ///< lever arms have their prior
     bool running = false;
     bool operator==(const State&) const = default;
   };
 
-  /// Throws InvalidParams when a parameter is outside of its bound.
+  /// Throws InvalidParams if a parameter is out of bounds.
   explicit RateRecovery(const Params& params);
 
-  /// Takes the units' readings (of a unit that is not finite, none), each in its own axes, `dt_s` after the last ones;
-  /// `merged` (C) holds the mean of those in use and gets rate and force of the filter where a rail made them wrong.
-  /// Its clip flags of the gyro are set when the rate could not be recovered, those of the accelerometer when most
-  /// units' were at their rail, or one's and a gyro's; else cleared: a rate that was recovered is none that is clipped.
-  /// O(count), no allocation; little to do while the body turns slowly and no gyro is clipped.
+  /// Processes the units' readings, each in its own axes, `dt_s` after the previous ones. Units that are not finite are
+  /// ignored. `merged` (C) contains the mean of the used units, and receives rate and force of the filter where
+  /// saturation corrupted them. The gyro flags of `merged` are set if the rate could not be recovered. The
+  /// accelerometer flags are set if most units were saturated, or one unit and a gyro. Otherwise the flags are cleared,
+  /// because a recovered rate is not clipped. O(count), no allocation; almost no computation while the body rotates
+  /// slowly and no gyro is clipped.
   void step(std::span<const ImuSample> units, double dt_s, State& state, ImuSample& merged) const;
 
  private:
-  /// What the units met.
+  /// Saturation found in the units.
   struct Met {
-    bool rate = false;   ///< a gyro's rail
-    bool force = false;  ///< so many accelerometers' that the common force is off
+    bool rate = false;   ///< a gyro is saturated
+    bool force = false;  ///< enough accelerometers are saturated to corrupt the common force
   };
   bool rate_railed(const ImuSample& unit, int axis) const;
   bool force_railed(const ImuSample& unit, int axis) const;

@@ -12,36 +12,36 @@
 
 namespace tumble {
 
-/// Whether rates can be believed, by what gravity says wherever the body rests: its size must be g, and the rates
-/// between one rest and the next must turn its direction there into that here, u_1 = R^T u_0, whatever happened in
-/// between, flight, impacts and clipped axes. A gyro of another sense, scale or naming of the axes than it says misses
-/// by any angle, after a tumble of several turns by less than `miss_least_rad` in one of fifty; an accelerometer of
-/// another unit shows in the size. The rates are those of an estimate, whose covariance makes the bound wider.
+/// Checks the plausibility of rates by gravity at rests. The force at rest must have the magnitude g. The rates between
+/// two rests must rotate its direction at the first to that at the second, u_1 = R^T u_0, also through flight, impacts
+/// and clipping. A gyro with wrong sign, scale or axis labels gives an arbitrary angle. After a tumble of several
+/// revolutions, this angle is below `miss_least_rad` in one of fifty cases. The magnitude reveals an accelerometer with
+/// another unit. The rates come from an estimate, whose covariance widens the bound.
 ///
-/// Between two rests nothing is left of the velocity either: turned back by the rates, the forces of the span add to
-/// gravity alone. Rates that miss the direction at its end by chance hardly do so all along.
+/// In addition, the velocity at a rest is zero. The forces of the span, rotated back by the rates, therefore integrate
+/// to gravity alone. Wrong rates that give the correct final direction by chance rarely satisfy this.
 ///
-/// The equations are imu_merge.md (I19), (I20), (I22), (I23). Not seen: a body that comes to rest as it lay (a
-/// pendulum), turns about the vertical, an accelerometer with all three axes flipped, a run with less than two rests.
-/// Mistaken for a force without gravity: a fall of a second without a turn, where no rest is. Mistaken for wrong rates:
-/// one rest on the ground and the other in a vehicle that goes on for good.
+/// The equations are imu_merge.md (I23), (I24), (I25), (I26). Not detected: a body that returns to its initial attitude
+/// (a pendulum), rotation about the vertical, an accelerometer with all axes flipped, less than two rests. A fall of a
+/// second without rotation and without any rest is mistaken for a force without gravity. A rest on the ground and
+/// another in a steadily moving vehicle are mistaken for wrong rates.
 class RestGravity {
  public:
   struct Params {
     double gravity_m_s2 = 9.80665;
-    /// In whatever unit the force comes; a gyro's bias is no motion.
+    /// The bounds hold for any unit of the force; a gyro's bias does not count as motion.
     RestDetector::Params rests = {.rate_max_rad_s = 0.15, .force_min_m_s2 = 0.3};
-    double size_share_max = 0.15;     ///< by which a force at rest may differ from gravity: 80 mg of bias, 3 % of scale
-    double miss_deviations = 5.0;     ///< allowed, of what the rates' covariance makes of the span; a chord, and
-    double miss_least_rad = 0.3;      ///< at least so much: a bias, pushes at rest
-    double miss_most_rad = 0.6;       ///< at most: rates that may be off by more tell nothing of the way
-    double correlation_s = 0.1;       ///< for which errors of a rate last at least
-    double rotation_least_rad = 1.0;  ///< of the span between two rests, to count
-    double span_most_s = 60.0;        ///< likewise: in so long a good gyro's bias turns by a part of `miss_most_rad`
-    double gap_max_s = 0.1;           ///< a longer gap parts the rests: an impact inside of it turns a rate by rad/s
-    double accel_range_m_s2 = 0.0;    ///< as the device states it; 0: not stated
+    double size_share_max = 0.15;     ///< maximum relative difference from gravity at rest: 80 mg of bias, 3 % of scale
+    double miss_deviations = 5.0;     ///< allowed number of the rates' standard deviations over the span; a chord, and
+    double miss_least_rad = 0.3;      ///< at least this: a bias, pushes at rest
+    double miss_most_rad = 0.6;       ///< at most this: less certain rates do not determine the displacement
+    double correlation_s = 0.1;       ///< minimum correlation time of a rate's error
+    double rotation_least_rad = 1.0;  ///< minimum rotation between two rests
+    double span_most_s = 60.0;        ///< maximum duration of a span, limited by the drift of a good gyro's bias
+    double gap_max_s = 0.1;           ///< longer gaps separate rests: an impact may change the rate by several rad/s
+    double accel_range_m_s2 = 0.0;    ///< stated by the device; 0: not stated
 
-    /// Every number of it, stated once.
+    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-12, 100.0, "strength of gravity"});
@@ -62,40 +62,52 @@ class RestGravity {
             {"accel_range_m_s2", "m/s^2", 0.0, kUnbounded, "range stated by the device; 0: not stated"});
     }
   };
-  struct State {
-    RestDetector::State rest, weightless;
-    Eigen::Vector3d from_m_s2 = Eigen::Vector3d::Zero();  ///< force at the last rest in the sensor's axes; 0: none
-    Eigen::Quaterniond turned = Eigen::Quaterniond::Identity();  ///< since then
-    double span_angle_rad = 0.0, variance_rad2 = 0.0;            ///< likewise
-    Eigen::Vector3d velocity_sum_m_s = Eigen::Vector3d::Zero();  ///< likewise, of force in the axes of that rest
-    double span_s = 0.0, hidden_m_s = 0.0;                       ///< likewise, and what the accelerometer's rail hid
-    double segment_s = 0.0, segment_rad2_s = 0.0;                ///< of samples in a row that the gyro did not measure
-    double rest_s = 0.0, force_sum_m = 0.0;                      ///< of all rests, and of force by time
-    double weightless_s = 0.0;                                   ///< of what would be rest but that no force holds it
-    double miss_rad = 0.0, miss_sigma_rad = 0.0;                 ///< of the worst of the spans between two rests
-    double velocity_share = 0.0, velocity_allowed_share = 0.0;   ///< likewise, over what gravity gives in its time
-    std::size_t spans = 0;                                       ///< that were compared
+  /// What the size of the force at rest needs.
+  struct Size {
+    RestDetector::State rest, weightless, heavy;
+    double rest_s = 0.0, force_sum_m = 0.0;  ///< of all rests, and of force by time
+    double weightless_s = 0.0;               ///< of what would be rest but that no force holds it
     TimeNs last_time_ns = 0;
     bool started = false, rests = false;
+    bool operator==(const Size&) const = default;
+  };
+  struct State : Size {
+    Eigen::Vector3d from_m_s2 = Eigen::Vector3d::Zero();  ///< force at the last rest in the sensor's axes; 0: none
+    Eigen::Quaterniond turned = Eigen::Quaterniond::Identity();  ///< rotation since then
+    double span_angle_rad = 0.0, variance_rad2 = 0.0;            ///< since then
+    Eigen::Vector3d velocity_sum_m_s = Eigen::Vector3d::Zero();  ///< since then, of the force in the axes of that rest
+    double span_s = 0.0, hidden_m_s = 0.0;                       ///< since then; deficit of the accelerometer
+    double segment_s = 0.0, segment_rad2_s = 0.0;                ///< of consecutive unmeasured samples
+    double miss_rad = 0.0, miss_sigma_rad = 0.0;                 ///< of the worst span between two rests
+    double velocity_share = 0.0, velocity_allowed_share = 0.0;   ///< of the worst span, over gravity times duration
+    std::size_t spans = 0;                                       ///< number of compared spans
   };
 
-  /// Throws InvalidParams when a parameter is outside of its bound.
+  /// Throws InvalidParams if a parameter is out of bounds.
   explicit RestGravity(const Params& params);
 
-  /// Takes a sample and the rate that an estimate gives for it; a sample that is not finite or out of order is passed
-  /// over. O(1), no allocation.
+  /// Processes a sample and its estimated rate. Ignores samples that are not finite or out of order. O(1), no
+  /// allocation.
   void step(const ImuSample& sample, const RateState& rate, State& state) const;
+  /// The same without rates, for the size alone.
+  void step(const ImuSample& sample, Size& state) const { (void)follow(sample, state); }
 
-  /// Mean size of the force at rest as a share of gravity; 0 where all that rested for a second is without force, and 1
-  /// where nothing rested.
-  double size_share(const State& state) const;
-  /// `out_of_range` where that is not 1.
-  Status size_verdict(const State& state) const;
-  /// The same, and where the rates of the worst span between two rests miss gravity, or leave a velocity, by more than
-  /// they may.
+  /// Returns the mean magnitude of the force at rest as a fraction of gravity. Returns 0 if everything that rested for
+  /// a second was without force, and 1 without any rest.
+  double size_share(const Size& state) const;
+  /// Returns `out_of_range` if this fraction differs from 1. Names the unit as suspect beyond a factor of three.
+  Status size_verdict(const Size& state) const;
+  /// Same, and also returns `out_of_range` if the rates of the worst span between two rests miss gravity or leave a
+  /// velocity beyond the bounds.
   Status verdict(const State& state) const;
 
  private:
+  enum class Follows { not_at_all, after_gap, directly };
+  struct Step {
+    Follows follows = Follows::not_at_all;
+    double dt_s = 0.0;
+  };
+  Step follow(const ImuSample& sample, Size& state) const;
   void turn(const ImuSample& sample, const RateState& rate, double dt_s, State& state) const;
   void end_segment(State& state) const;
   void arrive(State& state) const;
@@ -103,7 +115,7 @@ class RestGravity {
   double allowed_rad(double sigma_rad) const;
 
   Params params_;
-  RestDetector detector_, weightless_;
+  RestDetector detector_, weightless_, heavy_;
 };
 
 }  // namespace tumble

@@ -7,8 +7,8 @@
 
 namespace tumble {
 
-/// Time from `last_time_ns` to `time_ns` in `dt_s`, or the trouble that check_follows() finds; `dt_s` is then
-/// untouched. Safe for any pair of stamps; gap_max_s up to 1e9.
+/// Computes the time from `last_time_ns` to `time_ns`, or returns the error of check_follows() and leaves `dt_s`
+/// unchanged. Safe for any pair of stamps; gap_max_s up to 1e9.
 Status elapsed(TimeNs time_ns, TimeNs last_time_ns, double gap_max_s, double& dt_s);
 
 }  // namespace tumble

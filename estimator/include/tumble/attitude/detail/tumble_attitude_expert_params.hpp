@@ -7,12 +7,12 @@
 /// Groups of TumbleAttitude::Params::Expert.
 namespace tumble {
 
-/// A body at rest: velocity and rate are zero to within these.
+/// A body at rest: standard deviations of its velocity and rate from zero.
 struct AttitudeRestParams {
   double velocity_sigma_m_s = 0.005;   ///< per node at rest
   double rate_sigma_rad_sqrts = 2e-3;  ///< of the rate measured at rest, mean over 1 s
-  /// At rest the mean rate is the bias to within so many deviations of what is known of both: once a bias is
-  /// measured, a body that creeps round at 0.5 deg/s turns; before, so does one with a bias beyond 1.5 deg/s.
+  /// At rest, the mean rate differs from the bias by at most this many standard deviations of both. With a known bias,
+  /// a rotation of 0.5 deg/s therefore counts as motion. With an unknown bias, a bias above 1.5 deg/s does, too.
   double rate_sigmas = 3.0;
 
   template <class Self, class Visitor>
@@ -26,12 +26,12 @@ struct AttitudeRestParams {
   }
 };
 
-/// A sphere that rolls: how well it grips, and when it slips.
+/// A rolling sphere: accuracy of grip, and detection of slip.
 struct AttitudeRollingParams {
-  double velocity_sigma_m_s = 0.03;  ///< per node while it grips
-  double slip_velocity_m_s = 0.12;   ///< misfit that opens a slip, half of it closes it
-  double slip_quiet_s = 0.2;         ///< and for so long
-  double slip_timeout_s = 3.0;       ///< then rolling is believed again
+  double velocity_sigma_m_s = 0.03;  ///< per node while gripping
+  double slip_velocity_m_s = 0.12;   ///< misfit at which slip starts; half of it ends slip
+  double slip_quiet_s = 0.2;         ///< and for this long
+  double slip_timeout_s = 3.0;       ///< maximum duration of a slip
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -45,14 +45,14 @@ struct AttitudeRollingParams {
   }
 };
 
-/// What a body may do while no reading comes.
+/// Motion during a gap of the readings.
 struct AttitudeGapParams {
-  double least_s = 0.05;  ///< a longer time between two samples is a gap: neither of them tells the motion inside
-  /// Walks of the true rate and velocity of a body that tumbles down hills, stairs and cliffs, over 0.05 to 0.5 s:
-  /// 3.0 to 11.4 rad/s and 2.4 to 4.1 m/s per sqrt(s) (docs/figures.md, "Gaps of the IMU").
+  double least_s = 0.05;  ///< a longer time between two samples is a gap, whose motion neither sample describes
+  /// Random walks of the true rate and velocity of tumbling bodies. On hills, stairs and cliffs over 0.05 to 0.5 s they
+  /// are 3.0 to 11.4 rad/s and 2.4 to 4.1 m/s per sqrt(s) (docs/figures.md, "Gaps of the IMU").
   double rate_walk_rad_s_sqrts = 7.0, velocity_walk_m_s_sqrts = 3.3;
-  /// A tilt's deviation, one axis, behind a gap from which on nothing is linear: up is looked for anew, and found again
-  /// once it is known to the second.
+  /// Standard deviations of the tilt, one axis. Above the first, the filter is no longer linear and coarse alignment
+  /// starts. Below the second, the alignment is complete.
   double lost_tilt_rad = 0.3, aligned_tilt_rad = 0.4;
 
   template <class Self, class Visitor>
@@ -69,23 +69,24 @@ struct AttitudeGapParams {
   }
 };
 
-/// What few need of TumbleAttitudeParams, by meaning. Fields bear the names that they have in tables and on command
-/// lines.
+/// Parameters of TumbleAttitudeParams that few users change, grouped by meaning. Field names equal those in tables and
+/// on command lines.
 struct TumbleAttitudeExpertParams {
   double bias_walk_rad_s_sqrts = 2e-6;         ///< per sqrt(s)
   double acceleration_noise_m_s_sqrts = 0.01;  ///< velocity random walk
-  double recovered_tau_s = 0.05;               ///< memory of the error of a rate that was recovered
+  double recovered_tau_s = 0.05;               ///< correlation time of the error of a recovered rate
   double node_s = 0.04;                        ///< time between two corrections
-  /// Readings are averaged to this length, at which all thresholds here are meant; zero: taken as they come.
+  /// Readings are averaged to this duration, for which all thresholds here are set; zero: no averaging.
   double reading_s = 4e-3;
   double gap_max_s = 1.0;
-  /// 2 deg/s about the mean, and it about the bias: room for cheap sensors, which only the bias' estimate pays for.
-  /// As a mean that forgets in half a second is what the bias is measured by, rest is known after twice that.
+  /// 2 deg/s about the mean, and the same for the mean about the bias. These bounds are wide enough for cheap sensors
+  /// and only affect the bias estimate. The mean has a time constant of half a second, so rest is detected after twice
+  /// that.
   RestDetector::Params rest = {.rate_max_rad_s = 3.4907e-2,
                                .rate_spread_rad_s = 3.4907e-2,
                                .force_spread_m_s2 = 0.5,
                                .rest_s = 1.0,
-                               .reading_s = 0.0,  // averages come in
+                               .reading_s = 0.0,  // the readings are already averaged
                                .memory_s = 1.0};
   AttitudeRestParams at_rest = {};
   AttitudeRollingParams rolling = {};

@@ -10,7 +10,7 @@
 
 namespace tumble {
 
-/// Of TumbleAttitude, between two samples.
+/// State of TumbleAttitude between two samples.
 struct TumbleAttitudeState {
   static constexpr int kStates = 10;
   using Covariance = Eigen::Matrix<double, kStates, kStates>;
@@ -19,20 +19,20 @@ struct TumbleAttitudeState {
   Eigen::Vector3d bias_rad_s = Eigen::Vector3d::Zero();
   Eigen::Vector2d v_W_m_s = Eigen::Vector2d::Zero();
   Eigen::Vector2d d_W_m = Eigen::Vector2d::Zero();
-  /// Of (tilt error phi_x, phi_y in W with q_true = Exp(phi) q_WI; bias in I; velocity; displacement; heading error
-  /// phi_z, which nothing corrects).
+  /// Covariance of (tilt error phi_x, phi_y in W with q_true = Exp(phi) q_WI; bias in I; velocity; displacement;
+  /// heading error phi_z, which is not corrected).
   Covariance covariance = Covariance::Zero();
-  ImuAverage average;                                           ///< of the readings since the last one that was taken
-  Eigen::Matrix3d recovered_rad2_s2 = Eigen::Matrix3d::Zero();  ///< mean covariance of their rates, as told
-  Eigen::Quaterniond q_taken_WI = Eigen::Quaterniond::Identity();  ///< and the attitude there
+  ImuAverage average;                                              ///< of the readings since the last processed average
+  Eigen::Matrix3d recovered_rad2_s2 = Eigen::Matrix3d::Zero();     ///< mean covariance of their rates, from the caller
+  Eigen::Quaterniond q_taken_WI = Eigen::Quaterniond::Identity();  ///< attitude at the last processed average
   // integrals since the last node
   Eigen::Matrix3d R_WI_s = Eigen::Matrix3d::Zero();
   Eigen::Vector3d f_W_m_s = Eigen::Vector3d::Zero();
   double rotated_rad2_s = 0.0;
-  Eigen::Vector2d recovered_rad2 = Eigen::Vector2d::Zero();  ///< variance of tilt and heading by recovered rates
+  Eigen::Vector2d recovered_rad2 = Eigen::Vector2d::Zero();  ///< variance of tilt and heading due to recovered rates
   double node_s = 0.0;
-  Eigen::Vector2d recovered_rad = Eigen::Vector2d::Zero();  ///< deviations that a run of them has gathered
-  double velocity_power_m2_s2 = 0.0;                        ///< variance of the body's own, one axis
+  Eigen::Vector2d recovered_rad = Eigen::Vector2d::Zero();  ///< sum of deviations over recovered rates
+  double velocity_power_m2_s2 = 0.0;                        ///< variance of the body's own velocity, one axis
   double displacement_power_m2 = 0.0;
   CoarseAlignment alignment;
   RestDetector::State rest;

@@ -8,18 +8,18 @@
 
 namespace tumble {
 
-/// Whether the differences of the forces of units at several places of one rigid body speak for axes other than those
-/// read, of all units alike: an axis of the gyros or of the accelerometers flipped, or two of them swapped. Sums, from
-/// start to end. imu_merge.md (I7a).
+/// Detects wrong axes common to all units: an axis of the gyros or of the accelerometers flipped, or two axes swapped.
+/// Uses force differences between units at different positions of one rigid body. Sums over a whole run. imu_merge.md
+/// (I9).
 struct UnitSenses {
   static constexpr std::size_t kSenses = 12;  ///< x, y, z flipped; x y, y z, z x swapped; of gyros, then accelerometers
-  static constexpr double kSizeMin_m2_s3 = 0.3;  ///< of what a sense changes, to be told: less is within biases
-  static constexpr double kShareMin = 0.5;       ///< 1: the sense explains all; -1: as it was read does
+  static constexpr double kSizeMin_m2_s3 = 0.3;  ///< minimum effect of an alternative, above biases
+  static constexpr double kShareMin = 0.5;       ///< 1: the alternative explains all; -1: the unchanged axes do
 
   std::array<double, kSenses> gain_m2_s3{}, size_m2_s3{};
 
-  /// One unit over `length_s`: its force less the mean of all, its place from theirs, rate and angular acceleration;
-  /// common axes. O(1), no allocation.
+  /// Adds one unit over `length_s`: its force minus the mean of all, its position relative to theirs, rate and angular
+  /// acceleration; common axes. O(1), no allocation.
   void add(const Eigen::Vector3d& force_m_s2, const Eigen::Vector3d& position_m, const Eigen::Vector3d& rate_rad_s,
            const Eigen::Vector3d& acceleration_rad_s2, double length_s);
 
@@ -27,7 +27,7 @@ struct UnitSenses {
     std::size_t sense = 0;
     double share = 0.0;
   };
-  /// The one that explains most, where it explains more than kShareMin.
+  /// Returns the alternative that explains most, if it explains more than kShareMin.
   std::optional<Told> told() const;
 
   bool operator==(const UnitSenses&) const = default;

@@ -7,9 +7,9 @@
 
 namespace tumble {
 
-/// Normal equations H d = g of a chain of blocks of `State` unknowns that are each coupled to the next and to one
-/// common border of `Border` unknowns (an arrow matrix), factorised in place. O(N) for N blocks: one block Cholesky
-/// sweep, the border by Schur complement.
+/// Normal equations H d = g of a chain of blocks of `State` unknowns. Each block is coupled to the next one and to a
+/// common border of `Border` unknowns (an arrow matrix). Factorised in place: one block Cholesky sweep, then the border
+/// by its Schur complement. O(N) for N blocks.
 ///
 ///     | D0  E0          B0 |
 ///     | E0' D1  E1      B1 |
@@ -26,7 +26,7 @@ struct ArrowSystem {
   /// One block row: before elimination D, E, B, g; afterwards L^-1, L^-1 E, L^-1 B, L^-1 g with D = L L' (lower).
   struct Block {
     StateMatrix diagonal = StateMatrix::Zero();
-    StateMatrix coupling = StateMatrix::Zero();  ///< to the next block, as (this, next)
+    StateMatrix coupling = StateMatrix::Zero();  ///< coupling to the next block, as (this, next)
     CrossMatrix border = CrossMatrix::Zero();
     StateVector gradient = StateVector::Zero();
 
@@ -51,32 +51,34 @@ struct ArrowSystem {
     }
   };
 
-  /// A block given the border: its covariance, and how far its mean moves with the border.
+  /// Conditional distribution of a block for a known border: its covariance, and the derivative of its mean by the
+  /// border.
   struct Conditional {
     StateMatrix state;
     CrossMatrix by_border;
   };
 
-  /// Posterior covariance of a block and of its product with the border.
+  /// Posterior covariance of a block, and its cross-covariance with the border.
   struct Marginal {
     StateMatrix state;
     CrossMatrix cross;
   };
 
-  /// Eliminates `block`, passing what it knows on to `next` (which may be null for the last) and to the corner. Also
-  /// the marginalisation of the oldest block of a window. False when the block is not positive definite.
+  /// Eliminates `block` and adds its Schur complement to `next` (null for the last block) and to the corner. Also
+  /// marginalises the oldest block of a window. Returns false if the block is not positive definite.
   static bool eliminate(Block& block, Block* next, Corner& corner);
 
-  /// Step of the border after all blocks are eliminated, and its covariance. False when not positive definite.
+  /// Computes the step of the border after all blocks are eliminated, and its covariance. Returns false if the corner
+  /// is not positive definite.
   static bool solve_corner(const Corner& corner, BorderVector& step, BorderMatrix& covariance);
 
-  /// Step of an eliminated block, given those of the next block (null for the last) and of the border.
+  /// Returns the step of an eliminated block from those of the next block (null for the last) and of the border.
   static StateVector back_substitute(const Block& block, const StateVector* next_step, const BorderVector& border_step);
 
-  /// Conditional of an eliminated block, given that of the next block (null for the last).
+  /// Returns the conditional of an eliminated block from that of the next block (null for the last).
   static Conditional back_conditional(const Block& block, const Conditional* next);
 
-  /// The border's own uncertainty brought in.
+  /// Returns the marginal, which adds the border's uncertainty.
   static Marginal marginal(const Conditional& conditional, const BorderMatrix& border_covariance);
 
  private:
@@ -84,8 +86,8 @@ struct ArrowSystem {
   static void subtract_square(const CrossMatrix& border, BorderMatrix& corner);
 };
 
-// L^-1 of a = L L', lower, in place of a. Plain loops over columns: Eigen's general triangular solvers are several
-// times slower at these sizes. One division a column.
+// Replaces `a` by L^-1, where a = L L' and L is lower. Plain loops over columns, because Eigen's general triangular
+// solvers are several times slower at these sizes. One division per column.
 template <int State, int Border>
 bool ArrowSystem<State, Border>::invert_factor(StateMatrix& a) {
   StateMatrix L = a;
@@ -113,7 +115,7 @@ bool ArrowSystem<State, Border>::invert_factor(StateMatrix& a) {
   return true;
 }
 
-// corner -= border' border, of which the upper right part is the mirror of the lower left
+// Subtracts border' border from the corner. Only one triangle is computed and then mirrored.
 template <int State, int Border>
 void ArrowSystem<State, Border>::subtract_square(const CrossMatrix& border, BorderMatrix& corner) {
   constexpr int kHead = Border > 16 ? 12 : Border > 8 ? 8 : Border - 1, kTail = Border - kHead;
@@ -128,7 +130,7 @@ void ArrowSystem<State, Border>::subtract_square(const CrossMatrix& border, Bord
 template <int State, int Border>
 bool ArrowSystem<State, Border>::eliminate(Block& block, Block* next, Corner& corner) {
   if (!invert_factor(block.diagonal)) return false;
-  // products with the inverse factor: fixed sizes, which the compiler unrolls and vectorises
+  // Products with the inverse factor have fixed sizes, which the compiler unrolls and vectorises.
   const StateMatrix& L_inv = block.diagonal;
   block.border = (L_inv.lazyProduct(block.border)).eval();
   block.gradient = (L_inv.lazyProduct(block.gradient)).eval();

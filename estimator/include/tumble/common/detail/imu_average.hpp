@@ -8,19 +8,18 @@
 
 namespace tumble {
 
-/// Mean of the readings of a window of time. A filter that puts readings together to windows of one length has one
-/// bandwidth, and so one meaning of its thresholds, whatever the rate of the IMU; a reading that is itself as long as
-/// the window passes bit by bit.
+/// Averages IMU readings over windows of one length. The bandwidth and the thresholds of a filter then do not depend on
+/// the IMU's rate. A single reading as long as the window is returned bit for bit.
 ///
-/// Not modelled: coning and sculling within the window, as within the sample of an IMU that reads at its rate.
+/// Not modelled: coning and sculling within the window.
 struct ImuAverage {
-  ImuSample mean;                ///< its time is that of the last reading, its clip flags are those of all
-  double length_s = 0.0;         ///< of all readings
+  ImuSample mean;                ///< time stamp of the last reading, clip flags of all readings
+  double length_s = 0.0;         ///< total duration of the readings
   double rate_peak_rad_s = 0.0;  ///< largest component of a single reading
   double force_peak_m_s2 = 0.0;
   std::int64_t readings = 0;
 
-  /// Takes a reading over `dt_s` up to its time stamp.
+  /// Adds a reading that covers the `dt_s` before its time stamp.
   void add(const ImuSample& sample, double dt_s) {
     length_s += dt_s;
     if (++readings == 1) {
@@ -36,7 +35,7 @@ struct ImuAverage {
     force_peak_m_s2 = std::max(force_peak_m_s2, sample.specific_force_m_s2.cwiseAbs().maxCoeff());
   }
 
-  /// Whether another reading of `dt_s` would take it further from `window_s`.
+  /// Returns whether another reading of `dt_s` would increase the difference from `window_s`.
   bool full(double window_s, double dt_s) const { return length_s >= window_s - 0.5 * dt_s; }
 
   bool operator==(const ImuAverage& other) const {

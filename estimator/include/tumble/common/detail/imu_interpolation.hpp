@@ -8,26 +8,27 @@
 
 namespace tumble {
 
-/// Where a time lies among the samples of an IMU.
+/// Position of a time between the samples of an IMU.
 struct ImuNeighbours {
-  std::size_t before = 0, after = 0;  ///< neighbouring samples; at either end the two there
-  double share = 0.0;     ///< of the way from one to the other; below 0 before the first, above 1 after the last
-  double length_s = 0.0;  ///< from one to the other
+  std::size_t before = 0, after = 0;  ///< neighbouring samples; beyond either end, the two samples there
+  double share = 0.0;                 ///< interpolation weight: below 0 before the first sample, above 1 after the last
+  double length_s = 0.0;              ///< time between the two samples
   bool between() const { return share >= 0.0 && share <= 1.0; }
 };
 
-/// One IMU read at the stamps of another. Stamps are ends of windows, so what lies linearly between two readings is
-/// taken for the mean over a window that ends there; windows of another length, and what turns within, are not
-/// modelled.
+/// Interpolates the readings of one IMU at the stamps of another. Stamps are the ends of sample windows. The linear
+/// interpolation of two readings approximates the mean over a window that ends there. Different window lengths and
+/// rotation within a window are not modelled.
 class ImuInterpolation {
  public:
-  /// Of at least two samples that rise in time, which have to outlive it.
+  /// Needs at least two samples with increasing stamps, which must outlive this object.
   explicit ImuInterpolation(std::span<const ImuSample> samples) : samples_(samples) {}
 
-  /// Neighbours of `time_ns`, which must not fall from call to call. Amortised O(1).
+  /// Returns the neighbours of `time_ns`, which must not decrease from call to call. Amortised O(1).
   ImuNeighbours around(TimeNs time_ns);
 
-  /// The reading there, on the line through the two, the flags of both; of one that was read there, bit by bit it.
+  /// Returns the interpolated reading with the flags of both neighbours. At the time of a sample, returns it bit for
+  /// bit.
   ImuSample at(TimeNs time_ns, const ImuNeighbours& neighbours) const;
 
  private:

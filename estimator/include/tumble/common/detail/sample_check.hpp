@@ -7,12 +7,12 @@
 
 namespace tumble {
 
-/// Largest component of a rate [rad/s] or a force [m/s^2]: no sensor says more, and squares of it stay finite. Beyond,
-/// check_sample() finds a reading `out_of_range`.
+/// Largest plausible component of a rate [rad/s] or a force [m/s^2]. Squares of it stay finite. check_sample() returns
+/// `out_of_range` for larger readings.
 inline constexpr double kReadingMax = 1e6;
 
-/// The first trouble of a sequence of samples, none included: of one by itself (check_sample()), or of how it follows
-/// the one before (check_follows()). O(N).
+/// Returns the first error in a sequence of samples: `empty`, that of a single sample (check_sample()), or that of a
+/// pair (check_follows()). O(N).
 Status check_samples(std::span<const ImuSample> samples, double gap_max_s);
 
 }  // namespace tumble

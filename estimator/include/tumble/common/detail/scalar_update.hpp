@@ -6,14 +6,13 @@
 
 namespace tumble {
 
-// The measurement update of a Kalman filter, the only one in the library: by one scalar (several with independent noise
-// are taken one after another, which needs no inverse), or by a few numbers at once, as published filters have it. All
-// return what is to be added to the state of N numbers and take the measurement into its covariance P (N x N, kept
-// symmetric to rounding); O(N^2) for each number, no allocation for fixed N. P must be positive semidefinite and the
-// variance of the noise positive (R. E. Kalman, J. Basic Eng. 82, 1960; Joseph's form is not needed where P is well
-// conditioned, and is not used).
+// Measurement update of a Kalman filter, shared by the whole library. One function processes a scalar; several scalars
+// with independent noise are processed in sequence, which needs no inverse. Another processes a few numbers together,
+// as published filters do. All return the correction of the state of N numbers and update its covariance P (N x N, kept
+// symmetric to rounding). O(N^2) per number, no allocation for fixed N. P must be positive semidefinite and the noise
+// variance positive (R. E. Kalman, J. Basic Eng. 82, 1960). Joseph's form is not used because P is well conditioned.
 
-/// By a measurement with the derivative `row` (N): `innovation` is what was measured minus what was expected.
+/// Updates with a scalar measurement. `row` (N) is its derivative, `innovation` the measurement minus its prediction.
 template <typename Row, int N>
 Eigen::Matrix<double, N, 1> scalar_update(const Eigen::MatrixBase<Row>& row, double innovation, double variance,
                                           Eigen::Matrix<double, N, N>& P) {
@@ -26,7 +25,7 @@ Eigen::Matrix<double, N, 1> scalar_update(const Eigen::MatrixBase<Row>& row, dou
   return PHt * (innovation / s);
 }
 
-/// By a measurement of component `index` of the state itself.
+/// Updates with a measurement of component `index` of the state.
 template <int N>
 Eigen::Matrix<double, N, 1> component_update(Eigen::Index index, double innovation, double variance,
                                              Eigen::Matrix<double, N, N>& P) {
@@ -36,8 +35,8 @@ Eigen::Matrix<double, N, 1> component_update(Eigen::Index index, double innovati
   return column * (innovation / s);
 }
 
-/// By M numbers with the derivative `H` (M x N) and noise of the covariance `noise` (M x M, may be correlated); M up to
-/// 4, beyond which an inverse is not the way.
+/// Updates with M numbers, the derivative `H` (M x N) and the noise covariance `noise` (M x M, may be correlated). M is
+/// at most 4 because the function inverts an M x M matrix.
 template <int M, int N>
 Eigen::Matrix<double, N, 1> vector_update(const Eigen::Matrix<double, M, N>& H,
                                           const Eigen::Matrix<double, M, 1>& innovation,

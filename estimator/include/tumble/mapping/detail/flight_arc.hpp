@@ -10,26 +10,26 @@
 
 namespace tumble {
 
-/// What has to be known of a body to tell its free flight.
+/// Constants of a body that determine its free flight.
 struct FlyingBody {
   Eigen::Vector3d p_IB_I_m = Eigen::Vector3d::Zero();             ///< centre of mass in IMU axes
-  Eigen::Matrix3d inertia_I_kg_m2 = Eigen::Matrix3d::Identity();  ///< about the centre of mass; only its shape counts
+  Eigen::Matrix3d inertia_I_kg_m2 = Eigen::Matrix3d::Identity();  ///< about the centre of mass; only its shape matters
 };
 
-/// Angular acceleration of a body that no torque acts on: I^-1 (I w x w), IMU axes.
+/// Returns the angular acceleration of a torque-free body: I^-1 (I w x w), IMU axes.
 Eigen::Vector3d torque_free_acceleration(const FlyingBody& body, const Eigen::Vector3d& w_WI_I_rad_s);
 
-/// What an accelerometer off the centre of mass reads while nothing but gravity acts on the body:
-/// -(a x r + w x (w x r)) with r from the IMU to the centre of mass and the angular acceleration a.
+/// Returns the reading of an accelerometer off the centre of mass while only gravity acts on the body. The reading is
+/// -(a x r + w x (w x r)), with r from the IMU to the centre of mass and the angular acceleration a.
 Eigen::Vector3d flight_force(const FlyingBody& body, const Eigen::Vector3d& w_WI_I_rad_s,
                              const Eigen::Vector3d& angular_acceleration_I_rad_s2);
 
-/// The ballistic arc as a source of motion, for a segment of flight that no reading covers: samples over
-/// (from_ns, to_ns], at most step_ns long, whose integration (SweepTrajectory) takes the centre of mass along a
-/// parabola and turns the body free of torque, from the rate at the start. Trouble: `time_order` (nothing between the
-/// two times, or no step), `non_finite`, `degenerate` (an inertia that is none); then `samples` is as it was, else the
-/// new ones are appended. Euler's equation by Runge-Kutta of fourth order; the rotation over a step is exact to the
-/// third order of the step. Not modelled: drag.
+/// Predicts the motion over a segment of flight without readings, as a ballistic arc. Appends samples over (from_ns,
+/// to_ns], each at most step_ns long. Integrated by SweepTrajectory, they move the centre of mass along a parabola and
+/// rotate the body free of torque, starting from the given rate. On error `samples` is unchanged: `time_order` (empty
+/// time interval or no step), `non_finite`, `degenerate` (invalid inertia). Euler's equation is integrated by a
+/// Runge-Kutta method of fourth order. The rotation over a step is exact to third order of the step. Not modelled:
+/// drag.
 Status flight_arc(const FlyingBody& body, const Eigen::Vector3d& w_WI_I_rad_s, TimeNs from_ns, TimeNs to_ns,
                   TimeNs step_ns, std::vector<MotionSample>& samples);
 

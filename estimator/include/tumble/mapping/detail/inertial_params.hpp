@@ -6,26 +6,27 @@
 #include "tumble/common/parameters.hpp"
 #include "tumble/mapping/detail/flight_arc.hpp"
 
-/// Groups of LidarInertialOdometry::Params::Expert: what the mapper believes of the IMU in motion.
+/// Groups of LidarInertialOdometry::Params::Expert: model of the IMU in motion.
 namespace tumble {
 
-/// What the inertial side may be wrong by after kSpan_s, beside what RateState reports: standard deviations that grow
-/// in proportion to time. Loose in doubt; tight holds a world with few features.
+/// Errors of inertial integration after kSpan_s, in addition to the uncertainty in RateState. The standard deviations
+/// grow in proportion to time. Choose larger values if unsure. Smaller values constrain the pose in a world with few
+/// features.
 struct InertialNoiseParams {
-  static constexpr double kSpan_s = 0.1;  ///< between two sweeps of most lidars
+  static constexpr double kSpan_s = 0.1;  ///< time between two sweeps of most lidars
   double sigma_m = 0.003;
   double sigma_rad = 0.002;
   double sigma_m_s = 0.01;
-  /// Of the angle turned, as a share of it: scale, misalignment, and a rate that changes within a sample.
+  /// As a fraction of the angle turned: errors of scale and misalignment, and rate changes within a sample.
   double rotation_share = 0.001;
-  /// Of the specific force, as a share of its magnitude: velocity is uncertain by this times the integral of the force,
-  /// which counts at impacts.
+  /// As a fraction of the specific force: the velocity's uncertainty is this times the integral of the force. It
+  /// matters at impacts.
   double force_share = 0.03;
-  /// Over a gap of the IMU velocity and rate are random walks, mapping.md (R99), (R100). Over 0.05 to 0.5 s of rigs
-  /// that tumble the truth's are 2.4 to 4.1 and, of a rate that is known at both ends, 3 to 11.
+  /// Velocity and rate are random walks over a gap of the IMU, mapping.md (R43), (R44). For tumbling rigs and gaps of
+  /// 0.05 to 0.5 s, the true values are 2.4 to 4.1. For a rate that is known at both ends they are 3 to 11.
   double gap_velocity_walk_m_s_sqrt_s = 3.0;
   double gap_rate_walk_rad_s_sqrt_s = 9.0;
-  double rate_sigma_max_rad_s = 5.0;  ///< what RateState reports is believed up to this
+  double rate_sigma_max_rad_s = 5.0;  ///< upper bound of the standard deviation in RateState
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -49,13 +50,13 @@ struct InertialNoiseParams {
   }
 };
 
-/// An IMU at its rails. Readings of the accelerometer from accel_m_s2 on, or flagged by the device, are at its rail:
-/// there the force may be larger by force_sigma_m_s2 (standard deviation), for as long as the rail lasts.
+/// Saturated IMU. Accelerometer readings from accel_m_s2 on, and readings flagged by the device, are saturated. The
+/// true force may then be larger by force_sigma_m_s2 (standard deviation) for as long as the saturation lasts.
 ///
-/// With estimate_deficit, the deficit of the rate on clipped axes is estimated in the registration, at
-/// SweepTrajectory::kKnots knots a sweep; it acts on clipped samples only, there in proportion to the rate's reported
-/// uncertainty. Its prior is that uncertainty, at least deficit_sigma_min_rad_s, correlated over deficit_time_s; on a
-/// rail that lasts over the border of two sweeps it goes on from where it was.
+/// With estimate_deficit, the registration estimates the saturation deficit of the rate on clipped axes, at
+/// SweepTrajectory::kKnots knots per sweep. The deficit acts on clipped samples only, in proportion to the reported
+/// uncertainty of the rate. The prior of the deficit is the reported uncertainty, at least deficit_sigma_min_rad_s,
+/// correlated over deficit_time_s. If saturation lasts across the boundary of two sweeps, the deficit continues there.
 struct RailedImuParams {
   double accel_m_s2 = 1e5;
   double force_sigma_m_s2 = 50.0;
@@ -63,8 +64,8 @@ struct RailedImuParams {
   bool estimate_deficit = false;
   double deficit_sigma_min_rad_s = 1.0;
   double deficit_time_s = 0.3;
-  double deficit_carry_max = 3.0;    ///< over a border it grows by no more where less is known after it
-  double deficit_knot_share = 0.05;  ///< of its standard deviation, by which a knot may differ from its neighbours
+  double deficit_carry_max = 3.0;    ///< maximum growth across a boundary if the uncertainty is larger after it
+  double deficit_knot_share = 0.05;  ///< standard deviation between adjacent knots, as a fraction of the deficit's
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -90,11 +91,10 @@ struct RailedImuParams {
   }
 };
 
-/// A body whose flight is told by the ballistic arc: where the specific force at the centre of mass is below
-/// force_m_s2, the accelerometer's reading gives way to what flight makes it, and a gap of the IMU that begins in
-/// flight is bridged by the arc.
+/// Use of the ballistic arc. Where the specific force at the centre of mass is below force_m_s2, the force predicted by
+/// free flight replaces the accelerometer's reading. A gap of the IMU that begins in flight is bridged by the arc.
 struct FlightParams {
-  std::optional<FlyingBody> body;  ///< empty: the accelerometer throughout
+  std::optional<FlyingBody> body;  ///< empty: always use the accelerometer
   double force_m_s2 = 4.0;
 
   template <class Self, class Visitor>

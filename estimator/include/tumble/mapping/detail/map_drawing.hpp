@@ -11,11 +11,11 @@
 
 namespace tumble::mapping {
 
-/// Numbers the scan lines of a map: sweeps of a sensor that holds its attitude draw the same lines, one that turns
-/// draws new ones.
+/// Numbers the scan lines of a map. Sweeps at the same attitude scan the same lines and share numbers; after a rotation
+/// the lines have new numbers.
 class ScanLines {
  public:
-  /// Number of ring 0 of a sweep whose spin axis stands so, or VoxelMap::kNoLine where rings are not told apart.
+  /// Returns the number of ring 0 of a sweep with this spin axis, or VoxelMap::kNoLine if rings are not distinguished.
   std::uint32_t base(const Eigen::Vector3d& spin_axis_W, bool rings_differ);
   static std::uint32_t line(std::uint32_t base, std::uint16_t ring) {
     return base == VoxelMap::kNoLine ? base : base | ring;
@@ -24,11 +24,12 @@ class ScanLines {
   static void members(Self& s, Visitor& visit);
 
  private:
-  Eigen::Vector3d axis_W_ = Eigen::Vector3d::Zero();  // of the sweeps that share lines
-  std::uint32_t attitude_ = 0;                        // counts changes of it
+  Eigen::Vector3d axis_W_ = Eigen::Vector3d::Zero();  // spin axis of the sweeps that share lines
+  std::uint32_t attitude_ = 0;                        // number of attitude changes
 };
 
-/// Points of a map with normals from the nearest neighbours that look towards where each was seen from. O(n).
+/// Returns the points of a map with normals fitted to nearest neighbours. Each normal points towards the sensor's
+/// position at the time of observation. O(n).
 std::vector<MapPoint> with_normals(const VoxelMap& map, std::span<const Eigen::Vector3f> seen_from_W_m, int neighbours,
                                    double match_distance_m);
 

@@ -3,16 +3,16 @@
 
 #include "tumble/common/parameters.hpp"
 
-/// Groups of LidarInertialOdometry::Params::Expert: what is kept of the map, and how sure it is.
+/// Groups of LidarInertialOdometry::Params::Expert: extent and accuracy of the map.
 namespace tumble {
 
-/// What is kept of the world.
+/// Extent and resolution of the local map.
 struct LocalMapParams {
-  static constexpr double kPruneShare = 0.1;  ///< of radius_m: moved so far, the sensor drops what is out of reach
-  double voxel_m = 0.5;                       ///< cell of the map's hash
+  static constexpr double kPruneShare = 0.1;  ///< of radius_m: motion after which distant points are deleted
+  double voxel_m = 0.5;                       ///< edge of a cell of the map's hash table
   double spacing_m = 0.1;                     ///< at most one map point per cube of this edge
-  double radius_m = 100.0;                    ///< it is kept within this of the sensor, to a tenth of it
-  double sigma_max_m = 0.25;                  ///< points that the trajectory places less surely than this are kept out
+  double radius_m = 100.0;                    ///< points within this distance of the sensor are kept, to a tenth of it
+  double sigma_max_m = 0.25;                  ///< points with a larger trajectory error are not inserted
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -26,12 +26,13 @@ struct LocalMapParams {
   }
 };
 
-/// What parts the map from the world: docs/maths/mapping.md, section 8.
+/// Uncertainty of the map relative to the world: docs/maths/mapping.md, section 8.
 struct WorldCovarianceParams {
-  double tilt_sigma_rad = 0.002;  ///< of a levelled start: an accelerometer's turn-on bias of 2 mg
-  /// Of the weakest direction's standard deviation, per sweep, where the surfaces do not hold it: measured.
+  double tilt_sigma_rad = 0.002;  ///< tilt error of the levelled start: an accelerometer's turn-on bias of 2 mg
+  /// Drift per sweep as a fraction of the weakest direction's standard deviation, where surfaces do not constrain it.
+  /// Measured value.
   double drift_share = 0.1;
-  double drift_sigma_max_m = 3.0;  ///< a direction held less surely counts as this
+  double drift_sigma_max_m = 3.0;  ///< upper bound of a direction's standard deviation in this rule
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {

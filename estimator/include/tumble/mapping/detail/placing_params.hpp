@@ -5,23 +5,24 @@
 
 #include "tumble/common/parameters.hpp"
 
-/// Groups of LidarInertialOdometry::Params::Expert: how a sweep finds its place in the map.
+/// Groups of LidarInertialOdometry::Params::Expert: registration of a sweep to the map.
 namespace tumble {
 
-/// A sweep against the map.
+/// Matching of a sweep with the map.
 struct MatchingParams {
   int neighbours = 12;              ///< k of the plane fit
-  double distance_m = 1.0;          ///< farther map points are no match
-  std::size_t least = 100;          ///< fewer matched points reject a sweep
-  std::size_t agreeing_least = 30;  ///< unless they are this many and put it where the prior expects it
-  /// Of a registration; one with all points has at most eight, what has not converged goes on with a thousand of them.
+  double distance_m = 1.0;          ///< farther map points are not matched
+  std::size_t least = 100;          ///< minimum number of matched points; fewer reject the sweep
+  std::size_t agreeing_least = 30;  ///< minimum number if the result agrees with the prior
+  /// Maximum iterations of a registration. With all points there are at most eight; then it continues with a thousand
+  /// points until convergence.
   int iterations_max = 30;
   double correction_max_m = 15.0;   ///< a larger correction of the prior is rejected
   double correction_max_rad = 1.1;  ///< a larger correction of the prior is rejected
-  /// A point's uncertainty grows over the sweep by this and weighs it down (the published time weighting).
+  /// Growth of a point's uncertainty over the sweep, which reduces its weight (the published time weighting).
   double skew_sigma_m_s = 0.25;
-  /// A sweep that its surfaces alone hold less surely than this in some direction is `degenerate` (standard
-  /// deviation, attitude counted at the rms lever).
+  /// A sweep is `degenerate` if its surfaces alone leave a larger standard deviation in some direction. Attitude counts
+  /// at the rms lever.
   double degenerate_sigma_m = 0.15;
 
   template <class Self, class Visitor>
@@ -44,18 +45,18 @@ struct MatchingParams {
   }
 };
 
-/// Stages of a registration: in full, with all points and few iterations; with a subsample until it converges; coarse.
+/// Stages of a registration: with all points and few iterations; with a subsample until convergence; coarse.
 struct RegistrationStagesParams {
-  int full_iterations = 8;              ///< what has not converged by then does so for less with some of the points
-  std::size_t subsample_points = 1000;  ///< tell whether a start leads somewhere
-  int coarse_iterations = 15;           ///< of a start that may be far off
-  std::size_t coarse_points = 300;      ///< serve one
-  std::size_t coarse_matches_min = 50;  ///< fewer reject one
-  double coarse_kernel_min_m = 0.5;     ///< least width of its robust kernel
-  double coarse_rematch_m = 0.2;        ///< a point's plane is searched anew once the point has moved by this
-  double coarse_step_m = 5e-3;          ///< it has converged when a step is below this and below coarse_step_rad
+  int full_iterations = 8;              ///< with all points; without convergence, a subsample continues at lower cost
+  std::size_t subsample_points = 1000;  ///< sufficient to decide whether a start converges
+  int coarse_iterations = 15;           ///< for a start that may be far off
+  std::size_t coarse_points = 300;      ///< points of a coarse start
+  std::size_t coarse_matches_min = 50;  ///< minimum number of matches of a coarse start
+  double coarse_kernel_min_m = 0.5;     ///< minimum width of its robust kernel
+  double coarse_rematch_m = 0.2;        ///< motion of a point after which its plane is searched again
+  double coarse_step_m = 5e-3;          ///< convergence bound of a step, together with coarse_step_rad
   double coarse_step_rad = 2e-3;
-  double coarse_fitting_share_min = 0.2;  ///< of its matches, within three standard deviations; fewer reject one
+  double coarse_fitting_share_min = 0.2;  ///< minimum fraction of its matches within three standard deviations
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -77,17 +78,18 @@ struct RegistrationStagesParams {
   }
 };
 
-/// A sensor that has lost its place, or has not.
+/// Handling of sweeps without a registration and of tracking failure.
 struct TrackingParams {
-  /// A sweep with too few matches still extends the map, as `degenerate`, while the inertial prior is this certain
-  /// (standard deviations): at rest a lidar draws rings only, which give no planes until it turns. Points that the
-  /// attitude leaves too uncertain at their range stay out by LocalMapParams::sigma_max_m.
+  /// A sweep with too few matches still extends the map, as `degenerate`, while the inertial prior has smaller standard
+  /// deviations than these. Reason: a lidar at rest scans only rings, which give no planes until it rotates.
+  /// LocalMapParams::sigma_max_m excludes points that are too uncertain at their range due to the attitude.
   double trusted_m = 0.1;
   double trusted_rad = 0.1;
-  /// Sweeps in a row with points but no place in the map, after which it goes on `degenerate` by inertia.
+  /// Maximum number of consecutive sweeps with points but without registration. Then the mapper continues `degenerate`
+  /// by inertial prediction.
   int lost_sweeps_max = 30;
-  /// Of a sweep's matches within three standard deviations (0.997 of normal ones): that many bear out a place that was
-  /// found again, fewer contradict it.
+  /// Minimum fraction of a sweep's matches within three standard deviations (0.997 for normal errors) that confirms a
+  /// relocalisation. A smaller fraction contradicts it.
   double borne_out_share = 0.9;
 
   template <class Self, class Visitor>
@@ -105,15 +107,15 @@ struct TrackingParams {
   }
 };
 
-/// Where a sweep is tried from that its prior did not place: docs/maths/mapping.md, sections 5 and 10.
+/// Starting poses for a sweep that was not registered from its prior: docs/maths/mapping.md, sections 5 and 10.
 struct RelocalizationParams {
-  static constexpr double kLeastShift_m = 0.3, kLeastRotation_rad = 0.1;  ///< nearer starts lead to the same place
-  int deficit_tries_max = 5;       ///< larger saturation deficits tried for one sweep, all axes together
-  double deficit_try_rad_s = 3.0;  ///< the first of them; two, three and five times it follow
-  int starts_per_sweep = 3;        ///< of a lost sensor, the prior among them
-  double shift_m = 1.0;            ///< such starts reach so far at first
-  double rotation_rad = 0.3;       ///< likewise in attitude
-  int rounds = 3;                  ///< each reaches that much further than the last
+  static constexpr double kLeastShift_m = 0.3, kLeastRotation_rad = 0.1;  ///< closer starts converge to the same pose
+  int deficit_tries_max = 5;       ///< number of larger saturation deficits tried per sweep, on all axes together
+  double deficit_try_rad_s = 3.0;  ///< the first of them; two, three and five times this value follow
+  int starts_per_sweep = 3;        ///< starts after tracking failure, including the prior
+  double shift_m = 1.0;            ///< initial distance of these starts from the prior
+  double rotation_rad = 0.3;       ///< initial rotation of these starts from the prior
+  int rounds = 3;                  ///< number of rounds; each extends the distances by the initial value
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {

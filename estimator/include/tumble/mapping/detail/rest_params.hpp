@@ -3,14 +3,14 @@
 
 #include "tumble/common/parameters.hpp"
 
-/// Groups of LidarInertialOdometry::Params::Expert: what the mapper takes for rest, at the start and later.
+/// Groups of LidarInertialOdometry::Params::Expert: detection of rest, at the start and later.
 namespace tumble {
 
-/// At rest (`mapper_rest.hpp`) the rate stays within rate_rad_s of the bias and of its mean, and the specific force
-/// within force_m_s2 of gravity and of its mean. During the rest at the start the robot is held still, and the mean
-/// rate becomes the gyro's bias.
+/// At rest (`mapper_rest.hpp`) the rate stays within rate_rad_s of the bias and of its mean. The specific force stays
+/// within force_m_s2 of gravity and of its mean. During the initial rest the robot is stationary, and the mean rate
+/// becomes the gyro's bias.
 struct RestBoundsParams {
-  double levels_s = 0.5;  ///< at most this much of the start is used to level the attitude
+  double levels_s = 0.5;  ///< maximum duration of the initial rest that is used for levelling
   double rate_rad_s = 0.05;
   double force_m_s2 = 0.5;
 
@@ -25,12 +25,13 @@ struct RestBoundsParams {
   }
 };
 
-/// The start: an IMU levelled at rest, and how far the first sweeps may correct it.
+/// The start: an IMU levelled at rest, and the corrections that the first sweeps may apply.
 struct OdometryStartParams {
-  /// A weight and no error: five times the tilt that WorldCovarianceParams reports, for a rest that was none.
+  /// A weight, not an error: five times the tilt that WorldCovarianceParams reports. The larger value allows for a
+  /// start that was not at rest.
   double level_sigma_rad = 0.01;
-  double speed_sigma_m_s = 0.05;  ///< within what passes for rest
-  double bias_rest_s = 0.1;       ///< a shorter rest teaches no bias of the gyro
+  double speed_sigma_m_s = 0.05;  ///< residual speed of an apparent rest
+  double bias_rest_s = 0.1;       ///< minimum rest for an estimate of the gyro's bias
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -41,14 +42,15 @@ struct OdometryStartParams {
   }
 };
 
-/// A robot that is known not to move, be it at the start or by an IMU that says nothing but gravity.
+/// A stationary robot: at the start, or while the IMU measures only gravity.
 struct StandstillParams {
-  double start_sigma_m_s = 0.01;  ///< of the velocity, during the rest at the start
-  double sigma_m_s = 0.05;        ///< of the velocity, where the IMU says nothing but gravity
-  /// Believed slower than this such an IMU rests, where no surface holds it: a world that holds nothing lets it creep.
+  double start_sigma_m_s = 0.01;  ///< of the velocity, during the initial rest
+  double sigma_m_s = 0.05;        ///< of the velocity, while the IMU measures only gravity
+  /// While the IMU measures only gravity and no surface constrains it, it is stationary below this estimated speed. The
+  /// rule prevents slow drift in a world without features.
   double creep_max_m_s = 0.5;
-  int sweeps_min = 3;         ///< in a row before that is believed
-  double noise_share = 0.02;  ///< of the inertial prior's standard deviations in motion
+  int sweeps_min = 3;         ///< minimum number of consecutive sweeps for this rule
+  double noise_share = 0.02;  ///< fraction of the inertial prior's standard deviations in motion
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {

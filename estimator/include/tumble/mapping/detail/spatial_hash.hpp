@@ -8,13 +8,13 @@
 
 namespace tumble {
 
-/// Hash table from the integer coordinates of a cube to a number; open addressing, keys are never removed singly.
+/// Hash table from the integer coordinates of a cube to a number, with open addressing. Single keys cannot be removed.
 class SpatialHash {
  public:
   static constexpr std::uint32_t kAbsent = 0xffffffffu;
-  static constexpr int kLimit = 1 << 20;  ///< coordinates lie within [-kLimit, kLimit)
+  static constexpr int kLimit = 1 << 20;  ///< coordinates are in [-kLimit, kLimit)
 
-  /// One number for three coordinates within the limit.
+  /// Packs three coordinates within the limit into one number.
   static std::uint64_t key(const Eigen::Vector3i& cube) {
     const auto part = [](int v) { return static_cast<std::uint64_t>(v + kLimit) & 0x1fffffu; };
     return part(cube.x()) | (part(cube.y()) << 21) | (part(cube.z()) << 42);
@@ -22,7 +22,7 @@ class SpatialHash {
 
   explicit SpatialHash(std::size_t expected = 64);
 
-  /// Value of a key, or kAbsent.
+  /// Returns the value of a key, or kAbsent.
   std::uint32_t find(std::uint64_t key) const {
     for (std::size_t slot = slot_of(key);; slot = (slot + 1) & mask_) {
       if (keys_[slot] == key) return values_[slot];
@@ -30,18 +30,18 @@ class SpatialHash {
     }
   }
 
-  /// Enters a key with a value unless it is there; returns the value now in force. Amortised O(1).
+  /// Inserts a key with a value unless it exists. Returns the stored value. Amortised O(1).
   std::uint32_t insert(std::uint64_t key, std::uint32_t value);
 
-  /// Enters a key whose value is of no interest; returns whether it was new. Amortised O(1).
+  /// Inserts a key without a value. Returns whether it was new. Amortised O(1).
   bool add(std::uint64_t key);
 
-  /// Forgets all keys and keeps the memory.
+  /// Removes all keys and keeps the memory.
   void clear();
   std::size_t size() const { return size_; }
-  /// Those that are in it, ascending.
+  /// Returns all keys in ascending order.
   std::vector<std::uint64_t> keys() const;
-  /// Memory held.
+  /// Returns the memory in use [bytes].
   std::size_t bytes() const {
     return keys_.capacity() * sizeof(std::uint64_t) + values_.capacity() * sizeof(std::uint32_t);
   }
@@ -50,8 +50,8 @@ class SpatialHash {
   static constexpr std::uint64_t kFree = ~std::uint64_t{0};
 
   std::size_t slot_of(std::uint64_t key) const {
-    // Eight cubes of a block of 2 x 2 x 2 stand side by side, in an order of the block's own, and so in one line of the
-    // cache: of what is asked for one after the other most is near. Fibonacci hashing of the folded block spreads them.
+    // The eight cubes of a 2 x 2 x 2 block are adjacent and thus in one cache line. Reason: successive queries are
+    // usually close together. Fibonacci hashing distributes the blocks.
     constexpr std::uint64_t kInside = 1 | (std::uint64_t{1} << 21) | (std::uint64_t{1} << 42);
     const std::uint64_t block = key & ~kInside;
     const std::uint64_t hash = (block ^ (block >> 29)) * 0x9e3779b97f4a7c15u;

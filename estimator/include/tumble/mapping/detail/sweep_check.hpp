@@ -10,12 +10,12 @@
 
 namespace tumble::mapping {
 
-/// `out_of_range` when a point was fired after the sweep's end.
+/// Returns `out_of_range` if a point was fired after the sweep's end.
 Status check_offsets(TimeNs span_ns, std::span<const LidarPoint> points);
 
-/// What makes a sweep useless: `empty` (no points), `non_finite` (no finite point), `too_few` (none in range),
-/// `degenerate` (all points bear one time stamp though the sweep lasts: a driver that lost its time stamps, nothing
-/// could be deskewed, and nothing would show it).
+/// Checks whether a sweep is usable. Returns `empty` (no points), `non_finite` (no finite point), `too_few` (no point
+/// in range) or `degenerate`. `degenerate` means that all points have one time stamp although the sweep has a duration.
+/// The driver then lost its time stamps, and deskewing would fail unnoticed.
 Status check_selection(TimeNs span_ns, std::span<const LidarPoint> points, const PointCounts& counts);
 
 }  // namespace tumble::mapping

@@ -13,52 +13,52 @@
 #include "tumble/common/status.hpp"
 #include "tumble/mapping/sweep_report.hpp"
 
-/// Whether a lidar's metre is that of the IMU.
+/// Comparison of the lidar's range scale with the IMU.
 namespace tumble {
 
-/// By how much ways between sweeps are longer than the IMU has it.
+/// Ratio of displacements between sweeps to those that the IMU measured.
 struct SweepScale {
   double scale = 1.0;
   double sigma = std::numeric_limits<double>::infinity();
-  std::size_t changes = 0;  ///< of velocity that were compared
+  std::size_t changes = 0;  ///< number of velocity changes that were compared
 
-  /// Further from 1 than 2 % and than five of its deviations.
+  /// Returns whether the scale differs from 1 by more than 2 % and by more than five standard deviations.
   bool is_off() const;
-  /// `out_of_range` with the scale and the bound that it broke; `ok` where it is not off.
+  /// Returns `out_of_range` with the scale and the violated bound if is_off(), otherwise `ok`.
   Status verdict() const;
 };
 
-/// Scale of a run's sweeps. Over two spans of 0.4 s in a row the mean velocities of the sweeps' ends differ by what the
-/// IMU has felt meanwhile, whatever velocity was before: gravity in flight, the ground's impacts. The slope of the one
-/// over the other, robustly (Huber, 1964), is 1; ranges that are 10 % too long make it 1.1, less what the mapper
-/// believes the IMU. Attitudes are those of the run. Where the accelerometer was at its rail, or surfaces did not say
-/// where a sweep was, nothing is compared; its deviation is that of residuals as they are spread (White, 1980).
-/// `gravity_m_s2`: strength of gravity. Not seen: where the body is not accelerated, and an accelerometer of another
-/// scale, which gravity at rest tells. O(N).
+/// Estimates the lidar's range scale over the sweeps of a run. The function compares the mean velocities of two
+/// consecutive spans of 0.4 s. The difference of the two velocities equals the integrated acceleration, from gravity in
+/// flight and impacts, whatever the velocity. A robust regression (Huber, 1964) of the lidar's differences on the IMU's
+/// has slope 1. Ranges 10 % too long give 1.1, reduced by the mapper's confidence in the IMU. Attitudes are those of
+/// the run. Intervals with a saturated accelerometer or with unconstrained sweeps are skipped. The standard deviation
+/// is heteroscedasticity-consistent (White, 1980). `gravity_m_s2`: magnitude of gravity. Not observable: without
+/// acceleration. An accelerometer's scale error is detected by gravity at rest instead. O(N).
 SweepScale find_sweep_scale(std::span<const ImuSample> samples, std::span<const SweepReport> sweeps,
                             double gravity_m_s2);
 
-/// The same while samples and sweeps come, by what came before, up to the newest 1000 changes. A sweep's first word
-/// counts, so that it is less sure than that of a whole run with the last ones.
+/// Estimates the same scale while samples and sweeps arrive, from the newest 1000 changes of velocity. The estimate
+/// uses the first pose of each sweep and is therefore less accurate than one from the final poses of a whole run.
 class SweepScaleWatch {
  public:
-  /// A change of velocity from one span to the next.
+  /// Change of velocity from one span to the next.
   struct Change {
     Eigen::Vector3d by_imu_m_s = Eigen::Vector3d::Zero(), by_sweeps_m_s = Eigen::Vector3d::Zero();
   };
 
-  /// Remembers `samples_max` samples, which should last for two seconds: with more of them between sweeps nothing is
+  /// Buffers `samples_max` samples, which should cover two seconds. If more samples lie between sweeps, nothing is
   /// compared.
   SweepScaleWatch(double gravity_m_s2, std::size_t samples_max);
 
-  /// A sample of the IMU, in order of time, with what its rails hide flagged. No allocation.
+  /// Adds an IMU sample in time order, with its saturated axes flagged. No allocation.
   void add(const ImuSample& sample);
-  /// A sweep that the mapper has been given, as soon as the samples up to its end were added. O(changes).
+  /// Adds a sweep of the mapper, as soon as all samples up to its end are added. O(changes).
   void add(const SweepReport& sweep);
 
   const SweepScale& scale() const { return scale_; }
 
-  /// Stated once, in the library's own sources: state_visitor.hpp.
+  /// Visits every member of the state. Defined in the library's sources: state_visitor.hpp.
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
 
@@ -66,7 +66,7 @@ class SweepScaleWatch {
   double gravity_m_s2_;
   std::size_t samples_max_;
   std::vector<ImuSample> samples_;
-  std::deque<SweepReport> sweeps_;  ///< of two spans; pose, attitudes and verdict alone
+  std::deque<SweepReport> sweeps_;  ///< sweeps of two spans; only pose, attitudes and verdict
   std::deque<Change> changes_;
   SweepScale scale_;
 };

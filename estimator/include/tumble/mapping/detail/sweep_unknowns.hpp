@@ -9,8 +9,8 @@
 
 namespace tumble {
 
-/// What is unknown of a sweep, in the order of its vectors and matrices: position, attitude (left perturbation in W)
-/// and velocity at the start of the trajectory, the saturation deficit of clipped axes, the calibration.
+/// Unknowns of a sweep, in the order of vectors and matrices. First position, attitude (left perturbation in W) and
+/// velocity at the start of the trajectory; then saturation deficit of clipped axes; then calibration.
 struct SweepUnknowns {
   static constexpr int kMotion = 9;         ///< position, attitude, velocity
   static constexpr int kDeficit = kMotion;  ///< first unknown of the saturation deficit, knot after knot
@@ -20,7 +20,7 @@ struct SweepUnknowns {
   using Matrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
   using Deficit = SweepTrajectory::Deficit;
 
-  /// Where the unknowns stand: motion at the start of the trajectory, saturation deficit, calibration.
+  /// Current values of the unknowns.
   struct Estimate {
     MotionState state;  ///< its covariance is not used
     SweepCalibration calibration;
@@ -28,20 +28,20 @@ struct SweepUnknowns {
 
     /// Adds small errors in the order of the unknowns.
     void add(const Vector& error);
-    /// The errors that take `other` to this.
+    /// Returns the errors that transform `other` to this.
     Vector minus(const Estimate& other) const;
   };
 
-  /// What the inertial side believes, and how surely; an unknown of the deficit or the calibration with variance 0 is
+  /// Prior distribution from the inertial prediction. Unknowns of the deficit or the calibration with variance 0 are
   /// not estimated.
   struct Prior {
     Estimate mean;
     Matrix covariance = Matrix::Zero();
-    Deficit deficit_start_rad_s = Deficit::Zero();  ///< where the iterations begin
-    std::optional<MotionState> start;               ///< likewise for the motion; empty: at the mean
+    Deficit deficit_start_rad_s = Deficit::Zero();  ///< initial value of the iterations
+    std::optional<MotionState> start;               ///< initial value of the motion; empty: the mean
 
     Prior() = default;
-    /// The state with its covariance, nothing else to be estimated.
+    /// Prior of the motion state with its covariance; all other unknowns are fixed.
     explicit Prior(const MotionState& state) : mean{state, {}, Deficit::Zero()} {
       covariance.topLeftCorner<kMotion, kMotion>() = state.covariance;
     }

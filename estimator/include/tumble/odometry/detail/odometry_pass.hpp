@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "tumble/attitude/detail/rest_gravity.hpp"
 #include "tumble/attitude/regime_stream.hpp"
 #include "tumble/mapping/detail/localisation.hpp"
 #include "tumble/mapping/detail/sweep_scale.hpp"
@@ -13,12 +14,12 @@
 
 namespace tumble {
 
-/// One pass over the samples of an IMU and the sweeps of a lidar, in order of time: RegimeStream gives the rates,
-/// LidarInertialOdometry takes them and the sweeps that they cover. What TumblingOdometry does live, and once more
-/// with what it learnt (SecondPass). Copies carry all state.
+/// Processes IMU samples and lidar sweeps once, in time order. RegimeStream estimates the rates; LidarInertialOdometry
+/// processes the samples and the sweeps that they cover. TumblingOdometry uses it live, and SecondPass again with the
+/// estimated calibration. Copies contain the complete state.
 class OdometryPass {
  public:
-  /// Samples, first in, first out, in memory that is kept.
+  /// First-in, first-out queue of samples that reuses its memory.
   struct Queue {
     std::vector<ImuSample> samples;
     std::size_t head = 0;
@@ -29,45 +30,47 @@ class OdometryPass {
     static void members(Self& s, Visitor& visit);
   };
 
-  /// Throws InvalidParams on a parameter outside of its bound.
+  /// Throws InvalidParams if a parameter is out of bounds.
   OdometryPass(const RegimeStream::Params& rate, const LidarInertialOdometry::Params& mapping);
 
-  /// As RegimeStream::push; the rate that is given out with the sample goes to the mapper.
+  /// Same as RegimeStream::push; also passes the rate that becomes available to the mapper.
   Status add_imu(const ImuSample& sample);
-  /// Whether the rates are given out up to this time of the lidar's clock.
+  /// Returns whether rates are available up to this time of the lidar's clock.
   bool covers(TimeNs end_ns) const;
-  /// The same for the newest of them, by the lidar's clock. Nothing before the first.
+  /// Returns the lidar time up to which rates are available; nothing before the first rate.
   std::optional<TimeNs> covered_ns() const;
-  /// The first sample, by the IMU's clock, that covers this time of the lidar's and whose rate is not given out yet.
+  /// Returns the IMU time of the first sample that covers this lidar time and whose rate is still pending.
   std::optional<TimeNs> covering_ns(TimeNs end_ns) const;
-  /// `reading`: of the sweep, if there is one.
+  /// Registers a sweep. `reading` is the odometer reading within the sweep, if any.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points,
                    const std::optional<OdometerReading>& reading, LidarInertialOdometry::SweepReport& report);
-  /// As TumblingOdometry::newest.
+  /// Same as TumblingOdometry::newest.
   Status newest(PoseState& pose) const;
 
-  /// The time of the IMU's clock that is a time of the lidar's.
+  /// Converts a time of the lidar's clock to the IMU's clock.
   TimeNs needed_ns(TimeNs lidar_ns) const;
-  /// Gives out the rates up to the first sample at or after a time as they stand, though less than the lag lies ahead.
+  /// Reports all rates up to the first sample at or after a time, even if the lag is not full.
   void flush_until(TimeNs time_ns);
-  /// The rates go on with another stream, anew; the mapper stays.
+  /// Restarts the rates with other parameters; the mapper continues.
   void begin_rates(const RegimeStream::Params& rate);
-  /// The map and all that hangs on it is that of another pass, with the memory that it keeps for its samples; the rates
-  /// stay, and go on where that one was told last. The other is spent.
+  /// Replaces the map and all dependent state by that of another pass, including its sample buffers. The rates of this
+  /// pass continue after the other pass's last sample. `other` must not be used afterwards.
   void take_map(OdometryPass&& other);
 
   const RegimeStream& rates() const { return rates_; }
   const RegimeStream::State& rate_state() const { return rate_state_; }
   const LidarInertialOdometry& mapper() const { return mapper_; }
+  /// `out_of_range` where gravity contradicts the force at rest.
+  Status force_at_rest() const { return gravity_.size_verdict(gravity_state_); }
   const SweepScale& sweep_scale() const { return scale_.scale(); }
   const Localisation& localisation() const { return localisation_; }
   const std::optional<RateState>& smoothed_rate() const { return smoothed_; }
   std::size_t refused_samples() const { return refused_samples_; }
 
-  /// Stated once, in the library's own sources: state_visitor.hpp.
+  /// Visits every member of the state. Defined in the library's sources: state_visitor.hpp.
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
-  /// What holds between the members of every state; the first that does not.
+  /// Checks the invariants between the members. Returns the first violation.
   Status check_state() const;
 
  private:
@@ -79,10 +82,12 @@ class OdometryPass {
   SweepScaleWatch scale_;
   Localisation localisation_;
   double rate_sigma_max_rad_s_, time_offset_s_;
-  Queue pending_;  ///< samples whose rates are not given out yet
+  Queue pending_;  ///< samples whose rates are still pending
   std::optional<RateState> smoothed_;
-  std::optional<TimeNs> told_ns_;  ///< of the last sample that the mapper was given
+  std::optional<TimeNs> told_ns_;  ///< time of the last sample passed to the mapper
   std::size_t refused_samples_ = 0;
+  RestGravity gravity_;
+  RestGravity::Size gravity_state_;
 };
 
 }  // namespace tumble

@@ -14,32 +14,33 @@
 
 namespace tumble {
 
-/// What a first pass learns too late is put right by a second one over the same readings, while the first goes on.
+/// Re-processes the first seconds of motion with the calibration estimated meanwhile, while the first pass continues.
 ///
-/// The first seconds of a tumble are mapped with a lever arm, a mounting and a clock that they are only about to tell.
-/// So samples and sweeps are remembered from the end of the rest at the start on. After `after_s` of motion they are
-/// passed through again, with the rig and the calibration as learnt until then and rates that have `lag_s` ahead of
-/// them, `sweeps` sweeps for each that comes. When the second pass has caught up, its map and its pose take the place
-/// of those of the first one, unless it is lost or rejected clearly more sweeps, and what was remembered is forgotten.
-/// A first pass that has been lost for `lost_s` is not waited for: all is passed through at once, once, and again after
-/// `after_s`. Poses that were given out stay: the pose moves by what the first pass was off, and one that was lost is
-/// found.
+/// The first pass maps the start of a tumble with a lever arm, a mounting and a time offset that are still uncertain.
+/// This class therefore buffers samples and sweeps from the end of the initial rest. After `after_s` of motion it
+/// processes the buffer with the current calibration and with rates that are smoothed with a lag of `lag_s`. The second
+/// pass processes `sweeps` buffered sweeps per new sweep. When it has caught up, its map and pose replace those of the
+/// first pass, and the buffer is freed. The result is discarded if the second pass has lost tracking or has rejected
+/// clearly more sweeps.
 ///
-/// Memory: samples and sweeps of `rest_s` and of at most `remembered_s` of motion, and for as long a second map. Not
-/// modelled: a third pass with what the second has learnt; a jolt that ends the rest long before the tumble.
+/// If the first pass has failed for `lost_s`, the whole buffer is processed immediately, once. The regular second pass
+/// still follows after `after_s`. Earlier poses are not changed: the pose jumps by the error of the first pass.
+///
+/// Memory: samples and sweeps of `rest_s` and of at most `remembered_s` of motion, and a second map for the same time.
+/// Not modelled: a third pass with the calibration of the second; a jolt that ends the rest long before the tumble.
 class SecondPass {
  public:
   struct Params {
-    double after_s = 3.0;        ///< of motion, after which the second pass begins; 0: there is none
-    double lost_s = 0.4;         ///< or after the first pass has rejected sweeps for so long; 0: that begins nothing
-    double lag_s = 0.5;          ///< of its rates
-    std::size_t sweeps = 3;      ///< that it takes for each that comes; two at least, or it never catches up
-    double remembered_s = 10.0;  ///< where it has not caught up within this of motion it is given up
-    /// What was learnt is learnt again from the same readings: its variance counts so many times.
+    double after_s = 3.0;        ///< motion before the second pass starts; 0: no second pass
+    double lost_s = 0.4;         ///< duration of tracking failure that starts it immediately; 0: never
+    double lag_s = 0.5;          ///< lag of its rates
+    std::size_t sweeps = 3;      ///< buffered sweeps per new sweep; at least two, otherwise it never catches up
+    double remembered_s = 10.0;  ///< motion after which the second pass is abandoned if it has not caught up
+    /// Inflation factor of the calibration's variance, because the same readings are used twice.
     double inflation = 4.0;
-    double rest_s = 1.0;  ///< of the rest at the start that is remembered
+    double rest_s = 1.0;  ///< duration of the initial rest that is buffered
 
-    /// Every number of it, stated once.
+    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.after_s, {"after_s", "s", 0.0, 100.0,
@@ -56,30 +57,30 @@ class SecondPass {
     }
   };
 
-  /// `rate`, `mapping`: of the first pass. Throws InvalidParams on a parameter outside of its bound.
+  /// `rate` and `mapping` are the parameters of the first pass. Throws InvalidParams if a parameter is out of bounds.
   SecondPass(const Params& params, const RegimeStream::Params& rate, const LidarInertialOdometry::Params& mapping);
 
-  /// A sample that the first pass has taken. No allocation.
+  /// Buffers a sample that the first pass has processed. No allocation.
   void remember(const ImuSample& sample);
-  /// A sweep that the first pass has registered, with the reading of an odometer if there was one.
+  /// Buffers a sweep that the first pass has registered, with its odometer reading, if any.
   void remember(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points,
                 const std::optional<OdometerReading>& reading, SweepVerdict verdict);
 
-  /// Goes on, after a sweep of the first pass; where it has caught up the map of `first` becomes its own.
+  /// Continues after each sweep of the first pass. When the second pass has caught up, `first` receives its map.
   void advance(OdometryPass& first);
-  /// The same to its end, where it has begun.
+  /// Runs the second pass to its end if it has started.
   void complete(OdometryPass& first);
-  /// Forgets everything; there will be none.
+  /// Clears the buffer and disables the second pass.
   void give_up();
 
   bool under_way() const { return pass_.has_value(); }
-  /// Whether the map became that of the second pass.
+  /// Returns whether the first pass received the map of the second.
   bool taken() const { return taken_; }
 
-  /// Stated once, in the library's own sources: state_visitor.hpp.
+  /// Visits every member of the state. Defined in the library's sources: state_visitor.hpp.
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
-  /// What holds between the members of every state, beside that first pass; the first that does not.
+  /// Checks the invariants between the members and the first pass. Returns the first violation.
   Status check_state(const OdometryPass& first) const;
 
  private:
@@ -92,6 +93,8 @@ class SecondPass {
     static void members(Self& s, Visitor& visit);
   };
 
+  /// Begin of the motion, or of the sweeps where the lidar starts after that. Needs the motion to have begun.
+  TimeNs counts_from_ns() const;
   bool is_due() const;
   bool first_is_lost() const;
   bool begin(const OdometryPass& first);
@@ -105,16 +108,16 @@ class SecondPass {
   RegimeStream::Params rate_;
   LidarInertialOdometry::Params mapping_;
   bool wanted_, taken_ = false;
-  RestDetector rests_;  ///< with the mapper's numbers
+  RestDetector rests_;  ///< with the mapper's parameters
   RestDetector::State rest_;
-  std::optional<TimeNs> moves_ns_;  ///< end of the rest at the start
+  std::optional<TimeNs> moves_ns_;  ///< end of the initial rest
   OdometryPass::Queue samples_;
   std::deque<Sweep> sweeps_;
   std::optional<OdometryPass> pass_;
   std::size_t next_sample_ = 0, next_sweep_ = 0;
   std::size_t rejected_by_first_ = 0, rejected_ = 0;
   bool lost_ = false;                   ///< the second pass rejected its last sweep
-  bool early_ = false, tried_ = false;  ///< it began because the first was lost; that has been, for good or not
+  bool early_ = false, tried_ = false;  ///< started due to tracking failure; such a pass has been tried
 };
 
 }  // namespace tumble

@@ -14,35 +14,36 @@
 
 namespace tumble {
 
-/// The rails of the IMUs of one body, as their readings show them while they come: what a device clips without saying
-/// so is flagged before ImuMerge is given it. RailWatch for each unit, by the rule of HeardRails, as it is told of a
-/// whole recording by ClippingFinder.
+/// Detects the saturation levels of several IMUs on one body from their readings, causally. Readings that a device
+/// clips without reporting it are flagged before ImuMerge processes them. Each unit has a RailWatch with the rule of
+/// HeardRails. ClippingFinder applies the same rule to whole recordings.
 ///
-/// A sample is judged by what those before it showed. Not modelled: the samples by which a rail shows itself, some two
-/// to ten; they were believed. Along what the elements of a unit sense ImuMerge is not told either.
+/// A sample is judged by the samples before it. Not modelled: the first two to ten samples at a saturation level, which
+/// are accepted as they are. ImuMerge also receives no saturation levels along the axes of a unit's sensing elements.
 class UnitRails {
  public:
-  /// What is known of one unit.
+  /// State of one unit.
   struct Unit {
     RailWatch::State rails;
-    std::optional<ImuSample> before;  ///< its last finite sample
+    std::optional<ImuSample> before;  ///< last finite sample
   };
   using State = std::array<Unit, ImuMerge::kImus>;
   using Samples = std::array<ImuSample, ImuMerge::kImus>;
 
-  /// Of units with these sheets, at most ImuMerge::kImus. Throws InvalidParams on a stated range out of its bounds.
+  /// Units with these data sheets, at most ImuMerge::kImus. Throws InvalidParams if a stated range is out of bounds.
   explicit UnitRails(std::span<const ImuSheet> sheets);
 
-  /// Before the first samples, with all memory that observe() needs: 110 KiB a unit.
+  /// Returns the state before the first samples, with all memory that observe() needs: 110 KiB per unit.
   State start() const;
 
-  /// `samples`, one of each unit, with what they hide flagged. What is not finite stays as it is. No allocation.
+  /// Copies `samples`, one per unit, to `out` and sets the flags of saturated axes. Samples that are not finite are
+  /// unchanged. No allocation.
   void flag(std::span<const ImuSample> samples, const State& state, Samples& out) const;
 
-  /// Learns from samples, as they were read. O(1), and a search now and then; no allocation.
+  /// Updates the state with raw samples. O(1), sometimes a search; no allocation.
   void observe(std::span<const ImuSample> samples, State& state) const;
 
-  /// What holds of every state that observe() left, for one that comes from elsewhere; the first that does not.
+  /// Checks the invariants of a state that was loaded from outside. Returns the first violation.
   Status check_state(const State& state) const;
 
  private:

@@ -18,32 +18,32 @@ struct WaitingSweep {
   std::vector<LidarPoint> points;
 };
 
-/// Readings of an odometer that wait for the sweep that they are of, which ends later than they come. Copies carry all
-/// state.
+/// Stores odometer readings until their sweep ends. Copies contain the complete state.
 class WaitingReadings {
  public:
-  /// So many wait at most: of 500 Hz what a lidar may be silent for and a lag of a second.
+  /// Maximum number of waiting readings: 500 Hz over the longest silence of the lidar plus a lag of a second.
   static constexpr std::size_t kMost = 1024;
-  /// By how much a reading may reach beyond the sweep: clocks differ.
+  /// Tolerance by which a reading may extend beyond its sweep, because clocks differ.
   static constexpr auto kBeyond_ns = static_cast<TimeNs>(1e9 * SweepTrajectory::kBeyond_s);
 
-  /// Takes a reading in, in any order, from after `done_ns`, up to which sweeps have been registered, to `latest_ns`.
-  /// Trouble: that of check_reading, `time_order` (its sweep is gone), `out_of_range` (it is of later, too many wait).
+  /// Stores a reading; the order is arbitrary. The reading's time must be after `done_ns`, the end of the last
+  /// registered sweep, and at most `latest_ns`. Errors: those of check_reading, `time_order` (its sweep is already
+  /// registered), `out_of_range` (too late, or too many waiting readings).
   Status add(const OdometerReading& reading, TimeNs done_ns, TimeNs latest_ns);
 
-  /// The reading of the sweep from `from_ns` to `end_ns`, the last one where there are several: their errors hang
-  /// together. Those of that time and before are forgotten.
+  /// Returns the reading of the sweep from `from_ns` to `end_ns`. If there are several, returns only the last one,
+  /// because their errors are correlated. Deletes all readings up to `end_ns`.
   std::optional<OdometerReading> take(TimeNs from_ns, TimeNs end_ns);
 
-  /// Those that were of no sweep: they reach from one into the next.
+  /// Returns the number of readings that were dropped because they span two sweeps.
   std::size_t straddling() const { return straddling_; }
 
-  /// Stated once, in the library's own sources: state_visitor.hpp.
+  /// Visits every member of the state. Defined in the library's sources: state_visitor.hpp.
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
 
  private:
-  std::deque<OdometerReading> waiting_;  ///< in order of their middles
+  std::deque<OdometerReading> waiting_;  ///< in order of their middle times
   std::size_t straddling_ = 0;
 };
 

@@ -3,10 +3,10 @@
 
 #include "tumble/common/parameters.hpp"
 
-/// Groups of RollingParams::Expert: the IMU in the sphere. A field bears its whole name: groups add no prefix.
+/// Groups of RollingParams::Expert: the IMU in the sphere. Fields have unique names, so groups add no prefix.
 namespace tumble {
 
-/// Prior standard deviations. Zero: known.
+/// Prior standard deviations. Zero: exactly known.
 struct RollingPriorParams {
   double tilt_sigma_rad = 6e-3;
   double velocity_sigma_m_s = 2e-3;
@@ -14,9 +14,9 @@ struct RollingPriorParams {
   double accel_bias_sigma_m_s2 = 0.04;
   double accel_scale_sigma = 3.5e-3;  ///< each entry of scale and misalignment
   double gyro_scale_sigma = 2.5e-3;
-  double accel_delay_sigma_s = 3e-3;  ///< accelerometer later than gyro
-  /// A first reading that turns faster than this was taken in motion: attitude and velocity are then known by that much
-  /// less.
+  double accel_delay_sigma_s = 3e-3;  ///< delay of the accelerometer relative to the gyro
+  /// A larger first rate means a start in motion. The initial uncertainty of attitude and velocity is then increased
+  /// accordingly.
   double start_rate_rad_s = 0.1;
 
   template <class Self, class Visitor>
@@ -44,9 +44,9 @@ struct RollingPriorParams {
 /// Noise of the IMU.
 struct RollingImuNoiseParams {
   double attitude_walk_rad_sqrts = 1e-4;  ///< 0.006 deg/sqrt(s)
-  double rate_error_sqrts = 6e-4;         ///< per rad/s turned
+  double rate_error_sqrts = 6e-4;         ///< per rad/s of rotation
   double velocity_walk_m_s_sqrts = 6e-3;
-  double spin_force_sqrts = 4e-5;  ///< velocity walk more, per (rad/s)^2 turned: what errors make of large forces
+  double spin_force_sqrts = 4e-5;  ///< additional velocity random walk per (rad/s)^2: errors of large forces
   double gyro_bias_walk_rad_s_sqrts = 1.7e-5;
   double accel_bias_walk_m_s2_sqrts = 2e-3;
 
@@ -65,14 +65,15 @@ struct RollingImuNoiseParams {
   }
 };
 
-/// Clipped readings say no more than that: how short they may be.
+/// Saturated readings: standard deviation of the saturation deficit.
 struct RollingRailParams {
   double clipped_rate_sigma_rad_s = 5.0;
-  /// Above zero: a rate beyond the range that no flag calls clipped was recovered (ImuMerge) to this.
+  /// Standard deviation of unflagged rates beyond the range, which ImuMerge recovered. 0: rates are not recovered.
   double recovered_rate_sigma_rad_s = 0.0;
   double clipped_force_sigma_m_s2 = 4.0;
-  /// An impact within one sample may have met the accelerometer's rail though its mean did not: sigma of what is
-  /// missing along the force, as a share of it; full from 0.6 of the range on, none up to 0.3.
+  /// Standard deviation of the force that subsample saturation removes, as a fraction of the force. A short impact may
+  /// saturate the accelerometer within a sample although the mean stays below the range. The full value applies from
+  /// 0.6 of the range on, and none below 0.3.
   double subsample_saturation_share = 0.25;
 
   template <class Self, class Visitor>
@@ -90,11 +91,11 @@ struct RollingRailParams {
   }
 };
 
-/// Gaps. Between two readings further apart than gap_from_s nothing is known of the force; the rate is taken to have
-/// gone straight from the one to the other, give or take what an angular acceleration of gap_acceleration_rad_s2 does.
+/// Gaps. If two readings are further apart than gap_from_s, the force between them is unknown. The rate is interpolated
+/// linearly, with the uncertainty of an angular acceleration of gap_acceleration_rad_s2.
 struct RollingGapParams {
   double gap_from_s = 0.06;
-  double gap_max_s = 1.0;  ///< a longer one ends the run
+  double gap_max_s = 1.0;  ///< a longer gap ends the run
   double gap_acceleration_rad_s2 = 15.0;
 
   template <class Self, class Visitor>

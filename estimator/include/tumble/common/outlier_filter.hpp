@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "tumble/common/imu.hpp"
+
+namespace tumble {
+
+/// Rejects single wild readings of an IMU, as bus faults make them. A rejected reading counts as missing.
+///
+/// A reading is an outlier if it leaves both of its neighbours in the same direction while they agree with each other,
+/// and while the other triad shows no cause. A gyro needs a change of the force, an accelerometer a change of the rate.
+/// A stamp that lies ahead of the next stamp is an outlier too. Equations: outliers.md (O1) to (O6).
+///
+/// The filter is causal. It holds a reading that jumps further than the other triad explains until the next reading
+/// confirms or refutes it. All other readings pass at once, unchanged. Readings beyond kRateMax_rad_s or kForceMax_m_s2
+/// never pass. Cost: O(1) per reading, no allocation. Not modelled: two wild readings in a row, a wild first reading,
+/// and a wild reading during an impact that is hard enough to cause it.
+class OutlierFilter {
+ public:
+  /// No gyro measures faster rates (57 000 deg/s), and no accelerometer of a robot larger forces (10 000 g).
+  static constexpr double kRateMax_rad_s = 1000.0, kForceMax_m_s2 = 1e5;
+  /// Devices read up to this multiple of the range in their data sheet.
+  static constexpr double kRangesMax = 2.0;
+
+  /// From the data sheet of the device; 0: not stated.
+  struct Params {
+    double gyro_range_rad_s = 0.0;
+    double accel_range_m_s2 = 0.0;
+    double period_s = 0.0;   ///< from sample to sample: stamps that step by much more are held
+    double gap_max_s = 1.0;  ///< a step longer than this is not held: the caller handles gaps
+  };
+
+  struct State {
+    std::array<ImuSample, 2> passed{};  ///< last samples that passed, the newest one last
+    std::size_t count = 0;              ///< number of valid samples in `passed`
+    std::optional<ImuSample> held;
+    std::size_t rejected = 0;  ///< number of samples rejected since the start
+  };
+
+  explicit OutlierFilter(const Params& params) : params_(params) {}
+
+  /// Judges the held sample by `next`, which must be later than those that passed. Returns the held sample if `next`
+  /// confirms it, and nothing if it is rejected or none was held. Afterwards none is held.
+  std::optional<ImuSample> settle(const ImuSample& next, State& state) const;
+
+  /// Returns true if a finite sample must not be used now: it is held, or rejected because no sensor reads so much.
+  /// Call settle() first.
+  bool keeps_back(const ImuSample& sample, State& state) const;
+
+  /// Records that a sample was used: one that settle() returned, or one that keeps_back() did not keep.
+  static void pass(const ImuSample& sample, State& state);
+
+  /// Rejects the held sample, if any: no reading follows that could confirm it.
+  static void finish(State& state);
+
+ private:
+  double period_s(const State& state) const;
+  bool is_suspicious(const ImuSample& sample, const State& state) const;
+  bool is_outlier(const ImuSample& held, const ImuSample& after, const State& state) const;
+
+  Params params_;
+};
+
+/// Judges a recording whose samples are finite and in order of time. Element k is true if sample k passes. O(N).
+std::vector<bool> find_inliers(const OutlierFilter& filter, std::span<const ImuSample> samples);
+
+}  // namespace tumble

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/common/outlier_filter.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <utility>
+
+namespace tumble {
+
+namespace {
+
+using Eigen::Vector3d;
+
+// Thresholds, and the readings that they were measured on: docs/maths/outliers.md, "Thresholds".
+constexpr double kRateMin_rad_s = 1.0;    // smallest outlier of a gyro
+constexpr double kForceMin_m_s2 = 30.0;   // smallest outlier of an accelerometer
+constexpr double kAgreement = 3.0;        // an outlier is larger than this multiple of the neighbours' difference
+constexpr double kTurn_rad_m = 40.0;      // largest angular acceleration per force
+constexpr double kLever_m = 10.0;         // largest force per angular acceleration
+constexpr double kTurnMost_rad_s = 50.0;  // no impact turns a robot so much faster for a single sample
+constexpr double kHitMost_m_s = 20.0;     // nor changes its velocity by so much within one
+constexpr double kNear_s = 0.1;           // neighbours further away than this are not compared
+constexpr double kPeriodsAhead = 4.0;     // a longer step of the stamps is held
+
+// A reading may hide more than it shows from this share of the stated range on; so may a repeated large reading.
+constexpr double kAtRange = 0.95;
+constexpr double kRepeats_rad_s = 1.0, kRepeats_m_s2 = 15.0;
+
+constexpr double kUnknown = std::numeric_limits<double>::infinity();
+
+/// One of the two triads.
+struct Triad {
+  Vector3d ImuSample::*reading;
+  std::uint8_t clip_flags;
+  double range, repeats;
+
+  const Vector3d& of(const ImuSample& sample) const { return sample.*reading; }
+  double largest(const ImuSample& sample) const { return of(sample).cwiseAbs().maxCoeff(); }
+  bool beyond_range(const ImuSample& sample) const {
+    return range > 0.0 && largest(sample) > OutlierFilter::kRangesMax * range;
+  }
+  bool may_clip(const ImuSample& from, const ImuSample& to) const {
+    if (((from.device_clip_flags | to.device_clip_flags) & clip_flags) != 0) return true;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double a = of(from)[axis], b = of(to)[axis], size = std::max(std::abs(a), std::abs(b));
+      if ((range > 0.0 && size >= kAtRange * range) || (a == b && size >= repeats)) return true;
+    }
+    return false;
+  }
+};
+
+Triad gyro_of(const OutlierFilter::Params& params) {
+  return {&ImuSample::angular_velocity_rad_s, kClipGyro, params.gyro_range_rad_s, kRepeats_rad_s};
+}
+
+Triad accel_of(const OutlierFilter::Params& params) {
+  return {&ImuSample::specific_force_m_s2, kClipAccel, params.accel_range_m_s2, kRepeats_m_s2};
+}
+
+/// From an earlier stamp to a later one; unsigned, since the difference of any two stamps may not fit otherwise.
+double step_s(const ImuSample& from, const ImuSample& to) {
+  return 1e-9 * static_cast<double>(static_cast<std::uint64_t>(to.time_ns) - static_cast<std::uint64_t>(from.time_ns));
+}
+
+/// Samples next to each other, oldest first.
+struct Sequence {
+  std::array<const ImuSample*, 4> samples{};
+  std::size_t count = 0;
+
+  void add(const ImuSample& sample) { samples[count++] = &sample; }
+  const ImuSample& operator[](std::size_t k) const { return *samples[k]; }
+};
+
+Sequence passed_near(const OutlierFilter::State& state) {
+  Sequence out;
+  if (state.count == 2 && step_s(state.passed[0], state.passed[1]) <= kNear_s) out.add(state.passed[0]);
+  out.add(state.passed[1]);
+  return out;
+}
+
+/// Largest change from one reading to the next: outliers.md (O3). Unknown where a rail may hide it.
+double largest_step(const Sequence& sequence, const Triad& triad) {
+  double out = 0.0;
+  for (std::size_t k = 1; k < sequence.count; ++k) {
+    if (triad.may_clip(sequence[k - 1], sequence[k])) return kUnknown;
+    out = std::max(out, (triad.of(sequence[k]) - triad.of(sequence[k - 1])).cwiseAbs().maxCoeff());
+  }
+  return out;
+}
+
+/// Largest change of that change: outliers.md (O4).
+double largest_bend(const Sequence& sequence, const Triad& triad) {
+  double out = 0.0;
+  for (std::size_t k = 1; k < sequence.count; ++k) {
+    if (triad.may_clip(sequence[k - 1], sequence[k])) return kUnknown;
+    if (k < 2) continue;
+    const Vector3d bend = triad.of(sequence[k]) - 2.0 * triad.of(sequence[k - 1]) + triad.of(sequence[k - 2]);
+    out = std::max(out, bend.cwiseAbs().maxCoeff());
+  }
+  return out;
+}
+
+/// How far a reading leaves both neighbours in the same direction, on the axis where it does so most: outliers.md (O1).
+double departure(const Vector3d& before, const Vector3d& now, const Vector3d& after) {
+  double out = 0.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double from = now[axis] - before[axis], to = now[axis] - after[axis];
+    if (from * to > 0.0) out = std::max(out, std::min(std::abs(from), std::abs(to)));
+  }
+  return out;
+}
+
+/// How far a reading lies from the last one that passed, or from the line through the last two: the smaller of both:
+/// outliers.md (O2).
+double distance(const ImuSample& sample, const OutlierFilter::State& state, const Triad& triad) {
+  const ImuSample &first = state.passed[0], &last = state.passed[1];
+  const Vector3d step = triad.of(sample) - triad.of(last);
+  const double apart = step.cwiseAbs().maxCoeff();
+  if (passed_near(state).count < 2) return apart;
+  const Vector3d slope = (triad.of(last) - triad.of(first)) / step_s(first, last);
+  return std::min(apart, (step - step_s(last, sample) * slope).cwiseAbs().maxCoeff());
+}
+
+double gyro_threshold(const OutlierFilter::Params& params, const Sequence& sequence, const ImuSample& judged,
+                      double step) {
+  if (gyro_of(params).beyond_range(judged)) return kRateMin_rad_s;
+  const double caused = kTurn_rad_m * step * largest_step(sequence, accel_of(params));
+  return std::clamp(caused, kRateMin_rad_s, kTurnMost_rad_s);
+}
+
+double accel_threshold(const OutlierFilter::Params& params, const Sequence& sequence, const ImuSample& judged,
+                       double step) {
+  if (accel_of(params).beyond_range(judged)) return kForceMin_m_s2;
+  const double caused = kLever_m / step * largest_bend(sequence, gyro_of(params));
+  return std::clamp(caused, kForceMin_m_s2, std::max(kForceMin_m_s2, kHitMost_m_s / step));
+}
+
+}  // namespace
+
+void OutlierFilter::pass(const ImuSample& sample, State& state) {
+  state.passed[0] = state.passed[1];
+  state.passed[1] = sample;
+  state.count = std::min<std::size_t>(state.count + 1, state.passed.size());
+}
+
+void OutlierFilter::finish(State& state) {
+  state.rejected += state.held ? 1 : 0;
+  state.held.reset();
+}
+
+std::optional<ImuSample> OutlierFilter::settle(const ImuSample& next, State& state) const {
+  if (!state.held) return std::nullopt;
+  const std::optional<ImuSample> held = std::exchange(state.held, std::nullopt);
+  if (next.time_ns > held->time_ns && !is_outlier(*held, next, state)) return held;
+  ++state.rejected;
+  return std::nullopt;
+}
+
+bool OutlierFilter::keeps_back(const ImuSample& sample, State& state) const {
+  const bool beyond_all =
+      gyro_of(params_).largest(sample) > kRateMax_rad_s || accel_of(params_).largest(sample) > kForceMax_m_s2;
+  if (beyond_all) {
+    ++state.rejected;
+    return true;
+  }
+  if (!is_suspicious(sample, state)) return false;
+  state.held = sample;
+  return true;
+}
+
+/// The last step of the stamps, or the nominal one where that is longer; infinite where neither is known.
+double OutlierFilter::period_s(const State& state) const {
+  if (!(params_.period_s > 0.0) || state.count < 2) return kUnknown;
+  return std::max(params_.period_s, step_s(state.passed[0], state.passed[1]));
+}
+
+/// Whether a reading jumps further than the other triad explains: outliers.md (O5).
+bool OutlierFilter::is_suspicious(const ImuSample& sample, const State& state) const {
+  if (state.count == 0) return false;
+  const ImuSample& before = state.passed[1];
+  const double after_s = step_s(before, sample);
+  if (after_s > params_.gap_max_s) return false;
+  if (after_s > kPeriodsAhead * period_s(state)) return true;
+  if (after_s > kNear_s) return false;
+  const double step = std::max(after_s, params_.period_s);
+  Sequence sequence = passed_near(state);
+  sequence.add(sample);
+  return distance(sample, state, gyro_of(params_)) > gyro_threshold(params_, sequence, sample, step) ||
+         distance(sample, state, accel_of(params_)) > accel_threshold(params_, sequence, sample, step);
+}
+
+/// Whether the held reading is an outlier, now that the one after it is known: outliers.md (O6).
+bool OutlierFilter::is_outlier(const ImuSample& held, const ImuSample& after, const State& state) const {
+  const ImuSample& before = state.passed[1];
+  if (state.count == 0 || step_s(before, held) > kNear_s || step_s(held, after) > kNear_s) return false;
+  const double step = std::max(step_s(before, held), params_.period_s);
+  Sequence sequence = passed_near(state);
+  sequence.add(held);
+  sequence.add(after);
+  const auto stands_out = [&](const Triad& triad, double threshold) {
+    const double by = departure(triad.of(before), triad.of(held), triad.of(after));
+    return by > threshold && by > kAgreement * distance(after, state, triad);
+  };
+  return stands_out(gyro_of(params_), gyro_threshold(params_, sequence, held, step)) ||
+         stands_out(accel_of(params_), accel_threshold(params_, sequence, held, step));
+}
+
+std::vector<bool> find_inliers(const OutlierFilter& filter, std::span<const ImuSample> samples) {
+  std::vector<bool> out(samples.size(), false);
+  OutlierFilter::State state;
+  std::size_t held = 0;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    if (const std::optional<ImuSample> confirmed = filter.settle(samples[k], state)) {
+      OutlierFilter::pass(*confirmed, state);
+      out[held] = true;
+    }
+    if (filter.keeps_back(samples[k], state)) {
+      held = k;
+      continue;
+    }
+    OutlierFilter::pass(samples[k], state);
+    out[k] = true;
+  }
+  return out;
+}
+
+}  // namespace tumble

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "imu_members.hpp"
+#include "tumble/common/outlier_filter.hpp"
+
+/// Members of the filter that rejects wild readings: state_visitor.hpp.
+namespace tumble {
+
+template <StateOf<OutlierFilter::State> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("outliers.passed", s.passed);
+  visit("outliers.count", s.count, 0.0, 2.0);
+  visit("outliers.held", s.held);
+  visit("outliers.rejected", s.rejected);
+}
+
+}  // namespace tumble

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "before_map.hpp"
+
+#include <Eigen/LU>
+#include <cmath>
+
+#include "tumble/common/so3.hpp"
+#include "unknowns.hpp"
+
+namespace tumble::mapping {
+
+namespace {
+
+namespace u = unknowns;
+using Motion = Eigen::Matrix<double, 9, 9>;
+using Params = LidarInertialOdometry::Params;
+
+// Robots of this library are slower, except for moments.
+constexpr double kSpeed_m_s = 10.0, kSpeedTime_s = 1.0;
+
+Belief of_motion(const MotionState& state, const SweepCalibration& calibration, const Motion& weight,
+                 const Motion& error) {
+  Belief out;
+  out.mean.state = state;
+  out.mean.state.covariance = weight;
+  out.mean.calibration = calibration;
+  u::block(out.weight, u::motion) = weight;
+  u::block(out.error, u::motion) = error;
+  return out;
+}
+
+double yaw_rad(const Eigen::Quaterniond& q) {
+  return 2.0 * std::atan2(q.z(), q.w());
+}
+
+/// Errors of a motion in a frame that is moved and turned to the IMU by errors in the frame before.
+Motion by_frame(const Eigen::Matrix3d& turn, const Eigen::Vector3d& v_WI_m_s) {
+  Motion T = Motion::Zero();
+  T.block<2, 3>(3, 3) = turn.topRows<2>();
+  T.block<3, 3>(6, 6) = turn;
+  T.block<3, 3>(6, 3) = so3::hat(v_WI_m_s).col(2) * turn.row(2);  // the yaw's error turns the velocity
+  return T;
+}
+
+/// Kalman update by a velocity of 0, which leaves E consistent with the gain of C.
+void bound_speed(double sigma_m_s, MotionState& state, Motion& C, Motion& E) {
+  const Eigen::Matrix3d R = sigma_m_s * sigma_m_s * Eigen::Matrix3d::Identity();
+  const Eigen::Matrix3d S = u::block(C, u::velocity) + R;
+  const Eigen::Matrix<double, 9, 3> K = u::columns(C, u::velocity) * S.inverse();
+  const Eigen::Matrix<double, 9, 1> moved = -K * state.v_WI_m_s;
+  state.q_WI = (so3::exp(u::segment(moved, u::attitude)) * state.q_WI).normalized();
+  state.v_WI_m_s += u::segment(moved, u::velocity);
+  Motion kept = Motion::Identity();
+  u::columns(kept, u::velocity) -= K;
+  C = (kept * C * kept.transpose() + K * R * K.transpose()).eval();
+  E = (kept * E * kept.transpose() + K * R * K.transpose()).eval();
+}
+
+}  // namespace
+
+Belief belief_before_map(const Params& params, const MotionState& levelled) {
+  SweepCalibration calibration;
+  calibration.T_IL = params.T_IL;
+  calibration.gravity_W_m_s2 = Eigen::Vector3d(0.0, 0.0, -params.expert.gravity_m_s2);
+  Motion error = levelled.covariance;
+  u::variances(error, u::tilt).setConstant(params.expert.world.tilt_sigma_rad * params.expert.world.tilt_sigma_rad);
+  return of_motion(levelled, calibration, levelled.covariance, error);
+}
+
+Belief without_place(const Belief& reckoned, double step_s) {
+  MotionState state = reckoned.mean.state;
+  Motion C = u::block(reckoned.weight, u::motion), E = u::block(reckoned.error, u::motion);
+  bound_speed(kSpeed_m_s * std::sqrt(kSpeedTime_s / step_s), state, C, E);
+  const Eigen::Quaterniond turn = so3::exp({0.0, 0.0, -yaw_rad(state.q_WI)});
+  state.p_WI_m.setZero();
+  state.q_WI = (turn * state.q_WI).normalized();
+  state.v_WI_m_s = turn * state.v_WI_m_s;
+  const Motion T = by_frame(turn.toRotationMatrix(), state.v_WI_m_s);
+  return of_motion(state, reckoned.mean.calibration, T * C * T.transpose(), T * E * T.transpose());
+}
+
+/// A frame that is turned by the tilt error φ so that the IMU's attitude has no error sees the velocity v and gravity g
+/// turned back: δv + v × φ, g × φ.
+Belief belief_at_first_sweep(const Params& params, const Belief& reckoned) {
+  MotionState start = reckoned.mean.state;
+  start.covariance.setZero();
+  u::variances(start.covariance, u::tilt)
+      .setConstant(params.expert.start.level_sigma_rad * params.expert.start.level_sigma_rad);
+  Belief out = belief_at_start(params, start);
+  Eigen::Matrix<double, 6, 9> T = Eigen::Matrix<double, 6, 9>::Zero();  // of velocity and gravity
+  T.block<3, 3>(0, 3) = so3::hat(start.v_WI_m_s);
+  T.block<3, 3>(0, 6).setIdentity();
+  const bool free_gravity = params.expert.gravity_sigma_m_s2 > 0.0;
+  if (free_gravity) T.block<3, 3>(3, 3) = so3::hat(out.mean.calibration.gravity_W_m_s2);
+  const auto add = [&](const Registration::Matrix& from, Registration::Matrix& to) {
+    const Eigen::Matrix<double, 6, 6> P = T * u::block(from, u::motion) * T.transpose();
+    u::block(to, u::velocity) += P.topLeftCorner<3, 3>();
+    u::block(to, u::velocity, u::gravity) += P.topRightCorner<3, 3>();
+    u::block(to, u::gravity, u::velocity) += P.bottomLeftCorner<3, 3>();
+    u::block(to, u::gravity) += P.bottomRightCorner<3, 3>();
+  };
+  add(reckoned.weight, out.weight);
+  add(reckoned.error, out.error);
+  out.mean.state.covariance = u::block(out.weight, u::motion);
+  return out;
+}
+
+WorldCovariance world_at_first_sweep(const Params& params, const Belief& reckoned) {
+  WorldCovarianceParams world = params.expert.world;
+  world.tilt_sigma_rad = std::sqrt(u::variances(reckoned.error, u::tilt).mean());
+  return {world, reckoned.mean.state.q_WI, params.T_IL.translation()};
+}
+
+}  // namespace tumble::mapping

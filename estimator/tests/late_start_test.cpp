@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Sensors that do not start together: the map starts with the first sweep that has points, as well as if both had.
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <vector>
+
+#include "live_readings.hpp"
+#include "thrown_body.hpp"
+#include "thrown_params.hpp"
+#include "tumble/common/so3.hpp"
+#include "tumble/tumble.hpp"
+
+namespace tumble {
+namespace {
+
+using test::ThrownBody;
+
+constexpr TimeNs kSecond_ns = 1'000'000'000;
+
+struct Lived {
+  std::vector<TumblingOdometry::Sweep> sweeps;
+  bool lived_before = false;  ///< newest() gave a pose before the first sweep
+};
+
+/// The body's sweeps from `lidar_from_s` on, each when it ends, and its samples from `imu_from_s` on.
+Lived live(const ThrownBody& body, double imu_from_s, double lidar_from_s, TumblingOdometry& odometry) {
+  Lived run;
+  std::vector<ThrownBody::Sweep> sweeps = body.sweeps();
+  std::erase_if(sweeps, [&](const auto& sweep) { return 1e-9 * double(sweep.start_ns) < lidar_from_s - 1e-6; });
+  std::size_t next = 0;
+  const auto give_sweeps = [&](TimeNs until_ns) {
+    for (; next < sweeps.size() && sweeps[next].end_ns <= until_ns; ++next)
+      EXPECT_TRUE(odometry.add_sweep(sweeps[next].start_ns, sweeps[next].end_ns, sweeps[next].points).ok());
+  };
+  for (const ImuSample& sample : test::noisy(body.imu(), body.rail_rad_s)) {
+    if (1e-9 * double(sample.time_ns) < imu_from_s) continue;
+    EXPECT_TRUE(odometry.add_imu(sample).ok());
+    PoseState pose;
+    run.lived_before = run.lived_before || (next == 0 && odometry.newest(pose).ok());
+    give_sweeps(sample.time_ns);
+    while (auto sweep = odometry.take()) run.sweeps.push_back(std::move(*sweep));
+  }
+  odometry.finish();
+  while (auto sweep = odometry.take()) run.sweeps.push_back(std::move(*sweep));
+  return run;
+}
+
+/// Error of the last pose against the first one, which is the start of the map, over its covariance.
+struct EndError {
+  double m = 0.0, rad = 0.0, nees = 0.0;
+};
+
+EndError end_error(const ThrownBody& body, const Lived& run) {
+  const PoseState& first = run.sweeps.front().report.trajectory.front();
+  const PoseState& last = run.sweeps.back().report.pose;
+  const auto truth = [&](const PoseState& pose) { return body.T_WI(1e-9 * double(pose.time_ns)); };
+  const Eigen::Isometry3d T = Eigen::Translation3d(first.p_WA_m) * first.q_WA * truth(first).inverse();
+  const double yaw_rad = std::atan2(T.linear()(1, 0) - T.linear()(0, 1), T.linear()(0, 0) + T.linear()(1, 1));
+  const Eigen::AngleAxisd turn(yaw_rad, Eigen::Vector3d::UnitZ());
+  const Eigen::Vector3d shift_m = first.p_WA_m - turn * truth(first).translation();
+  Eigen::Matrix<double, 6, 1> error;
+  error << last.p_WA_m - (turn * truth(last).translation() + shift_m),
+      so3::log((last.q_WA * Eigen::Quaterniond((turn * truth(last)).linear()).conjugate()).normalized());
+  return {error.head<3>().norm(), error.tail<3>().norm(), error.dot(last.covariance.ldlt().solve(error)) / 6.0};
+}
+
+void expect_mapped(const ThrownBody& body, double lidar_from_s) {
+  SCOPED_TRACE(lidar_from_s);
+  TumblingOdometry odometry(test::params_of(body));
+  const Lived run = live(body, 0.0, lidar_from_s, odometry);
+  ASSERT_FALSE(run.sweeps.empty());
+  EXPECT_FALSE(run.lived_before);
+  const SweepReport& first = run.sweeps.front().report;
+  EXPECT_EQ(first.verdict, SweepVerdict::first);
+  EXPECT_GT(first.map_points_added, 500u);
+  EXPECT_LT(first.trajectory.front().p_WA_m.norm(), 0.1);
+  const Eigen::Matrix3d position_m2 = first.pose.covariance.topLeftCorner<3, 3>();
+  EXPECT_LT(position_m2.trace(), 0.2 * 0.2);
+  const auto lost = std::count_if(run.sweeps.begin(), run.sweeps.end(),
+                                  [](const auto& sweep) { return sweep.report.verdict == SweepVerdict::rejected; });
+  EXPECT_EQ(lost, 0);
+  EXPECT_TRUE(odometry.doubt().ok()) << odometry.doubt().message();
+  const EndError error = end_error(body, run);
+  EXPECT_LT(error.m, 0.03);
+  EXPECT_LT(error.rad, 0.01);
+  EXPECT_LT(error.nees, 4.0);
+}
+
+ThrownBody body_that_rests(double rest_s) {
+  ThrownBody body;
+  body.rest_s = rest_s;
+  body.end_s = rest_s + 3.0;
+  return body;
+}
+
+TEST(LateLidar, StartsTheMapAtRest) {
+  for (const double late_s : {1.0, 3.0, 5.0, 20.0}) expect_mapped(body_that_rests(late_s + 1.0), late_s);
+}
+
+TEST(LateLidar, StartsTheMapInFlight) {
+  for (const double rest_s : {1.2, 4.4}) {
+    const ThrownBody body = body_that_rests(rest_s);
+    expect_mapped(body, rest_s + 0.4);  // beyond the gyro's rail since 0.3 s
+  }
+}
+
+TEST(LateLidar, SweepsWithoutPointsDoNotStartTheMap) {
+  const ThrownBody body = body_that_rests(3.0);
+  TumblingOdometry odometry(test::params_of(body));
+  std::vector<ThrownBody::Sweep> sweeps = body.sweeps();
+  for (ThrownBody::Sweep& sweep : sweeps) {
+    if (sweep.start_ns < 2 * kSecond_ns) sweep.points.resize(50);
+  }
+  std::size_t next = 0, without_pose = 0;
+  SweepReport first, last;
+  for (const ImuSample& sample : body.imu()) {
+    ASSERT_TRUE(odometry.add_imu(sample).ok());
+    for (; next < sweeps.size() && sweeps[next].end_ns <= sample.time_ns; ++next)
+      ASSERT_TRUE(odometry.add_sweep(sweeps[next].start_ns, sweeps[next].end_ns, sweeps[next].points).ok());
+    while (auto sweep = odometry.take()) {
+      without_pose += sweep->report.trajectory.empty();
+      EXPECT_EQ(sweep->status.trouble, sweep->report.trajectory.empty() ? Trouble::too_few : Trouble::none);
+      if (sweep->report.verdict == SweepVerdict::first) first = sweep->report;
+      last = sweep->report;
+    }
+  }
+  EXPECT_EQ(without_pose, 19u);
+  ASSERT_FALSE(first.trajectory.empty());
+  EXPECT_NEAR(1e-9 * double(first.trajectory.front().time_ns), 2.0, 0.02);
+  EXPECT_EQ(last.verdict, SweepVerdict::registered);
+}
+
+TEST(LateImu, LeavesOutTheSweepsBeforeIt) {
+  ThrownBody body = body_that_rests(4.2);
+  TumblingOdometry odometry(test::params_of(body));
+  const Lived run = live(body, 3.05, 0.0, odometry);
+  EXPECT_GE(odometry.early_sweeps(), 28u);
+  EXPECT_LE(odometry.early_sweeps(), 30u);
+  std::size_t placed = 0;
+  for (const auto& sweep : run.sweeps) placed += !sweep.report.trajectory.empty();
+  EXPECT_GE(placed, 38u);
+  EXPECT_EQ(run.sweeps.back().report.verdict, SweepVerdict::registered);
+}
+
+/// A body at rest whose accelerometer reads in units of `unit_m_s2`.
+std::vector<ImuSample> at_rest(double unit_m_s2, double seconds) {
+  std::vector<ImuSample> imu(static_cast<std::size_t>(100.0 * seconds));
+  for (std::size_t k = 0; k < imu.size(); ++k) {
+    imu[k].time_ns = static_cast<TimeNs>(k + 1) * 10'000'000;
+    imu[k].specific_force_m_s2 = {1.0, 0.5, 9.74};
+  }
+  imu = test::noisy(std::move(imu));
+  for (ImuSample& sample : imu) sample.specific_force_m_s2 /= unit_m_s2;
+  return imu;
+}
+
+constexpr const char* kUnit = "accelerometer unit: specific force at rest as a share of gravity";
+constexpr double kOneG = 9.80665;
+
+TEST(AccelerometerUnit, IsDoubtedByTumblingOdometryWithinTwoSeconds) {
+  for (const double unit_m_s2 : {kOneG, kOneG / 1.011, 1e-3 * kOneG, 0.01}) {
+    SCOPED_TRACE(unit_m_s2);
+    TumblingOdometry odometry(test::params_of({}));
+    for (const ImuSample& sample : at_rest(unit_m_s2, 2.0)) ASSERT_TRUE(odometry.add_imu(sample).ok());
+    const Status status = odometry.doubt();
+    EXPECT_EQ(status.trouble, Trouble::out_of_range);
+    EXPECT_STREQ(status.field, kUnit);
+    EXPECT_NEAR(status.value * unit_m_s2, 1.0, 0.01);
+    EXPECT_NEAR(status.bound, unit_m_s2 > 1.0 ? 0.85 : 1.15, 1e-9);
+  }
+}
+
+TEST(AccelerometerUnit, IsDoubtedByRollingOdometryWithinTwoSeconds) {
+  for (const double unit_m_s2 : {kOneG, 1e-3 * kOneG, 0.01}) {
+    SCOPED_TRACE(unit_m_s2);
+    RollingOdometry::Params params;
+    params.radius_m = 0.1;
+    params.units.emplace_back();
+    params.units.front().sheet.rate_hz = 100.0;
+    RollingOdometry odometry(params);
+    for (const ImuSample& sample : at_rest(unit_m_s2, 2.0)) (void)odometry.add_imu(sample);
+    EXPECT_EQ(odometry.doubt().trouble, Trouble::out_of_range);
+    EXPECT_STREQ(odometry.doubt().field, kUnit);
+  }
+}
+
+TEST(AccelerometerUnit, IsNotDoubtedOfASoundOneOrInMotion) {
+  TumblingOdometry at_rest_odometry(test::params_of({})), thrown(test::params_of({}));
+  for (const double scale : {0.9, 1.0, 1.1}) {
+    for (const ImuSample& sample : at_rest(scale, 3.0)) (void)at_rest_odometry.add_imu(sample);
+    EXPECT_TRUE(at_rest_odometry.doubt().ok());
+    at_rest_odometry = TumblingOdometry(test::params_of({}));
+  }
+  for (const ImuSample& sample : ThrownBody().imu()) {
+    ASSERT_TRUE(thrown.add_imu(sample).ok());
+    EXPECT_TRUE(thrown.doubt().ok()) << thrown.doubt().message();
+  }
+}
+
+}  // namespace
+}  // namespace tumble

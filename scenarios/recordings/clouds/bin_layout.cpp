@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/recordings/clouds/bin_layout.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <vector>
+
+namespace tumble::scenarios {
+
+namespace {
+
+constexpr std::size_t kKitti = 4;
+/// Multiples of four stand for doubles, or for two rows of a point that is read as two.
+constexpr std::array<std::size_t, 8> kOtherFloats = {3, 5, 6, 7, 8, 9, 10, 12};
+constexpr std::array<std::size_t, 6> kDoubles = {3, 4, 5, 6, 7, 8};
+/// Numbers are taken from so many places of the file, so many in a row: a sweep in the order of its rings is seen
+/// whole.
+constexpr std::size_t kSections = 4, kInRow = 6000;
+constexpr std::size_t kPerColumnMin = 25;
+constexpr std::size_t kNumberBins = 16;
+/// Beyond these no coordinate in metres is, nor an intensity. Sines of 180 degrees times a range are 1e-16 or so.
+constexpr double kLargest = 1e7, kSmallest = 1e-20, kOddShareMax = 0.01;
+/// How much more the columns must differ: those of sound sweeps gain 0.08 at most where every second ring looks down.
+constexpr double kMultipleDiffers = 1.5;
+constexpr double kClearlyMore = 1.25, kClearlyMoreBy = 0.05;
+
+/// Numbers of a file, and at which place of it each stands.
+struct NumberSample {
+  std::vector<double> values;
+  std::vector<std::size_t> index;
+};
+
+template <class Number>
+NumberSample sample_of(std::span<const char> bytes) {
+  const std::size_t count = bytes.size() / sizeof(Number), section = count / kSections;
+  NumberSample out;
+  std::size_t next = 0;
+  for (std::size_t place = 0; place < kSections; ++place) {
+    const std::size_t end = count <= kSections * kInRow ? count : place * section + kInRow;
+    for (next = std::max(next, place * section); next < end; ++next) {
+      Number value;
+      std::memcpy(&value, bytes.data() + next * sizeof(value), sizeof(value));
+      out.values.push_back(static_cast<double>(value));
+      out.index.push_back(next);
+    }
+  }
+  return out;
+}
+
+double odd_share(const NumberSample& sample) {
+  const auto odd = [](double value) {
+    return std::abs(value) > kLargest || (value != 0.0 && std::abs(value) < kSmallest);  // NaN is a miss
+  };
+  const auto count = std::count_if(sample.values.begin(), sample.values.end(), odd);
+  return sample.values.empty() ? 0.0 : static_cast<double>(count) / static_cast<double>(sample.values.size());
+}
+
+/// The bin of each number, by the quantiles of all of them.
+std::vector<std::size_t> bins_of(const NumberSample& sample) {
+  std::vector<double> sorted = sample.values;
+  std::erase_if(sorted, [](double value) { return std::isnan(value); });
+  std::sort(sorted.begin(), sorted.end());
+  std::vector<double> edges;
+  for (std::size_t k = 1; k < kNumberBins && !sorted.empty(); ++k)
+    edges.push_back(sorted[k * sorted.size() / kNumberBins]);
+  std::vector<std::size_t> out;
+  for (const double value : sample.values) {
+    const auto edge = std::upper_bound(edges.begin(), edges.end(), value);
+    out.push_back(std::isnan(value) ? kNumberBins : static_cast<std::size_t>(edge - edges.begin()));
+  }
+  return out;
+}
+
+using NumberHistogram = std::array<double, kNumberBins + 1>;
+
+/// Mean total variation between a column and all numbers, without what chance makes of it.
+double columns_differ(const NumberSample& sample, const std::vector<std::size_t>& bins, std::size_t columns) {
+  std::vector<NumberHistogram> counts(columns, NumberHistogram{});
+  NumberHistogram all{};
+  std::vector<double> sizes(columns, 0.0);
+  for (std::size_t k = 0; k < bins.size(); ++k) {
+    const std::size_t column = sample.index[k] % columns;
+    counts[column][bins[k]] += 1.0;
+    sizes[column] += 1.0;
+    all[bins[k]] += 1.0;
+  }
+  const auto total = static_cast<double>(bins.size());
+  double sum = 0.0;
+  for (std::size_t column = 0; column < columns; ++column) {
+    for (std::size_t bin = 0; bin < all.size(); ++bin)
+      sum += 0.5 * std::abs(counts[column][bin] / sizes[column] - all[bin] / total);
+  }
+  const double by_chance = 0.4 * std::sqrt(static_cast<double>(kNumberBins * columns) / total);
+  return std::max(sum / static_cast<double>(columns) - by_chance, 0.0);
+}
+
+struct ColumnFit {
+  std::size_t columns = 0;
+  double differ = 0.0;
+};
+
+/// The fewest columns that differ about as much as any, among those that divide the file. Multiples of the right number
+/// differ somewhat more, where the order of the points repeats.
+template <std::size_t kCount>
+ColumnFit best_of(const NumberSample& sample, std::size_t numbers_in_file,
+                  const std::array<std::size_t, kCount>& candidates) {
+  const std::vector<std::size_t> bins = bins_of(sample);
+  ColumnFit best;
+  for (const std::size_t columns : candidates) {
+    if (numbers_in_file % columns != 0 || sample.values.size() < kPerColumnMin * columns) continue;
+    const double differ = columns_differ(sample, bins, columns);
+    if (differ > kMultipleDiffers * best.differ) best = {columns, differ};
+  }
+  return best;
+}
+
+std::string contradiction_of_size(std::span<const char> bytes, const ColumnFit& floats) {
+  const std::string size =
+      fmt::format("has {} bytes, must be a multiple of 16 (float32 x y z intensity)", bytes.size());
+  if (floats.columns == 0) return size + ": truncated?";
+  return size + fmt::format("; its numbers lie as {} columns of float32", floats.columns);
+}
+
+std::string contradiction_of_numbers(std::span<const char> bytes, double odd) {
+  std::string text = fmt::format(
+      "{:.0f} % of its numbers, read as float32, are beyond {:.0g} or below {:.0g}, at most {:.0f} % may be",
+      100.0 * odd, kLargest, kSmallest, 100.0 * kOddShareMax);
+  if (bytes.size() % sizeof(double) != 0) return text;
+  const NumberSample doubles = sample_of<double>(bytes);
+  const ColumnFit fit = best_of(doubles, bytes.size() / sizeof(double), kDoubles);
+  if (odd_share(doubles) > kOddShareMax || fit.columns == 0) return text;
+  return text + fmt::format("; they lie as {} columns of float64", fit.columns);
+}
+
+}  // namespace
+
+std::string contradiction_to_kitti(std::span<const char> bytes) {
+  const NumberSample floats = sample_of<float>(bytes);
+  const double odd = odd_share(floats);
+  if (odd > kOddShareMax && floats.values.size() >= kPerColumnMin * kKitti) return contradiction_of_numbers(bytes, odd);
+  const ColumnFit other = best_of(floats, bytes.size() / sizeof(float), kOtherFloats);
+  const bool clear = other.differ > kClearlyMoreBy;
+  if (bytes.size() % (kKitti * sizeof(float)) != 0) return contradiction_of_size(bytes, clear ? other : ColumnFit{});
+  if (floats.values.size() < kPerColumnMin * kKitti) return "";
+  const double as_kitti = columns_differ(floats, bins_of(floats), kKitti);
+  if (!(other.differ > kClearlyMore * as_kitti + kClearlyMoreBy)) return "";
+  return fmt::format(
+      "its numbers lie as {} columns of float32, not as 4 (x y z intensity): the columns differ from each other by "
+      "{:.2f}, read as 4 by {:.2f}",
+      other.columns, other.differ, as_kitti);
+}
+
+}  // namespace tumble::scenarios

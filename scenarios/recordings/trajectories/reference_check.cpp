@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/recordings/trajectories/reference_check.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/recordings/trajectories/turning.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+/// Differences as shares of the rotation: more than the first contradicts, less than the second agrees.
+constexpr double kContradicts = 0.5, kReferenceAgrees = 0.3;
+/// A difference beyond the first is a fault where another order or direction of the quaternions leaves less than the
+/// second share of it.
+constexpr double kExplained = 0.15, kExplanationLeaves = 0.4;
+constexpr double kDelaySearched_s = 5.0;
+/// Stamps of sweeps' ends for their starts make 0.1 s, and filters of the IMU some 0.02 s, in sound recordings.
+constexpr double kDelayNoted_s = 0.03, kDelayMax_s = 0.15;
+
+/// The stated frame first: poses that fit it are never said to be of another.
+std::vector<CandidateFrame> candidate_frames(const Eigen::Isometry3d& T_BA, const sim::Sensors& sensors) {
+  const Eigen::Quaterniond q_BI(sensors.imus.front().T_BI.linear());
+  std::vector<CandidateFrame> out = {{"as stated", Eigen::Quaterniond(T_BA.linear()).conjugate() * q_BI},
+                                     {"body", q_BI}};
+  if (!sensors.lidars.empty())
+    out.push_back({"lidar", Eigen::Quaterniond(sensors.lidars.front().T_BL.linear()).conjugate() * q_BI});
+  out.push_back({"IMU", Eigen::Quaterniond::Identity()});
+  return out;
+}
+
+std::string share_text(double share) {
+  return fmt::format("{:.0f} %", 100.0 * share);
+}
+
+std::string delay_text(double delay_s) {
+  return fmt::format("{:.3f} s too {}", std::abs(delay_s), delay_s > 0.0 ? "late" : "early");
+}
+
+bool is_delayed(double delay_s) {
+  return std::abs(delay_s) >= kDelayMax_s;
+}
+
+/// What is wrong with the file, and what to do about it.
+std::string remedy(Written written, double delay_s) {
+  std::string out;
+  if (written == Written::w_first || written == Written::w_first_inverse)
+    out += "; its quaternions have w first, must be qx qy qz qw: move the column";
+  if (written == Written::inverse || written == Written::w_first_inverse)
+    out += "; its poses are of the world in the sensor, must be of the sensor in the world: invert them";
+  if (!is_delayed(delay_s)) return out;
+  const bool late = delay_s > 0.0;
+  return out + fmt::format("; its stamps are {}, at most {:.2f} s is accepted: {} {:.3f} s {} them",
+                           delay_text(delay_s), kDelayMax_s, late ? "subtract" : "add", std::abs(delay_s),
+                           late ? "from" : "to");
+}
+
+std::string disagreement(const TurningCheck& check, const std::string& imu) {
+  return fmt::format(
+      "the rotations of the reference differ from those of the gyro of '{}' by {} (median of {} pairs of poses)", imu,
+      share_text(check.stated.difference), check.pairs);
+}
+
+/// A contradiction that the IMU or a mounting may cause as well as the reference.
+std::string caution(const TurningCheck& check, const std::string& frame, const std::string& imu) {
+  const std::string text =
+      "caution: " + disagreement(check, imu) + fmt::format(", at most {} is expected; ", share_text(kContradicts));
+  const TurningFit& reading = check.reading.undelayed;
+  if (reading.difference < kReferenceAgrees && reading.written == Written::as_stated) {
+    return text + fmt::format("by {} if the poses are of the {}{}", share_text(reading.difference), frame,
+                              frame == "IMU" ? "" : ": give --reference-frame " + frame);
+  }
+  const MountingFit& mounting = check.mounting.undelayed;
+  if (mounting.difference < kReferenceAgrees) {
+    const Eigen::Quaterniond& q = mounting.q_AI;
+    return text + fmt::format(
+                      "by {} if the IMU is turned in the frame of the poses by the quaternion x y z w {:.4f} {:.4f} "
+                      "{:.4f} {:.4f}: is a mounting wrong?",
+                      share_text(mounting.difference), q.x(), q.y(), q.z(), q.w());
+  }
+  return text + fmt::format(
+                    "no other order or direction of its quaternions, no frame and no delay within {:.0f} s explains "
+                    "this: does it belong to this recording?",
+                    kDelaySearched_s);
+}
+
+std::string agreement(const TurningCheck& check, const std::string& imu) {
+  const TurningFit& likely = check.reading.likely();
+  const TurningFit& fit = likely.written == Written::as_stated ? likely : check.stated;
+  const std::string text =
+      fmt::format("the reference agrees with the gyro of '{}': rotations differ by {} (median of {} pairs of poses)",
+                  imu, share_text(fit.difference), check.pairs);
+  if (std::abs(fit.delay_s) >= kDelayNoted_s)
+    return "caution: " + text + " once its stamps, which are " + delay_text(fit.delay_s) + ", are corrected";
+  return text + (check.clock_known ? "" : "; its clock is not checked: the motion would not show a delay") +
+         (check.order_known ? "" : "; the order of its quaternions is not checked: the motion would not show w first");
+}
+
+/// Whether a delay, which may be accepted, is all that separates the reference from the gyro.
+bool fits_as_stated(const TurningCheck& check) {
+  const TurningFit& fit = check.reading.likely();
+  return fit.written == Written::as_stated && fit.frame == 0 && fit.difference < kReferenceAgrees;
+}
+
+[[noreturn]] void refuse(const TurningCheck& check, const std::string& imu, const std::string& where, double corrected,
+                         const std::string& remedies) {
+  throw BadInput(where + ": " + disagreement(check, imu) +
+                 fmt::format(", by {} once corrected", share_text(corrected)) + remedies);
+}
+
+/// Order and direction of the quaternions, and their clock.
+void require_reading_as_stated(const TurningCheck& check, const std::string& imu, const std::string& where) {
+  const TurningFit& fit = check.reading.likely();
+  if (fit.difference >= kReferenceAgrees) return;
+  const bool rewritten = fit.written != Written::as_stated && check.stated.difference > kExplained &&
+                         fit.difference < kExplanationLeaves * check.stated.difference;
+  if (rewritten || is_delayed(fit.delay_s))
+    refuse(check, imu, where, fit.difference, remedy(rewritten ? fit.written : Written::as_stated, fit.delay_s));
+}
+
+/// The clock of a reference whose mounting is another than stated.
+void require_clock(const TurningCheck& check, const std::string& imu, const std::string& where) {
+  const MountingFit& fit = check.mounting.likely();
+  if (fit.difference < kReferenceAgrees && is_delayed(fit.delay_s))
+    refuse(check, imu, where, fit.difference, remedy(Written::as_stated, fit.delay_s));
+}
+
+}  // namespace
+
+std::string check_reference(const std::vector<ReferencePose>& poses, const Eigen::Isometry3d& T_BA,
+                            const sim::Sensors& sensors, const std::string& where) {
+  const std::string unchecked = "the reference is not checked against a gyro: ";
+  if (sensors.imus.empty()) return unchecked + "the recording has no IMU";
+  const sim::ImuRecord& imu = sensors.imus.front();
+  std::vector<TimedAttitude> attitudes;
+  for (const ReferencePose& pose : poses) attitudes.push_back({pose.time_ns, pose.q_WA});
+  const std::vector<CandidateFrame> frames = candidate_frames(T_BA, sensors);
+  const TurningCheck check = check_turning(attitudes, frames, imu, kDelaySearched_s);
+  if (check.pairs == 0)
+    return unchecked + "too few of its poses, 0.05 to 1 s apart, turn by 0.02 rad and more while '" + imu.name +
+           "' has readings below its range";
+  if (check.upright) {
+    throw BadInput(where + ": the force that '" + imu.name +
+                   "' measures, which points up on average, is more than 60 degrees off the vertical of the reference; "
+                   "its rotations agree, but as well otherwise" +
+                   remedy(check.upright->written, 0.0));
+  }
+  require_reading_as_stated(check, imu.name, where);
+  if (check.stated.difference > kContradicts && check.reading.likely().difference >= kReferenceAgrees)
+    require_clock(check, imu.name, where);
+  if (check.stated.difference > kContradicts && !fits_as_stated(check))
+    return caution(check, frames[check.reading.undelayed.frame].name, imu.name);
+  return agreement(check, imu.name);
+}
+
+}  // namespace tumble::scenarios

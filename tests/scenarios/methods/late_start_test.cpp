@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Sensors of a recording that do not start together.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "scenarios/methods/method.hpp"
+#include "scenarios/methods/synthetic_recording.hpp"
+#include "scenarios/scoring/score.hpp"
+
+namespace tumble::scenarios {
+namespace {
+
+constexpr std::int64_t kSecond_ns = 1'000'000'000;
+
+/// The rig at rest for `rest_s`, then half a turn in three seconds.
+sim::Recording rig_that_rests(double rest_s) {
+  testing::SyntheticMotion motion;
+  motion.angle_rad = 3.0;
+  motion.rail_rad_s = 100.0;
+  motion.start_s = rest_s;
+  motion.end_s = rest_s + 3.0;
+  motion.duration_s = rest_s + 4.0;
+  return testing::synthetic_rig(motion);
+}
+
+void start_lidar_at(double from_s, sim::LidarRecord& lidar) {
+  const auto late = [&](std::int64_t start_ns) { return start_ns < from_s * kSecond_ns; };
+  const auto early = std::count_if(lidar.sweep_start_ns.begin(), lidar.sweep_start_ns.end(), late);
+  const std::uint64_t points = lidar.sweep_first[early];
+  lidar.sweep_start_ns.erase(lidar.sweep_start_ns.begin(), lidar.sweep_start_ns.begin() + early);
+  lidar.sweep_first.erase(lidar.sweep_first.begin(), lidar.sweep_first.begin() + early);
+  for (std::uint64_t& first : lidar.sweep_first) first -= points;
+  const auto cut = [&](auto& rows) {
+    if (rows.size() >= points) rows.erase(rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(points));
+  };
+  cut(lidar.position_L_m), cut(lidar.range_m), cut(lidar.intensity), cut(lidar.offset_ns), cut(lidar.ring);
+}
+
+void start_imu_at(double from_s, sim::ImuRecord& imu) {
+  const auto late = [&](std::int64_t time_ns) { return time_ns < from_s * kSecond_ns; };
+  const auto early = std::count_if(imu.time_ns.begin(), imu.time_ns.end(), late);
+  const auto cut = [&](auto& rows) {
+    if (std::ptrdiff_t(rows.size()) >= early) rows.erase(rows.begin(), rows.begin() + early);
+  };
+  cut(imu.time_ns), cut(imu.gyro_rad_s), cut(imu.accel_m_s2), cut(imu.clip_flags), cut(imu.magnetic_field_t);
+}
+
+/// Sweeps of an instant at their end, as deskewed clouds are.
+void deskew(sim::LidarRecord& lidar) {
+  for (std::uint32_t& offset_ns : lidar.offset_ns) offset_ns = 0;
+}
+
+Estimate run(const std::string& name, const sim::Recording& recording) {
+  return find_methods(name).at(0)->run(recording.sensors, {}, {&recording.truth});
+}
+
+double score_of(const std::string& metric, const Estimate& estimate, const sim::Recording& recording) {
+  const ScoringInput input{&recording.sensors, &recording.truth, nullptr};
+  for (const Score& score : score(Kind::slam, estimate, input)) {
+    if (score.metric == metric) return score.value;
+  }
+  ADD_FAILURE() << "no " << metric;
+  return 0.0;
+}
+
+const char* const kOverTheMapper[] = {"slam/tumble", "slam/tumble_lag", "slam/tumble_live", "slam/tumble_gyro_only",
+                                      "slam/oracle", "slam/icp",        "slam/icp_raw",     "slam/iterated_filter"};
+
+class LateLidar : public ::testing::TestWithParam<double> {};
+
+TEST_P(LateLidar, EveryMethodOverTheMapperMaps) {
+  const double late_s = GetParam(), rest_s = 1.5;
+  sim::Recording recording = rig_that_rests(rest_s);
+  start_lidar_at(late_s, recording.sensors.lidars.front());
+  for (const char* const name : kOverTheMapper) {
+    SCOPED_TRACE(name);
+    const Estimate estimate = run(name, recording);
+    ASSERT_TRUE(estimate.status.ok()) << estimate.status.message();
+    ASSERT_FALSE(estimate.poses.empty());
+    EXPECT_GT(estimate.map.size(), 1000u);
+    EXPECT_GE(estimate.poses.front().time_ns, static_cast<std::int64_t>((late_s - 0.02) * kSecond_ns));
+    EXPECT_EQ(estimate.health.count("sweeps_rejected"), 0u);
+    EXPECT_LT(score_of("ate_m", estimate, recording), 0.05);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(AtRestAndInMotion, LateLidar, ::testing::Values(1.0, 3.0));
+
+TEST(LateImu, SweepsBeforeItAreLeftOutAndCounted) {
+  sim::Recording recording = rig_that_rests(4.0);
+  start_imu_at(2.55, recording.sensors.imus.front());
+  for (const char* const name : {"slam/tumble", "slam/tumble_lag", "slam/tumble_live"}) {
+    SCOPED_TRACE(name);
+    const Estimate estimate = run(name, recording);
+    ASSERT_TRUE(estimate.status.ok()) << estimate.status.message();
+    EXPECT_LT(score_of("ate_m", estimate, recording), 0.05);
+    double left_out = 0.0;
+    for (const char* const key : {"sweeps_before_imu", "sweeps_unfinished", "sweeps_too_few"}) {
+      if (const auto found = estimate.health.find(key); found != estimate.health.end()) left_out += found->second;
+    }
+    EXPECT_GE(left_out, 25.0);
+    EXPECT_LE(left_out, 27.0);
+  }
+}
+
+TEST(LateImu, ADeskewedSweepBeforeItIsLeftOut) {
+  sim::Recording recording = rig_that_rests(1.5);
+  start_imu_at(0.055, recording.sensors.imus.front());
+  deskew(recording.sensors.lidars.front());
+  for (const char* const name : {"slam/tumble", "slam/tumble_lag", "slam/icp", "slam/published"}) {
+    SCOPED_TRACE(name);
+    EXPECT_TRUE(run(name, recording).status.ok()) << run(name, recording).status.message();
+  }
+}
+
+}  // namespace
+}  // namespace tumble::scenarios

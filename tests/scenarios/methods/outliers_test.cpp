@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One wild reading in a recording costs our methods one reading.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/synthetic_recording.hpp"
+
+namespace tumble::scenarios {
+namespace {
+
+/// A wild reading of the first IMU at a time, on one axis; of the gyro, or else of the accelerometer.
+struct Wild {
+  double time_s;
+  bool of_gyro;
+  int axis;
+  double value;
+};
+
+sim::Recording with_wild(sim::Recording recording, const Wild& wild) {
+  sim::ImuRecord& imu = recording.sensors.imus.front();
+  const auto after = std::lower_bound(imu.time_ns.begin(), imu.time_ns.end(), std::int64_t(1e9 * wild.time_s));
+  const auto k = static_cast<std::size_t>(after - imu.time_ns.begin());
+  (wild.of_gyro ? imu.gyro_rad_s : imu.accel_m_s2)[k][wild.axis] = wild.value;
+  return recording;
+}
+
+Estimate run(const std::string& method, const sim::Recording& recording) {
+  Estimate estimate = find_methods(method).front()->run(recording.sensors, {}, {});
+  EXPECT_TRUE(estimate.status.ok()) << method << ' ' << estimate.status.message();
+  return estimate;
+}
+
+/// Largest distance between states of the same time.
+template <class State, class Distance>
+double farthest(const std::vector<State>& found, const std::vector<State>& expected, const Distance& distance) {
+  if (found.size() + 1 < expected.size() || expected.empty()) return std::numeric_limits<double>::infinity();
+  double out = 0.0;
+  auto at = expected.begin();
+  for (const State& state : found) {
+    while (at != expected.end() && at->time_ns < state.time_ns) ++at;
+    if (at == expected.end()) break;
+    if (at->time_ns == state.time_ns) out = std::max(out, distance(state, *at));
+  }
+  return out;
+}
+
+/// How far an estimate lies from another one: its rates [rad/s], attitudes [rad] or last place [m].
+double apart(Kind kind, const Estimate& found, const Estimate& expected) {
+  switch (kind) {
+    case Kind::rate:
+      return farthest(found.rates, expected.rates,
+                      [](const RateState& a, const RateState& b) { return (a.w_WI_I_rad_s - b.w_WI_I_rad_s).norm(); });
+    case Kind::attitude:
+      return farthest(found.attitudes, expected.attitudes,
+                      [](const auto& a, const auto& b) { return a.q_WA.angularDistance(b.q_WA); });
+    case Kind::position:
+      return (found.poses.back().p_WA_m - expected.poses.back().p_WA_m).norm();
+    case Kind::slam:
+      return (found.sweeps.back().pose.p_WA_m - expected.sweeps.back().pose.p_WA_m).norm();
+  }
+  return 0.0;
+}
+
+void expect_one_reading_lost(const std::string& method, const sim::Recording& recording, double bound) {
+  const Kind kind = find_methods(method).front()->info.kind;
+  const Estimate clean = run(method, recording);
+  // at rest and in motion; all beyond the gyro's range, two beyond twice the ranges
+  for (const Wild& wild : {Wild{1.0, true, 0, 9.0}, Wild{1.2, true, 1, -35.0}, Wild{3.3, true, 2, 200.0},
+                           Wild{1.1, false, 2, 150.0}, Wild{2.4, false, 0, 1e4}}) {
+    const Estimate found = run(method, with_wild(recording, wild));
+    EXPECT_LT(apart(kind, found, clean), bound) << method << ' ' << wild.time_s << ' ' << wild.value;
+    EXPECT_EQ(found.health.at("rejected_readings"), 1.0) << method << ' ' << wild.time_s << ' ' << wild.value;
+  }
+}
+
+TEST(Outliers, OneWildReadingMovesNoRate) {
+  const sim::Recording recording = testing::synthetic_rig();
+  for (const char* method : {"rate/tumble", "rate/tumble_lag"}) expect_one_reading_lost(method, recording, 0.3);
+}
+
+TEST(Outliers, OneWildReadingMovesNoAttitude) {
+  const sim::Recording recording = testing::synthetic_rig();
+  for (const char* method : {"attitude/tumble", "attitude/tumble_batch", "attitude/tumble_lag"})
+    expect_one_reading_lost(method, recording, 0.01);
+}
+
+TEST(Outliers, OneWildReadingMovesNoMap) {
+  const sim::Recording recording = testing::synthetic_rig();
+  for (const char* method : {"slam/tumble", "slam/tumble_lag", "slam/tumble_live"})
+    expect_one_reading_lost(method, recording, 0.005);
+}
+
+TEST(Outliers, OneWildReadingMovesNoSphere) {
+  const sim::Recording recording = testing::synthetic_sphere();
+  for (const char* method : {"position/tumble", "position/tumble_lag", "position/tumble_live"})
+    expect_one_reading_lost(method, recording, 0.005);
+}
+
+}  // namespace
+}  // namespace tumble::scenarios

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Figures of the pages: one style, small files."""
+from __future__ import annotations
+
+import io
+import pathlib
+
+import numpy as np
+
+TRUTH, RAW, PUBLISHED, OURS, LIVE = "black", "tab:red", "tab:orange", "tab:blue", "tab:cyan"
+
+
+def panels(rows: int, columns: int, width_in: float, height_in: float, **options: object) -> tuple:
+    """A figure and its array of axes, with a light grid."""
+    from matplotlib.figure import Figure  # not needed to check numbers
+
+    figure = Figure(figsize=(width_in, height_in), layout="constrained")
+    axes = figure.subplots(rows, columns, squeeze=False, **options)
+    for panel in axes.flat:
+        panel.grid(True, color="0.9", lw=0.6)
+        panel.set_axisbelow(True)
+    return figure, axes
+
+
+def legend(figure: object, panel: object, columns: int) -> None:
+    """One legend for all panels, in a strip above them."""
+    strip_in = 0.34
+    figure.get_layout_engine().set(rect=(0, 0, 1, 1 - strip_in / figure.get_figheight()))
+    figure.legend(*panel.get_legend_handles_labels(), loc="upper center", ncols=columns, fontsize="small")
+
+
+def save(figure: object, path: pathlib.Path, colours: int = 128) -> None:
+    """Writes a PNG with a palette, which takes a third of the bytes."""
+    from PIL import Image
+
+    memory = io.BytesIO()
+    figure.savefig(memory, format="png", dpi=100)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    image = Image.open(memory).convert("RGB")
+    image.quantize(colours, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE).save(path, optimize=True)
+
+
+def percentiles(panel: object, values: list[float], label: str, colour: str, limit: float) -> None:
+    """Values against their percentile; values beyond `limit`, failed draws too, are drawn at `limit`."""
+    ordered = np.minimum(np.sort(values), limit)
+    panel.plot(100 * (np.arange(len(ordered)) + 0.5) / len(ordered), ordered, color=colour, label=label, marker=".", ms=4, lw=1.4)

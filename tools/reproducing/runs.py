@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Runs the program and reads its databases of scores.
+
+All files are in one work folder. A complete estimate is not made again, so a run that was stopped continues.
+"""
+from __future__ import annotations
+
+import os
+import pathlib
+import shutil
+import sqlite3
+import subprocess
+import sys
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+
+class ProgramFailed(RuntimeError):
+    """The program ended with an exit status other than 0. The message holds its command and its errors."""
+
+
+@dataclass
+class Runs:
+    """One build of the program with one work folder.
+
+    program  path of `tumble`
+    folder   databases, recordings and estimates
+    seeds    first and last seed of the draws, both included
+    jobs     processes of a sweep
+    """
+
+    program: pathlib.Path
+    folder: pathlib.Path
+    seeds: tuple[int, int]
+    jobs: int = 1
+    commands: list[str] = field(default_factory=list)  #: as a page shows them, in the order of the calls
+
+    @property
+    def draws(self) -> list[int]:
+        return list(range(self.seeds[0], self.seeds[1] + 1))
+
+    def call(self, *words: object, unseen: Iterable[object] = ()) -> str:
+        """Runs `tumble words... unseen... --quiet` in the work folder and returns what it prints. No page shows `unseen`."""
+        texts = [str(word) for word in words]
+        command = " ".join(["tumble", *texts]).replace(f"{ROOT}/", "")
+        if command not in self.commands:
+            self.commands.append(command)
+        print(f"reproduce: {command}", file=sys.stderr, flush=True)
+        self.folder.mkdir(parents=True, exist_ok=True)
+        ended = subprocess.run([str(self.program), *texts, *map(str, unseen), "--quiet"], cwd=self.folder, capture_output=True, text=True)
+        if ended.returncode != 0:
+            raise ProgramFailed(f"{command}: exit status {ended.returncode}: {ended.stderr.strip()}")
+        return ended.stdout
+
+    def sweep(self, name: str, suite: object, methods: Iterable[str] = (), scenario: str = "", keep: bool = False,
+              last: int = 0) -> Scores:
+        """Sweeps the draws of a suite into NAME.db, resumes a sweep that was stopped, and returns its scores.
+
+        scenario  the one scenario of the suite; empty: all
+        keep      leaves recording and estimates of each draw (`kept`)
+        last      last seed, where it is not that of the run
+        """
+        words: list[object] = ["sweep", suite]
+        if scenario:
+            words += ["--scenario", scenario]
+        words += ["--seeds", f"{self.seeds[0]}..{min(last or self.seeds[1], self.seeds[1])}"]
+        for method in methods:
+            words += ["--method", method]
+        words += ["--examples", 0, *(["--keep", "all"] if keep else []), "--db", f"{name}.db"]
+        self.call(*words, unseen=("--jobs", self.jobs))
+        return Scores(self.folder / f"{name}.db")
+
+    def kept(self, name: str, scenario: str, seed: int) -> pathlib.Path:
+        """The folder of one kept draw: `recording.h5` and `estimates/KIND-METHOD`."""
+        return self.folder / f"{name}.db.files" / "kept" / scenario / str(seed)
+
+    def estimate(self, recording: pathlib.Path, method: str, folder: pathlib.Path, settings: Iterable[str] = ()) -> pathlib.Path:
+        """Runs one method on a recording. settings: METHOD.PARAMETER=NUMBER. Returns the folder of the estimate."""
+        if not (folder / "estimate.json").is_file():
+            shutil.rmtree(folder, ignore_errors=True)
+            recording, target = (os.path.relpath(path, self.folder) for path in (recording, folder))
+            words = ["estimate", recording, "--method", method]
+            for setting in settings:
+                words += ["--set", setting]
+            self.call(*words, "-o", target)
+        return folder
+
+    def record(self, scenario: object, seed: int, recording: pathlib.Path) -> pathlib.Path:
+        """Draws and simulates one situation."""
+        if not recording.is_file():
+            recording.parent.mkdir(parents=True, exist_ok=True)
+            self.call("record", scenario, "--seed", seed, "-o", os.path.relpath(recording, self.folder))
+        return recording
+
+
+class Scores:
+    """Scores of a results database. A method with a varied parameter is named `KIND/NAME KEY=VALUE`."""
+
+    def __init__(self, path: pathlib.Path):
+        with sqlite3.connect(f"file:{path.resolve()}?mode=ro", uri=True) as database:
+            plain = "SELECT seed, kind || '/' || method, metric, value FROM scores"
+            varied = "SELECT seed, kind || '/' || method || ' ' || varied || '=' || setting, metric, value FROM curves"
+            self.rows = database.execute(f"{plain} UNION ALL {varied}").fetchall()
+
+    def of(self, method: str, metric: str) -> dict[int, float]:
+        """Seed -> value of one method. A draw on which the method failed, or has no such score, is left out."""
+        return {seed: value for seed, name, found, value in self.rows if (name, found) == (method, metric) and value is not None}
+
+    def values(self, method: str, metric: str, seeds: Iterable[int] | None = None, failed: float = float("inf")) -> list[float]:
+        """Values of the named draws, else of all. A draw without a value failed and counts as `failed`."""
+        values = self.of(method, metric)
+        return [values.get(seed, failed) for seed in (self.seeds(method) if seeds is None else seeds)]
+
+    def seeds(self, method: str) -> list[int]:
+        """Draws on which the method was run, whatever came of it."""
+        return sorted({seed for seed, name, *_ in self.rows if name == method})
