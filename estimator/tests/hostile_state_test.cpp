@@ -224,7 +224,7 @@ TEST(HostileHeldReadings, BeyondWhatIsHeldAreRefused) {
   for (std::size_t k = 0; k < 30; ++k) ASSERT_TRUE(stream.push(test::thrown_samples()[k], good, out).ok());
   const auto field_with = [&](auto spoil) {
     CarriedLive::State spoiled = good, loaded = good;
-    spoil(spoiled.stream.readings.back().gyro, spoiled.holds.memory[0]);
+    spoil(spoiled.stream.readings.back().gyro, spoiled.repeat_state.memory[0]);
     return std::string(load_state<CarriedLive>(save_state<CarriedLive>(params, spoiled), params, loaded).field);
   };
   using Memory = RepeatDetector::Memory;

@@ -192,7 +192,8 @@ std::string pairs_text(const RotationAgreement& found) {
 std::string unit_text(const std::string& where, const RotationAgreement& found, GyroUnit unit) {
   const bool degrees = unit == GyroUnit::deg_s;
   const std::string read = fmt::format(
-      "with rates in {}, the lidar's rotation is {} times the gyro's rotation, accurate to {}{}, must be within 0.5 "
+      "with rates in {}, the lidar's rotation is {} times the gyro's rotation, accurate to {}{}; the ratio must be "
+      "within 0.5 "
       "and 2",
       degrees ? "deg/s" : "rad/s", rounded(found.unit), percent(found.unit_error), pairs_text(found));
   if ((found.unit < 1.0) == degrees) return "caution: " + read;

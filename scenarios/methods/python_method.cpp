@@ -23,7 +23,7 @@ import sys
 try:
     import numpy
 except ImportError:
-    sys.exit(sys.executable + " has no numpy, which a function of Python is given its arrays with: install it there, or name "
+    sys.exit(sys.executable + " has no numpy, which a Python method needs: install it, or name "
              "another Python by `interpreter:` or $TUMBLE_PYTHON")
 print("Python", sys.version.split()[0] + ", numpy", numpy.__version__)
 )";

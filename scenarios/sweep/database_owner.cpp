@@ -41,7 +41,7 @@ std::string who_we_are() {
   const std::time_t now = std::time(nullptr);
   std::tm parts{};
   std::strftime(since.data(), since.size(), "%Y-%m-%d %H:%M:%S UTC", gmtime_r(&now, &parts));
-  return "process " + std::to_string(getpid()) + " on " + host.data() + " on " + since.data();
+  return "process " + std::to_string(getpid()) + " on " + host.data() + " since " + since.data();
 }
 
 std::string who_holds(int fd) {

@@ -176,7 +176,7 @@ PageContent content_of(std::vector<MethodSummary> methods) {
 
 TEST(BadgeOfAReport, SaysHowManyContestsAreWon) {
   const Badge won = badge_of(content_of({method("raw", kTwo), method("saave", kHalf)}));
-  EXPECT_EQ(won.message, "1 of 1 better than the baseline");
+  EXPECT_EQ(won.message, "better than the baseline in 1 of 1");
   EXPECT_EQ(won.colour, Badge::Colour::good);
   const Badge lost = badge_of(content_of({method("raw", kHalf), method("saave", kTwo)}));
   EXPECT_THAT(lost.message, HasSubstr("1 worse"));

@@ -194,7 +194,7 @@ TEST(Page, SaysWhichOfTheTwoFailed) {
 TEST(Page, CountsMethodsThatNeedNoTruth) {
   PageContent content;
   content.summary = page_summary("hill");
-  EXPECT_THAT(page_html(content, ""), HasSubstr("Compared: 2 methods"));
+  EXPECT_THAT(page_html(content, ""), HasSubstr("This page compares 2 methods that estimate"));
   content.summary.sections[0].methods[1].needs_truth = true;
   EXPECT_THAT(page_html(content, ""), HasSubstr("This page compares 1 method that estimates"));
 }

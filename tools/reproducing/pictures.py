@@ -33,6 +33,7 @@ def save(figure: object, path: pathlib.Path, colours: int = 128) -> None:
     """Writes a PNG with a palette, which takes a third of the bytes."""
     from PIL import Image
 
+    figure.draw_without_rendering()  # the layout knows the tick labels only after one drawing
     memory = io.BytesIO()
     figure.savefig(memory, format="png", dpi=100)
     path.parent.mkdir(parents=True, exist_ok=True)

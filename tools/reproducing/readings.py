@@ -71,8 +71,8 @@ class Estimate:
 
     def __init__(self, folder: pathlib.Path):
         self.folder = folder
-        told = json.loads((folder / "estimate.json").read_text())
-        self.frame, self.status = told["frame"], told["status"]["trouble"]
+        description = json.loads((folder / "estimate.json").read_text())
+        self.frame, self.status = description["frame"], description["status"]["trouble"]
 
     def poses(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Times (N,) in seconds, positions (N, 3) and rotations (N, 3, 3) in the estimate's world."""

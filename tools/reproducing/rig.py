@@ -165,20 +165,21 @@ def commands(runs: Runs) -> list[str]:
             f"tumble estimate recording.h5 --method {PUBLISHED} --set {PUBLISHED}.{THRESHOLD} -o ESTIMATE", "tumble render recording.h5 ESTIMATE... --map -o maps.png"]
 
 
-def middle_draw(runs: Runs, recordings: dict[int, Recording]) -> int:
-    """The draw whose median error with the published method is the median of the draws that clip."""
-    def error_rad_s(seed: int) -> float:
+def draw_with_collisions(recordings: dict[int, Recording]) -> int:
+    """The draw with most collisions between its first and its last clipped sample; of equal ones the one that clips longest."""
+    def collisions(seed: int) -> tuple[int, int]:
         recording = recordings[seed]
-        error = np.linalg.norm(Estimate(estimated(runs, seed, TUNED)).rates_rad_s() - recording.true_rate_rad_s, axis=1)
-        return float(np.median(error[recording.clipped]))
+        clipped_s = recording.time_s[recording.clipped]
+        within = (recording.truth_time_s >= clipped_s[0]) & (recording.truth_time_s <= clipped_s[-1])
+        contact = recording.label[within] > 0
+        return int(np.sum(contact[1:] & ~contact[:-1])), len(clipped_s)
 
-    clipping = sorted((seed for seed, r in recordings.items() if r.clipped.any()), key=error_rad_s)
-    return clipping[len(clipping) // 2]
+    return max((seed for seed, r in recordings.items() if r.clipped.any()), key=collisions)
 
 
 def draw_rate(runs: Runs, recordings: dict[int, Recording], path: pathlib.Path) -> None:
     """Rate through one tumble: the axis that clips most, and the angular speed."""
-    seed = middle_draw(runs, recordings)
+    seed = draw_with_collisions(recordings)
     recording = recordings[seed]
     lost = np.abs(recording.gyro_rad_s - recording.true_rate_rad_s)
     axis = int(np.argmax(lost[recording.clipped].sum(axis=0)))
@@ -314,9 +315,18 @@ the published method and ours on the same recordings. The published methods run 
 - *published*: `rate/saave` and `slam/published`. *ours*: `rate/tumble`, `slam/tumble` on the whole recording, and
   `rate/tumble_lag`, `slam/tumble_lag` with a fixed lag.
 - *published, threshold 10.0 rad/s*: the same methods with `{threshold}`. The default of 10.45 rad/s fits a device
-  whose rails are at 10.5 rad/s, as in the paper. Each of our draws has a device of its own, whose rails differ by about 1 %.
+  whose rails are at 10.5 rad/s, as in the paper. Each of our draws has its own device, whose rails differ by about 1 %.
   {unseen} of the clipped samples do not exceed 10.45 rad/s on any axis, and the published method leaves them as they are.
 - A draw on which a method failed counts as the largest error, with overlap 0 and a failed map.
+
+## What is reproduced
+
+- The published rate method reduces the error nearly as much as in the paper under the conditions of the paper. These are one
+  clipped element, the exact centre of mass and a threshold below every rail.
+- Over all draws, the published mapping chain reduces the median errors of localisation at least as much as in the paper.
+- On the draws that are nearest to the paper, the overlap of the maps rises as in the paper.
+- Mapping failures do not vanish. Our motions are faster than the paper's on some draws, and the map is not registered to the
+  reference before the overlap is measured.
 
 ## What differs from the paper
 
@@ -337,7 +347,7 @@ the published method and ours on the same recordings. The published methods run 
 
 ![rate through a tumble](rig_rate.png)
 
-Of all draws, this draw has the median error of the published method with threshold 10.0 rad/s. Grey marks contact with the ground.
+Of all draws, this draw has the most collisions while its gyro clips. Grey marks contact with the ground.
 
 ## Rate error with and without recovery
 

@@ -11,9 +11,9 @@ namespace tumble {
 
 namespace {
 
-// kKnownSlopeSigma: a slope with a smaller standard deviation is known. kNil: a slope of smaller magnitude, up to its
-// uncertainty, is zero.
-constexpr double kKnownSlopeSigma = 2e-3, kNil = 3e-3;
+// kDeterminedSlopeSigma: a slope with a smaller standard deviation is known. kNil: a slope of smaller magnitude, up to
+// its uncertainty, is zero.
+constexpr double kDeterminedSlopeSigma = 2e-3, kNil = 3e-3;
 // Maximum relative difference between the levels of the two signs if the device clips its digital output, where both
 // are equal.
 constexpr double kLopsidedShare = 1e-4;
@@ -97,7 +97,7 @@ bool are_upright(std::span<const Eigen::Vector3d> readings, const RailPlanes& pl
       const double slope = rail->row[static_cast<Eigen::Index>((j + 1 + static_cast<std::size_t>(i)) % 3)];
       const double sigma = std::sqrt(rail->covariance(i, i));
       if (std::abs(slope) > kNil + 4.0 * sigma) return false;
-      nil += sigma < kKnownSlopeSigma ? 1 : 0;
+      nil += sigma < kDeterminedSlopeSigma ? 1 : 0;
     }
   }
   return nil >= 2;

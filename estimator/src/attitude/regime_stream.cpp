@@ -95,7 +95,8 @@ Status RegimeStream::push(const ImuSample& sample, std::span<const AuxiliaryRead
       ++state.starts;
     }
     const bool wanted = share > params_.carried_min;
-    state.carrying = carried_.push(sample, known_of(state), state.carried, carried, wanted, state.rate.holds).ok();
+    state.carrying =
+        carried_.push(sample, known_of(state), state.carried, carried, wanted, state.rate.repeat_state).ok();
   } else {
     state.carrying = false;
   }

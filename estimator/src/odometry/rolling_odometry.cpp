@@ -220,7 +220,7 @@ Status RollingOdometry::add_inliers(std::span<const ImuSample> samples) {
   for (std::size_t k = 0; k < samples.size(); ++k) watches_[k].step(samples[k], frozen[k]);
   const std::span<ImuSample> judged = std::span(flagged).first(samples.size());
   if (Status status = exclude_frozen(frozen, judged); !status.ok()) {
-    frozen_ = frozen;  // for doubt()
+    frozen_ = frozen;  // for health()
     return status;
   }
   if (Status status = merge_.step(judged, *merged_state_, merged); !status.ok()) return status;

@@ -161,7 +161,7 @@ void add_bin_column(const std::string& text, pcl::PCLPointCloud2& cloud) {
   field.count = 1;
   const auto same = [&](const pcl::PCLPointField& other) { return other.name == field.name && field.name != "_"; };
   if (field.name.empty() || std::ranges::any_of(cloud.fields, same))
-    throw BadInput("columns of a .bin file: name '" + field.name + "' is empty or stands twice");
+    throw BadInput("columns of a .bin file: name '" + field.name + "' is empty or occurs twice");
   cloud.point_step += static_cast<std::uint32_t>(type.back() - '0');
   cloud.fields.push_back(field);
 }
@@ -179,15 +179,16 @@ pcl::PCLPointCloud2 bin_fields(const std::string& columns) {
 }
 
 constexpr const char* kColumnsHint =
-    " (--bin-columns names the columns in order, as x,y,z,intensity,ring, or x:f8,y:f8,z:f8,intensity:f8 of doubles)";
+    " (set --bin-columns to the columns in order, for example x,y,z,intensity,ring, or x:f8,y:f8,z:f8,intensity:f8 for "
+    "doubles)";
 
 Cloud read_bin(const std::filesystem::path& path, const std::string& columns) {
   pcl::PCLPointCloud2 cloud = bin_fields(columns.empty() ? "x,y,z,intensity" : columns);
   std::ifstream stream = open_regular_file(path);
   const std::uint64_t bytes = std::filesystem::file_size(path);
   if (bytes / cloud.point_step > kCloudPointsMax) {
-    throw BadInput(path.string() + ": has " + std::to_string(bytes / cloud.point_step) + " points, at most " +
-                   std::to_string(kCloudPointsMax) + " are read from a file");
+    throw BadInput(path.string() + ": has " + std::to_string(bytes / cloud.point_step) + " points; at most " +
+                   std::to_string(kCloudPointsMax) + " can be read from a file");
   }
   cloud.data.resize(bytes);
   stream.read(reinterpret_cast<char*>(cloud.data.data()), static_cast<std::streamsize>(bytes));
@@ -199,7 +200,8 @@ Cloud read_bin(const std::filesystem::path& path, const std::string& columns) {
   }
   if (bytes % cloud.point_step != 0) {
     throw BadInput(path.string() + ": has " + std::to_string(bytes) + " bytes, must be a multiple of " +
-                   std::to_string(cloud.point_step) + " (" + columns + "): truncated, or other columns?");
+                   std::to_string(cloud.point_step) + " (" + columns +
+                   "): the file may be truncated or have other columns");
   }
   return to_columns(cloud, bytes / cloud.point_step);
 }

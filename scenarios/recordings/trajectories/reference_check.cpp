@@ -78,12 +78,12 @@ std::string caution(const TurningCheck& check, const std::string& frame, const s
     const Eigen::Quaterniond& q = mounting.q_AI;
     return text + fmt::format(
                       "by {} if the IMU is turned in the frame of the poses by the quaternion x y z w {:.4f} {:.4f} "
-                      "{:.4f} {:.4f}: is a mounting wrong?",
+                      "{:.4f} {:.4f}; a mounting may be wrong",
                       share_text(mounting.difference), q.x(), q.y(), q.z(), q.w());
   }
   return text + fmt::format(
                     "no other order or direction of its quaternions, no frame and no delay within {:.0f} s explains "
-                    "this: does it belong to this recording?",
+                    "this; the reference may belong to another recording",
                     kDelaySearched_s);
 }
 
@@ -143,10 +143,11 @@ std::string check_reference(const std::vector<ReferencePose>& poses, const Eigen
     return unchecked + "too few of its poses, 0.05 to 1 s apart, turn by 0.02 rad and more while '" + imu.name +
            "' has readings below its range";
   if (check.upright) {
-    throw BadInput(where + ": the force that '" + imu.name +
-                   "' measures, which points up on average, is more than 60 degrees off the vertical of the reference; "
-                   "its rotations agree, but as well otherwise" +
-                   remedy(check.upright->written, 0.0));
+    throw BadInput(
+        where + ": the force that '" + imu.name +
+        "' measures should point up on average, but is more than 60 degrees off the vertical of the reference; "
+        "its rotations agree, but they agree equally well in another order" +
+        remedy(check.upright->written, 0.0));
   }
   require_reading_as_stated(check, imu.name, where);
   if (check.stated.difference > kContradicts && check.reading.likely().difference >= kReferenceAgrees)

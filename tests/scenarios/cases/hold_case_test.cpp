@@ -56,7 +56,7 @@ TEST(HoldCase, WhatFailsIsHeldOnBothSides) {
   EXPECT_THAT(fault(fails, slam_outcome(OutcomeStatus::ok, 2.0, true)), IsEmpty());
   EXPECT_THAT(fault(fails, slam_outcome(OutcomeStatus::ok, 3.9, true)), IsEmpty());
   EXPECT_THAT(fault(fails, slam_outcome(OutcomeStatus::ok, 1.1, true)), IsEmpty());
-  EXPECT_THAT(fault(fails, slam_outcome(OutcomeStatus::ok, 4.1, true)), HasSubstr("is 4.1, was 2"));
+  EXPECT_THAT(fault(fails, slam_outcome(OutcomeStatus::ok, 4.1, true)), HasSubstr("is 4.1; the accepted value was 2"));
   EXPECT_THAT(fault(fails, slam_outcome(OutcomeStatus::diverged, 2.0, true)),
               HasSubstr("fails with status diverged; the accepted status was ok"));
   const CaseResult better = hold_case("name", fails, slam_outcome(OutcomeStatus::ok, 0.9, true));

@@ -152,15 +152,15 @@ TEST_F(CloudFile, KittiBinOfOtherColumnsIsRefused) {
   EXPECT_EQ(read("a.bin", sweep_of<float>(4)).points, 640u);
   for (const std::size_t columns : {3u, 5u, 6u, 7u}) {
     EXPECT_THAT(complaint_of("a.bin", sweep_of<float>(columns)),
-                AllOf(HasSubstr("a.bin: its numbers lie as " + std::to_string(columns) +
-                                " columns of float32, not as 4 (x y z intensity)"),
-                      HasSubstr("--bin-columns names the columns in order")));
+                AllOf(HasSubstr("a.bin: its numbers fit " + std::to_string(columns) +
+                                " columns of float32, not 4 (x y z intensity)"),
+                      HasSubstr("--bin-columns to the columns in order")));
   }
   for (const std::size_t columns : {4u, 5u, 6u}) {
     EXPECT_THAT(
         complaint_of("a.bin", sweep_of<double>(columns)),
-        AllOf(HasSubstr("% of its numbers, read as float32, are beyond 1e+07 or below 1e-20, at most 1 % may be"),
-              HasSubstr("they lie as " + std::to_string(columns) + " columns of float64")));
+        AllOf(HasSubstr("% of its numbers, read as float32, are beyond 1e+07 or below 1e-20; at most 1 % may be"),
+              HasSubstr("they fit " + std::to_string(columns) + " columns of float64")));
   }
   // a point more, and the size is no multiple of 16 either
   EXPECT_THAT(complaint_of("a.bin", sweep_of<float>(5) + sweep_of<float>(5).substr(0, 20)),
@@ -194,7 +194,7 @@ TEST_F(CloudFile, ColumnsOfABinFileMayBeNamed) {
   };
   EXPECT_THAT(complaint("x,y,z,intensity"), "") << "as stated, whatever it looks like";
   EXPECT_THAT(complaint("x,y,intensity"), HasSubstr("'x,y,intensity' lacks z"));
-  EXPECT_THAT(complaint("x,y,z,x"), HasSubstr("name 'x' is empty or stands twice"));
+  EXPECT_THAT(complaint("x,y,z,x"), HasSubstr("name 'x' is empty or occurs twice"));
   EXPECT_THAT(complaint("x,y,z:f2"), HasSubstr("type 'f2', must be f4, f8"));
   EXPECT_THAT(complaint("x:f8,y:f8,z:f8"), HasSubstr("has 12800 bytes, must be a multiple of 24"));
 }

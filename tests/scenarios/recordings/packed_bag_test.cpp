@@ -126,7 +126,7 @@ TEST_F(PackedBag, MessagesAreUnpacked) {
 
 TEST_F(PackedBag, OtherWaysOfPackingAreNamed) {
   state("storage", "bag_0.db3");
-  EXPECT_THAT(complaint(), HasSubstr("by 'zstd' in mode 'storage', must be zstd in mode file or message"));
+  EXPECT_THAT(complaint(), HasSubstr("'zstd' and mode 'storage'; supported: zstd with mode file or message"));
 }
 
 }  // namespace

@@ -89,8 +89,8 @@ TEST_F(WrongFile, AbsentForeignOrFolder) {
 TEST_F(WrongFile, AnotherVersion) {
   put_attribute("/", "format_version", H5T_NATIVE_INT64, std::int64_t{2});
   EXPECT_EQ(info_complaint(), path_.string() + ": /format_version: is 2; this build reads version 1");
-  EXPECT_THAT(fixture::complaint([&] { read_sensors(path_); }), HasSubstr("this build reads 1"));
-  EXPECT_THAT(fixture::complaint([&] { read_truth(path_); }), HasSubstr("this build reads 1"));
+  EXPECT_THAT(fixture::complaint([&] { read_sensors(path_); }), HasSubstr("this build reads version 1"));
+  EXPECT_THAT(fixture::complaint([&] { read_truth(path_); }), HasSubstr("this build reads version 1"));
 }
 
 TEST_F(WrongFile, MissingDataset) {
