@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Saved states that somebody cut, flipped or made up: a Status, and nothing else.
+// Truncated, corrupted or invented saved states: load() returns a Status and changes nothing.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ void put_number(std::uint64_t value, std::size_t at, Bytes& bytes) {
   for (std::size_t k = 0; k < 8; ++k) bytes[at + k] = static_cast<std::byte>(value >> (8 * k));
 }
 
-/// Length and checksum as they should be: FNV-1a by its definition.
+/// Writes a valid length and checksum: FNV-1a by its definition.
 void reseal(Bytes& bytes) {
   if (bytes.size() < kHeader) return;
   put_number(bytes.size() - kHeader, kLengthAt, bytes);
@@ -38,7 +38,7 @@ void reseal(Bytes& bytes) {
 }
 
 struct Tumbling {
-  using Door = TumblingOdometry;
+  using Estimator = TumblingOdometry;
   static constexpr std::size_t kTrials = 400;
   static TumblingOdometry::Params params() {
     TumblingOdometry::Params out;
@@ -46,70 +46,70 @@ struct Tumbling {
     out.lag_s = 0.05;
     return out;
   }
-  /// With a map, a sweep that waits and one that nobody took.
-  static Door some() {
+  /// With a map, a sweep that waits, and a sweep that was not taken.
+  static Estimator some() {
     const test::ThrownBody body;
-    Door door(params());
-    for (std::size_t k = 0; k < 45; ++k) EXPECT_TRUE(door.add_imu(body.imu()[k]).ok());
+    Estimator estimator(params());
+    for (std::size_t k = 0; k < 45; ++k) EXPECT_TRUE(estimator.add_imu(body.imu()[k]).ok());
     const std::vector<test::ThrownBody::Sweep> sweeps = body.sweeps();
     for (std::size_t k = 0; k < 4; ++k) {
       std::vector<LidarPoint> few;
       for (std::size_t p = 0; p < sweeps[k].points.size(); p += 17) few.push_back(sweeps[k].points[p]);
-      EXPECT_TRUE(door.add_sweep(sweeps[k].start_ns, sweeps[k].end_ns, few).ok());
+      EXPECT_TRUE(estimator.add_sweep(sweeps[k].start_ns, sweeps[k].end_ns, few).ok());
     }
-    EXPECT_TRUE(door.add_velocity({460'000'000, {0.1, 0.0, 0.0}, 0.5}).ok());
+    EXPECT_TRUE(estimator.add_velocity({460'000'000, {0.1, 0.0, 0.0}, 0.5}).ok());
     MotionReading motion{400'000'000, 450'000'000, Eigen::Isometry3d::Identity(), {}};
     motion.covariance = 1e-4 * Eigen::Matrix<double, 6, 6>::Identity();
-    EXPECT_TRUE(door.add_motion(motion).ok());
-    return door;
+    EXPECT_TRUE(estimator.add_motion(motion).ok());
+    return estimator;
   }
-  static void go_on(Door& door) {
+  static void go_on(Estimator& estimator) {
     const test::ThrownBody body;
-    for (std::size_t k = 45; k < 48; ++k) (void)door.add_imu(body.imu()[k]);
+    for (std::size_t k = 45; k < 48; ++k) (void)estimator.add_imu(body.imu()[k]);
     PoseState pose;
-    (void)door.newest(pose);
-    while (door.take()) continue;
+    (void)estimator.newest(pose);
+    while (estimator.take()) continue;
   }
 };
 
 struct Rolling {
-  using Door = RollingOdometry;
+  using Estimator = RollingOdometry;
   static constexpr std::size_t kTrials = 400;
   static RollingOdometry::Params params() {
     RollingOdometry::Params out = test::params_of({test::kPositions[0]});
     out.lag_s = 0.1;
     return out;
   }
-  static Door some() {
-    Door door(params());
+  static Estimator some() {
+    Estimator estimator(params());
     const std::vector<ImuSample> samples = test::unit_at(test::kPositions[0]);
-    for (std::size_t k = 0; k < 100; ++k) EXPECT_TRUE(door.add_imu(samples[k]).ok());
-    return door;
+    for (std::size_t k = 0; k < 100; ++k) EXPECT_TRUE(estimator.add_imu(samples[k]).ok());
+    return estimator;
   }
-  static void go_on(Door& door) {
+  static void go_on(Estimator& estimator) {
     const std::vector<ImuSample> samples = test::unit_at(test::kPositions[0]);
-    for (std::size_t k = 100; k < 120; ++k) (void)door.add_imu(samples[k]);
-    (void)door.newest();
-    while (door.take()) continue;
+    for (std::size_t k = 100; k < 120; ++k) (void)estimator.add_imu(samples[k]);
+    (void)estimator.newest();
+    while (estimator.take()) continue;
   }
 };
 
 template <class Stream>
 struct Streaming {
-  using Door = test::Kept<Stream>;
+  using Estimator = test::Kept<Stream>;
   static constexpr std::size_t kTrials = 150;
   static auto params() { return test::params_of_stream<Stream>(); }
   static constexpr std::size_t kSome = test::kRolls<Stream> ? 500 : 150;  // in motion
-  static Door some() {
-    Door door;
+  static Estimator some() {
+    Estimator estimator;
     const std::vector<ImuSample> samples = test::samples_of_stream<Stream>();
-    for (std::size_t k = 0; k < kSome; ++k) EXPECT_TRUE(door.push(samples[k]).ok());
-    return door;
+    for (std::size_t k = 0; k < kSome; ++k) EXPECT_TRUE(estimator.push(samples[k]).ok());
+    return estimator;
   }
-  static void go_on(Door& door) {
+  static void go_on(Estimator& estimator) {
     const std::vector<ImuSample> samples = test::samples_of_stream<Stream>();
-    for (std::size_t k = kSome; k < kSome + 20; ++k) (void)door.push(samples[k]);
-    door.end();
+    for (std::size_t k = kSome; k < kSome + 20; ++k) (void)estimator.push(samples[k]);
+    estimator.end();
   }
 };
 
@@ -122,32 +122,32 @@ TYPED_TEST_SUITE(HostileState, Kinds);
 
 TYPED_TEST(HostileState, CutAnywhereIsRefused) {
   const Bytes saved = TypeParam::some().save();
-  typename TypeParam::Door door(TypeParam::params());
+  typename TypeParam::Estimator estimator(TypeParam::params());
   for (std::size_t length = 0; length < saved.size(); length += length < 200 ? 1 : saved.size() / 61) {
-    const Status status = door.load(std::span(saved).first(length));
+    const Status status = estimator.load(std::span(saved).first(length));
     EXPECT_EQ(status.trouble, Trouble::too_few) << length << ": " << status.message();
     Bytes resealed(saved.begin(), saved.begin() + static_cast<std::ptrdiff_t>(length));
     reseal(resealed);
-    EXPECT_FALSE(door.load(resealed).ok()) << length;
+    EXPECT_FALSE(estimator.load(resealed).ok()) << length;
   }
   Bytes longer = saved;
   longer.push_back(std::byte{0});
-  EXPECT_FALSE(door.load(longer).ok());
+  EXPECT_FALSE(estimator.load(longer).ok());
   reseal(longer);
-  EXPECT_STREQ(door.load(longer).field, "bytes after the state");
-  ASSERT_TRUE(door.load(saved).ok()) << "negative control";
-  EXPECT_EQ(door.save(), saved);
-  EXPECT_FALSE(door.load(longer).ok());
-  EXPECT_EQ(door.save(), saved) << "on trouble it is as it was";
+  EXPECT_STREQ(estimator.load(longer).field, "bytes after the state");
+  ASSERT_TRUE(estimator.load(saved).ok()) << "negative control";
+  EXPECT_EQ(estimator.save(), saved);
+  EXPECT_FALSE(estimator.load(longer).ok());
+  EXPECT_EQ(estimator.save(), saved) << "on trouble it is as it was";
 }
 
 TYPED_TEST(HostileState, AnyByteThatFlippedIsRefused) {
   const Bytes saved = TypeParam::some().save();
-  typename TypeParam::Door door(TypeParam::params());
+  typename TypeParam::Estimator estimator(TypeParam::params());
   for (std::size_t at = 0; at < saved.size(); at += at < kHeader ? 1 : saved.size() / 97) {
     Bytes flipped = saved;
     flipped[at] ^= std::byte{0x10};
-    const Status status = door.load(flipped);
+    const Status status = estimator.load(flipped);
     EXPECT_FALSE(status.ok()) << at;
     EXPECT_STRNE(status.field, "") << at;
   }
@@ -155,12 +155,12 @@ TYPED_TEST(HostileState, AnyByteThatFlippedIsRefused) {
 
 TYPED_TEST(HostileState, TheHeaderSaysWhatIsWrong) {
   const Bytes saved = TypeParam::some().save();
-  typename TypeParam::Door door(TypeParam::params());
+  typename TypeParam::Estimator estimator(TypeParam::params());
   const auto field_with = [&](std::size_t at, std::uint8_t value) {
     Bytes changed = saved;
     changed[at] = static_cast<std::byte>(value);
     reseal(changed);
-    return std::string(door.load(changed).field);
+    return std::string(estimator.load(changed).field);
   };
   EXPECT_EQ(field_with(0, 'T'), "magic of the state");
   EXPECT_EQ(field_with(8, 99), "version of the state");
@@ -200,16 +200,16 @@ TYPED_TEST(HostileState, MadeUpNumbersNeverHurt) {
       }
     }
     reseal(made_up);
-    typename TypeParam::Door door(TypeParam::params());
-    const Status status = door.load(made_up);
+    typename TypeParam::Estimator estimator(TypeParam::params());
+    const Status status = estimator.load(made_up);
     if (!status.ok()) {
       EXPECT_STRNE(status.field, "");
       ++refused;
       continue;
     }
     ++taken;
-    EXPECT_EQ(door.save(), made_up) << "trial " << trial;
-    TypeParam::go_on(door);
+    EXPECT_EQ(estimator.save(), made_up) << "trial " << trial;
+    TypeParam::go_on(estimator);
   }
   EXPECT_GT(refused, TypeParam::kTrials / 10);
   EXPECT_GT(taken, TypeParam::kTrials / 10);
@@ -246,18 +246,18 @@ TEST(HostileSecondPass, WithoutAMotionIsRefused) {
   params.imu.rate_hz = body.imu_hz;
   params.lever_arm_I_m = body.lever_arm_I_m;
   params.expert.second_pass.after_s = 0.9;
-  TumblingOdometry door(params);
+  TumblingOdometry estimator(params);
   const std::vector<ImuSample> imu = body.imu();
   const std::vector<test::ThrownBody::Sweep> sweeps = body.sweeps();
   std::size_t next = 0;
   for (std::size_t k = 0; k < 255; ++k) {
-    ASSERT_TRUE(door.add_imu(imu[k]).ok());
+    ASSERT_TRUE(estimator.add_imu(imu[k]).ok());
     for (; next < sweeps.size() && sweeps[next].end_ns <= imu[k].time_ns; ++next)
-      ASSERT_TRUE(door.add_sweep(sweeps[next].start_ns, sweeps[next].end_ns, sweeps[next].points).ok());
-    while (door.take()) continue;
+      ASSERT_TRUE(estimator.add_sweep(sweeps[next].start_ns, sweeps[next].end_ns, sweeps[next].points).ok());
+    while (estimator.take()) continue;
   }
-  ASSERT_FALSE(door.second_pass_applied());
-  const Bytes saved = door.save();
+  ASSERT_FALSE(estimator.second_pass_applied());
+  const Bytes saved = estimator.save();
   std::size_t refused = 0;
   for (std::size_t k = 115; k < 140; ++k) {
     Bytes moved(16);  // the optional stamp of a sample at about the first motion, wherever it stands

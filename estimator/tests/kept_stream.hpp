@@ -21,7 +21,7 @@ inline std::vector<ImuSample> thrown_samples() {
   return out;
 }
 
-/// A sphere, which is not heard for half a second while it rolls.
+/// A rolling sphere, without samples for half a second.
 inline std::vector<ImuSample> rolled_samples() {
   std::vector<ImuSample> out = unit_at(kPositions[0]);
   std::erase_if(out, [](const ImuSample& s) { return s.time_ns > 2'700'000'000 && s.time_ns < 3'200'000'000; });
@@ -58,14 +58,14 @@ std::vector<ImuSample> samples_of_stream() {
   return kRolls<Stream> ? rolled_samples() : thrown_samples();
 }
 
-/// What a stream tells, as numbers.
-inline void tell(const RateState& rate, std::vector<double>& out) {
+/// Appends the numbers of a stream's result.
+inline void append_result(const RateState& rate, std::vector<double>& out) {
   out.push_back(static_cast<double>(rate.time_ns));
   out.insert(out.end(), rate.w_WI_I_rad_s.begin(), rate.w_WI_I_rad_s.end());
   out.insert(out.end(), rate.covariance_rad2_s2.reshaped().begin(), rate.covariance_rad2_s2.reshaped().end());
   out.push_back(static_cast<double>(rate.source));
 }
-inline void tell(const RollingEstimate& pose, std::vector<double>& out) {
+inline void append_result(const RollingEstimate& pose, std::vector<double>& out) {
   out.push_back(static_cast<double>(pose.time_ns));
   out.insert(out.end(), pose.p_WG_m.begin(), pose.p_WG_m.end());
   out.insert(out.end(), pose.q_WI.coeffs().begin(), pose.q_WI.coeffs().end());
@@ -84,35 +84,35 @@ class Kept {
   Status push(const ImuSample& sample) {
     if constexpr (std::same_as<Stream, RollingFilter>) {
       const Status status = stream_.step(sample, *state_);
-      if (status.ok()) tell(RollingFilter::estimate(*state_), told);
+      if (status.ok()) append_result(RollingFilter::estimate(*state_), results);
       return status;
     } else if constexpr (std::same_as<Stream, RollingSmoother>) {
       std::vector<RollingEstimate> out;
       const Status status = stream_.step(sample, *state_, out);
-      for (const RollingEstimate& each : out) tell(each, told);
+      for (const RollingEstimate& each : out) append_result(each, results);
       return status;
     } else {
       std::optional<RateState> out;
       const Status status = push(sample, out);
-      if (out) tell(*out, told);
+      if (out) append_result(*out, results);
       return status;
     }
   }
-  /// What is still owed. The state is of no use then.
+  /// Appends the remaining results. The state must not be used afterwards.
   void end() {
     if constexpr (std::same_as<Stream, RollingSmoother>) {
-      stream_.finish(*state_, [&](const RollingEstimate& each) { tell(each, told); });
+      stream_.finish(*state_, [&](const RollingEstimate& each) { append_result(each, results); });
     } else if constexpr (!kRolls<Stream>) {
       std::vector<RateState> out;
       stream_.flush(*state_, out);
-      for (const RateState& each : out) tell(each, told);
+      for (const RateState& each : out) append_result(each, results);
     }
   }
 
   std::vector<std::byte> save() const { return save_state<Stream>(params_, *state_); }
   Status load(std::span<const std::byte> bytes) { return load_state<Stream>(bytes, params_, *state_); }
 
-  std::vector<double> told;
+  std::vector<double> results;
 
  private:
   Status push(const ImuSample& sample, std::optional<RateState>& out) {

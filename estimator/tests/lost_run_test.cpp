@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A run that no longer knows where on its map it is says so, for good.
+// After tracking failure, health() reports the failure until the end of the run.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -39,15 +39,15 @@ TEST(TumblingOdometry, DoubtsAPlaceThatInertiaAloneHasFound) {
   EXPECT_TRUE(seeing.health().ok()) << seeing.health().message();
   body.end_s = 9.0;
   run(body, 1.0, body.end_s, lost);
-  const Status doubt = lost.health();
-  EXPECT_STREQ(doubt.field, "deviation of a sweep's position");
-  EXPECT_GT(doubt.value, doubt.bound);
-  EXPECT_EQ(doubt.bound, params_of(body).expert.mapping.expert.matching.distance_m);
+  const Status health = lost.health();
+  EXPECT_STREQ(health.field, "deviation of a sweep's position");
+  EXPECT_GT(health.value, health.bound);
+  EXPECT_EQ(health.bound, params_of(body).expert.mapping.expert.matching.distance_m);
   // one that wakes up from its bytes knows it too; the run has ended, its second pass with it
   TumblingOdometry awake(params_of(body));
   const Status loaded = awake.load(lost.save());
   ASSERT_TRUE(loaded.ok()) << loaded.message();
-  EXPECT_EQ(awake.health().message(), doubt.message());
+  EXPECT_EQ(awake.health().message(), health.message());
 }
 
 /// A mounting that is ten degrees off what was given, of one that stays within what was given.
@@ -61,10 +61,10 @@ TEST(TumblingOdometry, DoubtsACalibrationThatMovedFurtherThanWasGiven) {
   params.T_IL.linear() = Eigen::AngleAxisd(0.17, Eigen::Vector3d::UnitX()).toRotationMatrix();
   TumblingOdometry far(params);
   run(body, 0.0, 0.0, far);
-  const Status doubt = far.health();
-  EXPECT_EQ(doubt.trouble, Trouble::out_of_range);
-  EXPECT_NE(doubt.message().find("calibration of lidar and IMU"), std::string::npos) << doubt.message();
-  EXPECT_GT(doubt.value, StatedCalibration::kMaxDeviations);
+  const Status health = far.health();
+  EXPECT_EQ(health.trouble, Trouble::out_of_range);
+  EXPECT_NE(health.message().find("calibration of lidar and IMU"), std::string::npos) << health.message();
+  EXPECT_GT(health.value, StatedCalibration::kMaxDeviations);
 }
 
 }  // namespace

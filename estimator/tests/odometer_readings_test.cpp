@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Readings of an odometer at the door: what true ones are worth, what wrong ones do, and that none is lost on the way.
+// Odometer readings of TumblingOdometry: benefit of true readings, harm of wrong ones, and that none is lost.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -39,8 +39,8 @@ MotionReading motion_of(const ThrownBody& body, TimeNs from_ns, TimeNs to_ns, do
   return out;
 }
 
-/// What is told of a sweep just before it is given.
-using Tell = std::function<void(const ThrownBody&, const ThrownBody::Sweep&, TumblingOdometry&)>;
+/// Adds the readings of a sweep, just before the sweep is added.
+using AddReading = std::function<void(const ThrownBody&, const ThrownBody::Sweep&, TumblingOdometry&)>;
 
 void nothing(const ThrownBody&, const ThrownBody::Sweep&, TumblingOdometry&) {}
 void true_velocity(const ThrownBody& body, const ThrownBody::Sweep& sweep, TumblingOdometry& odometry) {
@@ -74,14 +74,14 @@ void take_course(const ThrownBody& body, TumblingOdometry& odometry, Course& run
 
 /// Samples `from` to `to` - 1 and the sweeps that end by then.
 void hand_over(const ThrownBody& body, const std::vector<ThrownBody::Sweep>& sweeps, std::size_t from, std::size_t to,
-               const Tell& tell, TumblingOdometry& odometry, Course& run) {
+               const AddReading& add_reading, TumblingOdometry& odometry, Course& run) {
   const std::vector<ImuSample> imu = body.imu();
   for (std::size_t k = from; k < std::min(to, imu.size()); ++k) {
     ASSERT_TRUE(odometry.add_imu(imu[k]).ok());
     const TimeNs before_ns = k == 0 ? 0 : imu[k - 1].time_ns;
     for (const ThrownBody::Sweep& sweep : sweeps) {
       if (sweep.end_ns <= before_ns || sweep.end_ns > imu[k].time_ns) continue;
-      tell(body, sweep, odometry);
+      add_reading(body, sweep, odometry);
       ASSERT_TRUE(odometry.add_sweep(sweep.start_ns, sweep.end_ns, sweep.points).ok());
     }
     take_course(body, odometry, run);
@@ -90,10 +90,10 @@ void hand_over(const ThrownBody& body, const std::vector<ThrownBody::Sweep>& swe
 
 constexpr std::size_t kToTheEnd = std::numeric_limits<std::size_t>::max();
 
-Course course_of(const ThrownBody& body, const std::vector<ThrownBody::Sweep>& sweeps, const Tell& tell,
+Course course_of(const ThrownBody& body, const std::vector<ThrownBody::Sweep>& sweeps, const AddReading& add_reading,
                  TumblingOdometry& odometry) {
   Course run;
-  hand_over(body, sweeps, 0, kToTheEnd, tell, odometry, run);
+  hand_over(body, sweeps, 0, kToTheEnd, add_reading, odometry, run);
   odometry.finish();
   take_course(body, odometry, run);
   return run;
@@ -114,26 +114,26 @@ void expect_same(const Course& a, const Course& b) {
   }
 }
 
-TEST(OdometerAtTheDoor, TrueReadingsDoNoHarm) {
+TEST(OdometerReadings, TrueReadingsDoNoHarm) {
   const ThrownBody body;
   const std::vector<ThrownBody::Sweep> sweeps = body.sweeps();
   TumblingOdometry plain(single_pass(body)), with_velocity(single_pass(body)), with_motion(single_pass(body));
   const Course without = course_of(body, sweeps, nothing, plain);
-  for (const auto& [tell, odometry] : {std::pair<Tell, TumblingOdometry*>(true_velocity, &with_velocity),
-                                       std::pair<Tell, TumblingOdometry*>(true_motion, &with_motion)}) {
-    const Course told = course_of(body, sweeps, tell, *odometry);
-    EXPECT_LE(told.worst_m, without.worst_m);
-    EXPECT_LE(told.sum_m, without.sum_m);
-    EXPECT_LE(told.end_m, without.end_m);
-    // a velocity tells an attitude little, and that of the catch is off by three degrees
-    EXPECT_LE(told.worst_rad, (odometry == &with_motion ? 0.5 : 1.25) * without.worst_rad);
+  for (const auto& [add_reading, odometry] : {std::pair<AddReading, TumblingOdometry*>(true_velocity, &with_velocity),
+                                              std::pair<AddReading, TumblingOdometry*>(true_motion, &with_motion)}) {
+    const Course with = course_of(body, sweeps, add_reading, *odometry);
+    EXPECT_LE(with.worst_m, without.worst_m);
+    EXPECT_LE(with.sum_m, without.sum_m);
+    EXPECT_LE(with.end_m, without.end_m);
+    // a velocity contains little information about attitude, whose error at the catch is three degrees
+    EXPECT_LE(with.worst_rad, (odometry == &with_motion ? 0.5 : 1.25) * without.worst_rad);
     EXPECT_TRUE(odometry->health().ok()) << odometry->health().message();
     EXPECT_EQ(odometry->unused_odometer_readings(), 0u);
   }
 }
 
-/// A lidar that sees nothing from the throw to the catch; by inertia alone the clipped gyro loses the way.
-TEST(OdometerAtTheDoor, TrueReadingsCarryABodyWhoseLidarSeesNothing) {
+/// The lidar has no returns from the throw to the catch. Inertial prediction with the clipped gyro fails.
+TEST(OdometerReadings, TrueReadingsReplaceALidarWithoutReturns) {
   const ThrownBody body;
   std::vector<ThrownBody::Sweep> sweeps = body.sweeps();
   for (ThrownBody::Sweep& sweep : sweeps) {
@@ -149,7 +149,7 @@ TEST(OdometerAtTheDoor, TrueReadingsCarryABodyWhoseLidarSeesNothing) {
   EXPECT_LT(motion.worst_m, 0.05);
 }
 
-TEST(OdometerAtTheDoor, AWrongOneThatIsSureDoesHarmAndIsTold) {  // negative control
+TEST(OdometerReadings, AConfidentWrongReadingDoesHarmAndIsReported) {  // negative control
   const ThrownBody body;
   TumblingOdometry plain(single_pass(body)), misled(single_pass(body));
   const Course without = course_of(body, body.sweeps(), nothing, plain);
@@ -159,9 +159,9 @@ TEST(OdometerAtTheDoor, AWrongOneThatIsSureDoesHarmAndIsTold) {  // negative con
   EXPECT_FALSE(misled.health().ok());
 }
 
-/// With the lag a sweep waits: what comes after it is as good as what comes before, and it is the second pass's as
-/// well.
-TEST(OdometerAtTheDoor, IsOfItsSweepHoweverLongThatWaits) {
+/// A sweep waits for the lag. A reading that is added after the sweep gives the same result as one added before it,
+/// also in the second pass.
+TEST(OdometerReadings, AReadingBelongsToItsSweepWhileItWaits) {
   ThrownBody body;
   body.end_s = 4.2;
   TumblingOdometry::Params params = params_of(body);
@@ -169,8 +169,8 @@ TEST(OdometerAtTheDoor, IsOfItsSweepHoweverLongThatWaits) {
   const std::vector<ThrownBody::Sweep> sweeps = body.sweeps();
   TumblingOdometry before(params), after(params), without(params);
   const Course first = course_of(body, sweeps, true_motion, before);
-  // that of the sweep before, which waits
-  const Tell late = [&](const ThrownBody& of, const ThrownBody::Sweep& sweep, TumblingOdometry& odometry) {
+  // adds the reading of the previous sweep, which waits
+  const AddReading late = [&](const ThrownBody& of, const ThrownBody::Sweep& sweep, TumblingOdometry& odometry) {
     if (sweep.start_ns < kTenth_ns) return;
     (void)odometry.add_motion(motion_of(of, sweep.start_ns - kTenth_ns, sweep.start_ns, 0.005, 0.005));
     if (sweep.end_ns == sweeps.back().end_ns) true_motion(of, sweep, odometry);
@@ -182,8 +182,8 @@ TEST(OdometerAtTheDoor, IsOfItsSweepHoweverLongThatWaits) {
   EXPECT_EQ(before.save(), after.save());
 }
 
-/// Where the first pass is told nothing, the pose that the second one leaves it with says what that one has heard.
-Eigen::Vector3d after_second_pass(bool told) {
+/// Returns the pose after the second pass. Only the second pass has readings, so the pose shows whether it used them.
+Eigen::Vector3d after_second_pass(bool with_readings) {
   const ThrownBody body;
   RegimeStream::Params rate = TumblingOdometry::Params::Expert::rate_defaults();
   rate.rate.model.nominal.lever_arm_m = body.lever_arm_I_m;
@@ -200,7 +200,7 @@ Eigen::Vector3d after_second_pass(bool told) {
       LidarInertialOdometry::SweepReport report;
       (void)first.add_sweep(sweep.start_ns, sweep.end_ns, sweep.points, {}, report);
       std::optional<OdometerReading> reading;
-      if (told) reading = motion_of(body, sweep.start_ns, sweep.end_ns, 0.002, 0.002);
+      if (with_readings) reading = motion_of(body, sweep.start_ns, sweep.end_ns, 0.002, 0.002);
       again.store(sweep.start_ns, sweep.end_ns, sweep.points, reading, report.verdict);
     }
   }
@@ -211,12 +211,12 @@ Eigen::Vector3d after_second_pass(bool told) {
   return pose.p_WA_m;
 }
 
-TEST(OdometerAtTheDoor, TheSecondPassHearsItAgain) {
+TEST(OdometerReadings, TheSecondPassUsesReadingsAgain) {
   EXPECT_EQ(after_second_pass(false), after_second_pass(false));
   EXPECT_NE(after_second_pass(false), after_second_pass(true));
 }
 
-TEST(OdometerAtTheDoor, ARunIsSplitAndSavedWhileOneWaits) {
+TEST(OdometerReadings, ARunIsSavedAndRestoredWhileAReadingWaits) {
   const ThrownBody body;
   TumblingOdometry::Params params = params_of(body);
   params.expert.second_pass.after_s = 0.9;
@@ -229,7 +229,7 @@ TEST(OdometerAtTheDoor, ARunIsSplitAndSavedWhileOneWaits) {
     Course parts, other;
     hand_over(body, sweeps, 0, split, true_motion, first, parts);
     hand_over(body, sweeps, 0, split, nothing, silent, other);
-    EXPECT_GT(first.save().size(), silent.save().size()) << "else this asks nothing";
+    EXPECT_GT(first.save().size(), silent.save().size()) << "else this tests nothing";
     ASSERT_TRUE(second.load(first.save()).ok());
     EXPECT_EQ(second.save(), first.save());
     Course copied = parts;
@@ -244,7 +244,7 @@ TEST(OdometerAtTheDoor, ARunIsSplitAndSavedWhileOneWaits) {
   }
 }
 
-TEST(OdometerAtTheDoor, TroubleIsAValueAndChangesNothing) {
+TEST(OdometerReadings, ErrorsAreValuesAndChangeNothing) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const ThrownBody body;
   const TimeNs now_ns = 800'000'000;
@@ -277,7 +277,7 @@ TEST(OdometerAtTheDoor, TroubleIsAValueAndChangesNothing) {
   }
   EXPECT_EQ(odometry.save(), before);
 
-  // one that spans two sweeps is of neither, and so many wait at most
+  // a reading that spans two sweeps belongs to neither; the number of waiting readings is limited
   EXPECT_TRUE(odometry.add_motion(motion(done_ns + 50'000'000, done_ns + 150'000'000)).ok());
   Status status;
   std::size_t waiting = 1;
@@ -292,11 +292,11 @@ TEST(OdometerAtTheDoor, TroubleIsAValueAndChangesNothing) {
   EXPECT_TRUE(odometry.add_velocity({1'300'000'000, Eigen::Vector3d::Zero(), 1.0}).ok()) << "there is room again";
 }
 
-/// A reading that nobody gave is no reading of nothing: the bits are those of a run without.
-TEST(OdometerAtTheDoor, OneThatNoSweepTakesChangesNoBit) {
+/// An unused reading gives the same bits as no reading.
+TEST(OdometerReadings, AReadingThatNoSweepUsesChangesNoBit) {
   const ThrownBody body;
   TumblingOdometry plain(single_pass(body)), asked(single_pass(body));
-  const Tell straddling = [](const ThrownBody& of, const ThrownBody::Sweep& sweep, TumblingOdometry& odometry) {
+  const AddReading straddling = [](const ThrownBody& of, const ThrownBody::Sweep& sweep, TumblingOdometry& odometry) {
     (void)odometry.add_motion(motion_of(of, sweep.end_ns - 50'000'000, sweep.end_ns + 50'000'001, 0.01, 0.01));
   };
   expect_same(course_of(body, body.sweeps(), nothing, plain), course_of(body, body.sweeps(), straddling, asked));

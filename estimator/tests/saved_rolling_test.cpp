@@ -19,7 +19,7 @@ struct Sphere {
   std::vector<std::vector<ImuSample>> units;
 };
 
-/// Whose gyros clip in the fastest part of the way, and which is not heard for half a second.
+/// A sphere whose gyros clip in the fastest part of the motion, without samples for half a second.
 Sphere three_units(double lag_s) {
   Sphere out;
   out.params = params_of(kPositions);
@@ -55,16 +55,16 @@ void finish_rolling(RollingOdometry& odometry, Poses& poses) {
 void expect_rolling_splits(const Sphere& sphere, const std::vector<std::size_t>& splits) {
   const std::size_t count = sphere.units[0].size();
   RollingOdometry whole(sphere.params);
-  Poses told;
+  Poses expected;
   std::vector<std::vector<std::byte>> saved;
   std::size_t k = 0;
   for (const std::size_t split : splits) {
-    feed_units(sphere, k, split, whole, told);
+    feed_units(sphere, k, split, whole, expected);
     saved.push_back(whole.save());
     k = split;
   }
-  feed_units(sphere, k, count, whole, told);
-  finish_rolling(whole, told);
+  feed_units(sphere, k, count, whole, expected);
+  finish_rolling(whole, expected);
   for (std::size_t i = 0; i < splits.size(); ++i) {
     SCOPED_TRACE(testing::Message() << "split at " << splits[i]);
     RollingOdometry rebooted(sphere.params);
@@ -74,9 +74,9 @@ void expect_rolling_splits(const Sphere& sphere, const std::vector<std::size_t>&
     Poses late;
     feed_units(sphere, splits[i], count, rebooted, late);
     finish_rolling(rebooted, late);
-    ASSERT_LE(late.size(), told.size());
+    ASSERT_LE(late.size(), expected.size());
     for (std::size_t p = 0; p < late.size(); ++p) {
-      const RollingOdometry::Pose &a = told[told.size() - late.size() + p], &b = late[p];
+      const RollingOdometry::Pose &a = expected[expected.size() - late.size() + p], &b = late[p];
       ASSERT_EQ(a.pose.time_ns, b.pose.time_ns);
       ASSERT_EQ(a.pose.p_WA_m, b.pose.p_WA_m);
       ASSERT_EQ(a.pose.q_WA.coeffs(), b.pose.q_WA.coeffs());
@@ -123,9 +123,9 @@ TEST(SavedRollingOdometry, AnEndAfterAGapIsKept) {
   const Sphere sphere = three_units(0.3);
   for (const std::size_t end : {674u, 675u, 676u, 700u, 740u, 760u, 780u}) {
     RollingOdometry one(sphere.params), other(sphere.params);
-    Poses told, same;
-    feed_units(sphere, 0, end, one, told);
-    finish_rolling(one, told);
+    Poses expected, same;
+    feed_units(sphere, 0, end, one, expected);
+    finish_rolling(one, expected);
     const Status status = other.load(one.save());
     ASSERT_TRUE(status.ok()) << end << ": " << status.message();
     EXPECT_EQ(other.save(), one.save()) << end;

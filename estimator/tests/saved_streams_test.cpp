@@ -23,20 +23,20 @@ TYPED_TEST(SavedStreams, GoOnFromAnywhere) {
   const std::vector<ImuSample> samples = test::samples_of_stream<TypeParam>();
   Kept<TypeParam> whole;
   struct Cut {
-    std::size_t at, told;
+    std::size_t at, results;
     std::vector<std::byte> saved;
   };
   std::vector<Cut> cuts;
   // before the first, while the window fills, in the fastest part, about the gap, and at the end
   const std::size_t step = samples.size() / 9;
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    if (k < 3 || k % step == 0 || k + 1 == samples.size()) cuts.push_back({k, whole.told.size(), whole.save()});
+    if (k < 3 || k % step == 0 || k + 1 == samples.size()) cuts.push_back({k, whole.results.size(), whole.save()});
     const Status status = whole.push(samples[k]);
     ASSERT_TRUE(status.ok()) << k << ": " << status.message();
   }
   const std::vector<std::byte> last = whole.save();
   whole.end();
-  ASSERT_GT(whole.told.size(), 1000u);
+  ASSERT_GT(whole.results.size(), 1000u);
   for (const Cut& cut : cuts) {
     SCOPED_TRACE(cut.at);
     Kept<TypeParam> rebooted;
@@ -46,13 +46,14 @@ TYPED_TEST(SavedStreams, GoOnFromAnywhere) {
     for (std::size_t k = cut.at; k < samples.size(); ++k) ASSERT_TRUE(rebooted.push(samples[k]).ok());
     EXPECT_EQ(rebooted.save(), last);
     rebooted.end();
-    const std::vector<double> rest(whole.told.begin() + static_cast<std::ptrdiff_t>(cut.told), whole.told.end());
-    EXPECT_EQ(rebooted.told, rest);
+    const std::vector<double> rest(whole.results.begin() + static_cast<std::ptrdiff_t>(cut.results),
+                                   whole.results.end());
+    EXPECT_EQ(rebooted.results, rest);
   }
 }
 
-TYPED_TEST(SavedStreams, BytesTellTheirParameters) {
-  typename TypeParam::Params params = test::params_of_stream<TypeParam>(), told;
+TYPED_TEST(SavedStreams, BytesContainTheirParameters) {
+  typename TypeParam::Params params = test::params_of_stream<TypeParam>(), restored;
   if constexpr (std::is_same_v<TypeParam, RateStream>) {
     params.rails.stated_gyro_rad_s = 10.0;
     params.model.calibration.emplace().constants.lever_arm_m.x() = 0.1;
@@ -63,13 +64,13 @@ TYPED_TEST(SavedStreams, BytesTellTheirParameters) {
   Kept<TypeParam> first(params);
   for (const ImuSample& sample : test::samples_of_stream<TypeParam>()) (void)first.push(sample);
   const std::vector<std::byte> saved = first.save();
-  const Status status = saved_params<TypeParam>(saved, told);
+  const Status status = saved_params<TypeParam>(saved, restored);
   ASSERT_TRUE(status.ok()) << status.message();
-  Kept<TypeParam> again(told);
+  Kept<TypeParam> again(restored);
   ASSERT_TRUE(again.load(saved).ok());
   EXPECT_EQ(again.save(), saved);
   for (const std::size_t length : {0u, 39u, 100u})
-    EXPECT_EQ(saved_params<TypeParam>(std::span(saved).first(length), told).trouble, Trouble::too_few);
+    EXPECT_EQ(saved_params<TypeParam>(std::span(saved).first(length), restored).trouble, Trouble::too_few);
 }
 
 /// Forces that wait for the rates of their instants are part of it.
@@ -79,16 +80,16 @@ TEST(SavedStreams, ALateAccelerometerGoesOn) {
   const std::vector<ImuSample> samples = test::thrown_samples();
   Kept<RateStream> whole(params);
   std::vector<std::byte> saved;
-  std::size_t told = 0;
+  std::size_t results = 0;
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    if (k == samples.size() / 3) saved = whole.save(), told = whole.told.size();
+    if (k == samples.size() / 3) saved = whole.save(), results = whole.results.size();
     ASSERT_TRUE(whole.push(samples[k]).ok());
   }
   Kept<RateStream> rebooted(params);
   ASSERT_TRUE(rebooted.load(saved).ok());
   for (std::size_t k = samples.size() / 3; k < samples.size(); ++k) ASSERT_TRUE(rebooted.push(samples[k]).ok());
-  EXPECT_EQ(rebooted.told,
-            std::vector<double>(whole.told.begin() + static_cast<std::ptrdiff_t>(told), whole.told.end()));
+  EXPECT_EQ(rebooted.results,
+            std::vector<double>(whole.results.begin() + static_cast<std::ptrdiff_t>(results), whole.results.end()));
   EXPECT_EQ(rebooted.save(), whole.save());
 }
 
@@ -98,33 +99,33 @@ TEST(SavedStreams, OtherParametersAndStreamsAreNamed) {
   params.lag_s = 0.2;
   EXPECT_STREQ(Kept<RateStream>(params).load(saved).field, "lag_s");
   EXPECT_STREQ(Kept<CarriedStream>().load(saved).field, "kind of the state");
-  RateStream::Params told;
-  EXPECT_STREQ(saved_params<RateStream>(Kept<RegimeStream>().save(), told).field, "kind of the state");
+  RateStream::Params restored;
+  EXPECT_STREQ(saved_params<RateStream>(Kept<RegimeStream>().save(), restored).field, "kind of the state");
 }
 
-/// A door's own bytes are enough to make it again.
-template <class Door>
-void expect_params_of(const typename Door::Params& params, Door& door) {
-  const std::vector<std::byte> saved = door.save();
-  typename Door::Params told;
-  const Status status = Door::saved_params(saved, told);
+/// Checks that an estimator can be constructed from its saved bytes alone.
+template <class Estimator>
+void expect_params_of(const typename Estimator::Params& params, Estimator& estimator) {
+  const std::vector<std::byte> saved = estimator.save();
+  typename Estimator::Params restored;
+  const Status status = Estimator::saved_params(saved, restored);
   ASSERT_TRUE(status.ok()) << status.message();
-  Door again(told);
+  Estimator again(restored);
   ASSERT_TRUE(again.load(saved).ok());
   EXPECT_EQ(again.save(), saved);
-  EXPECT_EQ(told.lag_s, params.lag_s);
+  EXPECT_EQ(restored.lag_s, params.lag_s);
 }
 
-TEST(SavedDoors, TellTheirParameters) {
+TEST(SavedOdometry, ContainsItsParameters) {
   const test::ThrownBody body;
   TumblingOdometry::Params params;
   params.imu.rate_hz = body.imu_hz;
   params.lever_arm_I_m = body.lever_arm_I_m;
   params.lag_s = 0.07;
   params.T_IL.translate(Eigen::Vector3d(0.1, 0.2, 0.3));
-  TumblingOdometry door(params);
-  for (const ImuSample& sample : body.imu()) ASSERT_TRUE(door.add_imu(sample).ok());
-  expect_params_of(params, door);
+  TumblingOdometry estimator(params);
+  for (const ImuSample& sample : body.imu()) ASSERT_TRUE(estimator.add_imu(sample).ok());
+  expect_params_of(params, estimator);
 
   const RollingOdometry::Params rolling = test::params_of(test::kPositions);
   RollingOdometry sphere(rolling);

@@ -15,38 +15,39 @@ namespace {
 
 using test::ThrownBody;
 
-struct Heard {
+struct SavedRunInput {
   std::vector<ImuSample> imu;
   std::vector<ThrownBody::Sweep> sweeps;
 };
 
-Heard heard(const ThrownBody& body) {
+SavedRunInput input_of(const ThrownBody& body) {
   return {body.imu(), body.sweeps()};
 }
 
-struct Told {
+struct SavedRunResults {
   std::vector<TumblingOdometry::Sweep> sweeps;
   std::vector<PoseState> newest;
 };
 
-/// Samples `from` to `to` - 1 with the sweeps that end by them; the pose of now after every seventh.
-void feed(const Heard& heard, std::size_t from, std::size_t to, TumblingOdometry& odometry, Told& told) {
+/// Adds samples `from` to `to` - 1 and the sweeps that end by then. Stores the newest pose after every seventh sample.
+void feed(const SavedRunInput& input, std::size_t from, std::size_t to, TumblingOdometry& odometry,
+          SavedRunResults& results) {
   for (std::size_t k = from; k < to; ++k) {
-    (void)odometry.add_imu(heard.imu[k]);  // of a gap the first sample is held back
-    const TimeNs before_ns = k == 0 ? 0 : heard.imu[k - 1].time_ns;
-    for (const ThrownBody::Sweep& sweep : heard.sweeps) {
-      if (sweep.end_ns > before_ns && sweep.end_ns <= heard.imu[k].time_ns)
+    (void)odometry.add_imu(input.imu[k]);  // the first sample after a gap is not accepted
+    const TimeNs before_ns = k == 0 ? 0 : input.imu[k - 1].time_ns;
+    for (const ThrownBody::Sweep& sweep : input.sweeps) {
+      if (sweep.end_ns > before_ns && sweep.end_ns <= input.imu[k].time_ns)
         (void)odometry.add_sweep(sweep.start_ns, sweep.end_ns, sweep.points);
     }
-    while (std::optional<TumblingOdometry::Sweep> sweep = odometry.take()) told.sweeps.push_back(std::move(*sweep));
+    while (std::optional<TumblingOdometry::Sweep> sweep = odometry.take()) results.sweeps.push_back(std::move(*sweep));
     PoseState pose;
-    if (k % 7 == 0 && odometry.newest(pose).ok()) told.newest.push_back(pose);
+    if (k % 7 == 0 && odometry.newest(pose).ok()) results.newest.push_back(pose);
   }
 }
 
-void finish(TumblingOdometry& odometry, Told& told) {
+void finish(TumblingOdometry& odometry, SavedRunResults& results) {
   odometry.finish();
-  while (std::optional<TumblingOdometry::Sweep> sweep = odometry.take()) told.sweeps.push_back(std::move(*sweep));
+  while (std::optional<TumblingOdometry::Sweep> sweep = odometry.take()) results.sweeps.push_back(std::move(*sweep));
 }
 
 void expect_same(const PoseState& a, const PoseState& b) {
@@ -63,7 +64,7 @@ void expect_same(const std::vector<PoseState>& a, const std::vector<PoseState>& 
 }
 
 /// `late` is the end of `whole`.
-void expect_same_end(const Told& whole, const Told& late) {
+void expect_same_end(const SavedRunResults& whole, const SavedRunResults& late) {
   ASSERT_LE(late.sweeps.size(), whole.sweeps.size());
   const std::size_t first = whole.sweeps.size() - late.sweeps.size();
   for (std::size_t k = 0; k < late.sweeps.size(); ++k) {
@@ -88,39 +89,39 @@ void expect_same_map(const TumblingOdometry& a, const TumblingOdometry& b) {
   }
 }
 
-/// Whether what a split is for is the case there.
-using Asked = bool (*)(const TumblingOdometry&);
+/// Checks that the run is in the state that a split is meant to test.
+using Precondition = bool (*)(const TumblingOdometry&);
 
 struct Split {
   std::size_t at;
-  Asked asked;
+  Precondition precondition;
 };
 
-/// The run that is not split, saved on its way, against those that go on from there. Reboots of one that was rebooted
-/// are as good.
-void expect_splits(const TumblingOdometry::Params& params, const Heard& heard, const std::vector<Split>& splits) {
+/// Compares an uninterrupted run, which is saved at each split, with runs that continue from the saved states.
+void expect_splits(const TumblingOdometry::Params& params, const SavedRunInput& input,
+                   const std::vector<Split>& splits) {
   TumblingOdometry whole(params);
-  Told told;
+  SavedRunResults results;
   std::vector<std::vector<std::byte>> saved;
   std::size_t k = 0;
   for (const Split& split : splits) {
-    feed(heard, k, split.at, whole, told);
+    feed(input, k, split.at, whole, results);
     k = split.at;
-    EXPECT_TRUE(split.asked(whole)) << "the split at " << split.at << " asks nothing";
+    EXPECT_TRUE(split.precondition(whole)) << "the split at " << split.at << " tests nothing";
     saved.push_back(whole.save());
   }
-  feed(heard, k, heard.imu.size(), whole, told);
-  finish(whole, told);
+  feed(input, k, input.imu.size(), whole, results);
+  finish(whole, results);
   for (std::size_t i = 0; i < splits.size(); ++i) {
     SCOPED_TRACE(testing::Message() << "split at " << splits[i].at);
     TumblingOdometry rebooted(params);
     const Status status = rebooted.load(saved[i]);
     ASSERT_TRUE(status.ok()) << status.message();
     EXPECT_EQ(rebooted.save(), saved[i]);
-    Told late;
-    feed(heard, splits[i].at, heard.imu.size(), rebooted, late);
+    SavedRunResults late;
+    feed(input, splits[i].at, input.imu.size(), rebooted, late);
     finish(rebooted, late);
-    expect_same_end(told, late);
+    expect_same_end(results, late);
     expect_same_map(whole, rebooted);
     EXPECT_EQ(rebooted.save(), whole.save());
   }
@@ -141,7 +142,7 @@ bool always(const TumblingOdometry&) {
 
 TEST(SavedTumblingOdometry, GoesOnFromRestAndFromFlightWithAClippedGyro) {
   const ThrownBody body;
-  expect_splits(one_pass(body), heard(body),
+  expect_splits(one_pass(body), input_of(body),
                 {{1, always}, {60, [](const TumblingOdometry& o) { return !gyro_clips(o); }}, {183, gyro_clips}});
 }
 
@@ -150,14 +151,14 @@ TEST(SavedTumblingOdometry, GoesOnInTheMiddleOfTheSecondPass) {
   TumblingOdometry::Params params = one_pass(body);
   params.lever_arm_I_m += Eigen::Vector3d(0.006, -0.006, 0.006);
   params.expert.second_pass.after_s = 0.9;
-  expect_splits(params, heard(body),
+  expect_splits(params, input_of(body),
                 {{200, [](const TumblingOdometry& o) { return !o.second_pass_applied(); }},
                  {255, [](const TumblingOdometry& o) { return !o.second_pass_applied(); }}});
 }
 
 TEST(SavedTumblingOdometry, GoesOnWhileItIsLost) {
   ThrownBody body;
-  Heard lost = heard(body);
+  SavedRunInput lost = input_of(body);
   for (ThrownBody::Sweep& sweep : lost.sweeps) {
     if (sweep.start_ns < 1'300'000'000 || sweep.end_ns > 2'700'000'000) continue;
     for (LidarPoint& point : sweep.points)
@@ -166,11 +167,11 @@ TEST(SavedTumblingOdometry, GoesOnWhileItIsLost) {
   }
   std::size_t seen_lost = 0;
   TumblingOdometry probe(one_pass(body));
-  Told told;
-  feed(lost, 0, 240, probe, told);
-  for (const auto& sweep : told.sweeps) seen_lost += sweep.report.verdict == SweepVerdict::rejected;
+  SavedRunResults results;
+  feed(lost, 0, 240, probe, results);
+  for (const auto& sweep : results.sweeps) seen_lost += sweep.report.verdict == SweepVerdict::rejected;
   ASSERT_GT(seen_lost, 0u) << "else this test asks nothing";
-  ASSERT_EQ(told.sweeps.back().report.verdict, SweepVerdict::rejected);
+  ASSERT_EQ(results.sweeps.back().report.verdict, SweepVerdict::rejected);
   expect_splits(one_pass(body), lost, {{240, always}});
 }
 
@@ -178,7 +179,7 @@ TEST(SavedTumblingOdometry, GoesOnInAGapAndWithSweepsThatNobodyTook) {
   ThrownBody body;
   body.rest_s = 4.2;
   body.end_s = 5.0;
-  Heard gapped = heard(body);
+  SavedRunInput gapped = input_of(body);
   std::erase_if(gapped.imu, [](const ImuSample& s) { return s.time_ns > 1'500'000'000 && s.time_ns < 3'200'000'000; });
   // one sample after the gap is held back; the next will bear it out
   expect_splits(one_pass(body), gapped,

@@ -105,7 +105,7 @@ TEST(SecondPass, IsTakenOverAndEndsNoWorse) {
 }
 
 TEST(SecondPass, CatchesUpWhereTheClocksDifferByMoreThanWasKnown) {
-  // the newest sweep that the first pass has registered may need a sample more by the clock that was learnt
+  // the newest sweep that the first pass has registered may need a sample more by the estimated clock offset
   for (const TimeNs off_ns : {TimeNs{-4'000'000}, TimeNs{4'000'000}}) {
     ThrownBody body;
     body.end_s = 4.2;
@@ -176,7 +176,7 @@ TEST(SecondPass, BeginsAtOnceWhereTheFirstIsLost) {
   EXPECT_FALSE(without.taken_live) << "negative control: it is not begun by that alone";
   EXPECT_EQ(found.sweeps, without.sweeps);
 
-  // and goes on from its bytes wherever it is, begun or over
+  // and it continues from its saved bytes at any stage
   params = measured_badly(body, 100.0);
   for (const std::size_t split : {std::size_t{165}, std::size_t{175}, std::size_t{190}, std::size_t{240}}) {
     Outcome parts;

@@ -15,8 +15,8 @@
 namespace tumble {
 namespace {
 
-// What the doors promise. Reached: 57.6 KiB (tumbling; 48.4 but for a new beginning of the rates), 52.7 (rolling), by
-// GCC 12 with -O3; 552 and 511 before they were held to it. Other compilers and flags lay frames out otherwise.
+// Documented limit of the odometry classes. Measured with GCC 12 -O3: 57.6 KiB (tumbling; 48.4 without a restart of the
+// rates), 52.7 KiB (rolling). Other compilers and flags use other stack frames.
 constexpr double kPromised_KiB = 64.0;
 
 /// Of a thread whose stack is painted beforehand: how far below its own frame the call wrote at its deepest [KiB].
@@ -86,7 +86,7 @@ void roll(RollingOdometry& odometry) {
   for (std::size_t i = 0; i < readings[0].size(); ++i) {
     for (std::size_t k = 0; k < now.size(); ++k) {
       now[k] = readings[k][i];
-      // impacts, and a turn that is none of a rolling sphere: modes are in doubt
+      // impacts, and a rotation that is impossible for a rolling sphere, so that modes are uncertain
       if (i > 400 && i < 700 && i % 37 < 9)
         now[k].specific_force_m_s2 += Eigen::Vector3d(8.0, 3.0 * double(i % 4), -5.0);
       if (i > 550 && i < 800) now[k].angular_velocity_rad_s.x() += 0.4;
@@ -108,7 +108,7 @@ TEST_F(Stack, OfARollingSphereLiveAndSmoothed) {
     within("saved", [&] { bytes = odometry->save(); });
     within("loaded", [&] { ASSERT_TRUE(odometry->load(bytes).ok()); });
     within("finished", [&] { odometry->finish(); });
-    within("begun anew", [&] { odometry->reset(); });
+    within("reset", [&] { odometry->reset(); });
   }
 }
 

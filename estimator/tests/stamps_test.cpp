@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The doors on samples that a host stamped.
+// The odometry classes on samples with stamps of a host.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -42,9 +42,9 @@ TEST(Stamps, ThatJitterMoveNoRate) {
   const ThrownBody body{.rest_s = 2.5, .end_s = 4.7};
   const std::vector<ImuSample> exact = body.imu(), stamped = stamped_by_a_host(exact);
   TumblingOdometry own_clock(params_of(body)), host_clock(params_of(body));
-  TumblingParams as_they_are = params_of(body);
-  as_they_are.expert.stamps.jitter_max = 0.0;
-  TumblingOdometry without(as_they_are);
+  TumblingParams uncorrected = params_of(body);
+  uncorrected.expert.stamps.jitter_max = 0.0;
+  TumblingOdometry without(uncorrected);
   const std::vector<RateState> expected = rates_of(own_clock, exact), found = rates_of(host_clock, stamped),
                                control = rates_of(without, stamped);
   EXPECT_FALSE(own_clock.estimated_jitter_s());
@@ -105,13 +105,13 @@ Rolled rolled(const std::vector<ImuSample>& samples, double jitter_max) {
 
 TEST(Stamps, ThatJitterMoveNoSphere) {
   const std::vector<ImuSample> exact = test::unit_at(test::kPositions[0]), stamped = stamped_by_a_host(exact, 800'000);
-  const Rolled own = rolled(exact, 0.15), mended = rolled(stamped, 0.15), as_they_are = rolled(stamped, 0.0);
-  EXPECT_LT(mended.worst_m, own.worst_m + 3e-4);          // 1.7 m/s at most, for a tenth of the jitter
-  EXPECT_GT(as_they_are.worst_m, mended.worst_m + 2e-4);  // negative control
+  const Rolled own = rolled(exact, 0.15), corrected = rolled(stamped, 0.15), uncorrected = rolled(stamped, 0.0);
+  EXPECT_LT(corrected.worst_m, own.worst_m + 3e-4);          // 1.7 m/s at most, for a tenth of the jitter
+  EXPECT_GT(uncorrected.worst_m, corrected.worst_m + 2e-4);  // negative control
   EXPECT_FALSE(own.estimated_jitter_s);
-  ASSERT_TRUE(mended.estimated_jitter_s);
-  EXPECT_NEAR(*mended.estimated_jitter_s, 0.46e-3, 0.15e-3);  // of the uniform distribution
-  EXPECT_FALSE(as_they_are.estimated_jitter_s);
+  ASSERT_TRUE(corrected.estimated_jitter_s);
+  EXPECT_NEAR(*corrected.estimated_jitter_s, 0.46e-3, 0.15e-3);  // of the uniform distribution
+  EXPECT_FALSE(uncorrected.estimated_jitter_s);
 }
 
 }  // namespace

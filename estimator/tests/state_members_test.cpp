@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A member that nobody visits would not be saved: every byte of a state is visited, or padding.
+// A member that is not visited would not be saved: every byte of a state is visited or is padding.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -65,7 +65,7 @@ class Marks : public StateVisitor<Marks> {
   void bounded(const char*, double, double, double) {}
   static constexpr bool going() { return true; }
 
-  /// Bytes of an object in the longest piece of it that nobody visited.
+  /// Length of the longest range of bytes of an object that was not visited.
   std::size_t longest_hole(const void* object, std::size_t size) {
     const auto* const begin = static_cast<const std::byte*>(object);
     const std::byte* const end = begin + size;
@@ -110,10 +110,10 @@ void expect_whole_params(const Params& params, const char* what) {
 TEST(StateMembers, AllOfATumblingOdometry) {
   TumblingOdometry::Params params;
   params.lever_arm_I_m.setZero();
-  const TumblingOdometry door(params);
+  const TumblingOdometry odometry(params);
   Marks marks;
-  TumblingOdometry::members(door, marks);
-  EXPECT_LT(marks.longest_hole(&door, sizeof door), padding_below<TumblingOdometry>);
+  TumblingOdometry::members(odometry, marks);
+  EXPECT_LT(marks.longest_hole(&odometry, sizeof odometry), padding_below<TumblingOdometry>);
   RegimeStream::Params rate;
   rate.rate.model.nominal = {};
   expect_whole(OdometryPass(rate, TumblingOdometry::Params::Expert::mapping_defaults()), "pass");
@@ -154,7 +154,7 @@ TEST(StateMembers, AllOfAMapper) {
 }
 
 TEST(StateMembers, AllOfARollingOdometry) {
-  const RollingOdometry door(test::params_of(test::kPositions));
+  const RollingOdometry odometry(test::params_of(test::kPositions));
   expect_whole(ImuMerge::State{}, "merge");
   const auto state = std::make_unique<RollingSmoother::State>();
   expect_whole(*state, "rolling");

@@ -6,7 +6,7 @@
 
 namespace tumble::test {
 
-/// Of the door, for the body that is thrown.
+/// Parameters of TumblingOdometry for the thrown body.
 inline TumblingOdometry::Params params_of(const ThrownBody& body) {
   TumblingOdometry::Params params;
   params.imu.rate_hz = body.imu_hz;

@@ -114,7 +114,7 @@ TEST(TumblingOdometry, RecoversTheRateInFlight) {
     const double t_s = seconds(rate.time_ns);
     if (t_s < from_s || t_s > to_s) continue;
     clipped += rate.clipped_axes != 0;
-    // a spin about one axis tells the lever arm no better than it was given, to a centimetre: 0.87 rad/s of 3.5 is left
+    // a spin about one axis does not improve the lever arm, given to a centimetre: 0.87 rad/s of 3.5 remain
     const Eigen::Vector3d error = rate.w_WI_I_rad_s - body.w_WI_I_rad_s(t_s);
     EXPECT_LT(error.norm(), 0.3 * (body.spin_rad_s * body.axis.y() - body.rail_rad_s)) << t_s;
     EXPECT_LT(error.dot(rate.covariance_rad2_s2.ldlt().solve(error)), 14.2) << t_s;  // 99.7 % of three unknowns
@@ -137,7 +137,7 @@ TEST(TumblingOdometry, TheWordsComeInTime) {
       if (!run.sweeps[k].status.ok()) continue;  // it began before the IMU
       const TimeNs end_ns = run.sweeps[k].report.pose.time_ns, late_ns = run.came_ns[k] - end_ns;
       EXPECT_TRUE(late_ns >= lag_ns - sample_ns && late_ns <= lag_ns) << later_ns << ' ' << late_ns;
-      if (k < 1 || !run.sweeps[k - 1].status.ok()) continue;  // the last word of the one before comes with each
+      if (k < 1 || !run.sweeps[k - 1].status.ok()) continue;  // each sweep reports the final poses of the previous one
       ASSERT_FALSE(run.sweeps[k].report.smoothed.empty());
       EXPECT_EQ(run.sweeps[k].report.smoothed.back().time_ns, end_ns - kSweep_ns);
     }
@@ -150,11 +150,11 @@ TEST(TumblingOdometry, TheNewestPoseIsCausalAndHonest) {
   const std::vector<ImuSample> imu = body.imu();
   PoseState pose;
   EXPECT_EQ(odometry.newest(pose).trouble, Trouble::empty);
-  Answers heard;
+  Answers results;
   double worst_m = 0.0, worst_nees = 0.0;
   for (std::size_t k = 0; k < imu.size(); k += 10) {
-    feed_as_they_end(imu, body.sweeps(), k, std::min(k + 10, imu.size()), odometry, heard);
-    if (heard.sweeps.empty()) continue;
+    feed_as_they_end(imu, body.sweeps(), k, std::min(k + 10, imu.size()), odometry, results);
+    if (results.sweeps.empty()) continue;
     ASSERT_TRUE(odometry.newest(pose).ok());
     EXPECT_EQ(pose.time_ns, imu[std::min(k + 10, imu.size()) - 1].time_ns);
     const Eigen::Vector3d error = pose.p_WA_m - body.T_WI(seconds(pose.time_ns)).translation();
@@ -196,8 +196,8 @@ TEST(TumblingOdometry, GoesOnAfterAGapBeyondTheStreamsBound) {
   std::vector<ThrownBody::Sweep> sweeps = body.sweeps();
   std::erase_if(imu, [](const ImuSample& s) { return s.time_ns > 1'500'000'000 && s.time_ns < 3'200'000'000; });
   std::erase_if(sweeps, [](const auto& s) { return s.end_ns > 1'500'000'000 && s.start_ns < 3'200'000'000; });
-  Answers heard;
-  feed_as_they_end(imu, sweeps, 0, 150, odometry, heard);
+  Answers results;
+  feed_as_they_end(imu, sweeps, 0, 150, odometry, results);
   // one stamp that is wrong costs one sample
   ImuSample wrong = imu[149];
   wrong.time_ns = 3'600'000'000'000;
@@ -206,13 +206,13 @@ TEST(TumblingOdometry, GoesOnAfterAGapBeyondTheStreamsBound) {
   EXPECT_EQ(odometry.gaps(), 0u);
   ASSERT_TRUE(odometry.add_imu(imu[151]).ok());
   EXPECT_EQ(odometry.gaps(), 1u);
-  feed_as_they_end(imu, sweeps, 152, imu.size(), odometry, heard);
+  feed_as_they_end(imu, sweeps, 152, imu.size(), odometry, results);
   EXPECT_EQ(odometry.rejected_samples(), 0u);
   odometry.finish();
-  while (std::optional<TumblingOdometry::Sweep> sweep = odometry.take()) heard.sweeps.push_back(std::move(*sweep));
-  EXPECT_EQ(heard.sweeps.size(), sweeps.size());
-  EXPECT_LT(position_error_m(body, heard.sweeps.back().report.pose), 0.1);
-  EXPECT_LT(attitude_error_rad(body, heard.sweeps.back().report.pose), 0.05);
+  while (std::optional<TumblingOdometry::Sweep> sweep = odometry.take()) results.sweeps.push_back(std::move(*sweep));
+  EXPECT_EQ(results.sweeps.size(), sweeps.size());
+  EXPECT_LT(position_error_m(body, results.sweeps.back().report.pose), 0.1);
+  EXPECT_LT(attitude_error_rad(body, results.sweeps.back().report.pose), 0.05);
 }
 
 TEST(TumblingOdometry, GoesOnAfterItWasFinished) {
@@ -222,8 +222,8 @@ TEST(TumblingOdometry, GoesOnAfterItWasFinished) {
   const std::vector<ImuSample> imu = body.imu();
   const std::vector<ThrownBody::Sweep> sweeps = body.sweeps();
   TumblingOdometry odometry(params_of(body));
-  Answers heard;
-  feed_as_they_end(imu, sweeps, 0, 200, odometry, heard);
+  Answers results;
+  feed_as_they_end(imu, sweeps, 0, 200, odometry, results);
   odometry.finish();
   odometry.finish();
   ASSERT_TRUE(odometry.smoothed_rate());
@@ -231,12 +231,12 @@ TEST(TumblingOdometry, GoesOnAfterItWasFinished) {
   PoseState pose;
   EXPECT_TRUE(odometry.newest(pose).ok());
   EXPECT_EQ(odometry.add_imu(imu[199]).trouble, Trouble::time_order);
-  feed_as_they_end(imu, sweeps, 200, imu.size(), odometry, heard);
+  feed_as_they_end(imu, sweeps, 200, imu.size(), odometry, results);
   odometry.finish();
-  while (std::optional<TumblingOdometry::Sweep> sweep = odometry.take()) heard.sweeps.push_back(std::move(*sweep));
-  EXPECT_EQ(heard.sweeps.size(), sweeps.size());
+  while (std::optional<TumblingOdometry::Sweep> sweep = odometry.take()) results.sweeps.push_back(std::move(*sweep));
+  EXPECT_EQ(results.sweeps.size(), sweeps.size());
   EXPECT_EQ(odometry.rejected_samples(), 0u);
-  EXPECT_LT(position_error_m(body, heard.sweeps.back().report.pose), 0.1);
+  EXPECT_LT(position_error_m(body, results.sweeps.back().report.pose), 0.1);
 }
 
 TEST(TumblingOdometry, ALidarThatFallsSilentIsMadeUpForByInertia) {
@@ -247,13 +247,13 @@ TEST(TumblingOdometry, ALidarThatFallsSilentIsMadeUpForByInertia) {
   std::vector<ThrownBody::Sweep> sweeps = body.sweeps();
   std::erase_if(sweeps, [](const ThrownBody::Sweep& sweep) { return sweep.end_ns > 1'500'000'000; });
   TumblingOdometry odometry(params_of(body));
-  Answers heard;
-  feed_as_they_end(imu, sweeps, 0, imu.size(), odometry, heard);
-  const auto made_up = std::count_if(heard.sweeps.begin(), heard.sweeps.end(),
+  Answers results;
+  feed_as_they_end(imu, sweeps, 0, imu.size(), odometry, results);
+  const auto made_up = std::count_if(results.sweeps.begin(), results.sweeps.end(),
                                      [](const auto& sweep) { return sweep.status.trouble == Trouble::empty; });
   EXPECT_GE(made_up, 3);
   EXPECT_LE(made_up, 5);
-  EXPECT_LT(position_error_m(body, heard.sweeps.back().report.pose), 0.1);
+  EXPECT_LT(position_error_m(body, results.sweeps.back().report.pose), 0.1);
 }
 
 TEST(TumblingOdometry, SweepsThatNobodyTakesAreDropped) {
@@ -325,7 +325,7 @@ TEST(TumblingOdometry, RefusesParametersOutOfTheirBounds) {
   EXPECT_TRUE(names(refuses([](Params& p) { p.lever_arm_sigma_m = -1.0; }), "lever_arm_sigma_m"));
   EXPECT_TRUE(names(refuses([](Params& p) { p.imu.rate_hz = 0.0; }), "rate_hz"));
   EXPECT_TRUE(names(refuses([](Params& p) { p.expert.mapping.expert.matching.neighbours = 1; }), "neighbours"));
-  // a lever arm that nobody stated is not one of zero, which may be meant
+  // a lever arm that is not stated differs from zero, which may be intended
   EXPECT_TRUE(names(refuses([](Params& p) { p.lever_arm_I_m = Params().lever_arm_I_m; }), "lever_arm_m"));
   EXPECT_EQ(refuses([](Params& p) { p.lever_arm_I_m.setZero(); }), "");
   EXPECT_TRUE(names(refuses([](Params& p) { p.imu.gyro_range_rad_s = 450.0; }), "gyro_range_rad_s"));
@@ -334,7 +334,7 @@ TEST(TumblingOdometry, RefusesParametersOutOfTheirBounds) {
   EXPECT_TRUE(names(refuses([&](Params& p) { p.own_body_L = {corner, -corner}; }), "own_body_L"));
 }
 
-// Gravity turns as it should in the mirrored world too: only flight tells.
+// Gravity rotates correctly in the mirrored world too: only flight shows the mirroring.
 TEST(TumblingOdometry, TellsAnAccelerometerOfTheOtherSense) {
   ThrownBody body;
   body.rail_rad_s = 20.0;  // so that the flight is read
@@ -367,9 +367,9 @@ TEST(TumblingOdometry, NamesAnAxisThatFrozeAndNoLongerStatesToKnowIt) {
     if (const auto& rate = odometry.smoothed_rate())
       widest_rad_s = std::max(widest_rad_s, std::sqrt(rate->covariance_rad2_s2(0, 0)));
   }
-  const Status doubt = odometry.health();
-  EXPECT_EQ(doubt.trouble, Trouble::out_of_range);
-  EXPECT_NE(doubt.message().find("gyro x"), std::string::npos) << doubt.message();
+  const Status health = odometry.health();
+  EXPECT_EQ(health.trouble, Trouble::out_of_range);
+  EXPECT_NE(health.message().find("gyro x"), std::string::npos) << health.message();
   EXPECT_GT(widest_rad_s, 2.0);
   TumblingOdometry sound(params);  // negative control
   for (const ImuSample& sample : test::noisy(body.imu(), body.rail_rad_s)) {

@@ -111,7 +111,7 @@ void write_broad(const path& file) {
   H5Fclose(out);
 }
 
-/// Ours, and as others write them: without checksums, which would stop a fuzzer at the door.
+/// Bags in our format and in those of others, without checksums, which would reject most inputs of a fuzzer.
 void write_mcaps(const path& folder, const sim::Recording& recording) {
   const StoredTruth truth = fixture::stored_truth(recording, folder);
   export_mcap(recording.sensors, {0, &truth}, folder / "small");

@@ -20,8 +20,8 @@ using Bytes = std::vector<std::byte>;
 /// A letter that says of which class, and then edits, six bytes each: what (modulo 5), where (4 bytes, little-endian,
 /// modulo the size), by which byte.
 struct Edits {
-  char letter = 0;    ///< the capital of what the file begins with
-  bool told = false;  ///< it was a small one: the parameters are those that the bytes tell, spoiled as they are
+  char letter = 0;                ///< the capital of what the file begins with
+  bool use_saved_params = false;  ///< use the parameters stored in the bytes, after the edits
   std::string text;
 
   /// Length and checksum are made to fit again, since no fuzzer would find them. BadInput where an edit is not whole.
@@ -31,7 +31,8 @@ struct Edits {
 Edits read_edits(const std::filesystem::path& file);
 
 /// BadInput where a class refuses a spoiled state of its own, by a Status or, of parameters, by InvalidParams; what it
-/// takes has to say the same when it is saved again, and go on. `Kind`: Door, params(), saved() and go_on().
+/// accepted must give the same bytes when it is saved again, and must continue. `Kind`: Estimator, params(), saved()
+/// and go_on().
 template <class Kind>
 void load_spoiled(const Edits& edits) {
   const auto refuse = [](const Status& status) {
@@ -39,17 +40,17 @@ void load_spoiled(const Edits& edits) {
   };
   static const Bytes saved = Kind::saved();
   const Bytes bytes = edits.spoil(saved);
-  typename Kind::Door::Params params = Kind::params();
-  if (edits.told) refuse(Kind::Door::saved_params(bytes, params));
-  std::optional<typename Kind::Door> door;
+  typename Kind::Estimator::Params params = Kind::params();
+  if (edits.use_saved_params) refuse(Kind::Estimator::saved_params(bytes, params));
+  std::optional<typename Kind::Estimator> estimator;
   try {
-    door.emplace(params);
+    estimator.emplace(params);
   } catch (const InvalidParams& error) {
     throw scenarios::BadInput(error.what());
   }
-  refuse(door->load(bytes));
-  if (door->save() != bytes) throw std::logic_error("a state that was loaded is another one when it is saved");
-  Kind::go_on(*door);
+  refuse(estimator->load(bytes));
+  if (estimator->save() != bytes) throw std::logic_error("a state that was loaded is another one when it is saved");
+  Kind::go_on(*estimator);
 }
 
 }  // namespace tumble::fuzz

@@ -36,15 +36,15 @@ std::vector<LidarPoint> some_points() {
 }
 
 struct Tumbling {
-  using Door = TumblingOdometry;
-  static Door::Params params() {
-    Door::Params params;
+  using Estimator = TumblingOdometry;
+  static Estimator::Params params() {
+    Estimator::Params params;
     params.lever_arm_I_m.setZero();
     params.lag_s = 0.03;
     return params;
   }
   static Bytes saved() {
-    Door odometry(params());
+    Estimator odometry(params());
     for (int k = 1; k < 20; ++k) (void)odometry.add_imu(sample_at(k));
     const std::vector<LidarPoint> points = some_points();
     for (const TimeNs start_ns : {TimeNs{30'000'000}, TimeNs{80'000'000}, TimeNs{140'000'000}})
@@ -54,7 +54,7 @@ struct Tumbling {
     (void)odometry.add_motion(motion);
     return odometry.save();
   }
-  static void go_on(Door& odometry) {
+  static void go_on(Estimator& odometry) {
     for (int k = 20; k < 23; ++k) (void)odometry.add_imu(sample_at(k));
     PoseState pose;
     (void)odometry.newest(pose);
@@ -63,20 +63,20 @@ struct Tumbling {
 };
 
 struct Rolling {
-  using Door = RollingOdometry;
-  static Door::Params params() {
-    Door::Params params;
+  using Estimator = RollingOdometry;
+  static Estimator::Params params() {
+    Estimator::Params params;
     params.radius_m = 0.145;
     params.lag_s = 0.1;
     params.units.resize(1);
     return params;
   }
   static Bytes saved() {
-    Door odometry(params());
+    Estimator odometry(params());
     for (int k = 1; k < 20; ++k) (void)odometry.add_imu(sample_at(k));
     return odometry.save();
   }
-  static void go_on(Door& odometry) {
+  static void go_on(Estimator& odometry) {
     for (int k = 20; k < 40; ++k) (void)odometry.add_imu(sample_at(k));
     while (odometry.take()) continue;
   }

@@ -5,7 +5,7 @@
 
 namespace tumble::fuzz {
 
-/// Saved states of the doors, TumblingOdometry (T) and RollingOdometry (R), spoiled: saved_edits.hpp.
+/// Corrupted saved states of TumblingOdometry (T) and RollingOdometry (R), see saved_edits.hpp.
 void saved_states(const std::filesystem::path& file);
 
 /// The same of streams: RateStream (R), RegimeStream (G), CarriedStream (C), CarriedLive (L), RollingFilter (F),

@@ -14,7 +14,7 @@ namespace {
 /// In motion, and where the window is full.
 template <class Stream>
 struct Streaming {
-  struct Door : test::Kept<Stream> {
+  struct Estimator : test::Kept<Stream> {
     using Params = typename Stream::Params;
     using test::Kept<Stream>::Kept;
 
@@ -25,12 +25,12 @@ struct Streaming {
   static constexpr std::size_t kSome = test::kRolls<Stream> ? 500 : 150, kMore = 8;
 
   /// With short windows, which are quick.
-  static typename Door::Params params() {
+  static typename Estimator::Params params() {
     const auto shorten = [](CarriedStream::Params& carried) {
       carried.lag_s = 0.05;
       carried.window_s = 0.15;
     };
-    typename Door::Params params = test::params_of_stream<Stream>();
+    typename Estimator::Params params = test::params_of_stream<Stream>();
     if constexpr (std::same_as<Stream, CarriedStream>) shorten(params);
     if constexpr (std::same_as<Stream, CarriedLive>) shorten(params.stream);
     return params;
@@ -40,13 +40,13 @@ struct Streaming {
     return kSamples;
   }
   static Bytes saved() {
-    Door door(params());
-    for (std::size_t k = 0; k < kSome; ++k) (void)door.push(samples()[k]);
-    return door.save();
+    Estimator estimator(params());
+    for (std::size_t k = 0; k < kSome; ++k) (void)estimator.push(samples()[k]);
+    return estimator.save();
   }
-  static void go_on(Door& door) {
-    for (std::size_t k = kSome; k < kSome + kMore; ++k) (void)door.push(samples()[k]);
-    door.end();
+  static void go_on(Estimator& estimator) {
+    for (std::size_t k = kSome; k < kSome + kMore; ++k) (void)estimator.push(samples()[k]);
+    estimator.end();
   }
 };
 
