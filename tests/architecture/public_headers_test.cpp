@@ -62,7 +62,7 @@ Names unlisted_includes(const std::string& source, const Names& list) {
 TEST(PublicHeaders, AreThoseThatTheReadmeLists) {
   const Names list = listed(text_of(tumble::test::source_dir() / "estimator/README.md"));
   EXPECT_EQ(open_headers(), list);
-  EXPECT_LT(list.size(), 59u) << "fewer than there were without a door";
+  EXPECT_LT(list.size(), 59u) << "fewer than without the odometry headers";
   // negative controls
   EXPECT_TRUE(listed("| `src/mapping/README.md` | a `detail` folder |").empty());
   EXPECT_EQ(listed("| `tumble.hpp` `common/imu.hpp` |"), (Names{"tumble.hpp", "common/imu.hpp"}));

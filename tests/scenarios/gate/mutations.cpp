@@ -297,13 +297,16 @@ std::span<const Mutation> mutations() {
                {"inclination_nees_median"},
                nullptr,
                double_covariances},
-      Mutation{"covariance_halved_door_lag", "hill", "slam/tumble_lag", {"pose_nees"}, nullptr, halve_covariances},
-      Mutation{"covariance_doubled_door_lag", "hill", "slam/tumble_lag", {"pose_nees"}, nullptr, double_covariances},
-      Mutation{"shift_1_ms_door_lag", "hill", "slam/tumble_lag", {"pose_time_offset_s"}, nullptr, shift_by_1_ms},
-      Mutation{"map_twice_door_lag", "hill", "slam/tumble_lag", {"map_unique_share"}, nullptr, draw_map_twice},
-      Mutation{"covariance_halved_door_live", "hill", "slam/tumble_live", {"pose_nees"}, nullptr, halve_covariances},
-      Mutation{"covariance_doubled_door_live", "hill", "slam/tumble_live", {"pose_nees"}, nullptr, double_covariances},
-      Mutation{"shift_1_ms_door_live", "hill", "slam/tumble_live", {"pose_time_offset_s"}, nullptr, shift_by_1_ms},
+      Mutation{"covariance_halved_odometry_lag", "hill", "slam/tumble_lag", {"pose_nees"}, nullptr, halve_covariances},
+      Mutation{
+          "covariance_doubled_odometry_lag", "hill", "slam/tumble_lag", {"pose_nees"}, nullptr, double_covariances},
+      Mutation{"shift_1_ms_odometry_lag", "hill", "slam/tumble_lag", {"pose_time_offset_s"}, nullptr, shift_by_1_ms},
+      Mutation{"map_twice_odometry_lag", "hill", "slam/tumble_lag", {"map_unique_share"}, nullptr, draw_map_twice},
+      Mutation{
+          "covariance_halved_odometry_live", "hill", "slam/tumble_live", {"pose_nees"}, nullptr, halve_covariances},
+      Mutation{
+          "covariance_doubled_odometry_live", "hill", "slam/tumble_live", {"pose_nees"}, nullptr, double_covariances},
+      Mutation{"shift_1_ms_odometry_live", "hill", "slam/tumble_live", {"pose_time_offset_s"}, nullptr, shift_by_1_ms},
       Mutation{"lost_slip", "slip", "position/tumble", {"slip_recall"}, nullptr, lose_slips},
       Mutation{"early_slip", "slip", "position/tumble", {"slip_precision"}, nullptr, claim_slips_early},
       Mutation{"lost_slip_lag", "slip", "position/tumble_lag", {"slip_recall"}, nullptr, lose_slips},

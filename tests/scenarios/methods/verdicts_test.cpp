@@ -66,7 +66,7 @@ TEST(Verdicts, SlamFindsAWrongCalibrationAndSaysWhenSensorsContradictEachOther) 
   }
 }
 
-// The same by what came before alone, which the library's door tells its user too.
+// The same, live: from earlier samples alone. TumblingOdometry reports this to its user too.
 TEST(Verdicts, SlamThatLagsFindsALidarOfAnotherScale) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "hill"), 62022, 1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A second of rest, by both doors.
+// Runs both odometry classes on one second of a stationary sensor.
 #include <cstdio>
 #include <tumble/tumble.hpp>
 
