@@ -169,7 +169,8 @@ TYPED_TEST(HostileState, TheHeaderSaysWhatIsWrong) {
   EXPECT_EQ(field_with(16, static_cast<std::uint8_t>(saved[16]) ^ 0x5au), "layout of the state");
 }
 
-/// With a checksum that fits there is no telling what is right: whatever is taken says the same again, and goes on.
+/// With a valid checksum, load() cannot detect every change: an accepted state saves the same bytes again, and
+/// continues.
 TYPED_TEST(HostileState, MadeUpNumbersNeverHurt) {
   const Bytes saved = TypeParam::some().save();
   std::uint64_t state = 2026;

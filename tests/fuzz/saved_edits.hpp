@@ -30,9 +30,9 @@ struct Edits {
 /// BadInput where there is not even a letter.
 Edits read_edits(const std::filesystem::path& file);
 
-/// BadInput where a class refuses a spoiled state of its own, by a Status or, of parameters, by InvalidParams; what it
-/// accepted must give the same bytes when it is saved again, and must continue. `Kind`: Estimator, params(), saved()
-/// and go_on().
+/// Loads a saved state with edits. Throws BadInput if the estimator rejects the state by a Status, or its parameters by
+/// InvalidParams. An accepted state must give the same bytes when it is saved again, and must continue. `Kind` has
+/// Estimator, params(), saved() and go_on().
 template <class Kind>
 void load_spoiled(const Edits& edits) {
   const auto refuse = [](const Status& status) {

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# What python/make_wheel refuses, before it makes or deletes anything: status 2, one line that says why.
+# Tests that python/make_wheel rejects invalid arguments before it writes or deletes anything: status 2 and one line with the reason.
 #   make_wheel_refusals.sh SOURCES
 set -euo pipefail
 export LC_ALL=C  # mkdir's words
@@ -26,9 +26,9 @@ interpreter() {
 
 for wrong in "" --help "a b c"; do
   [ -n "$wrong" ] && read -ra arguments <<<"$wrong" || arguments=("")
-  expects 'Source distribution and wheel' "${arguments[@]}"
+  expects 'Builds the source distribution' "${arguments[@]}"
 done
-expects 'Source distribution and wheel'
+expects 'Builds the source distribution'
 mkdir -p foreign/dist
 touch foreign/dist/precious file
 expects 'foreign is not empty and not of an earlier make_wheel' foreign
@@ -46,10 +46,10 @@ mkdir -p earlier/tools/bin
 touch earlier/.make_wheel
 interpreter earlier/tools/bin/python 99
 expects 'for another Python (Python 3.99' earlier
-# nothing was made where it refused
+# a rejected call wrote nothing
 [ ! -e new ] && [ "$(ls -A earlier)" = $'.make_wheel\ntools' ]
 
-# and it is no refusal of everything: an empty folder, or one of its own, gets as far as the tools, which this interpreter lacks
+# negative control: an empty folder or a folder of an earlier call passes the checks, and then this interpreter fails
 mkdir empty
 printf '#!/bin/sh\ncase "$2" in *version_info*) echo "Python 3.12" ;; venv) exit 7 ;; esac\n' >stops
 chmod +x stops

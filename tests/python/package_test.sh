@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds the package of python/ as it is given away and tests it in an environment of its own.
+# Builds the package of python/ as for distribution and tests it in a separate environment.
 #   package_test.sh TREE BUILD    BUILD has bin/tumble; the environment and what is compiled stay in BUILD/python
 set -euo pipefail
 tree=$1 build=$2 work=$2/python
