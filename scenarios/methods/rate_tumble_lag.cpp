@@ -131,7 +131,7 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
   const bool at_prior = !(state.rig_covariance.topLeftCorner<3, 3>().trace() < before.topLeftCorner<3, 3>().trace());
   estimate.health["calibration_at_prior"] = at_prior ? 1.0 : 0.0;
   estimate.health["rig_resets"] = static_cast<double>(state.rig_resets);
-  estimate.health["device_unlike"] = state.device.front().open.unlike;
+  estimate.health["device_unlike"] = state.device.front().posterior.unlike;
   const KnownSensorErrors device = stream.sensor_errors(state);
   constexpr int kDelay = SensorErrors::kDelay;
   estimate.health["accel_delay_s"] = device.errors.accel_delay_s;

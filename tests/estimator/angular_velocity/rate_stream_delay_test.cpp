@@ -135,7 +135,7 @@ TEST(RateStreamDelay, IsThatOfTheBatch) {
     EXPECT_NEAR(errors.errors.accel_delay_s, 0.01, 3.0 * sigma_s) << seed;
     EXPECT_NEAR(errors.errors.accel_delay_s, report.sensor_errors.errors.accel_delay_s, 3.0 * sigma_s) << seed;
     EXPECT_LT(sigma_s, 2e-3);
-    EXPECT_EQ(state.device.front().open.unlike, 1.0);
+    EXPECT_EQ(state.device.front().posterior.unlike, 1.0);
   }
   EXPECT_GE(found, 4);
 }
