@@ -37,7 +37,7 @@ class Keywords {
   /// @param of  name of the class, for messages
   Keywords(const char* of, const nb::kwargs& given) : of_(of), given_(given) {}
 
-  /// Returns the value given for a name, or an invalid object if there is none. The name becomes known.
+  /// Returns the value given for a name, or an invalid object if no value is given. The name becomes known.
   nb::object take(const std::string& name);
   /// Same as take(), but raises TumbleError `empty` if no value is given.
   nb::object need(const std::string& name);

@@ -279,7 +279,7 @@ void bind_tumbling(nb::module_& m) {
           [](BoundTumblingOdometry& self) {
             return self.run([](TumblingOdometry& odometry) { return odometry.take(); });
           },
-          "Returns the next processed sweep, in order; None if there is none yet.")
+          "Returns the next processed sweep, in order, or None if no sweep is ready.")
       .def(
           "take_all",
           [](BoundTumblingOdometry& self) {

@@ -22,7 +22,7 @@ def least(run, runs):
 
 
 def of_program(recording, method, runs, folder):
-    """Measures the program by sweeps over the recording, each of which stores the time of its estimate."""
+    """Measures the program by sweeps over the recording; each sweep stores the time of its estimate."""
     taken = []
     kind = method.split("/")[0]
     for k in range(runs):

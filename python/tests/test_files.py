@@ -99,7 +99,7 @@ def test_a_reference_that_knows_poses_alone(tmp_path):
 
 
 def test_a_series(tmp_path):
-    """A sensor that is neither IMU nor lidar: quantities by name, no group if there are none, errors for invalid ones."""
+    """A sensor that is neither IMU nor lidar: quantities by name, no group without a quantity, errors for invalid ones."""
     recording = small()
     barometer = recording.series[0]
     assert len(barometer) == 3 and barometer["pressure_pa"] is barometer.values["pressure_pa"]

@@ -134,7 +134,7 @@ def scores(frame: Any, metric: str, unit: str = "") -> Any:
 
 
 def _values(ended: Any, rows: Any) -> Array:
-    """Returns one value per draw; infinite if there is none or the method failed."""
+    """Returns one value per draw; infinite without a value or if the method failed."""
     found = {(row.scenario, row.seed): row.value for row in rows.itertuples() if row.status == "ok" and row.value is not None}
     out = np.array([found.get((row.scenario, row.seed), np.inf) for row in ended.itertuples()], float)
     return np.where(np.isnan(out), np.inf, out)

@@ -164,14 +164,14 @@ class Recording:
 
     @property
     def sweeps(self) -> Lidar:
-        """The first lidar. Raises TumbleError `empty` if there is none."""
+        """The first lidar. Raises TumbleError `empty` if the recording has no lidar."""
         if not self.lidars:
             raise TumbleError("lidars is empty, must be at least one", "empty", "lidars", 0, 1)
         return self.lidars[0]
 
     @property
     def first_imu(self) -> Imu:
-        """The primary IMU. Raises TumbleError `empty` if there is none."""
+        """The primary IMU. Raises TumbleError `empty` if the recording has no IMU."""
         if not self.imus:
             raise TumbleError("imus is empty, must be at least one", "empty", "imus", 0, 1)
         return self.imus[0]
