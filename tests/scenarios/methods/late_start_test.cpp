@@ -52,7 +52,7 @@ void deskew(sim::LidarRecord& lidar) {
   for (std::uint32_t& offset_ns : lidar.offset_ns) offset_ns = 0;
 }
 
-Estimate run(const std::string& name, const sim::Recording& recording) {
+Estimate run_late(const std::string& name, const sim::Recording& recording) {
   return find_methods(name).at(0)->run(recording.sensors, {}, {&recording.truth});
 }
 
@@ -76,7 +76,7 @@ TEST_P(LateLidar, EveryMethodOverTheMapperMaps) {
   start_lidar_at(late_s, recording.sensors.lidars.front());
   for (const char* const name : kOverTheMapper) {
     SCOPED_TRACE(name);
-    const Estimate estimate = run(name, recording);
+    const Estimate estimate = run_late(name, recording);
     ASSERT_TRUE(estimate.status.ok()) << estimate.status.message();
     ASSERT_FALSE(estimate.poses.empty());
     EXPECT_GT(estimate.map.size(), 1000u);
@@ -93,7 +93,7 @@ TEST(LateImu, SweepsBeforeItAreLeftOutAndCounted) {
   start_imu_at(2.55, recording.sensors.imus.front());
   for (const char* const name : {"slam/tumble", "slam/tumble_lag", "slam/tumble_live"}) {
     SCOPED_TRACE(name);
-    const Estimate estimate = run(name, recording);
+    const Estimate estimate = run_late(name, recording);
     ASSERT_TRUE(estimate.status.ok()) << estimate.status.message();
     EXPECT_LT(score_of("ate_m", estimate, recording), 0.05);
     double left_out = 0.0;
@@ -111,7 +111,7 @@ TEST(LateImu, ADeskewedSweepBeforeItIsLeftOut) {
   deskew(recording.sensors.lidars.front());
   for (const char* const name : {"slam/tumble", "slam/tumble_lag", "slam/icp", "slam/published"}) {
     SCOPED_TRACE(name);
-    EXPECT_TRUE(run(name, recording).status.ok()) << run(name, recording).status.message();
+    EXPECT_TRUE(run_late(name, recording).status.ok()) << run_late(name, recording).status.message();
   }
 }
 
