@@ -159,10 +159,10 @@ std::vector<ImuSample> at_rest(double unit_m_s2, double seconds) {
 constexpr const char* kUnit = "accelerometer unit: specific force at rest as a share of gravity";
 constexpr double kOneG = 9.80665;
 
-TEST(AccelerometerUnit, IsDoubtedByTumblingOdometryWithinTwoSeconds) {
+TEST(AccelerometerUnit, IsReportedByTumblingOdometryWithinTwoSeconds) {
   for (const double unit_m_s2 : {kOneG, kOneG / 1.011, 1e-3 * kOneG, 0.01}) {
     SCOPED_TRACE(unit_m_s2);
-    TumblingOdometry odometry(test::params_of({}));
+    TumblingOdometry odometry(test::params_of(test::ThrownBody()));
     for (const ImuSample& sample : at_rest(unit_m_s2, 2.0)) ASSERT_TRUE(odometry.add_imu(sample).ok());
     const Status status = odometry.health();
     EXPECT_EQ(status.trouble, Trouble::out_of_range);
@@ -172,7 +172,7 @@ TEST(AccelerometerUnit, IsDoubtedByTumblingOdometryWithinTwoSeconds) {
   }
 }
 
-TEST(AccelerometerUnit, IsDoubtedByRollingOdometryWithinTwoSeconds) {
+TEST(AccelerometerUnit, IsReportedByRollingOdometryWithinTwoSeconds) {
   for (const double unit_m_s2 : {kOneG, 1e-3 * kOneG, 0.01}) {
     SCOPED_TRACE(unit_m_s2);
     RollingOdometry::Params params;
@@ -186,12 +186,12 @@ TEST(AccelerometerUnit, IsDoubtedByRollingOdometryWithinTwoSeconds) {
   }
 }
 
-TEST(AccelerometerUnit, IsNotDoubtedOfASoundOneOrInMotion) {
-  TumblingOdometry at_rest_odometry(test::params_of({})), thrown(test::params_of({}));
+TEST(AccelerometerUnit, IsNotReportedIfRightOrInMotion) {
+  TumblingOdometry at_rest_odometry(test::params_of(test::ThrownBody())), thrown(test::params_of(test::ThrownBody()));
   for (const double scale : {0.9, 1.0, 1.1}) {
     for (const ImuSample& sample : at_rest(scale, 3.0)) (void)at_rest_odometry.add_imu(sample);
     EXPECT_TRUE(at_rest_odometry.health().ok());
-    at_rest_odometry = TumblingOdometry(test::params_of({}));
+    at_rest_odometry = TumblingOdometry(test::params_of(test::ThrownBody()));
   }
   for (const ImuSample& sample : ThrownBody().imu()) {
     ASSERT_TRUE(thrown.add_imu(sample).ok());
