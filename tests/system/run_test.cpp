@@ -263,7 +263,7 @@ TEST(FirstRun, AScenarioAloneDoesSomethingGood) {
   EXPECT_THAT(methods, ::testing::ElementsAre("integrate", "tumble", "rolling", "tumble"));
   for (const char* file : {"recording.h5", "snapshots/scene.png", "estimates/position-tumble/estimate.json"})
     EXPECT_TRUE(fs::exists(folder / "roll" / file)) << file;
-  EXPECT_THAT(ended.err, HasSubstr("left in roll/"));
+  EXPECT_THAT(ended.err, HasSubstr("results written to roll/"));
   EXPECT_THAT(ended.err, HasSubstr("tumble sweep roll --seeds 1..8"));
   // again: nothing is mixed with what is there
   const Ended again = run();
