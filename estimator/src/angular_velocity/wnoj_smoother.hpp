@@ -29,7 +29,7 @@ class WnojSmoother {
   struct Params {
     double jerk_psd_rad2_s5 = 1e6;  ///< larger values follow the readings more closely
 
-    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
+    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.jerk_psd_rad2_s5,

@@ -18,7 +18,7 @@ class Strapdown {
   struct Params {
     double gap_max_s = 1.0;  ///< a longer time between samples is a `gap`
 
-    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
+    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4,

@@ -45,7 +45,7 @@ struct VqfParams {
   using Expert = VqfExpertParams;
   Expert expert = {};  ///< parameters that few users change
 
-  /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
+  /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.tau_s, {"tau_s", "s", 1e-3, 1e4,

@@ -41,7 +41,7 @@ class SampleClock {
     double jitter_min = 0.005;  ///< standard deviation of the stamps, in periods
     double jitter_max = 0.15;
 
-    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
+    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.memory_s, {"memory_s", "s", 0.01, 1e3, "time over which the sensor's clock is assumed to be steady"});
@@ -82,7 +82,7 @@ class SampleClock {
   /// Returns whether push() currently corrects stamps.
   bool corrects_stamps(const State& state) const;
 
-  /// Checks the invariants of a state that was loaded from outside. Returns the first violation.
+  /// Checks the invariants of a state that was loaded from a file. Returns the first violated invariant.
   static Status check_state(const State& state);
 
  private:

@@ -76,7 +76,7 @@ struct OdometryParams {
   using Expert = OdometryExpertParams;
   Expert expert;  ///< parameters that few users change
 
-  /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
+  /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.time_offset_s, {"time_offset_s", "s", -1.0, 1.0, "clock of the IMU minus clock of the lidar"});

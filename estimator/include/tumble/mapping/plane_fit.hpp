@@ -33,7 +33,7 @@ struct PlaneBounds {
   /// of the ring instead of the surface. Examples are a ring around a pillar or through a room's corner.
   int off_line_min = 2;
 
-  /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
+  /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.neighbours_min, {"neighbours_min", "1", 3, 32, "least number of map points for a plane"});

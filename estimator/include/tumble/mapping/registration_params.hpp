@@ -64,7 +64,7 @@ struct RegistrationParams {
   using Expert = RegistrationExpertParams;
   Expert expert = {};  ///< parameters that few users change
 
-  /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
+  /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.neighbours, {"neighbours", "1", 3, 32, "number of map points per plane fit", Rank::first});

@@ -40,7 +40,7 @@ class VoxelMap {
     double voxel_m = 0.5;    ///< edge of a cell; a few times the spacing searches fastest
     double spacing_m = 0.1;  ///< at most one point is kept per cube of this edge; 0 keeps all
 
-    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
+    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.voxel_m, {"voxel_m", "m", 0.01, 100.0, "edge of a cell; search is fastest at a few times the spacing"});

@@ -16,7 +16,7 @@ struct ImuSheet {
   double gyro_noise_rad_s_sqrt_hz = 5.236e-4;
   double accel_noise_m_s2_sqrt_hz = 5.9e-4;
 
-  /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
+  /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.rate_hz, {"rate_hz", "Hz", 1.0, 1e5, "samples per second", Rank::first});

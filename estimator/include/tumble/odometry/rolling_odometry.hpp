@@ -54,7 +54,7 @@ class RollingOdometry {
       SampleClock::Params stamps;  ///< correction of stamps that a host assigned
     } expert;
 
-    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
+    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.radius_m, {"radius_m", "m", 1e-3, 100.0, "radius of the sphere", Rank::first});

@@ -75,7 +75,7 @@ struct TumblingParams {
     return out;
   }
 
-  /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
+  /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit.group("imu_", p.imu);

@@ -107,7 +107,7 @@ class RollingFilter {
   /// Returns the estimate at the last sample. Only the covariance of the position is available; the rest is zero.
   static RollingEstimate estimate(const State& state);
 
-  /// Checks the invariants of a state that was loaded from outside. Returns the first violation.
+  /// Checks the invariants of a state that was loaded from a file. Returns the first violated invariant.
   static Status check_state(const State& state);
 
  private:

@@ -44,7 +44,7 @@ class RollingSmoother {
     /// standard deviation. Together with a prior on the radius, it determines the radius. 0: unknown.
     double known_distance_m = 0.0, known_distance_sigma_m = 5e-3;
 
-    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
+    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.filter);
@@ -119,7 +119,7 @@ class RollingSmoother {
   /// Same, with externally known modes, one per sample of a whole run that `state` processed with kWholeRun.
   void finish(std::span<const RollingMode> known, State& state, const Take& take) const;
 
-  /// Checks the invariants of a state that was loaded from outside. Returns the first violation. Rejects a state with a
+  /// Checks the invariants of a state that was loaded from a file. Returns the first violated invariant. Rejects a state with a
   /// lag whose samples exceed four times rate_max_hz.
   Status check_state(const State& state) const;
 

@@ -47,7 +47,7 @@ class FlightSense {
     double thrown_evidence_ratio = 2.0;       ///< same for a body that is certainly not hand-held
     double gap_max_s = 0.1;                   ///< a longer gap resets the current run
 
-    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
+    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.lever_arm_m,

@@ -32,7 +32,7 @@ class FrozenAxes {
     double rail_stationary_s = 1.5;                         ///< rest on all other axes while one is saturated
     double rail_repeated_s = 5.0;  ///< saturated repetition while the body moves: flights last a third of this
 
-    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
+    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.gyro_range_rad_s,

@@ -26,7 +26,7 @@ class RailWatch {
     ClippingFinder::Params clipping;
     int readings_max = 1024;
 
-    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
+    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.clipping);

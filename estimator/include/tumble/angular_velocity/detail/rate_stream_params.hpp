@@ -37,7 +37,7 @@ struct RateStreamParams {
   /// Returns the duration of 4096 samples, the maximum of a window, and at most 10 s.
   double lag_max_s() const { return std::min(10.0, 4096.0 * period_s); }
 
-  /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
+  /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit.group("", p.model);

@@ -21,7 +21,7 @@ class CarriedLive {
     CarriedStream::Params stream;
     RailWatch::Params rails;
 
-    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
+    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.stream);
@@ -49,7 +49,7 @@ class CarriedLive {
   /// Appends the rates of the samples that are not yet reported to `out`, oldest first.
   void flush(const State& state, std::vector<RateState>& out) const { stream_.flush(state.stream, out); }
 
-  /// Checks the invariants of a state that was loaded from outside. Returns the first violation.
+  /// Checks the invariants of a state that was loaded from a file. Returns the first violated invariant.
   Status check_state(const State& state) const;
 
  private:

@@ -41,7 +41,7 @@ class RestGravity {
     double gap_max_s = 0.1;           ///< longer gaps separate rests: an impact may change the rate by several rad/s
     double accel_range_m_s2 = 0.0;    ///< stated by the device; 0: not stated
 
-    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
+    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-12, 100.0, "strength of gravity"});

@@ -43,7 +43,7 @@ class UnitRails {
   /// Updates the state with raw samples. O(1), sometimes a search; no allocation.
   void observe(std::span<const ImuSample> samples, State& state) const;
 
-  /// Checks the invariants of a state that was loaded from outside. Returns the first violation.
+  /// Checks the invariants of a state that was loaded from a file. Returns the first violated invariant.
   Status check_state(const State& state) const;
 
  private:
