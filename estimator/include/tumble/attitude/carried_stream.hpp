@@ -72,7 +72,7 @@ class CarriedStream {
     carried::Constants constants;
     carried::System::BorderMatrix constants_covariance = carried::System::BorderMatrix::Zero();
     // Prior on the oldest node and the constants from everything that left the window. The prior is linearised at
-    // `about`.
+    // `prior_node` and `prior_constants`.
     carried::System::Block prior;
     carried::System::Corner prior_corner;
     carried::Node prior_node;

@@ -10,9 +10,9 @@
 
 namespace tumble {
 
-/// Integrates the gyro to an attitude: q <- q Exp(w dt), from a start levelled by the accelerometer.
-/// Exact for a rate that is constant in body axes over each sample. No bias estimate and no correction: the attitude
-/// drifts.
+/// Integrates the gyro to an attitude: q <- q Exp(w dt), from a start levelled by the accelerometer. The integration is
+/// exact for a rate that is constant in body axes over each sample. Strapdown estimates no bias and makes no
+/// correction, so the attitude drifts.
 class Strapdown {
  public:
   struct Params {

@@ -13,7 +13,7 @@ namespace tumble {
 /// Parameters for which the authors use one value for all devices.
 struct VqfExpertParams {
   double bias_sigma_motion_rad_s = 1.7453e-3;  ///< 0.1 deg/s: limit of the bias uncertainty in motion
-  double bias_sigma_rest_rad_s = 5.2360e-4;    ///< 0.03 deg/s: the same at rest
+  double bias_sigma_rest_rad_s = 5.2360e-4;    ///< 0.03 deg/s: limit of the bias uncertainty at rest
   double vertical_forgetting = 1e-4;           ///< decay of the unobservable vertical bias to zero
   double rest_tau_s = 0.5;                     ///< of the rest detector's low-pass
 
@@ -71,10 +71,10 @@ struct VqfParams {
 
 /// Estimates attitude by the versatile quaternion filter with gyro and accelerometer (D. Laidig, T. Seel, Information
 /// Fusion 91, 2023, "VQF"). The gyro alone rotates the specific force into a nearly inertial frame N. A low-pass in N
-/// averages out the acceleration of bounded motion. The result levels N in W by the smallest rotation. A Kalman filter
-/// of three states estimates the gyro's bias: at rest from the low-passed gyro, in motion from the rate of the
-/// levelling. Not modelled: heading reference, bias about the vertical in motion, adaptation to the magnitude of the
-/// acceleration.
+/// averages out the acceleration of bounded motion. The averaged force levels N in W by the smallest rotation. A Kalman
+/// filter of three states estimates the gyro's bias: at rest from the low-passed gyro, in motion from the rate of the
+/// levelling. Vqf does not model a heading reference, bias about the vertical in motion, or adaptation to the magnitude
+/// of the acceleration.
 class Vqf {
  public:
   using Params = VqfParams;
@@ -98,7 +98,7 @@ class Vqf {
 
   explicit Vqf(const Params& params);
 
-  /// Processes a sample. The first sample levels the attitude (yaw 0); each later one is integrated and corrects the
+  /// Processes a sample. The first sample levels the attitude (yaw 0). Each later sample is integrated and corrects the
   /// state. With a force below 1e-6 m/s^2, only the gyro is integrated. On error the state is unchanged. O(1), no
   /// allocation.
   Status step(const ImuSample& sample, State& state) const;

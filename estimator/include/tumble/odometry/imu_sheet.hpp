@@ -5,10 +5,9 @@
 
 namespace tumble {
 
-/// Data sheet of an IMU. A range of 0 means not stated. Saturation levels are detected from the readings in either
-/// case.
-/// Data sheets state a gyro's range in degrees per second, 250 to 4000. A value above 100 rad/s (5730 deg/s) is
-/// rejected because it was probably not converted.
+/// Data sheet of an IMU. A range of 0 means that no range is stated. Saturation levels are detected from the readings,
+/// with or without a stated range. Data sheets state a gyro's range in degrees per second, 250 to 4000. A value above
+/// 100 rad/s (5730 deg/s) is rejected because the value was probably not converted.
 struct ImuSheet {
   double rate_hz = 100.0;
   double gyro_range_rad_s = 0.0;
@@ -31,12 +30,12 @@ struct ImuSheet {
   }
 };
 
-/// Returns the largest reading that is certainly unsaturated, for the range that the device states. Returns infinity if
-/// no range is stated (0). The margin of 2 % covers the scale correction that a device's calibration applies to its
-/// saturation level.
+/// Returns the largest reading that is certainly unsaturated, for the range that the device states. If no range is
+/// stated (0), the result is infinity. The margin of 2 % covers the scale correction that a device's calibration
+/// applies to its saturation level.
 double unsaturated_range(double stated_range);
 
-/// Data sheets of devices that the harness models. Each number's source: models/sensors/NAME.yaml.
+/// Data sheets of devices that the harness models. models/sensors/NAME.yaml states the source of each number.
 namespace sheets {
 
 /// Xsens MTi-30, fifth generation (20 g); stated gyro range 450 deg/s.

@@ -5,7 +5,7 @@
 
 namespace tumble {
 
-/// Data sheet of a lidar. Returns out of its range are dropped.
+/// Data sheet of a lidar. Returns outside of the lidar's range are dropped.
 struct LidarSheet {
   double range_min_m = 0.3;
   double range_max_m = 100.0;
@@ -18,7 +18,7 @@ struct LidarSheet {
   }
 };
 
-/// Data sheets of devices that the harness models. Each number's source: models/sensors/NAME.yaml.
+/// Data sheets of devices that the harness models. models/sensors/NAME.yaml states the source of each number.
 namespace sheets {
 
 /// RoboSense RS-16.

@@ -16,24 +16,25 @@ namespace tumble {
 /// Estimates the pose of a rolling sphere from one IMU, live, through slip, slide and bumps, on a floor that is level
 /// or sloped.
 ///
-/// While the sphere grips, the rolling constraint is a velocity measurement. This measurement calibrates tilt, biases,
-/// scale, misalignment, delay and lever arm of the IMU, so that the seconds without grip can be integrated. The mode of
-/// contact is estimated: each hypothesis about the past modes has its own error-state Kalman filter until later data
-/// decide between them. Each filter contains the position. Grip after an event therefore also corrects the displacement
-/// during the event. Earlier estimates are not revised (RollingSmoother does this).
+/// While the sphere grips, the rolling constraint is a velocity measurement. This velocity measurement calibrates tilt,
+/// biases, scale, misalignment, delay and lever arm of the IMU, so that the seconds without grip can be integrated. The
+/// mode of contact is estimated. Each hypothesis about the past modes has its own error-state Kalman filter until later
+/// data decide between the hypotheses. Each filter contains the position. Grip after an event therefore also corrects
+/// the displacement during the event. Earlier estimates are not revised (RollingSmoother revises them).
 ///
 /// While the sphere is at rest, the reported position is constant. Corrections of the earlier path from measurements at
-/// rest are applied when motion resumes. Corrections are applied immediately if another hypothesis becomes the most
+/// rest are applied when motion resumes. Corrections are applied immediately if a different hypothesis becomes the most
 /// probable.
 ///
 /// Readings of a fast IMU are averaged to RollingExpertParams::reading_s before they are processed. Between two
-/// averages the estimate is extrapolated. Over a gap of up to gap_max_s the rate is interpolated and the force is
-/// unknown; the covariance accounts for both. A start in motion is detected and has a larger initial uncertainty.
+/// averages the estimate is extrapolated. Over a gap of up to gap_max_s, the filter interpolates the rate and assumes
+/// an unknown force. The covariance accounts for the interpolated rate and the unknown force. A start in motion is
+/// detected and has a larger initial uncertainty.
 ///
 /// While the gyro is saturated, the attitude is uncertain and the rolling constraint is not usable. Only the covariance
 /// then describes the position's error. The state needs 430 KiB.
 ///
-/// Not modelled: a floor that moves or yields, moving platforms. The heading drifts.
+/// RollingFilter does not model a floor that moves or yields, or moving platforms. The heading drifts.
 class RollingFilter {
  public:
   static constexpr int kStates = 40;
@@ -42,7 +43,7 @@ class RollingFilter {
   using Vector = Eigen::Matrix<double, kStates, 1>;
   using Covariance = Eigen::Matrix<double, kStates, kStates>;
 
-  /// One assumption about the sequence of modes, with its estimate.
+  /// One assumption about the sequence of contact modes, with the estimate that follows from it.
   struct Hypothesis {
     Vector x = Vector::Zero();  ///< errors: attitude (W), velocity and position of the IMU, constants
     Covariance P = Covariance::Zero();
@@ -55,7 +56,7 @@ class RollingFilter {
   };
 
   struct State {
-    // The estimate at the last sample, by the most probable hypothesis.
+    // Estimate at the last sample, by the most probable hypothesis.
     Eigen::Vector3d p_WG_m = Eigen::Vector3d::Zero();
     Eigen::Vector3d v_WG_m_s = Eigen::Vector3d::Zero();
     Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
@@ -97,14 +98,16 @@ class RollingFilter {
     return step(sample, state, [](const State&) {});
   }
 
-  /// Same, and calls `closed(state)` after each completed node. A sample that ends a gap completes several nodes.
+  /// Processes a sample and calls `closed(state)` after each completed node. A sample that ends a gap completes several
+  /// nodes.
   template <typename Closed>
   Status step(const ImuSample& sample, State& state, Closed closed) const {
     return step_with(sample, state,
                      Listener{&closed, [](void* to, const State& at) { (*static_cast<Closed*>(to))(at); }});
   }
 
-  /// Returns the estimate at the last sample. Only the covariance of the position is available; the rest is zero.
+  /// Returns the estimate at the last sample. Only the position block of the covariance is available; all other entries
+  /// are zero.
   static RollingEstimate estimate(const State& state);
 
   /// Checks the invariants of a state that was loaded from a file. Returns the first violated invariant.
