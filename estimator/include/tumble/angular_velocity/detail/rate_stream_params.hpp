@@ -14,9 +14,9 @@ namespace tumble {
 
 /// Parameters of RateStream.
 struct RateStreamParams {
-  /// Two priors are narrower than by default because a stream reports before the data outweigh them. The bias of 2 mg
-  /// is that after a factory calibration. The inertia is that of a box: 3 : 2 : 2 is at one standard deviation, a disc
-  /// at 1.8, a rod at 3.6.
+  /// Parameters of the rate model. Two priors are narrower than by default because a stream reports before the data
+  /// outweigh the priors. The bias of 2 mg is that after a factory calibration. The inertia is that of a box: moments
+  /// of 3 : 2 : 2 are at one standard deviation, a disc at 1.8, a rod at 3.6.
   RateModelParams model = {.accel_bias_sigma_m_s2 = 0.02, .inertia_sigma = 0.15};
   RailDetector::Params rails = {};
   double period_s = 0.01;                    ///< nominal time between samples
@@ -27,8 +27,8 @@ struct RateStreamParams {
   double step_s = 0.005;                     ///< minimum time between Gauss-Newton steps; 0: with each sample
 
   /// Sensor errors from an earlier run, used unchanged instead of model.errors. If empty, readings are corrected by
-  /// model.errors, and the remaining uncertainty is estimated from the readings. Shared because Params are copied often
-  /// and few contain it.
+  /// model.errors, and the remaining uncertainty is estimated from the readings. The pointer is shared because Params
+  /// are copied often and few contain calibrated errors.
   std::shared_ptr<const KnownSensorErrors> calibrated_errors;
 
   using Expert = RateStreamExpertParams;

@@ -12,9 +12,9 @@
 
 namespace tumble {
 
-/// Estimates the angular velocity of a body that is known to be hand-held, from a single IMU. The class detects
-/// saturation levels for CarriedStream, which does not. After each detection the window is processed again. Not
-/// modelled: flight and contact, which RegimeStream distinguishes.
+/// Estimates the angular velocity of a body that is known to be hand-held, from a single IMU. CarriedLive detects
+/// saturation levels, which CarriedStream needs as input. After each detection the window is processed again.
+/// CarriedLive does not model flight and contact, which RegimeStream distinguishes from hand-held motion.
 class CarriedLive {
  public:
   struct Params {
@@ -42,8 +42,8 @@ class CarriedLive {
   /// Returns the state before the first sample.
   State start() const;
 
-  /// Processes one sample. `out`: rate of the sample that is `lag_s` old; empty while the window fills. On error
-  /// (`non_finite`, `time_order`, `gap`) the saturation levels are not updated and `out` is empty.
+  /// Processes one sample. `out` is the rate of the sample that is `lag_s` old, and is empty while the window fills. On
+  /// error (`non_finite`, `time_order`, `gap`) the saturation levels are not updated and `out` is empty.
   Status push(const ImuSample& sample, State& state, std::optional<RateState>& out) const;
 
   /// Appends the rates of the samples that are not yet reported to `out`, oldest first.

@@ -11,12 +11,13 @@ namespace tumble {
 /// Estimates the errors of several accelerometers on one rigid body from their differences.
 ///
 /// In fast rotation, units at different positions measure large forces that cancel in their mean. The effects of scale
-/// and misalignment do not cancel. For each unit, a Kalman filter estimates bias, scale and misalignment, and position
-/// error: f_k = c + A p_k + b_k + M_k f_k + A dp_k, A = [a]x + [w]x[w]x. The measurement is each unit's difference from
-/// the mean of all, averaged over kSpan_s. The model is linear, so averaging only loses rotation within the span.
-/// Errors common to all units do not show in the differences and remain about zero.
+/// and misalignment do not cancel. For each unit k, a Kalman filter estimates bias b_k, scale and misalignment M_k, and
+/// position error dp_k. The model is f_k = c + A p_k + b_k + M_k f_k + A dp_k with A = [a]x + [w]x[w]x. Here c is the
+/// common force, p_k the position, w the rate and a the angular acceleration. The measurement is each unit's difference
+/// from the mean of all units, averaged over kSpan_s. The model is linear, so averaging only loses rotation within the
+/// span. Errors common to all units do not appear in the differences and remain about zero.
 ///
-/// Not modelled: errors that change, a body that bends.
+/// ForceErrors does not model errors that change, or a body that bends.
 class ForceErrors {
  public:
   static constexpr int kUnits = 4;
@@ -39,7 +40,7 @@ class ForceErrors {
   struct State {
     Vector x = Vector::Zero();
     Covariance P = Covariance::Zero();
-    // sums over the span
+    // Sums over the current averaging span.
     Eigen::Matrix<double, 3, kUnits> difference_m_s2 = Eigen::Matrix<double, 3, kUnits>::Zero();
     Eigen::Matrix<double, 3, kUnits> force_m_s2 = Eigen::Matrix<double, 3, kUnits>::Zero();
     Eigen::Matrix3d by_position = Eigen::Matrix3d::Zero();
@@ -54,7 +55,7 @@ class ForceErrors {
   explicit ForceErrors(const Params& params);
 
   /// Processes `forces_m_s2` of all units in common axes C, measured over `dt_s`, with rate and angular acceleration at
-  /// their time. Updates the filter once per kSpan_s; O((kPerUnit count)^2), no allocation.
+  /// their time. Updates the filter one time per kSpan_s; O((kPerUnit count)^2), no allocation.
   void calibrate(std::span<const Eigen::Vector3d> forces_m_s2, const Eigen::Vector3d& rate_rad_s,
                  const Eigen::Vector3d& acceleration_rad_s2, double dt_s, State& state) const;
 

@@ -13,23 +13,26 @@
 namespace tumble {
 
 /// Checks the plausibility of rates by gravity at rests. The force at rest must have the magnitude g. The rates between
-/// two rests must rotate its direction at the first to that at the second, u_1 = R^T u_0, also through flight, impacts
-/// and clipping. A gyro with wrong sign, scale or axis labels gives an arbitrary angle. After a tumble of several
-/// revolutions, this angle is below `miss_least_rad` in one of fifty cases. The magnitude reveals an accelerometer with
-/// another unit. The rates come from an estimate, whose covariance widens the bound.
+/// two rests rotate the sensor by R. The direction u_0 of the force at the earlier rest must become that at the later
+/// rest: u_1 = R^T u_0. This relation also holds through flight, impacts and clipping. A gyro with wrong sign, scale or
+/// axis labels gives an arbitrary angle between u_1 and R^T u_0. After a tumble of several revolutions, an arbitrary
+/// angle is below `miss_least_rad` in one of fifty cases. The magnitude of the force reveals an accelerometer with
+/// another unit. The rates come from an estimate, whose covariance widens the tolerance.
 ///
-/// In addition, the velocity at a rest is zero. The forces of the span, rotated back by the rates, therefore integrate
-/// to gravity alone. Wrong rates that give the correct final direction by chance rarely satisfy this.
+/// In addition, the velocity at a rest is zero. The forces between two rests, rotated back by the rates, therefore
+/// integrate to gravity alone. Wrong rates that give the correct final direction by chance rarely give this integral.
 ///
-/// The equations are imu_merge.md (I23), (I24), (I25), (I26). Not detected: a body that returns to its initial attitude
-/// (a pendulum), rotation about the vertical, an accelerometer with all axes flipped, less than two rests. A fall of a
-/// second without rotation and without any rest is mistaken for a force without gravity. A rest on the ground and
-/// another in a steadily moving vehicle are mistaken for wrong rates.
+/// The equations are imu_merge.md (I23), (I24), (I25), (I26). RestGravity does not detect wrong rates if the body
+/// returns to its initial attitude (a pendulum), rotates about the vertical, or rests less than twice. An accelerometer
+/// with all axes flipped is not detected either. A fall of a second without rotation and without any rest is mistaken
+/// for a force without gravity. A rest on the ground and another in a steadily moving vehicle are mistaken for wrong
+/// rates.
 class RestGravity {
  public:
   struct Params {
     double gravity_m_s2 = 9.80665;
-    /// The bounds hold for any unit of the force; a gyro's bias does not count as motion.
+    /// Parameters of rest detection. The limits hold for any unit of the force, and a gyro's bias does not count as
+    /// motion.
     RestDetector::Params rests = {.rate_max_rad_s = 0.15, .force_min_m_s2 = 0.3};
     double size_share_max = 0.15;     ///< maximum relative difference from gravity at rest: 80 mg of bias, 3 % of scale
     double miss_deviations = 5.0;     ///< allowed number of the rates' standard deviations over the span; a chord, and
@@ -62,7 +65,7 @@ class RestGravity {
             {"accel_range_m_s2", "m/s^2", 0.0, kUnbounded, "range stated by the device; 0: not stated"});
     }
   };
-  /// What the size of the force at rest needs.
+  /// State for the magnitude of the force at rest.
   struct Size {
     RestDetector::State rest, weightless, heavy;
     double rest_s = 0.0, force_sum_m = 0.0;  ///< of all rests, and of force by time
@@ -89,16 +92,17 @@ class RestGravity {
   /// Processes a sample and its estimated rate. Ignores samples that are not finite or out of order. O(1), no
   /// allocation.
   void step(const ImuSample& sample, const RateState& rate, State& state) const;
-  /// The same without rates, for the size alone.
+  /// Processes a sample without rates, for the magnitude of the force at rest alone.
   void step(const ImuSample& sample, Size& state) const { (void)follow(sample, state); }
 
-  /// Returns the mean magnitude of the force at rest as a fraction of gravity. Returns 0 if everything that rested for
-  /// a second was without force, and 1 without any rest.
+  /// Returns the mean magnitude of the force at rest as a fraction of gravity. Returns 0 if every rest of a second was
+  /// without force, and 1 without any rest.
   double size_share(const Size& state) const;
-  /// Returns `out_of_range` if this fraction differs from 1. Names the unit as suspect beyond a factor of three.
+  /// Returns `out_of_range` if size_share() differs from 1. Beyond a factor of three, the message reports the unit of
+  /// the force as suspect.
   Status size_verdict(const Size& state) const;
-  /// Same, and also returns `out_of_range` if the rates of the worst span between two rests miss gravity or leave a
-  /// velocity beyond the bounds.
+  /// Returns the error of size_verdict(). Also returns `out_of_range` if the rates of the worst span between two rests
+  /// miss gravity or leave a velocity beyond the limits.
   Status verdict(const State& state) const;
 
  private:

@@ -21,13 +21,13 @@ class Localisation {
   /// `matched_m`: MatchingParams::distance_m of the mapper.
   explicit Localisation(double matched_m) : matched_m_(matched_m) {}
 
-  /// Processes a sweep that has a pose, in order. O(1).
+  /// Processes a sweep that has a pose. Sweeps must be in order. O(1).
   void add(const SweepReport& sweep);
 
   double largest_sigma_m() const { return largest_sigma_m_; }
   /// Returns the second largest SweepReport::innovation.
   double second_innovation() const { return second_innovation_; }
-  /// Returns `out_of_range` with the finding and the violated bound, otherwise `ok`.
+  /// Returns `out_of_range` with the finding and the violated limit. Returns `ok` without a finding.
   Status verdict() const;
 
   /// Visits every member of the state. Defined in the library's sources: state_visitor.hpp.

@@ -29,8 +29,8 @@ struct LocalMapParams {
 /// Uncertainty of the map relative to the world: docs/maths/mapping.md, section 8.
 struct WorldCovarianceParams {
   double tilt_sigma_rad = 0.002;  ///< tilt error of the levelled start: an accelerometer's turn-on bias of 2 mg
-  /// Drift per sweep as a fraction of the weakest direction's standard deviation, where surfaces do not constrain it.
-  /// Measured value.
+  /// Drift per sweep as a fraction of the weakest direction's standard deviation, where surfaces do not constrain the
+  /// direction. The value is measured.
   double drift_share = 0.1;
   double drift_sigma_max_m = 3.0;  ///< upper bound of a direction's standard deviation in this rule
 

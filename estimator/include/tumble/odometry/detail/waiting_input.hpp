@@ -27,11 +27,11 @@ class WaitingReadings {
   static constexpr auto kBeyond_ns = static_cast<TimeNs>(1e9 * SweepTrajectory::kBeyond_s);
 
   /// Stores a reading; the order is arbitrary. The reading's time must be after `done_ns`, the end of the last
-  /// registered sweep, and at most `latest_ns`. Errors: those of check_reading, `time_order` (its sweep is already
-  /// registered), `out_of_range` (too late, or too many waiting readings).
+  /// registered sweep, and at most `latest_ns`. Errors are those of check_reading, `time_order` (the reading's sweep is
+  /// already registered) and `out_of_range` (too late, or too many waiting readings).
   Status add(const OdometerReading& reading, TimeNs done_ns, TimeNs latest_ns);
 
-  /// Returns the reading of the sweep from `from_ns` to `end_ns`. If there are several, returns only the last one,
+  /// Returns the reading of the sweep from `from_ns` to `end_ns`. From several readings, only the last one is returned,
   /// because their errors are correlated. Deletes all readings up to `end_ns`.
   std::optional<OdometerReading> take(TimeNs from_ns, TimeNs end_ns);
 

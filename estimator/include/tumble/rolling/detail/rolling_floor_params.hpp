@@ -16,7 +16,7 @@ struct RollingContactParams {
   double slope_sigma = 0.15;                ///< of the sines of a slope when a slope begins
   double slope_walk_sqrts = 0.02;
   double impact_share = 0.06;  ///< error of the timing and direction of an impact, as a fraction of its velocity change
-  /// Mean velocity change of an impact per node while rolling: a sphere that stays on the floor meets no strong
+  /// Mean velocity change of an impact per node while rolling. A sphere that stays on the floor meets no strong
   /// impacts.
   double unexplained_impact_m_s = 0.03;
   double rest_velocity_sigma_m_s = 2e-3;
@@ -63,7 +63,7 @@ struct RollingModeParams {
   double incline_begins_per_s = 0.001, incline_ends_per_s = 0.1;  ///< from and to the level floor
   double rough_begins_per_s = 0.02, rough_ends_per_s = 0.1;
   double event_shortest_s = 0.06;  ///< minimum duration of slip or bump
-  /// An event is uncertain if it increases the horizontal standard deviation by more than this.
+  /// An event is uncertain if it increases the horizontal standard deviation by more than this distance.
   double uncertain_m = 0.03;
 
   template <class Self, class Visitor>
