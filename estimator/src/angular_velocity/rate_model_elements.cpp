@@ -10,9 +10,9 @@ namespace {
 
 constexpr int kGyroBias = 3;
 
-// Adds one row m_j . (rate - age acceleration + bias - reading), with the given information and gradient; `age` is in
-// units of the acceleration's time scale. With `rig_spread`, the row does not update m_j and has a correspondingly
-// reduced weight: rate_smoother.md (R8), rate_stream.md (R92).
+// Adds one component m_j . (rate - age acceleration + bias - reading), with the given information and gradient. `age`
+// is in units of the acceleration's time scale. With `rig_spread`, the component does not update m_j and has a
+// correspondingly reduced weight: rate_smoother.md (R8), rate_stream.md (R92).
 void add_row(const RateFactor& gyro, int j, double age, double information, double pull,
              const RigConstants::Matrix* rig_spread, arrow::Block& block, arrow::Corner& corner) {
   const int first = RigConstants::kElements + 2 * j;
