@@ -16,7 +16,7 @@ namespace {
 using Eigen::Vector3d;
 
 // kNearShare: readings above this fraction of an axis's largest reading may be saturated. kKeepShare: readings above
-// this fraction are stored. The third constant is the number of neighbours that are stored to judge a segment.
+// this fraction are stored. kBeside: number of neighbours that are stored to judge a segment.
 constexpr double kNearShare = 0.9, kKeepShare = 0.85;
 constexpr std::size_t kBeside = 4;
 // Number of latest and of first readings that are always stored. The first readings determine the noise.

@@ -34,7 +34,7 @@ double RateStream::hidden_by_slopes(std::size_t at, int axis, const State& state
   const bool from_flight = state.flight_run >= static_cast<std::size_t>(params_.expert.flight_run_min);
   const double before =
       static_cast<double>(at - first) + 0.5 + (first > 0 || from_flight ? 0.0 : state.entry_samples[axis]);
-  // a run that has not ended is assumed to be half over
+  // the remaining part of a run that has not ended is assumed at least as long as the past part
   const double left = static_cast<double>(last - at) + 0.5,
                after = last + 1 < window.size() ? left : std::max(before, left);
   const double slope = run_slope(axis, first, last, state);

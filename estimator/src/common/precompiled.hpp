@@ -29,7 +29,7 @@ constexpr bool known_squares = known_matrices<Matrices...>&& known<decltype(Matr
 template <int rows, int columns = 1>
 using Real = Eigen::Matrix<double, rows, columns>;
 
-// operands of the following expressions; never defined
+// Operands of the expressions below. The variables are never defined.
 extern const Eigen::Vector3d a, b;
 extern Eigen::Vector3d c;
 extern const Eigen::Matrix3d R;
