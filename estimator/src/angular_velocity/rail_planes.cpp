@@ -37,7 +37,7 @@ constexpr double kSiblingShare = 0.04;
 // sign, and impossible levels.
 constexpr double kNearSibling = 5.0, kNearStated = 3.0, kOtherSignAgrees = 5.0, kImpossible = -100.0;
 // kNearKnown: log odds of a level near that of an earlier run. kKnownShare: maximum distance between the two levels as
-// a fraction of the level. The third constant is the minimum log odds of other levels, since the device may be a
+// a fraction of the level. kFarFromKnown: minimum log odds of other levels, since the device may be a
 // different one.
 constexpr double kNearKnown = 6.0, kKnownShare = 0.003, kFarFromKnown = -3.0;
 // Change of slopes between runs.

@@ -80,7 +80,7 @@ void LocalMap::members(Self& s, Visitor& visit) {
 
 }  // namespace mapping
 
-/// Without the parameters, which are set at construction.
+/// Visits the members without the parameters, which are set at construction.
 template <class Self, class Visitor>
 void LidarInertialOdometry::Impl::members(Self& s, Visitor& visit) {
   visit.scratch(s.params);

@@ -8,8 +8,8 @@
 namespace tumble::mapping {
 
 /// Free space of a sweep: the nearest return per direction, in bins of a cube around one position, axes of the world. A
-/// point closer than all returns around its direction is no longer there, mapping.md (R65). Directions with few
-/// returns, and those at an edge of the cube, give no information.
+/// map point closer than all returns around its direction is no longer present, mapping.md (R65). Directions with few
+/// returns, and directions at an edge of the cube, give no information.
 class SightGrid {
  public:
   /// Sets the ray origin for the following points, and how far the sensor moved around it during the sweep.
