@@ -36,8 +36,8 @@ bool at_rail(const ImuSample& sample, Triad triad, const RailPlane& rail, std::s
          rail.holds(reading, 1);
 }
 
-// Returns whether a sample between a clipped sample and `outside` was saturated for a part of its window. The distances
-// are those of rails.md (R54).
+// Returns whether a sample between a clipped sample and `outside` was saturated for a part of its window. Distances
+// from the level are defined in rails.md (R54).
 bool meets(const RailPlane& rail, Triad triad, const ImuSample& now, const ImuSample* outside, int sign) {
   const double depth = rail.short_of(reading_of(now, triad), sign);
   if (depth > kBesideRail * rail.distance_rad_s) return false;

@@ -16,8 +16,8 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// Prior fraction of segments with a constant rate (spins, turntables). This fraction limits the log-likelihood of a
-// segment of any length.
+// Prior fraction of segments with a constant rate (spins, turntables). The prior fraction limits the log-likelihood of
+// a segment of any length.
 constexpr double kConstantShare = 0.05;
 // Minimum expected curvature of a rounded maximum within a segment, in standard deviations. Below this curvature, a
 // flat segment does not indicate saturation.

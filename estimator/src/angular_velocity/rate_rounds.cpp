@@ -126,8 +126,8 @@ void add_guess(const TriadDelay& guess, SensorErrorEvidence& evidence) {
   evidence.gradient[SensorErrors::kDelay] += information * (guess.delay_s - evidence.about.accel_delay_s);
 }
 
-// Odds of a device that matches its data sheet below which the readings clearly contradict the data sheet. Above these
-// odds, the mixture over sizes includes the uncertainty.
+// Odds of a device that matches its data sheet below which the readings clearly contradict the data sheet. Above
+// kPlainOdds, the mixture over sizes includes the uncertainty.
 constexpr double kPlainOdds = 0.05;
 
 // Returns whether a device clearly contradicts its data sheet in scale or in sampling. A device that contradicts one of
@@ -287,8 +287,8 @@ Status descend_rounds(const Rounds& rounds, std::span<RateObservation> observati
   }
 }
 
-// Enlarges the covariance of a device that clearly contradicts its data sheet to that of an uncalibrated device. The
-// corrections remain those that the readings clearly determine. Returns the sizes in use.
+// Enlarges the covariance of a device that clearly contradicts its data sheet to that of an uncalibrated device. Only
+// errors that the readings clearly determine are corrected. Returns the sizes in use.
 SensorErrorSizes leave_open(const Rounds& rounds, const RateFit& fit, RoundsState& rounds_state, RateReport& health) {
   const bool open =
       rounds.delay_open() && (off_sheet(rounds_state.found, rounds.stated(), rounds.triads_asynchronous) ||

@@ -19,10 +19,10 @@ namespace tumble {
 /// accuracy is 0.15 of the slower triad's period.
 ///
 /// Method 2 uses flight, if impacts give no estimate. The estimate is the delay for which most accelerometer readings
-/// equal the force at a rigid body's lever arm. This force is alpha x t + w x (w x t) + bias, with rate w and angular
-/// acceleration alpha from the neighbouring gyro readings. Lever arm t (about `lever_arm_m`, 0.02 m) and bias are
-/// fitted for each delay, robustly (Geman-McClure). The result is empty with fewer than 20 unclipped readings faster
-/// than 2 rad/s, or for a gain that may be due to chance. O(N) for each of some 60 delays.
+/// equal the force at a rigid body's lever arm. The force at a lever arm t is alpha x t + w x (w x t) + bias, with rate
+/// w and angular acceleration alpha from the neighbouring gyro readings. Lever arm (prior `lever_arm_m`, 0.02 m) and
+/// bias are fitted for each delay, robustly (Geman-McClure). The result is empty with fewer than 20 unclipped readings
+/// faster than 2 rad/s, or for a gain that may be due to chance. O(N) for each of some 60 delays.
 TriadDelay guess_triad_delay(std::span<const ImuSample> samples, std::span<const Clipping> clippings,
                              const Eigen::Vector3d& lever_arm_m);
 

@@ -9,7 +9,7 @@ namespace tumble {
 
 namespace {
 
-// Returns phi(z) / Phi(z) of the normal distribution, by its asymptotic series where both underflow.
+// Returns phi(z) / Phi(z) of the normal distribution, by its asymptotic series where phi and Phi underflow.
 double density_over_share(double z) {
   if (z < -8.0) return -z / (1.0 - 1.0 / (z * z) + 3.0 / (z * z * z * z));
   const double density = std::exp(-0.5 * z * z) * std::numbers::inv_sqrtpi / std::numbers::sqrt2;

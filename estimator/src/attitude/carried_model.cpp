@@ -21,7 +21,7 @@ using BorderRow = Eigen::Matrix<double, 1, kBorder>;  // by the constants
 using ForceState = Eigen::Matrix<double, 3, 12>;      // by attitude, rate, and both accelerations
 using ForceBorder = Eigen::Matrix<double, 3, kBorder>;
 
-// carried.md (C14): the slope h = -d/du log Phi(u) is the hazard phi/Phi. In the tail, where both underflow, the
+// carried.md (C14): the slope h = -d/du log Phi(u) is the hazard phi/Phi. In the tail, where phi and Phi underflow, the
 // asymptotic series is used.
 double hazard(double u) {
   if (u < -12.0) return -u - 1.0 / u * (1.0 - 2.0 / (u * u));

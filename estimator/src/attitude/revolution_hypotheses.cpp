@@ -144,8 +144,8 @@ std::vector<Hypothesis> hypotheses(const Problem& whole, const Segment& segment,
   return out;
 }
 
-/// Result of testing one segment. The result contains the solutions of the part's nodes from `from` on, best first. It
-/// states which of them is the current solution, if still present, and whether another solution replaces it.
+/// Result of testing one segment. The result contains the solutions of the part's nodes from `from` on, best first. The
+/// result also states which solution is the current one, if still present, and whether another solution replaces it.
 struct TestedSegment {
   std::size_t from = 0;
   std::vector<Hypothesis> found;

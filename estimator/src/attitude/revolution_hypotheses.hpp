@@ -17,9 +17,9 @@ double revolution_cost(double span_s, double jerk_rad_s3_sqrts);
 ///
 /// Data after a segment determine the segment's angle up to whole revolutions. The optimisation finds the number
 /// closest to its initial values. A segment is tested in two cases. In case 1, the integral of the rate's standard
-/// deviation reaches a third of pi. This integral is an upper bound of the angle's standard deviation. In case 2, the
-/// solution is at the saturation level throughout, and the segment is long enough for a revolution. The optimisation
-/// may then have stopped at too few revolutions.
+/// deviation reaches a third of pi. The integral of the rate's standard deviation is an upper bound of the angle's
+/// standard deviation. In case 2, the solution is at the saturation level throughout, and the segment is long enough
+/// for a revolution. The optimisation may then have stopped at too few revolutions.
 ///
 /// The segment and its surroundings are then solved again with one more and one less revolution, and with two if one is
 /// possible. The information of all other nodes about the ends of the part is included. The costs are compared, because

@@ -15,7 +15,8 @@ namespace u = unknowns;
 using Motion = Eigen::Matrix<double, 9, 9>;
 using Params = LidarInertialOdometry::Params;
 
-// Prior of the speed and its correlation time. Robots of this library are slower, except for moments.
+// Prior of the speed and its correlation time. Robots that use the library are slower than kSpeed_m_s, except for
+// moments.
 constexpr double kSpeed_m_s = 10.0, kSpeedTime_s = 1.0;
 
 StateEstimate of_motion(const MotionState& state, const SweepCalibration& calibration, const Motion& weight,

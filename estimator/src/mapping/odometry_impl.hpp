@@ -83,8 +83,8 @@ struct LidarInertialOdometry::Impl {
   void prune_until(TimeNs end_ns);
 
   PoseState pose_along(const SweepTrajectory& motion, double t_s, const Registration::Matrix& errors) const;
-  /// Returns the poses at the ends of the IMU's windows, and at `end_ns` for the last window. `errors` are those of the
-  /// unknowns at the start.
+  /// Returns the poses at the ends of the IMU's windows, and at `end_ns` for the last window. `errors` is the
+  /// covariance of the unknowns at the sweep's start.
   std::vector<PoseState> poses_along(const SweepTrajectory& motion, TimeNs end_ns,
                                      const Registration::Matrix& errors) const;
   std::vector<PoseState> poses_of(const mapping::WindowSweep& sweep) const;

@@ -214,7 +214,7 @@ void Registration::accumulate(std::span<const SweepPoint> points, const SweepTra
 
 /// Part of the normal matrix due to noise of the normals, for all free unknowns: mapping.md (R28), (R29). Computed for
 /// the motion alone, this part would constrain unobservable combinations of motion and calibration, for example
-/// attitude and mounting rotation. The covariance (R52) of these combinations would then grow without bound.
+/// attitude and mounting rotation. The covariance (R52) of unobservable combinations would then grow without bound.
 struct Registration::NoiseOfNormals {
   const Unknowns& unknowns;
   using Products = mapping::OuterProducts<kUnknowns, 2 * static_cast<int>(kBlock)>;

@@ -28,8 +28,8 @@ Registration::Matrix unknowns_at(const SweepTrajectory& trajectory, double t_s);
 void sandwich(const Registration::Matrix& F, const Registration::Matrix& P, Registration::Matrix& out);
 
 /// Returns the blocks of F errors F^T that involve the pose or the mounting, with F of unknowns_at; zero elsewhere. The
-/// blocks equal those of the full product bit for bit, at a third of the cost. The function is called for each pose of
-/// a recording.
+/// returned blocks equal the blocks of the full product bit for bit, at a third of the cost. The function is called for
+/// each pose of a recording.
 Registration::Matrix pose_and_mounting(const Registration::Matrix& F, const Registration::Matrix& errors);
 
 /// Propagates to the end of the segment, at `end_ns`. The trajectory is that of the mean.

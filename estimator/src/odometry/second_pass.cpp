@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kBefore_s = 0.1;       // samples before the first buffered sweep, because clocks may differ
 constexpr std::size_t kMoreShare = 20;  // per this many sweeps, the second pass may reject one more than the first
-// If more than one of this number of sweeps is rejected, the calibration is not used.
+// If more than one in kSweepsPerRejection sweeps is rejected, the calibration is not used.
 constexpr std::size_t kSweepsPerRejection = 5;
 
 /// Starts with the saturation levels that the stream detected. The uncertainty of the levels is inflated like that of

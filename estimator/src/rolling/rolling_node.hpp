@@ -74,8 +74,8 @@ void integrate_gap(const RollingParams& params, const ImuAverage& piece, const G
 Moving transition(const RollingSums& sums);
 void predict(const RollingParams& params, const RollingSums& sums, const Moving& B, Vector& x, Covariance& P);
 
-/// Computes the contact at a node. `rate_I_rad_s` is the raw reading at the node. `sums` are those of the node; the
-/// rate's uncertainty in a gap adds to the noise of the contact.
+/// Computes the contact at a node. `rate_I_rad_s` is the raw reading at the node. `sums` are the sums over the node;
+/// the rate's uncertainty in a gap adds to the noise of the contact.
 Contact contact(const RollingParams& params, const RollingNominal& nominal, const Eigen::Vector3d& rate_I_rad_s,
                 const RollingSums& sums);
 

@@ -13,16 +13,16 @@
 
 namespace tumble {
 
-/// Readings of an additional accelerometer on the same rigid body, in the primary IMU's axes and at its time stamps.
-/// The additional accelerometer and the primary one differ only by the effect of the body's rotation, in flight and in
-/// contact.
+/// Readings of an additional accelerometer on the primary IMU's rigid body, in the primary IMU's axes and at its time
+/// stamps. The additional accelerometer and the primary one differ only by the effect of the body's rotation, in flight
+/// and in contact.
 struct AuxiliaryAccelerometer {
   Eigen::Vector3d p_I_m = Eigen::Vector3d::Zero();   ///< relative to the primary IMU, in its axes
   std::vector<Eigen::Vector3d> specific_force_m_s2;  ///< one per sample of the primary IMU; NaN: no information
 };
 
 /// Mounting and accuracy of an additional IMU C on the primary IMU's rigid body. Biases and mounting errors of C are
-/// not estimated. The standard deviations of C's readings include these errors.
+/// not estimated. The standard deviations of C's readings include errors of bias and mounting.
 struct AuxiliaryImu {
   Eigen::Isometry3d T_IC = Eigen::Isometry3d::Identity();  ///< rotates and translates from C to the primary IMU
   double gyro_noise_density = 5.236e-4;                    ///< [rad/s/sqrt(Hz)]; [1e-9, 1]

@@ -56,7 +56,7 @@ struct CertainRails {
 
 /// Finds the clipped readings of a recording, for all readers of recordings. ClippingFinder combines flags of the
 /// device, levels of equal readings (RailDetector) and tilted planes (RailPlaneFinder), for gyro and accelerometer.
-/// RailWatch applies the same rules to the window of RateStream.
+/// RailWatch applies the rules of ClippingFinder to the window of RateStream.
 class ClippingFinder {
  public:
   struct Params {

@@ -90,9 +90,9 @@ struct RailDetectorParams {
 ///
 /// A plateau is a run of readings of one sign that are closer together than noise allows. The readings of a plateau
 /// have the largest magnitude so far on the axis. Low plateaus must be longer and must start or end with a jump of many
-/// digits of the device. This requirement excludes the rounded maximum of a slow, coarsely quantised motion and an axis
-/// at rest. A stated range is used until a plateau is found or a reading exceeds the range. Flags of the device are
-/// always used. The classification has hysteresis, so that the irregular edge of a plateau belongs to the plateau.
+/// digits of the device. The required jump excludes the rounded maximum of a slow, coarsely quantised motion and an
+/// axis at rest. A stated range is used until a plateau is found or a reading exceeds the range. Flags of the device
+/// are always used. The classification has hysteresis, so that the irregular edge of a plateau belongs to the plateau.
 /// RailDetector does not model saturation levels that drift or differ between the two signs of an axis.
 class RailDetector {
  public:
@@ -132,9 +132,9 @@ class RailDetector {
   void add_edge(const ImuSample& sample, const ImuSample& next, const Clipping& of_next, const State& state,
                 Clipping& clipping) const;
 
-  /// Returns the saturation level of channel c (0-5). The first available value counts: the plateau of the channel, the
-  /// largest plateau on another axis of the same sensor, or the stated range. A level from another axis or from the
-  /// stated range applies only while no reading of channel c exceeds it.
+  /// Returns the saturation level of channel c (0-5). The saturation level is the first available of: the plateau of
+  /// the channel, the largest plateau on another axis of its triad, and the stated range. A level from another axis or
+  /// from the stated range applies only while no reading of channel c exceeds it.
   std::optional<double> rail(const State& state, int c) const;
   /// Returns whether a plateau or a larger reading contradicts the stated range.
   bool disagrees(const State& state, int c) const;

@@ -54,7 +54,7 @@ struct RailPlanes {
 };
 
 /// Sensing directions of a triad's elements, as determined from saturation planes. Unsaturated elements measure the
-/// component along their rows. Clipped elements provide a lower bound of this component.
+/// component along their rows. Clipped elements provide a lower bound of the component along their rows.
 struct ElementRows {
   Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();
   Eigen::Vector3d slope_sigma = Eigen::Vector3d::Zero();  ///< standard deviation of each of the two cross-axis

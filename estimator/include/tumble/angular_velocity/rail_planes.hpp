@@ -16,11 +16,11 @@ namespace tumble {
 /// Finds the saturation planes of a triad's elements in a whole recording, without flags and without a stated range.
 ///
 /// A saturation plane limits the readings, is nearly axis-aligned, and has many samples in a thin slab below it. Two
-/// kinds of motion look similar. The first kind is the rounded maximum of a motion: the neighbouring readings decrease
-/// as a parabola, whereas saturation ends with a kink. The second kind is a constant rate (torque-free spin,
-/// turntable). A constant rate has full sensor noise, a different level each time, and starts with an impact on all
-/// axes. RailPlaneFinder sums the log likelihood ratio of saturation against both kinds of motion over all segments. A
-/// penalty accounts for the free choice of cross-axis sensitivities and level (Occam factor).
+/// kinds of motion look like saturation: the rounded maximum of a motion, and a constant rate (torque-free spin,
+/// turntable). Beside a rounded maximum, the readings decrease as a parabola, whereas saturation ends with a kink. A
+/// constant rate has full sensor noise, a different level each time, and starts with an impact on all axes.
+/// RailPlaneFinder sums the log likelihood ratio of saturation against rounded maxima and constant rates over all
+/// segments. A penalty accounts for the free choice of cross-axis sensitivities and level (Occam factor).
 ///
 /// Repeated readings (sample and hold) count once. Structure below the quantisation or the noise is not resolved. The
 /// three elements of a device are of one kind. A level far below readings of another axis is therefore rejected, and a

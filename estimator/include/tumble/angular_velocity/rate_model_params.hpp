@@ -42,8 +42,8 @@ struct RateModelParams {
   double accel_noise_density = 5.9e-4;
   /// Known sensor errors, for which the readings are corrected.
   SensorErrors errors = {};
-  /// Largest possible rate and angular acceleration of the body. The two maxima limit the estimate if no measurement
-  /// does. Allowed values are [1, 1e4] rad/s and [1, 1e7] rad/s^2.
+  /// Largest possible rate and angular acceleration of the body. The maximum rate and acceleration limit the estimate
+  /// if no measurement does. Allowed values are [1, 1e4] rad/s and [1, 1e7] rad/s^2.
   double rate_max_rad_s = 50.0;
   double acceleration_max_rad_s2 = 5000.0;
 

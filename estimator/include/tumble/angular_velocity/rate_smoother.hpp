@@ -29,8 +29,8 @@ struct RateSmootherParams {
   /// If the constants move further from their prior (RateReport::calibration_mahalanobis), the run is estimated again
   /// with the constants fixed at the prior.
   double calibration_mahalanobis_max = 1.5;
-  /// Sensor errors from an earlier run (RateReport::sensor_errors). This prior is used only if sensor errors are
-  /// estimated.
+  /// Sensor errors from an earlier run (RateReport::sensor_errors). Calibrated errors are used only if sensor errors
+  /// are estimated.
   std::optional<KnownSensorErrors> calibrated_errors = std::nullopt;
   double gap_max_s = 1.0;  ///< a longer time between samples is an error
 
@@ -117,10 +117,10 @@ struct RateReport {
 /// Sensor errors (SensorErrors: scale, misalignment, g-sensitivity, delay and window of the accelerometer relative to
 /// the gyro) are partly correlated with other constants. Repeated optimisations with corrected readings estimate sensor
 /// errors as far as the run determines them. The prior magnitude of sensor errors is chosen to fit the readings
-/// (fit_sensor_errors). Both covariances include the remaining uncertainty of sensor errors as considered parameters
-/// (S. F. Schmidt, 1966). Without considered parameters, the fit would treat sensor errors as noise and average them.
-/// guess_triad_delay computes an initial delay. If gyro and accelerometer are not synchronous, the later triad is
-/// assumed to be delayed.
+/// (fit_sensor_errors). The covariances of rates and calibration include the remaining uncertainty of sensor errors as
+/// considered parameters (S. F. Schmidt, 1966). Without considered parameters, the fit would treat sensor errors as
+/// noise and average them. guess_triad_delay computes an initial delay. If gyro and accelerometer are not synchronous,
+/// the later triad is assumed to be delayed.
 ///
 /// The elements of a gyro clip along their own, not quite orthogonal axes. The device's compensation then mixes the
 /// clipped values (RailPlaneFinder). While an element clips, the gyro is therefore used element by element

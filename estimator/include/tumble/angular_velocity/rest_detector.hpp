@@ -12,11 +12,12 @@
 namespace tumble {
 
 /// Detects when an IMU is stationary, for rates, attitude, rolling and mapping. At rest the rate is within a plausible
-/// bias, the force is large enough to be gravity, and both are constant up to noise for a minimum time. A gyro at rest
-/// measures its bias. All parameters refer to times and to one bandwidth: readings faster than `reading_s` are averaged
-/// first. White noise of density n [unit/sqrt(Hz)] then has the standard deviation n / sqrt(reading_s), whatever the
-/// sample rate. A spread parameter should be at least five standard deviations of the averaged noise. RestDetector does
-/// not distinguish rest from a steady rotation about the vertical that is slower than `rate_max_rad_s`.
+/// bias, and the force is large enough to be gravity. Rate and force are constant up to noise for a minimum time. A
+/// gyro at rest measures its bias. All parameters refer to times and to one bandwidth: readings faster than `reading_s`
+/// are averaged first. White noise of density n [unit/sqrt(Hz)] then has the standard deviation n / sqrt(reading_s),
+/// whatever the sample rate. A spread parameter should be at least five standard deviations of the averaged noise.
+/// RestDetector does not distinguish rest from a steady rotation about the vertical that is slower than
+/// `rate_max_rad_s`.
 ///
 /// Each user of RestDetector sets its own parameters, as docs/design.md explains.
 class RestDetector {

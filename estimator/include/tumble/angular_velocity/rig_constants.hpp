@@ -21,8 +21,8 @@ struct RigConstants {
   /// orthonormal basis of the traceless symmetric matrices. Zero means that all principal moments are equal.
   Eigen::Matrix<double, 5, 1> inertia = Eigen::Matrix<double, 5, 1>::Zero();
   /// Directions of the gyro's sensing elements before the device's compensation. Element j senses along the row m_j.
-  /// This row is 1 on axis j, elements[2j] on axis (j+1) % 3 and elements[2j+1] on axis (j+2) % 3. The directions are
-  /// observable only while an element clips.
+  /// The row m_j is 1 on axis j, elements[2j] on axis (j+1) % 3 and elements[2j+1] on axis (j+2) % 3. The directions
+  /// are observable only while an element clips.
   Eigen::Matrix<double, 6, 1> elements = Eigen::Matrix<double, 6, 1>::Zero();
 
   /// Returns m_j, the sensing direction of element j.

@@ -18,10 +18,10 @@ namespace tumble {
 /// force.
 ///
 /// Implements the published method (Deschenes et al., "Saturation-Aware Angular Velocity Estimation", ICRA 2024, eqs
-/// 5-7) in two stages. The first stage is a recursion per sample. The rotation axis e of the last accepted sample and
-/// the lever arm t give the vector from the IMU to the axis, l = (t.e)e - t. The component of the specific force along
-/// l is |l| |w|^2 in free flight. The clipped axis of the rate w follows from this component and from the two unclipped
-/// axes. In the second stage, WnojSmoother smooths all samples.
+/// 5-7) in two stages. In the recursive stage, each sample is processed in order. The rotation axis e of the last
+/// accepted sample and the lever arm t give the vector from the IMU to the axis, l = (t.e)e - t. The component of the
+/// specific force along l is |l| |w|^2 in free flight. The clipped axis of the rate w follows from this component and
+/// from the two unclipped axes. In the smoothing stage, WnojSmoother smooths all samples.
 ///
 /// The publication and this class do not model a second clipped axis. The first clipped axis in the order x, y, z is
 /// recovered, and further clipped axes keep the variance of an unclipped reading. Angular acceleration across the axis,

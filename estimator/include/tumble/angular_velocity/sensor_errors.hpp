@@ -91,10 +91,10 @@ struct SensorErrorEvidence {
   SensorErrors::Vector gradient = SensorErrors::Vector::Zero();
 };
 
-/// Multiplies the information by `share` in the directions that a freely moving body does not determine. These
-/// directions are a scale common to all axes of a triad, and a common rotation of both triads. In these directions the
-/// information comes from residuals of the motion model. Smaller motions reduce such residuals, and the information
-/// grows with the number of samples. rate_smoother.md (R39).
+/// Multiplies the information by `share` in the directions that a freely moving body does not determine. The
+/// unobservable directions are a scale common to all axes of a triad, and a common rotation of gyro and accelerometer.
+/// In unobservable directions, the information comes from residuals of the motion model. Smaller motions reduce the
+/// residuals, and the information grows with the number of samples. rate_smoother.md (R39).
 void discount_unobservable(double share, SensorErrorEvidence& evidence);
 
 /// Sensor errors estimated from the readings and the prior.

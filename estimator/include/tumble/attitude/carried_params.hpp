@@ -79,7 +79,7 @@ struct CarriedStillParams {
   }
 };
 
-/// Parameters of CarriedParams that few users change, grouped by meaning. Field names equal those in tables and on
+/// Parameters of CarriedParams that few users change, grouped by meaning. Field names equal the names in tables and on
 /// command lines.
 struct CarriedExpertParams {
   double node_s = 0.01;  ///< time between two nodes

@@ -17,8 +17,8 @@
 
 namespace tumble {
 
-/// Clipped elements of an IMU in one sample: -1 at the negative level, 1 at the positive level, 0 unsaturated. kMissing
-/// marks gyro readings that have overflowed and provide neither a measurement nor a lower bound.
+/// Clipped elements of an IMU in one sample: -1 at the negative level, 1 at the positive level, 0 unsaturated. The
+/// value kMissing marks gyro readings that have overflowed and provide neither a measurement nor a lower bound.
 struct ClipSigns {
   static constexpr std::int8_t kMissing = 2;
   std::array<std::int8_t, 3> gyro{}, accel{};
@@ -67,7 +67,7 @@ class CarriedSmoother {
     /// counted in each round. `open`: segments in which another number remains possible, at odds of at least 1 to 1000.
     /// The covariance includes the spread of the possible numbers.
     int revolutions_asked = 0, revolutions_taken = 0, revolutions_open = 0;
-    /// Changes of revolutions after which the whole problem could not be solved. The solution without these changes is
+    /// Changes of revolutions after which the whole problem could not be solved. The solution without failed changes is
     /// kept, and their segments count as open.
     int revolutions_failed = 0;
   };

@@ -72,8 +72,8 @@ class LidarInertialOdometry {
   Status add_velocity(const Eigen::Vector3d& v_WI_I_m_s, double sigma_m_s);
   /// Sets an odometer's reading for the next sweep. The times of the reading are between the end of the last sweep and
   /// that of the next, with a margin of 20 ms. The reading is fused with the IMU's prediction by covariance
-  /// (check_reading). A new reading replaces an earlier one and add_velocity(). A reading outside of these times has no
-  /// effect.
+  /// (check_reading). A new reading replaces an earlier one and add_velocity(). A reading that covers other times has
+  /// no effect.
   Status add_reading(const OdometerReading& reading);
   /// Marks the accelerometer as unusable within the next sweep. The velocity is predicted as over a gap; the gyro is
   /// used. A call of exclude_force() replaces earlier odometer readings of the sweep.
@@ -81,11 +81,11 @@ class LidarInertialOdometry {
 
   /// Registers a sweep of points fired in [start_ns, end_ns]. Sweeps do not overlap. NaN returns are misses.
   ///
-  /// Three errors leave the state unchanged: `time_order` (end before start, or start before the last sweep's end),
-  /// `too_few` (IMU samples do not cover the sweep), and `out_of_range` (an offset beyond the sweep). After four
-  /// further errors, the pose is the inertial prediction and the verdict is `rejected`: `empty` (no points),
-  /// `non_finite` (no finite point), `too_few` (no point in range), `degenerate` (all points have one time stamp).
-  /// Before the map starts, a sweep with one of the four errors or with too few points (`too_few`) has no pose: its
+  /// Three errors leave the state unchanged. `time_order`: end before start, or start before the last sweep's end.
+  /// `too_few`: IMU samples do not cover the sweep. `out_of_range`: an offset beyond the sweep. For unusable points,
+  /// the pose is the inertial prediction and the verdict is `rejected`. Errors of points are `empty` (no points),
+  /// `non_finite` (no finite point), `too_few` (no point in range) and `degenerate` (all points have one time stamp).
+  /// Before the map starts, a sweep with unusable points or with too few points (`too_few`) has no pose: its
   /// `report.trajectory` is empty.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points, SweepReport& report);
 

@@ -13,7 +13,7 @@
 
 namespace tumble {
 
-/// Parameters of OdometryParams that few users change, grouped by meaning. Field names equal those in tables and on
+/// Parameters of OdometryParams that few users change, grouped by meaning. Field names equal the names in tables and on
 /// command lines.
 struct OdometryExpertParams {
   double gravity_m_s2 = 9.80665;

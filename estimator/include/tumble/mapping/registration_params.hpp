@@ -9,7 +9,7 @@
 
 namespace tumble {
 
-/// Parameters of RegistrationParams that few users change. Field names equal those in tables and on command lines.
+/// Parameters of RegistrationParams that few users change. Field names equal the names in tables and on command lines.
 struct RegistrationExpertParams {
   double step_m = 5e-4;  ///< the iteration has converged if a step is below this and below step_rad
   double step_rad = 1e-4;
@@ -20,8 +20,8 @@ struct RegistrationExpertParams {
   double correlation_discount = 0.1;
   double cluster_m = 1.0;          ///< points within one cube of this edge are correlated
   double matched_share_min = 0.1;  ///< minimum number of matches as a fraction of the points
-  /// A registration with fewer matches than matches_min and matched_share_min is accepted if it has this many matches
-  /// and agrees with the prior. The default disables this rule.
+  /// A registration with fewer matches than matches_min and matched_share_min is accepted if it has at least
+  /// agreeing_min matches and agrees with the prior. The default disables this rule.
   std::size_t agreeing_min = 1'000'000'000;
   /// Minimum fraction of matches whose residual is within three standard deviations. A result with a smaller fraction
   /// is rejected.

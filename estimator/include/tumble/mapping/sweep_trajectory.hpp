@@ -50,7 +50,8 @@ struct MotionState {
 /// Attitude: R(t) = R_k Exp(w_k (t - t_k)) with the rate w_k of sample k, exact for a rate that is constant in body
 /// axes over each sample. Position: p(t) = p_0 + v_0 t + g t^2 / 2 + S(t), with the double integral S of the specific
 /// force. The mean force over a sample of length dt is R_k J_l(w_k dt) f_k, with the measured force f_k and the left
-/// Jacobian J_l. This mean is exact for a force constant in body axes, for example the centripetal force of a spin.
+/// Jacobian J_l. The mean force is exact for a force constant in body axes, for example the centripetal force of a
+/// spin.
 ///
 /// The saturation deficit e is the part of the rate hidden by saturation and corrects the clipped axes. The deficit is
 /// linear in time between kKnots knots at equal steps from the start to the end of the segment. The corrected rate is

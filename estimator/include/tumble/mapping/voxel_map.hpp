@@ -69,8 +69,8 @@ class VoxelMap {
   /// unchanged.
   bool move(std::uint32_t index, const Eigen::Vector3f& position_W_m);
 
-  /// Counts a sweep that saw through a point's position or observed the point again. The two kinds of observation
-  /// cancel each other.
+  /// Counts a sweep that saw through a point's position or observed the point again. Observations through the point and
+  /// of the point cancel each other.
   void count_sight(std::uint32_t index, bool through);
 
   /// Finds the k <= Neighbours::kMax nearest points within `radius_m`. Equal distances within a cell are in order of

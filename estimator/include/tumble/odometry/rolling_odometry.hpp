@@ -49,7 +49,8 @@ class RollingOdometry {
     double gravity_m_s2 = 9.80665;
     double lag_s = 0.0;  ///< lag of the smoothed poses of take(); 0: live poses
 
-    /// Parameters that few users change. Where both structs contain a number, the outer struct has priority.
+    /// Parameters that few users change. If Params and Expert contain the same number, the value in Params has
+    /// priority.
     struct Expert {
       ImuMerge::Params merge;
       RollingSmoother::Params rolling;
@@ -89,9 +90,9 @@ class RollingOdometry {
   /// Processes simultaneous readings of all units. The stamp of the first unit counts, corrected by SampleClock if a
   /// host's stamps jitter. A unit without a reading is passed as NaN. OutlierFilter rejects single wild readings of
   /// each unit. OutlierFilter may delay the samples of all units by one; newest() is then one sample older. On error
-  /// the state is unchanged: `too_few` (wrong number of units, or no reading), `time_order`, `degenerate` (no gravity
-  /// in the first sample), `gap` (more than a second: the run ends until reset()), `out_of_range` (after finish(), or
-  /// the only unit with readings has a frozen axis).
+  /// the state is unchanged. Errors are `too_few` (wrong number of units, or no reading), `time_order`, `degenerate`
+  /// (no gravity in the first sample), `gap` and `out_of_range`. `gap`: after more than a second without samples, the
+  /// run ends until reset(). `out_of_range`: finish() was called, or the only unit with readings has a frozen axis.
   Status add_imus(std::span<const ImuSample> samples);
   /// Adds the sample of a sphere with one IMU. Errors are those of add_imus().
   Status add_imu(const ImuSample& sample) { return add_imus({&sample, 1}); }

@@ -21,16 +21,17 @@ namespace tumble {
 /// sweeps. The estimation is causal. SampleClock corrects stamps that a host assigned. RegimeStream estimates each
 /// sample's angular velocity with a delay of `lag_s`. LidarInertialOdometry then processes samples and sweeps.
 ///
-/// TumblingOdometry reports three poses of increasing accuracy. newest() predicts the IMU's pose at the newest sample
-/// by inertial integration from the last registered sweep. take() returns a sweep registered to the map
-/// (`report.pose`), at most lag_s after the sweep's end. The report of the following sweep contains the final pose
-/// (`report.smoothed`), at most 0.3 s after the sweep's end at ten sweeps per second. Stamps of poses are in the IMU's
-/// clock. World: see LidarInertialOdometry. The earliest sweep with enough points starts the map and has no pose error.
-/// Before the map starts, there are no poses. Start with at least half a second at rest, which levels the attitude.
+/// TumblingOdometry reports three poses of increasing accuracy. The function newest() predicts the IMU's pose at the
+/// newest sample by inertial integration from the last registered sweep. The function take() returns a sweep registered
+/// to the map (`report.pose`), at most lag_s after the sweep's end. The report of the following sweep contains the
+/// final pose (`report.smoothed`), at most 0.3 s after the sweep's end at ten sweeps per second. Stamps of poses are in
+/// the IMU's clock. World: see LidarInertialOdometry. The earliest sweep with enough points starts the map and has no
+/// pose error. Before the map starts, there are no poses. Start with at least half a second at rest, which levels the
+/// attitude.
 ///
-/// Some seconds after motion starts, SecondPass processes these first seconds again with the calibration estimated so
-/// far. Map and pose then switch to the result of SecondPass; earlier poses are not changed. If the lidar is silent for
-/// a second, inertial integration continues and reports a sweep without points.
+/// Some seconds after motion starts, SecondPass processes the first seconds of motion again with the calibration
+/// estimated so far. Map and pose then switch to the result of SecondPass; earlier poses are not changed. If the lidar
+/// is silent for a second, inertial integration continues and reports a sweep without points.
 ///
 /// Cost: an IMU sample costs one step of the stream, and sometimes the registration of a sweep. A sample that ends no
 /// sweep allocates nothing after start-up. While the second pass runs, a sweep costs up to four registrations. The end
@@ -66,16 +67,17 @@ class TumblingOdometry {
   /// years, or too many sweeps wait.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points);
   /// Processes an odometer reading (detail/odometer_reading.hpp). The reading must arrive before its sweep is
-  /// registered, which is lag_s after the sweep's end. The last reading of a sweep counts. On error the state is
-  /// unchanged: `empty` (no IMU sample yet), `non_finite`, `time_order` (the sweep is already registered),
-  /// `out_of_range` (standard deviation not above 0, stamp a second ahead of the newest sample, or 1024 readings wait).
+  /// registered, which is lag_s after the sweep's end. If a sweep has several readings, only the last reading is used.
+  /// On error the state is unchanged. Errors are `empty` (no IMU sample yet), `non_finite`, `time_order` (the sweep is
+  /// already registered) and `out_of_range`. `out_of_range`: standard deviation not above 0, stamp a second ahead of
+  /// the newest sample, or 1024 readings wait.
   Status add_velocity(const VelocityReading& velocity);
   Status add_motion(const MotionReading& motion);
   /// Returns the next registered sweep, in order. Returns nothing if no registered sweep waits.
   std::optional<Sweep> take();
-  /// Registers all sweeps that the IMU covers, at the end of a run or during a halt. take() then returns the registered
-  /// sweeps. mapper().window_trajectories() returns the final poses of sweeps in the window. Later rates restart with
-  /// the current calibration.
+  /// Registers all sweeps that the IMU covers, at the end of a run or during a halt. Then, take() returns the
+  /// registered sweeps. The function mapper().window_trajectories() returns the final poses of sweeps in the window.
+  /// Later rates restart with the current calibration.
   void finish();
 
   /// Predicts pose and velocity of the IMU at its newest sample, with covariance, by inertial integration from the last
@@ -107,8 +109,8 @@ class TumblingOdometry {
   std::size_t rejected_readings() const { return outliers_.rejected; }
   /// Returns whether map and pose are those of the second pass (SecondPass).
   bool second_pass_applied() const { return second_pass_.taken(); }
-  /// Return four counts, which are all 0 in normal operation: samples that the mapper rejected, sweeps not fetched in
-  /// time, sweeps that ended before the IMU's first sample, and odometer readings that span two sweeps.
+  /// Return counts, which are all 0 in normal operation. The counts are samples that the mapper rejected, sweeps not
+  /// fetched in time, sweeps that ended before the IMU's first sample, and odometer readings that span two sweeps.
   std::size_t rejected_samples() const { return pass_.rejected_samples(); }
   std::size_t dropped_sweeps() const { return dropped_sweeps_; }
   std::size_t early_sweeps() const { return early_sweeps_; }

@@ -16,11 +16,11 @@ namespace tumble {
 /// Estimates the pose of a rolling sphere from one IMU, live, through slip, slide and bumps, on a floor that is level
 /// or sloped.
 ///
-/// While the sphere grips, the rolling constraint is a velocity measurement. This velocity measurement calibrates tilt,
+/// While the sphere grips, the rolling constraint is a velocity measurement. The velocity from rolling calibrates tilt,
 /// biases, scale, misalignment, delay and lever arm of the IMU, so that the seconds without grip can be integrated. The
 /// mode of contact is estimated. Each hypothesis about the past modes has its own error-state Kalman filter until later
 /// data decide between the hypotheses. Each filter contains the position. Grip after an event therefore also corrects
-/// the displacement during the event. Earlier estimates are not revised (RollingSmoother revises them).
+/// the displacement during the event. RollingFilter does not revise earlier estimates; RollingSmoother does.
 ///
 /// While the sphere is at rest, the reported position is constant. Corrections of the earlier path from measurements at
 /// rest are applied when motion resumes. Corrections are applied immediately if a different hypothesis becomes the most

@@ -11,7 +11,7 @@
 
 namespace tumble {
 
-/// Parameters of RollingParams that few users change, grouped by meaning. Field names equal those in tables and on
+/// Parameters of RollingParams that few users change, grouped by meaning. Field names equal the names in tables and on
 /// command lines.
 struct RollingExpertParams {
   double node_s = 0.02;  ///< time between two measurement updates

@@ -81,8 +81,8 @@ struct RateContactParams {
   }
 };
 
-/// Parameters of RateModelParams that few users change, grouped by meaning. Field names equal those in tables and on
-/// command lines.
+/// Parameters of RateModelParams that few users change, grouped by meaning. Field names equal the names in tables and
+/// on command lines.
 struct RateModelExpertParams {
   /// Duration of model errors of a force, a torque or a rate. All samples within this duration share one model error,
   /// and only their noise averages out.

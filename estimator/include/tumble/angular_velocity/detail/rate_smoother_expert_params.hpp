@@ -35,8 +35,8 @@ struct RateDescentParams {
   }
 };
 
-/// Parameters of RateSmootherParams that few users change, grouped by meaning. Field names equal those in tables and on
-/// command lines.
+/// Parameters of RateSmootherParams that few users change, grouped by meaning. Field names equal the names in tables
+/// and on command lines.
 struct RateSmootherExpertParams {
   RailPlaneFinder::Params planes = {};  ///< without a stated range, that of RateSmootherParams::rails applies
   RailPlaneFinder::Params accel_planes = RailPlaneFinder::Params::for_accelerometer();  ///< same for the accelerometer

@@ -38,8 +38,8 @@ struct RigInflationParams {
   }
 };
 
-/// Parameters of RateStreamParams that few users change, grouped by meaning. Field names equal those in tables and on
-/// command lines.
+/// Parameters of RateStreamParams that few users change, grouped by meaning. Field names equal the names in tables and
+/// on command lines.
 struct RateStreamExpertParams {
   RailPlaneFinder::Params planes = {};  ///< without a stated range, that of RateStreamParams::rails applies
   RailPlaneFinder::Params accel_planes = RailPlaneFinder::Params::for_accelerometer();  ///< same for the accelerometer

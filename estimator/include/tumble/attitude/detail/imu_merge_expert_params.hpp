@@ -75,7 +75,7 @@ struct DisagreeingImuParams {
   }
 };
 
-/// Parameters of ImuMergeParams that few users change, grouped by meaning. Field names equal those in tables and on
+/// Parameters of ImuMergeParams that few users change, grouped by meaning. Field names equal the names in tables and on
 /// command lines.
 struct ImuMergeExpertParams {
   ImuOutlierParams outliers = {};

@@ -27,7 +27,7 @@ struct RestBoundsParams {
 
 /// Parameters of the start: an IMU levelled at rest, and the corrections that the first sweeps may apply.
 struct OdometryStartParams {
-  /// Weight of the levelled attitude, which is five times the tilt that WorldCovarianceParams reports. The larger value
+  /// Standard deviation that weights the levelled attitude: five times the tilt that WorldCovarianceParams reports. The larger value
   /// allows for a start that was not at rest.
   double level_sigma_rad = 0.01;
   double speed_sigma_m_s = 0.05;  ///< residual speed of an apparent rest
