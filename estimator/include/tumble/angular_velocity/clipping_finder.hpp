@@ -22,9 +22,10 @@ struct KnownRails {
   bool accel_upright = false;         ///< the accelerometer's device clips its output
 
   /// Returns the saturation planes that classify readings. If the device clips its output, equal readings identify
-  /// clipped samples exactly. Planes are then used only for elements without a level from equal readings.
+  /// clipped samples exactly. Planes are then used only for sensing elements whose saturation level is not known from
+  /// equal readings.
   RailPlanes planes_in_use(Triad triad = Triad::gyro) const;
-  /// Returns the sensing directions of the elements. `unknown_sigma` is the standard deviation of a cross-axis
+  /// Returns the sensing directions of the triad's elements. `unknown_sigma` is the standard deviation of a cross-axis
   /// sensitivity that no saturation plane determines.
   ElementRows rows(Triad triad, double unknown_sigma) const;
   bool operator==(const KnownRails&) const = default;
@@ -37,16 +38,16 @@ enum class ElementReading : std::uint8_t {
   clipped_low,
   unreadable  ///< no information
 };
-/// Returns the information that element `axis` of a classified sample provides.
+/// Returns the information that sensing element `axis` of a classified sample provides.
 ElementReading element_reading(const ImuSample& sample, const Clipping& clipping, Triad triad, int axis);
 
 /// Returns the ClipFlag bits of a classified sample, as a device with correct flags would set them.
 std::uint8_t clip_flags(const Clipping& clipping);
 
-/// Saturation levels that are certain enough for tests across units, used for units that may freeze. A level is not
-/// certain if it rests on equal readings alone. Flat maxima of slow motion far below the stated range are excluded, and
-/// so are repeated readings without a stated range. Saturation planes are included because slow motion and frozen
-/// sensors do not produce planes.
+/// Saturation levels that are certain enough for tests across units, used for units that may freeze. A saturation level
+/// is not certain if it is derived from equal readings alone. Flat maxima of slow motion far below the stated range are
+/// excluded, and so are repeated readings without a stated range. Saturation planes are included because slow motion
+/// and frozen sensors do not produce planes.
 struct CertainRails {
   RailPlanes gyro, accel;                                 ///< planes in use
   double gyro_range_rad_s = 0.0, accel_range_m_s2 = 0.0;  ///< stated range; 0: not stated
@@ -55,8 +56,8 @@ struct CertainRails {
 };
 
 /// Finds the clipped readings of a recording, for all readers of recordings. ClippingFinder combines flags of the
-/// device, levels of equal readings (RailDetector) and tilted planes (RailPlaneFinder), for gyro and accelerometer.
-/// RailWatch applies the rules of ClippingFinder to the window of RateStream.
+/// device, saturation levels from equal readings (RailDetector) and tilted planes (RailPlaneFinder), for gyro and
+/// accelerometer. RailWatch applies the rules of ClippingFinder to the window of RateStream.
 class ClippingFinder {
  public:
   struct Params {
@@ -64,7 +65,7 @@ class ClippingFinder {
     RailPlaneFinder::Params planes = {};  ///< without a stated range, the range of `upright_rails` applies
     /// Parameters of the search for saturation planes of the accelerometer.
     RailPlaneFinder::Params accel_planes = RailPlaneFinder::Params::for_accelerometer();
-    /// If false, uses only flags and levels of equal readings, as in the published methods.
+    /// If false, clipping is detected only from flags and equal readings, as in the published methods.
     bool tilted = true;
 
     /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).

@@ -26,7 +26,7 @@ struct RailPlateauParams {
   /// Largest spread of a plateau's readings, as a fraction of the saturation level. The spread is below the noise of an
   /// unsaturated reading.
   double spread_share = 2e-5;
-  /// A plateau of the gyro below this level needs twice as many readings and a jump at its start or end.
+  /// A plateau of the gyro below gyro_low_rad_s needs twice as many readings and a jump at its start or end.
   double gyro_low_rad_s = 1.0;
   double gyro_min_rad_s = 0.02;  ///< minimum level of a plateau
   double accel_min_m_s2 = 15.0;  ///< minimum level of a plateau of the accelerometer; above gravity
@@ -85,8 +85,8 @@ struct RailDetectorParams {
   }
 };
 
-/// Finds the saturation level of each axis of an IMU from its readings. The level differs from unit to unit and from
-/// the data sheet. For example, one gyro with a stated range of 450 deg/s saturated at 600 deg/s.
+/// Finds the saturation level of each axis of an IMU from its readings. The saturation level differs from unit to unit
+/// and from the data sheet. For example, one gyro with a stated range of 450 deg/s saturated at 600 deg/s.
 ///
 /// A plateau is a run of readings of one sign that are closer together than noise allows. The readings of a plateau
 /// have the largest magnitude so far on the axis. Low plateaus must be longer and must start or end with a jump of many
@@ -128,13 +128,13 @@ class RailDetector {
   void classify_all(std::span<const ImuSample> samples, State& state, std::span<Clipping> out) const;
 
   /// Adds the rising edge of a plateau: the axes of `sample`, before a clipped `next`, that are near the saturation
-  /// level. The maximum distance from the level is the one that applies after a plateau.
+  /// level. The maximum distance from the saturation level equals that after a plateau.
   void add_edge(const ImuSample& sample, const ImuSample& next, const Clipping& of_next, const State& state,
                 Clipping& clipping) const;
 
   /// Returns the saturation level of channel c (0-5). The saturation level is the first available of: the plateau of
-  /// the channel, the largest plateau on another axis of its triad, and the stated range. A level from another axis or
-  /// from the stated range applies only while no reading of channel c exceeds it.
+  /// the channel, the largest plateau on another axis of its triad, and the stated range. A saturation level from
+  /// another axis or from the stated range applies only while no reading of channel c exceeds the level.
   std::optional<double> rail(const State& state, int c) const;
   /// Returns whether a plateau or a larger reading contradicts the stated range.
   bool disagrees(const State& state, int c) const;

@@ -12,10 +12,10 @@
 namespace tumble {
 
 /// Saturation of one sensing element of a gyro, seen in the compensated readings y as two planes: row . y = b - r and
-/// row . y = b + r. The element senses the component along `row` and clips at the level r. After clipping, the device
-/// compensates scale and misalignment, which tilts the planes by a few percent. The device also subtracts the element's
-/// bias, so the levels of the two signs differ by 2 b. For an element of an accelerometer, the unit is m/s^2 instead of
-/// rad/s.
+/// row . y = b + r. The sensing element measures the component along `row` and clips at the saturation level r. After
+/// clipping, the device compensates scale and misalignment, which tilts the planes by a few percent. The device also
+/// subtracts the element's bias, so the saturation levels of the two signs differ by 2 b. For a sensing element of an
+/// accelerometer, the unit is m/s^2 instead of rad/s.
 struct RailPlane {
   /// m_j: 1 along the element's axis j, cross-axis sensitivities along the other two axes.
   Eigen::Vector3d row = Eigen::Vector3d::Zero();
@@ -53,8 +53,9 @@ struct RailPlanes {
   bool operator==(const RailPlanes&) const = default;
 };
 
-/// Sensing directions of a triad's elements, as determined from saturation planes. Unsaturated elements measure the
-/// component along their rows. Clipped elements provide a lower bound of the component along their rows.
+/// Directions along which a triad's sensing elements measure, as determined from saturation planes. Unsaturated
+/// elements measure the component along their sensing directions. Clipped elements provide a lower bound of this
+/// component.
 struct ElementRows {
   Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();
   Eigen::Vector3d slope_sigma = Eigen::Vector3d::Zero();  ///< standard deviation of each of the two cross-axis
@@ -62,12 +63,12 @@ struct ElementRows {
   bool tilted() const { return rows != Eigen::Matrix3d::Identity(); }
   bool operator==(const ElementRows&) const = default;
 };
-/// Returns the sensing directions (rows) of the elements. An element without a saturation plane has an axis-aligned row
-/// whose standard deviation is `unknown_sigma`.
+/// Returns the sensing directions of a triad's elements. An element without a saturation plane has an axis-aligned
+/// direction with the standard deviation `unknown_sigma`.
 ElementRows element_rows(const RailPlanes& planes, double unknown_sigma);
 
-/// State of each element in a sample: -1 if clipped at the negative level, 1 if clipped at the positive level, 0 if
-/// unsaturated.
+/// State of each sensing element in a sample: -1 if clipped at the negative saturation level, 1 if clipped at the
+/// positive one, 0 if unsaturated.
 struct ElementClipping {
   std::array<std::int8_t, 3> sign{};
   bool any() const { return sign[0] != 0 || sign[1] != 0 || sign[2] != 0; }

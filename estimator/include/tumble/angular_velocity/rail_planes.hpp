@@ -18,26 +18,29 @@ namespace tumble {
 /// A saturation plane limits the readings, is nearly axis-aligned, and has many samples in a thin slab below it. Two
 /// kinds of motion look like saturation: the rounded maximum of a motion, and a constant rate (torque-free spin,
 /// turntable). Beside a rounded maximum, the readings decrease as a parabola, whereas saturation ends with a kink. A
-/// constant rate has full sensor noise, a different level each time, and starts with an impact on all axes.
+/// constant rate has full sensor noise, has a different value each time, and starts with an impact on all axes.
 /// RailPlaneFinder sums the log likelihood ratio of saturation against rounded maxima and constant rates over all
-/// segments. A penalty accounts for the free choice of cross-axis sensitivities and level (Occam factor).
+/// segments. A penalty accounts for the free choice of cross-axis sensitivities and saturation level (Occam factor).
 ///
 /// Repeated readings (sample and hold) count once. Structure below the quantisation or the noise is not resolved. The
-/// three elements of a device are of one kind. A level far below readings of another axis is therefore rejected, and a
-/// level equal to that of another element is more likely. Elements without a plane count as unsaturated.
+/// three elements of a device are of one kind. A saturation level far below readings of another axis is therefore
+/// rejected, and a level equal to that of another sensing element is more likely. Elements without a plane count as
+/// unsaturated.
 ///
-/// RailPlaneFinder does not model levels that drift or recover slowly, overflow, or several levels of one element.
+/// RailPlaneFinder does not model saturation levels that drift or recover slowly, overflow, or several levels of one
+/// sensing element.
 class RailPlaneFinder {
  public:
   struct Params {
-    /// Returns the parameters for an accelerometer. The minimum level is about 1.5 g, because gravity alone can cause
-    /// lower constant readings for long.
+    /// Returns the parameters for an accelerometer. The minimum saturation level is about 1.5 g, because gravity alone
+    /// can cause lower constant readings for long.
     static Params for_accelerometer() {
       Params out;
       out.distance_min_rad_s = 15.0;
       return out;
     }
-    /// Cross-axis sensitivity of elements before compensation: prior standard deviation of each entry.
+    /// Prior standard deviation of each cross-axis sensitivity of the sensing elements, before the device's
+    /// compensation.
     double slope_sigma = 0.03;
     double slope_max = 0.12;  ///< largest cross-axis sensitivity in the search
     /// Minimum saturation level [rad/s]. At rest and in slow motion, readings are constant without saturation.
@@ -98,9 +101,9 @@ class RailPlaneFinder {
   Params params_;
 };
 
-/// Returns which elements of a sample are clipped. O(1).
+/// Returns which sensing elements of a sample are clipped. O(1).
 ElementClipping classify(const ImuSample& sample, const RailPlanes& planes);
-/// Classifies each sample of a recording by its clipped elements; `out` has the size of `samples`.
+/// Classifies each sample of a recording by its clipped sensing elements; `out` has the size of `samples`.
 void classify(std::span<const ImuSample> samples, const RailPlanes& planes, std::span<ElementClipping> out);
 
 }  // namespace tumble

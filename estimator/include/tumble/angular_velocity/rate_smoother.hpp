@@ -122,12 +122,12 @@ struct RateReport {
 /// noise and average them. guess_triad_delay computes an initial delay. If gyro and accelerometer are not synchronous,
 /// the later triad is assumed to be delayed.
 ///
-/// The elements of a gyro clip along their own, not quite orthogonal axes. The device's compensation then mixes the
-/// clipped values (RailPlaneFinder). While an element clips, the gyro is therefore used element by element
-/// (element_factor). Unsaturated elements measure a component of the rate, and clipped elements provide a lower bound.
-/// Readings of unclipped axes are corrected for the part of the rate hidden by saturation. The sensing directions are
-/// constants of the run, determined by saturation planes and by flight. If the device clips its output after
-/// compensation, the element-wise factors are not needed.
+/// The sensing elements of a gyro clip along their own, not quite orthogonal axes. The device's compensation then mixes
+/// the clipped values (RailPlaneFinder). While a sensing element clips, RateSmoother therefore processes the gyro
+/// element by element (element_factor). Unsaturated elements measure a component of the rate, and clipped elements
+/// provide a lower bound. Readings of unclipped axes are corrected for the part of the rate hidden by saturation. The
+/// sensing directions are constants of the run, determined by saturation planes and by flight. If the device clips its
+/// output after compensation, the factors per element are not needed.
 ///
 /// RateSmoother does not model a persistent contact point or a delay common to both triads. The rates have the time of
 /// the gyro's readings, which are means over the sample's window.

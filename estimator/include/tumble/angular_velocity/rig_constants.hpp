@@ -20,9 +20,9 @@ struct RigConstants {
   /// Shape of the inertia about the centre of mass in IMU axes, without scale: J = 1 + sum_i inertia_i S_i. S_i is an
   /// orthonormal basis of the traceless symmetric matrices. Zero means that all principal moments are equal.
   Eigen::Matrix<double, 5, 1> inertia = Eigen::Matrix<double, 5, 1>::Zero();
-  /// Directions of the gyro's sensing elements before the device's compensation. Element j senses along the row m_j.
-  /// The row m_j is 1 on axis j, elements[2j] on axis (j+1) % 3 and elements[2j+1] on axis (j+2) % 3. The directions
-  /// are observable only while an element clips.
+  /// Directions of the gyro's sensing elements before the device's compensation. Sensing element j measures the
+  /// component of the rate along the row m_j. The row m_j is 1 on axis j, elements[2j] on axis (j+1) % 3 and
+  /// elements[2j+1] on axis (j+2) % 3. The sensing directions are observable only while a sensing element clips.
   Eigen::Matrix<double, 6, 1> elements = Eigen::Matrix<double, 6, 1>::Zero();
 
   /// Returns m_j, the sensing direction of element j.

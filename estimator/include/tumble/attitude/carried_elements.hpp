@@ -13,7 +13,7 @@
 
 namespace tumble {
 
-/// Clipped elements of each sample of a recording, as input of CarriedSmoother. The elements are found from flags of
+/// Clipped sensing elements of each sample of a recording, as input of CarriedSmoother. Clipping is found from flags of
 /// the device, and from plateaus and tilted planes in the readings.
 struct CarriedElements {
   Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();  ///< sensing directions of the gyro; axes without planes

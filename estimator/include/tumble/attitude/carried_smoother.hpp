@@ -17,17 +17,19 @@
 
 namespace tumble {
 
-/// Clipped elements of an IMU in one sample: -1 at the negative level, 1 at the positive level, 0 unsaturated. The
-/// value kMissing marks gyro readings that have overflowed and provide neither a measurement nor a lower bound.
+/// Clipped sensing elements of an IMU in one sample: -1 at the negative saturation level, 1 at the positive one, 0
+/// unsaturated. The value kMissing marks gyro readings that have overflowed and provide neither a measurement nor a
+/// lower bound.
 struct ClipSigns {
   static constexpr std::int8_t kMissing = 2;
   std::array<std::int8_t, 3> gyro{}, accel{};
 };
-/// Returns the clipped elements of a classified sample.
+/// Returns the clipped sensing elements of a classified sample.
 ClipSigns clip_signs(const ImuSample& sample, const Clipping& clipping);
 
-/// Saturation of an IMU. Element i senses along row i of `rows`, called m_i. While element i clips, the readings y
-/// satisfy m_i' y = level. The true value m_i' (rate + bias) is then at or beyond the level.
+/// Saturation of an IMU. Sensing element i measures the component along row i of `rows`, called m_i. While element i
+/// clips, the component m_i' y of the reading y equals the saturation level. The true value m_i' (rate + bias) is then
+/// at or beyond the saturation level.
 struct ClippedElements {
   Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();
   std::span<const ClipSigns> signs;  ///< one per sample; empty: no clipping

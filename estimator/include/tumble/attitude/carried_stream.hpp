@@ -84,8 +84,8 @@ class CarriedStream {
     std::int64_t start_ns = 0;
     std::size_t samples = 0;
     std::size_t failures = 0;  ///< number of skipped steps, whose system was not positive definite
-    /// Current clipped segment of each gyro element, up to the last reported sample: the segment's duration, and the
-    /// integral of the rate's standard deviation.
+    /// Current clipped segment of each sensing element of the gyro, up to the last reported sample: the segment's
+    /// duration, and the integral of the rate's standard deviation.
     Eigen::Vector3d hidden_s = Eigen::Vector3d::Zero(), hidden_rad = Eigen::Vector3d::Zero();
     std::size_t revolutions_open = 0;          ///< segments in which an additional revolution could not be excluded
     std::vector<carried::System::Block> work;  ///< buffer, not part of the state

@@ -29,7 +29,7 @@ struct ImuMergeParams {
   double gyro_range_rad_s = 1e3;   ///< readings from this value on are saturated
   double accel_range_m_s2 = 1e5;
   double gap_max_s = 1.0;
-  /// Sensing directions of each unit's elements (RailPlaneFinder).
+  /// Directions along which the sensing elements of each unit measure (RailPlaneFinder).
   std::array<ElementRows, kImus> gyro_elements{}, accel_elements{};
 
   using Expert = ImuMergeExpertParams;

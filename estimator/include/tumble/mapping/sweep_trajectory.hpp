@@ -71,8 +71,8 @@ class SweepTrajectory {
     Eigen::Quaterniond q_WI;
     Eigen::Vector3d preintegrated_position_m;
   };
-  /// Derivatives of an instant with respect to the saturation deficit e, to first order: phi = attitude e, dS = thrust
-  /// e.
+  /// Derivatives of attitude and S(t) by the saturation deficit e, to first order: attitude error = attitude e, error
+  /// of S = thrust e.
   struct DeficitDerivative {
     ByDeficit attitude_s;
     ByDeficit preintegrated_position_m_s;
