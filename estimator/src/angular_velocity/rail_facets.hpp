@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Search for the facet of one sign of one element: the plane at which its readings are saturated.
+// Search for the facet of one sign of one sensing element: the plane at which the element's readings are saturated.
 #pragma once
 
 #include <Eigen/Core>

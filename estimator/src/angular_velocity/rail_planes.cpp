@@ -33,8 +33,8 @@ constexpr double kStarts[] = {0.5, 0.02};
 // Usual difference between elements of one device. The reading of another axis exceeds a saturation level by at most
 // this fraction.
 constexpr double kSiblingShare = 0.04;
-// Changes of a level's log odds: near the level of another element, near a stated range, near the level of the other
-// sign, and impossible levels.
+// Changes of a saturation level's log odds: near the level of another sensing element, near a stated range, near the
+// level of the opposite sign, and for impossible levels.
 constexpr double kNearSibling = 5.0, kNearStated = 3.0, kOtherSignAgrees = 5.0, kImpossible = -100.0;
 // kNearKnown: log odds of a level near that of an earlier run. kKnownShare: maximum distance between the two levels as
 // a fraction of the level. kFarFromKnown: minimum log odds of other levels, since the device may be a

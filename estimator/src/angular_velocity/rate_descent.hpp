@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Gauss-Newton descent of RateSmoother over a recording.
+// Gauss-Newton optimisation of RateSmoother over a recording.
 #pragma once
 
 #include <span>

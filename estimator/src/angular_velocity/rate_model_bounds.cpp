@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Part of RateModel for the bounds given by clipped readings.
+// Part of RateModel for the lower bounds of the rate from clipped readings.
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <Eigen/LU>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Part of RateModel for samples with a clipped element of gyro or accelerometer, which are used element by element.
+// Part of RateModel for samples in which a sensing element of gyro or accelerometer clips. The readings of clipped
+// samples are processed element by element.
 #include <cmath>
 
 #include "tumble/angular_velocity/detail/rate_model.hpp"

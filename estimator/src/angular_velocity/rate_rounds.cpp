@@ -198,7 +198,7 @@ Rounds rounds_of(const RateSmoother::Params& params, const RateModelParams& know
   return out;
 }
 
-// Initial values of the optimisations: the assumed errors, and an alternative delay in case that the first delay
+// Initial values of the optimisations: the assumed errors, and an alternative delay, which is used if the assumed delay
 // requires a fixed calibration.
 struct Start {
   SensorErrors errors;

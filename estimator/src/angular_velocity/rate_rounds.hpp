@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Repeated descents of RateSmoother that estimate sensor errors.
+// Repeated optimisations of RateSmoother that estimate sensor errors.
 #pragma once
 
 #include <span>

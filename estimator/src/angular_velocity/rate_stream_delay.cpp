@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Estimation of the accelerometer's delay in a RateStream: first from impacts, then from the evidence about sensor
-// errors. Each force is assigned to the rate at its own time.
+// Estimation of the accelerometer's delay in a RateStream: first from impacts, then from the information about sensor
+// errors. Each force is assigned to the rate at the time of the force.
 #include <algorithm>
 #include <array>
 #include <cmath>

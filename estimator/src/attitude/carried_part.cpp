@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Separate solution of a part of the hand-held motion's problem: information from the other nodes, and its cost.
+// Separate solution of a part of the hand-held motion's problem: information from all other nodes, and the cost of the
+// part.
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Headers used by nearly every source, and types of Eigen expressions used by at least a dozen sources. The compiler
-// needs longer for the classes of an expression than for its code (docs/figures.md). Precompiled (CMakeLists.txt) and
-// never included: it only reduces the compile time.
+// needs longer for the classes of an expression than for its code (docs/figures.md). CMakeLists.txt precompiles this
+// header, and no source includes it. Precompiling only reduces the compile time.
 #pragma once
 
 #include <Eigen/Cholesky>

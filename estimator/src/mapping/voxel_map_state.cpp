@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Serialisation of a map; the search structure is rebuilt.
+// Serialisation of a map. Loading rebuilds the search structure.
 #include "../common/state_bytes.hpp"
 #include "../common/state_layout.hpp"
 #include "tumble/mapping/voxel_map.hpp"

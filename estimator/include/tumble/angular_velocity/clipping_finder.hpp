@@ -55,9 +55,10 @@ struct CertainRails {
   std::uint8_t flags(const ImuSample& sample, const Clipping& judged) const;
 };
 
-/// Finds the clipped readings of a recording, for all readers of recordings. ClippingFinder combines flags of the
-/// device, saturation levels from equal readings (RailDetector) and tilted planes (RailPlaneFinder), for gyro and
-/// accelerometer. RailWatch applies the rules of ClippingFinder to the window of RateStream.
+/// Finds the clipped readings of a recording, for every estimator that processes whole recordings. ClippingFinder
+/// combines flags of the device, saturation levels from equal readings (RailDetector) and tilted planes
+/// (RailPlaneFinder), for gyro and accelerometer. RailWatch applies the rules of ClippingFinder to the window of
+/// RateStream.
 class ClippingFinder {
  public:
   struct Params {

@@ -31,8 +31,8 @@ struct RateModelParams {
   /// Calibration from an earlier run. Replaces `nominal` and the five standard deviations of its entries.
   std::optional<RigCalibration> calibration = std::nullopt;
 
-  /// Additional IMUs on the body, at most kAuxiliaryImusMax. The readings of additional IMUs are passed with each
-  /// sample.
+  /// Additional IMUs on the body, at most kAuxiliaryImusMax. Each call that adds a sample also passes the readings of
+  /// the additional IMUs.
   std::vector<AuxiliaryImu> auxiliary_imus = {};
 
   /// Noise density of the gyro [rad/s/sqrt(Hz)]. The default is that of an industrial MEMS gyro: 0.03 deg/s/sqrt(Hz).

@@ -56,9 +56,9 @@ struct ImuPlausibilityParams {
 /// The rotation of the force is regressed on that of the gyro. The slope of the regression is 1 for a correct IMU, 2
 /// for a half-scale gyro, -1 for an inverted gyro, and about 0 for swapped axes. Pushes, and a force along a rod,
 /// scatter the measured rotations about the true slope and shift the slope little. Rotation about certain axes does not
-/// reveal swapped axis labels. An example is a sphere rolling along x = y with x and y swapped. The correct labels then
-/// leave a smaller residual, so all labels are compared. A force that does not rotate although the body does is
-/// detected separately.
+/// reveal swapped axis labels. An example is a sphere rolling along x = y with x and y swapped. For swapped axes, the
+/// correct labels leave a smaller residual, so the residuals of all labels are compared. A force that does not rotate
+/// although the body does is detected separately.
 ///
 /// A gyro or an accelerometer is frozen if it repeats one reading bit for bit, for a second and for ten times its
 /// longest earlier repetition. The sensor's readings must have changed before. A sensor with equally long earlier

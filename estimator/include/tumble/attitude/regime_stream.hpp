@@ -64,8 +64,8 @@ class RegimeStream {
     std::size_t rig_resets = 0;  ///< last value of RateStream's counter
     double resets = 0.0;         ///< resets of RateStream's calibration, decaying over its lag
     bool carrying = false;       ///< CarriedStream is running
-    /// Samples of the last clipped segment within `near_s`, without those followed by a smaller probability. The entry
-    /// at the front has the smallest probability.
+    /// Samples of the last clipped segment within `near_s`, without those followed by a smaller probability. The oldest
+    /// stored sample has the smallest probability.
     std::vector<ReportedShare> near;
     TimeNs reported_ns = 0;            ///< of the last reported sample
     std::optional<TimeNs> clipped_ns;  ///< last reported clipped sample

@@ -12,7 +12,7 @@
 
 namespace tumble {
 
-/// Parameters of TumbleAttitude: the gyro, and the extent of the motion.
+/// Parameters of TumbleAttitude: errors of the gyro, and extent of the body's motion.
 struct TumbleAttitudeParams {
   double gravity_m_s2 = 9.80665;
   double gyro_noise_rad_sqrts = 1e-3;         ///< angle random walk per sqrt(s), unmodelled errors included

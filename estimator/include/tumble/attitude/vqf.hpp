@@ -10,7 +10,7 @@
 
 namespace tumble {
 
-/// Parameters for which the authors use one value for all devices.
+/// Parameters of Vqf for which the authors of the publication use one value for all devices.
 struct VqfExpertParams {
   double bias_sigma_motion_rad_s = 1.7453e-3;  ///< 0.1 deg/s: limit of the bias uncertainty in motion
   double bias_sigma_rest_rad_s = 5.2360e-4;    ///< 0.03 deg/s: limit of the bias uncertainty at rest

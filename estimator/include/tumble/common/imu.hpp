@@ -21,8 +21,8 @@ enum ClipFlag : std::uint8_t {
 inline constexpr std::uint8_t kClipGyro = kClipGyroX | kClipGyroY | kClipGyroZ;
 inline constexpr std::uint8_t kClipAccel = kClipAccelX | kClipAccelY | kClipAccelZ;
 
-/// One reading of an inertial measurement unit, in the unit's axes I.
-/// The values are means over the sample's window, which ends at `time_ns`.
+/// One reading of an inertial measurement unit, in the unit's axes I. Rate and force are means over the sample's
+/// window, which ends at `time_ns`.
 struct ImuSample {
   TimeNs time_ns = 0;
   Eigen::Vector3d angular_velocity_rad_s = Eigen::Vector3d::Zero();  ///< measured w_WI_I

@@ -10,8 +10,8 @@
 
 #include "tumble/common/status.hpp"
 
-/// Description of each number of a `Params`, stated in one place. Checks, tables, readers and comparisons are visitors
-/// of the descriptions.
+/// A `Params` describes each of its numbers in one place. Checks, tables, readers and comparisons are visitors of these
+/// descriptions.
 ///
 /// A `Params` has `template <class Self, class Visitor> static void fields(Self& p, Visitor& visit)`. The function
 /// `fields` calls `visit(p.member, Field)` for each double, int, std::size_t, bool, enumeration (by its number) and

@@ -108,8 +108,8 @@ class LidarInertialOdometry {
   /// outside of the window.
   Status pose_at(TimeNs time_ns, PoseState& pose) const;
 
-  /// Returns the current poses of the sweeps in the window, oldest first. The final poses of sweeps in the window are
-  /// still pending. Together with SweepReport::smoothed, the poses in the window form the whole trajectory.
+  /// Returns the current poses of the sweeps in the window, oldest first. Sweeps in the window have no final pose yet.
+  /// Together with SweepReport::smoothed, the poses in the window form the whole trajectory.
   std::vector<std::vector<PoseState>> window_trajectories() const;
 
   /// Returns the memory of the map [bytes].

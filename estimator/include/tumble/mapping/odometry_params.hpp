@@ -62,7 +62,8 @@ struct OdometryExpertParams {
 struct OdometryParams {
   Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< lidar in IMU axes
   double time_offset_s = 0.0;                              ///< the IMU's clock minus the lidar's
-  /// Standard deviations of T_IL and of the time offset. With 0, a value is exact and not estimated.
+  /// Standard deviations of T_IL and of the time offset. A standard deviation of 0 marks an exact value, which is not
+  /// estimated.
   double mount_sigma_rad = 0.0;
   double mount_sigma_m = 0.0;
   double time_offset_sigma_s = 0.0;

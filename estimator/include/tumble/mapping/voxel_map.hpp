@@ -28,8 +28,8 @@ struct Neighbours {
 ///
 /// Cells of a cubic grid store their points in chunks of sixteen, one array per coordinate, so that distances are
 /// computed over contiguous floats. One hash look-up finds a group of 8x8x8 cells. At most one point is kept per cube
-/// of the spacing. A copy equals the original and is independent of it. Coordinates are floats, which limits a map to a
-/// few kilometres of width.
+/// of the spacing. A copy equals the original and is independent of it. Coordinates are single-precision floats, which
+/// limits the width of a map to a few kilometres.
 class VoxelMap {
  public:
   /// Mark of a point without a known scan line.

@@ -100,8 +100,8 @@ class RollingOdometry {
   /// Returns the pose at the newest sample from all data so far. Returns nothing before the first sample.
   std::optional<Pose> newest() const;
 
-  /// Returns the next pose in time order. Each pose is returned only one time. Poses are smoothed and lag_s old, or
-  /// live if the lag is 0.
+  /// Returns the next pose in time order. No pose is returned twice. Poses are smoothed and lag_s old, or live if the
+  /// lag is 0.
   std::optional<Pose> take();
 
   /// Ends the run and smooths the poses still within the lag. add_imus() then rejects samples until reset().

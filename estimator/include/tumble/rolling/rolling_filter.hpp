@@ -31,8 +31,8 @@ namespace tumble {
 /// an unknown force. The covariance accounts for the interpolated rate and the unknown force. A start in motion is
 /// detected and has a larger initial uncertainty.
 ///
-/// While the gyro is saturated, the attitude is uncertain and the rolling constraint is not usable. Only the covariance
-/// then describes the position's error. The state needs 430 KiB.
+/// While the gyro is saturated, the attitude is uncertain and the rolling constraint is not usable. During saturation,
+/// only the covariance describes the position's error. The state needs 430 KiB.
 ///
 /// RollingFilter does not model a floor that moves or yields, or moving platforms. The heading drifts.
 class RollingFilter {

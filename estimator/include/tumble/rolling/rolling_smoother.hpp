@@ -106,10 +106,10 @@ class RollingSmoother {
   const RollingFilter& filter() const { return filter_; }
 
   /// Processes a sample and appends estimates that are older than the lag to `out`. On error the state is unchanged.
-  /// The first sample allocates the memory of the lag. Later, only `out` and the processing of a block allocate. Beyond
-  /// rate_max_hz, beyond a million samples, or with kWholeRun, the run's memory also grows (64 bytes per sample, 152
-  /// per node). The sample that ends a block does the block's computations. A sample that ends a block needs 14 KiB per
-  /// node of lag and block, or 4 MiB plus 0.3 KiB per node if there are many nodes.
+  /// The first sample allocates the memory of the lag. After the first sample, only `out` and the processing of a block
+  /// allocate memory. Beyond rate_max_hz, beyond a million samples, or with kWholeRun, the run's memory also grows (64
+  /// bytes per sample, 152 per node). The sample that ends a block does the block's computations. A sample that ends a
+  /// block needs 14 KiB per node of lag and block, or 4 MiB plus 0.3 KiB per node if there are many nodes.
   Status step(const ImuSample& sample, State& state, std::vector<RollingEstimate>& out) const;
 
   /// Ends the run and passes the remaining estimates to `take`, in time order, smoothed with all data. For a whole run
