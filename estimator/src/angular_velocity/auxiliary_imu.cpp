@@ -47,7 +47,7 @@ bool AuxiliaryReading::same(const AuxiliaryReading& other) const {
 
 Status align(const AuxiliaryImu& auxiliary_imu, std::span<const ImuSample> samples, std::span<const Clipping> clippings,
              std::span<const ImuSample> primary, double gap_max_s, std::vector<AuxiliaryReading>& out) {
-  // gaps are not an error here; the readings are empty
+  // a gap is not an error of an auxiliary IMU; its readings are then empty
   const Status status = check_samples(samples, std::numeric_limits<double>::infinity());
   if (!status.ok()) return status;
   if (clippings.size() != samples.size()) {

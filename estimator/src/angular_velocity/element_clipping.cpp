@@ -29,15 +29,16 @@ int side(const ImuSample& sample, Triad triad, std::size_t j) {
   return reading_of(sample, triad)[static_cast<Eigen::Index>(j)] < 0.0 ? -1 : 1;
 }
 
-// Returns whether element j of a sample is saturated, by its plane, rails.md (R55), or by the device's flag.
+// Returns whether sensing element j of a sample is saturated, by its saturation plane, rails.md (R55), or by the
+// device's flag.
 bool at_rail(const ImuSample& sample, Triad triad, const RailPlane& rail, std::size_t j) {
   const Eigen::Vector3d& reading = reading_of(sample, triad);
   return (sample.device_clip_flags >> (first_channel(triad) + j) & 1u) != 0 || rail.holds(reading, -1) ||
          rail.holds(reading, 1);
 }
 
-// Returns whether a sample between a clipped sample and `outside` was saturated for a part of its window. Distances
-// from the level are defined in rails.md (R54).
+// Returns whether a sample between a clipped sample and `outside` was saturated for a part of its window. rails.md
+// (R54) defines the distances from the saturation level.
 bool meets(const RailPlane& rail, Triad triad, const ImuSample& now, const ImuSample* outside, int sign) {
   const double depth = rail.short_of(reading_of(now, triad), sign);
   if (depth > kBesideRail * rail.distance_rad_s) return false;
@@ -53,7 +54,8 @@ bool lopsided(const RailPlane& rail) {
          std::abs(rail.offset_rad_s) > kLopsidedShare * rail.distance_rad_s + 4.0 * std::sqrt(rail.covariance(3, 3));
 }
 
-// Returns two finders: one with the stated range, by default the range of the axis-aligned levels, and one without.
+// Returns two finders: one with the stated range, by default the range of the axis-aligned saturation levels, and one
+// without.
 std::array<RailPlaneFinder, 2> stated_and_not(RailPlaneFinder::Params params, const std::optional<double>& stated) {
   RailPlaneFinder::Params unstated = params;
   unstated.stated_rad_s = std::nullopt;

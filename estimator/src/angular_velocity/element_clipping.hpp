@@ -23,8 +23,8 @@ inline std::size_t first_channel(Triad triad) {
   return 3 * index_of(triad);
 }
 
-/// Returns the plane finders of gyro and accelerometer: with the stated range of the axis-aligned levels, and without
-/// any range.
+/// Returns the plane finders of gyro and accelerometer: with the stated range of the axis-aligned saturation levels,
+/// and without any range.
 std::array<std::array<RailPlaneFinder, 2>, 2> plane_finders(const ClippingFinder::Params& params);
 
 /// Returns whether readings contradict the stated range. The planes then ignore the stated range.
@@ -36,13 +36,13 @@ bool stated_range_contradicted(const RailDetector& upright_rails, const RailDete
 bool are_upright(std::span<const Eigen::Vector3d> readings, const RailPlanes& planes, const RailDetector::State& rails,
                  Triad triad);
 
-/// Returns the planes of elements on whose axis no plateau of equal readings was found.
+/// Returns the planes of sensing elements on whose axis no plateau of equal readings was found.
 RailPlanes without_plateaus(const RailPlanes& planes, const RailDetector::State& rails, Triad triad);
 
-/// Adds the planes of a triad to a classification by equal readings. An element with a plane clips according to its
-/// plane or the device's flag. A neighbour of a clipped sample also counts if the neighbour was saturated for a part of
-/// its window. The criterion is a distance from the plane of less than half of the next sample's distance. `before` and
-/// `after` may be null.
+/// Adds the planes of a triad to a classification by equal readings. A sensing element with a known saturation plane
+/// clips according to this plane or the device's flag. A neighbour of a clipped sample also counts if the neighbour was
+/// saturated for a part of its window. The criterion is a distance from the plane of less than half of the next
+/// sample's distance. `before` and `after` may be null.
 Clipping clip_by_planes(const RailPlanes& planes, Triad triad, const Clipping& by_upright_rails,
                         const ImuSample* before, const ImuSample& now, const ImuSample* after);
 
@@ -52,7 +52,7 @@ void mark_subsample_saturation(const RailPlanes& planes, const RailDetector& rai
                                double noise_rad_s, const ImuSample* before, RateObservation& now,
                                const ImuSample* after);
 
-/// Information from saturation planes about the cross-axis sensitivities of an element, in the order of
+/// Information from saturation planes about the cross-axis sensitivities of a sensing element, in the order of
 /// RigConstants::elements.
 struct EstimatedSlopes {
   Eigen::Vector2d slopes;

@@ -128,7 +128,7 @@ bool FrozenAxes::at_rail(std::size_t channel, const Axis& axis) const {
   const double stated = is_gyro(channel) ? params_.gyro_range_rad_s : params_.accel_range_m_s2;
   const double size = std::abs(axis.reading);
   if (stated > 0.0 && size >= kRailShare * stated) return true;
-  // a flag shows that the device saturated, but not that the repeated value is the level
+  // a flag shows that the device saturated, but not that the repeated value is the saturation level
   if (axis.flagged && size >= kExtremeShare * stated) return true;
   return size >= kExtremeShare * stated && (axis.reading == axis.min_reading || axis.reading == axis.max_reading);
 }

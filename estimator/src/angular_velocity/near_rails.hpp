@@ -11,10 +11,10 @@
 namespace tumble {
 
 /// Finds readings that may have been saturated for a part of their window. Bit j of a sample is set if the reading of
-/// gyro element j is unsaturated, but not certainly measured. A reading is suspect if it is below the saturation level
-/// by less than its larger step to its neighbours. Within 3 % of the level, the largest step within two readings
-/// counts: rails.md (R76). Sides without an observed level are excluded, so nothing is returned without clipping.
-/// Repeated readings count once. O(N).
+/// sensing element j of the gyro is unsaturated, but not certainly a full measurement. A reading is suspect if it is
+/// below the saturation level by less than its larger step to its neighbours. Within 3 % of the saturation level, the
+/// largest step within two readings counts: rails.md (R76). Sides without an observed saturation level are excluded, so
+/// nothing is returned without clipping. Repeated readings count once. O(N).
 std::vector<std::uint8_t> may_meet_rails(std::span<const ImuSample> samples, const RailPlanes& planes);
 
 /// Checks one reading of a stream, from the steps to its neighbours (null at the ends). O(1).

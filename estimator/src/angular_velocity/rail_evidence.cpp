@@ -22,7 +22,7 @@ constexpr double kConstantShare = 0.05;
 // Minimum expected curvature of a rounded maximum within a segment, in standard deviations. Below this curvature, a
 // flat segment does not indicate saturation.
 constexpr double kBend = 3.0;
-// Range of possible levels of constant rates, as a fraction of the largest reading.
+// Range of possible constant rates, as a fraction of the largest reading.
 constexpr double kLevelShare = 0.2;
 // Window length for the noise estimate from residuals of a parabola, and the quantile of the windows that is used.
 constexpr std::size_t kNoiseWindow = 9;
@@ -33,10 +33,11 @@ constexpr double kKinkAlone = 2.5;
 constexpr double kMoving = 10.0;
 // Log likelihood above which a segment with less scatter than noise counts, whatever its ends look like.
 constexpr double kThinAlone = 8.0;
-// Degrees of freedom of a segment's scatter that are lost to its level, its slope and its two partly saturated ends.
+// Degrees of freedom of a segment's scatter that are lost to the fitted mean and slope and to the two partly saturated
+// ends.
 constexpr std::size_t kThinTaken = 4;
 // A reading within kAtRail standard deviations of a facet is on the facet, up to the fraction kAtRailShareMax of the
-// level.
+// saturation level.
 constexpr double kAtRail = 4.0, kAtRailShareMax = 0.006;
 // kBeyond: log-likelihood of each sample beyond the facet against the facet. kStray: fraction of samples that may be
 // beyond.
@@ -103,7 +104,7 @@ struct SegmentShape {
 std::optional<SegmentShape> shape_of(const DistinctReadings& readings, const RailFacet& facet, const Segment& s) {
   const std::vector<Vector3d>& rates = readings.rates;
   const auto value = [&](std::size_t k) { return facet.sign * facet.row.dot(rates[k]); };
-  // distance of the second neighbour outside of either end from the level
+  // distance from the saturation level of the second neighbour outside of either end
   double depth = std::numeric_limits<double>::max();
   if (s.first >= 2) depth = std::min(depth, facet.level - value(s.first - 2));
   if (s.last + 2 < rates.size()) depth = std::min(depth, facet.level - value(s.last + 2));
@@ -195,7 +196,7 @@ double segment_evidence(const DistinctReadings& readings, const Eigen::Matrix2d&
     ++facet.segments;
     odds += std::max(0.0, thin);
     if (!shape->bends()) continue;
-    // flatness of the segment, and recurrence of its level: rails.md (R62), (R63)
+    // flatness of the segment, and recurrence of its mean reading: rails.md (R62), (R63)
     const double flatness = static_cast<double>(s.size() - 1) * std::log(shape->bend / shape->flat);
     odds += std::min(flatness, -std::log(kConstantShare)) + of_level;
     for (const bool after : {false, true}) odds += kink_evidence(readings, facet, s, after);
@@ -210,7 +211,8 @@ double segment_evidence(const DistinctReadings& readings, const Eigen::Matrix2d&
   // a reading that is closer to the level than noise, or than the facet's error at other readings, is not
   // distinguishable from the level
   facet.tolerance = std::max(facet.tolerance, std::min(kAtRail * noise, kAtRailShareMax * facet.level));
-  // Occam factor for the free choice of level and cross-axis sensitivities, prior over posterior volume: rails.md (R66)
+  // Occam factor for the free choice of saturation level and cross-axis sensitivities, prior over posterior volume:
+  // rails.md (R66)
   const Eigen::Matrix3d posterior_covariance = H.inverse();
   const double of_slopes =
       0.5 * std::log(std::max(1.0, 1.0 / (posterior_covariance.topLeftCorner<2, 2>().determinant() *

@@ -16,7 +16,8 @@ using Workspace = RailPlaneFinder::Workspace;
 
 constexpr double kGridStep = 0.01;  // of the slopes
 constexpr int kRefinements = 10;
-// Half width of a slab in standard deviations of the samples, with a minimum and a maximum as fractions of the level.
+// Half width of a slab in standard deviations of the samples, with a minimum and a maximum as fractions of the
+// saturation level.
 constexpr double kSlabDeviations = 4.0, kSlabShareMin = 2e-4, kSlabShareMax = 0.006;
 
 // Collects the samples that may be in the slab below the largest value for any cross-axis sensitivity up to `steepest`.
@@ -43,9 +44,9 @@ void collect(const DistinctReadings& readings, double from, Side& side, Workspac
   }
 }
 
-// Fits cross-axis sensitivities and level to the inliers by least squares, with the prior of the sensitivities.
-// Computes the standard deviation of the samples. The fit is robust (Cauchy), because partly saturated windows are
-// below the plane: rails.md (R58).
+// Fits cross-axis sensitivities and saturation level to the inliers by least squares, with the prior of the
+// sensitivities. Computes the standard deviation of the samples. The fit is robust (Cauchy), because partly saturated
+// windows are below the plane: rails.md (R58).
 void fit(const DistinctReadings& readings, const FacetPrior& prior, double deviation, RailFacet& facet,
          Workspace& workspace) {
   const int axis = facet.axis;

@@ -18,7 +18,7 @@ struct Gate {
   double from = 0.0, steepest = 0.0, near_from = 0.0;
 };
 
-/// One sign of one element during the search.
+/// State of the search for one sign of one sensing element.
 struct Side {
   int axis = 0, sign = 1;
   RailFacet facet;

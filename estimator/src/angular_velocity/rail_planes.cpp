@@ -30,14 +30,14 @@ using rails::Side;
 // Initial standard deviations of the robust fit, as fractions of the slab. The small value suits a thin plane with a
 // few samples below the plane, and the large value a thick plane.
 constexpr double kStarts[] = {0.5, 0.02};
-// Usual difference between elements of one device. The reading of another axis exceeds a saturation level by at most
-// this fraction.
+// Usual relative difference between the saturation levels of one device's sensing elements. The reading of another axis
+// exceeds a saturation level by at most this fraction.
 constexpr double kSiblingShare = 0.04;
 // Changes of a saturation level's log odds: near the level of another sensing element, near a stated range, near the
 // level of the opposite sign, and for impossible levels.
 constexpr double kNearSibling = 5.0, kNearStated = 3.0, kOtherSignAgrees = 5.0, kImpossible = -100.0;
-// kNearKnown: log odds of a level near that of an earlier run. kKnownShare: maximum distance between the two levels as
-// a fraction of the level. kFarFromKnown: minimum log odds of other levels, since the device may be a
+// kNearKnown: log odds of a saturation level near that of an earlier run. kKnownShare: maximum distance between old and
+// new level as a fraction of the level. kFarFromKnown: minimum log odds of other levels, since the device may be a
 // different one.
 constexpr double kNearKnown = 6.0, kKnownShare = 0.003, kFarFromKnown = -3.0;
 // Change of slopes between runs.
@@ -76,7 +76,7 @@ double level_log_odds(const RailPlaneFinder::Params& params, const DistinctReadi
   return odds;
 }
 
-// Combines the two signs of one element, rails.md (R53). One of the two may be missing.
+// Combines the planes of the two signs of one sensing element, rails.md (R53). One of the two may be missing.
 RailPlane joined(const RailPlaneFinder::Params& params, const DistinctReadings& readings, const Side* minus,
                  const Side* plus) {
   Eigen::Matrix4d H = Eigen::Matrix4d::Zero();
@@ -108,7 +108,7 @@ RailPlane joined(const RailPlaneFinder::Params& params, const DistinctReadings& 
     out.tolerance_rad_s = std::max(out.tolerance_rad_s, side->facet.tolerance);
     out.log_odds = std::max(out.log_odds, side->log_odds);
   }
-  // the system is badly conditioned if two elements that always clip together leave a cross-axis sensitivity
+  // the system is badly conditioned if two sensing elements that always clip together leave a cross-axis sensitivity
   // undetermined
   const Eigen::LDLT<Eigen::Matrix4d> factor(H);
   out.covariance = factor.solve(Eigen::Matrix4d::Identity());
@@ -151,8 +151,9 @@ struct SideSearch {
     return side;
   }
 
-  // Searches one sign of an element. The search starts near the element's row if known, and near zero sensitivities or
-  // those of an earlier run if not.
+  // Searches the plane of one sign of a sensing element. The search starts near the element's sensing direction if
+  // known. If the direction is unknown, the search starts near zero cross-axis sensitivities or near those of an
+  // earlier run.
   Side look(int axis, int sign, const RailPlanes& known) const {
     const auto element = static_cast<std::size_t>(axis);
     if (const auto& rail = known.element[element]) {
@@ -173,8 +174,8 @@ struct SideSearch {
     return same.log_odds > side.log_odds ? same : side;
   }
 
-  // Searches for side `i` of an element, using the planes in `found`. Returns whether `pair` contains side `i`. `kept`
-  // is true if the side was accepted in the last search.
+  // Searches for the plane of side `i` of a sensing element, given the planes in `found`. Returns whether `pair`
+  // contains side `i`. `kept` is true if the side was accepted in the last search.
   bool add(int axis, std::size_t i, bool kept, const RailPlanes& found, Pair& pair) const {
     const int sign = i == 0 ? -1 : 1;
     const Side side = look(axis, sign, found);
@@ -184,7 +185,7 @@ struct SideSearch {
     }
     const auto& rail = found.element[static_cast<std::size_t>(axis)];
     if (rail || !(side.log_odds > -std::numeric_limits<double>::infinity())) return false;
-    // the two signs of one row may be accepted together although neither sign is accepted alone
+    // the two signs of one sensing element may be accepted together although neither sign is accepted alone
     Pair alone;
     alone[i] = side;
     RailPlanes supposed = found;
@@ -228,7 +229,7 @@ RailPlanes RailPlaneFinder::find(std::span<const Vector3d> readings_rad_s, const
     return with_known(found, readings.rates);
   const SideSearch search{params_, readings, workspace};
   std::array<Pair, 3> sides;
-  // each accepted element or sign changes the odds of the remaining sides, so repeat until nothing is added
+  // each accepted plane changes the odds of the remaining planes, so repeat until nothing is added
   for (bool added = true; added;) {
     added = false;
     for (int axis = 0; axis < 3; ++axis) {

@@ -46,7 +46,8 @@ RigConstants::Matrix covariance_of(const RateModelParams& p) {
   return variance.cwiseAbs2().asDiagonal();
 }
 
-// Standard deviation of the additional deficit of a partly clipped reading due to an impact within the window, rad/s.
+// Standard deviation of the additional saturation deficit of a partly clipped reading due to an impact within the
+// window, rad/s.
 constexpr double kSubsampleInContact = 0.25;
 
 // First constants on which a factor depends: lever arm and accelerometer bias in flight, inertia in Euler's equation.

@@ -31,7 +31,7 @@ bool sees_free_axes(const Eigen::RowVector3d& axis, const RateObservation& obser
   return true;
 }
 
-// Maps the primary's force to the auxiliary IMU's axes or elements.
+// Maps the primary IMU's force to the axes or sensing elements of the auxiliary IMU.
 Eigen::Matrix3d seen_by(const Eigen::Matrix3d& R_CI, const ElementRows& elements, bool by_elements) {
   return by_elements ? Eigen::Matrix3d(elements.rows * R_CI) : R_CI;
 }

@@ -32,7 +32,7 @@ void RateModel::seek_flight(const RateObservation& observation, const RigConstan
   const Vector3d reading = corrected_rate(observation, estimate);
   RateEstimate flown = estimate;
   const Eigen::Matrix3d J = rig.inertia_matrix();
-  // the deficit of an element moves all axes: columns of M^-1 in rails.md (R51)
+  // the saturation deficit of a sensing element changes the readings of all axes: columns of M^-1 in rails.md (R51)
   Eigen::Matrix3d rows;
   for (int j = 0; j < 3; ++j) rows.row(j) = rig.element_row(j);
   const Eigen::Matrix3d hides = rows.inverse();

@@ -25,7 +25,7 @@ void shift_force(std::span<const ImuSample> samples, std::span<const Clipping> c
   }
 }
 
-// Returns the standard deviations stated in the data sheet, without those of an uncalibrated device.
+// Returns the standard deviations stated in the data sheet, without the values of an uncalibrated device.
 SensorErrorSizes as_stated(SensorErrorSizes sizes) {
   sizes.gyro_uncalibrated = sizes.accel_uncalibrated = sizes.g_sensitivity_uncalibrated_s_m =
       sizes.delay_uncalibrated_s = 0.0;
@@ -49,7 +49,7 @@ bool is_conclusive(const TriadDelay& guess) {
   return guess.sigma_s > 0.0 || guess.delay_s != 0.0;
 }
 
-// Returns whether errors differ enough from those already corrected to require another optimisation.
+// Returns whether the estimated errors differ enough from the corrected errors to require another optimisation.
 bool far_apart(const SensorErrors& a, const SensorErrors& b) {
   constexpr double kMatrix = 1e-3, kGSensitivity_s_m = 3e-5, kDelay_s = 3e-4, kFilterTimeVariance_s2 = 3e-6;
   return (a.gyro - b.gyro).cwiseAbs().maxCoeff() > kMatrix || (a.accel - b.accel).cwiseAbs().maxCoeff() > kMatrix ||
@@ -61,7 +61,7 @@ bool far_apart(const SensorErrors& a, const SensorErrors& b) {
 // Mahalanobis distance of three constants that one device in a thousand exceeds, with all causes included.
 constexpr double kMahalanobisOfDevice = 2.33;
 
-// Fixes the calibration at its prior, except for the gyro's elements, which contact does not affect.
+// Fixes the calibration at its prior, except for the sensing directions of the gyro, which contact does not affect.
 RateModelParams fixed_at_prior(const RateModelParams& params, const RateModel& model) {
   constexpr int kFirst = RigConstants::kElements, kCount = RigConstants::kSize - kFirst;
   RateModelParams out = params;
@@ -337,7 +337,8 @@ Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& kno
   health.sensor_errors = rounds_state.found.known;
   if (health.calibration_at_prior) return {};
   health.calibration.constants = fit.solution.rig;
-  // sensor errors remain part of the device: the next run has the same errors and includes them again
+  // sensor errors remain part of the device: the next run is affected by equal errors and includes their uncertainty
+  // again
   const SensorErrors::Matrix of_device = fit_sensor_errors({}, stated).known.covariance;
   health.calibration.covariance += fit.moved.of_rig * of_device * fit.moved.of_rig.transpose();
   return {};

@@ -15,7 +15,7 @@ using Eigen::Matrix3d;
 // Time between two evaluations of the errors, because systems of 29 unknowns cost more than a step.
 constexpr TimeNs kUpdateEvery_ns = 50'000'000;
 
-// rate_smoother.md (R44), limited to the largest rate
+// Computes rate_smoother.md (R44), limited to the largest rate.
 Matrix3d considered(const arrow::ErrorMatrix& moved, const SensorErrors::Matrix& covariance, double rate_max_rad_s) {
   const Eigen::Matrix<double, 3, SensorErrors::kSize> rates = moved.topRows<3>(),
                                                       spread = rates.lazyProduct(covariance);

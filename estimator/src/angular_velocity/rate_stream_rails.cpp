@@ -126,7 +126,7 @@ void RateStream::judge_from(std::size_t changed, State& state) const {
 
 // Returns whether a reading may be saturated, because a known saturation level is within reach of its uncertain
 // cross-axis sensitivities. Without a known level, the largest reading so far is used if this reading is close to the
-// other elements' levels. rate_stream.md (R93)
+// saturation levels of the other sensing elements. rate_stream.md (R93)
 bool RateStream::may_clip(const ImuSample& sample, int axis, int sign, const State& state) const {
   const Vector3d& y = sample.angular_velocity_rad_s;
   const RailPlanes planes = state.rails.known.planes_in_use();
@@ -182,8 +182,8 @@ void RateStream::mark_possible_rails(State& state) const {
   }
 }
 
-// Returns the larger of the slopes before and after a run, per sample. Each slope is the smaller of two steps, because
-// an impact is a single step.
+// Returns the larger of the reading's slopes before and after a run of suspect readings, per sample. Each slope is the
+// smaller of two steps, because an impact is a single step.
 double RateStream::run_slope(int axis, std::size_t first, std::size_t last, const State& state) {
   const auto size = [&](std::size_t k) {
     return std::abs(state.window[k].observation.sample.angular_velocity_rad_s[axis]);
@@ -224,8 +224,8 @@ void RateStream::mark_suspect_run(int axis, std::size_t first, std::size_t last,
   }
 }
 
-// Returns the slope at the newest sample, per sample of the log. Two steps are used, because an impact is a single
-// step, and a spin after an impact is not saturation.
+// Returns the growth of the gyro's reading at the newest sample, per sample of the log. Two steps are used, because an
+// impact is a single step, and a spin after an impact is not saturation.
 Vector3d RateStream::approach(const std::vector<Knot>& window) {
   const std::optional<std::size_t> one = reading_before(window.size() - 1, window);
   const std::optional<std::size_t> two = one ? reading_before(*one, window) : std::nullopt;

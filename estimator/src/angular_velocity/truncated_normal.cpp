@@ -26,7 +26,7 @@ NormalMoments truncated_below(const NormalMoments& from, double bound, double so
           from.variance - from.variance * from.variance * r * (z + r) / spread2};
 }
 
-// Computes the marginal without its site (cavity) and the new site: rate_smoother.md (R22), (R25).
+// Computes the marginal without its Gaussian factor (cavity) and the new factor (site): rate_smoother.md (R22), (R25).
 NormalSite refined_bound(const NormalMoments& marginal, const NormalSite& now, double bound, double softness2,
                          double widest2, double share) {
   const double precision = std::max(1.0 / marginal.variance - now.precision, 1.0 / widest2);

@@ -44,7 +44,7 @@ void add_gyro_row(const GyroRow& state, const BorderRow& border, double weight, 
   corner.gradient.noalias() -= slope * border.transpose();
 }
 
-// Rows of one element: derivatives of its value at the node and of its time derivative.
+// Derivatives of one sensing element's rate, and of the rate's time derivative, by the node's errors.
 struct GyroRows {
   GyroRow value = GyroRow::Zero(), slope = GyroRow::Zero();
   BorderRow border = BorderRow::Zero();

@@ -13,7 +13,7 @@ namespace tumble::carried {
 /// Returns the weights of motion and reading factors; `jerk` multiplies the root density of the jerk.
 Motion::Params motion_params(const CarriedSmoother::Params& params, double jerk = 1.0);
 ReadingNoise reading_noise(const CarriedSmoother::Params& params, double period_s);
-/// Adds gyro, force, bounds and rest of one node.
+/// Adds the factors of gyro, force, velocity and position limits, and rest of one node.
 double add_node(const NodeReadings& readings, const Eigen::Matrix3d& rows, const ReadingNoise& noise,
                 const Eigen::Vector3d& g_W_m_s2, const Motion& motion, const Node& node, const Constants& constants,
                 System::Block& block, System::Corner& corner);

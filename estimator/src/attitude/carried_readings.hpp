@@ -52,13 +52,13 @@ Collected collect(const CarriedSmoother::Params& params, std::span<const ImuSamp
 inline constexpr double kLongest = 1.5;  ///< longest window, in periods
 
 /// Estimates the root density of the angular jerk near each of `nodes` nodes from readings [rad/s^3 sqrt(s)]. The
-/// estimate uses the curvature of free readings, and the change of slope across hidden segments. 0 without information.
-/// carried.md (C24), (C25). O(N).
+/// estimate uses the curvature of unsaturated readings, and the change of slope across clipped segments. The estimate
+/// is 0 without information. carried.md (C24), (C25). O(N).
 std::vector<double> seen_jerk(const GyroReadings& rates, const Eigen::Matrix3d& rows, double noise_rad_s, double node_s,
                               std::size_t nodes);
 
-/// Returns the rates with clipped segments of each element replaced by cubics. Value and slope are continuous at both
-/// ends of a segment. The cubic stays between the saturation level and kFillMost times the level.
+/// Returns the rates with clipped segments of each sensing element replaced by cubics. Value and slope are continuous
+/// at both ends of a segment. The cubic stays between the saturation level and kFillMost times the level.
 std::vector<Eigen::Vector3d> filled_rates(std::span<const ImuSample> samples, const ClippedElements& clipped);
 
 inline constexpr double kFillMost = 2.5;  ///< only an initial value

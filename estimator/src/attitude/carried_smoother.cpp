@@ -37,7 +37,7 @@ Status check(const CarriedSmoother::Params& params, std::span<const ImuSample> s
   return check_samples(samples, params.expert.gap_max_s);
 }
 
-// Returns the elements that are saturated in the reading's window, completely or partly.
+// Returns the sensing elements that are saturated in the reading's window, completely or partly.
 std::uint8_t clipped_axes(const carried::GyroReadings& rates, std::size_t k) {
   const std::size_t reading = rates.of_sample[k];
   std::uint8_t axes = 0;

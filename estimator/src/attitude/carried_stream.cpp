@@ -267,8 +267,8 @@ Node CarriedStream::begin(const State& state) const {
   return out;
 }
 
-// Predicts a new node from the previous node. The rate of unsaturated elements is measured. The rate of clipped
-// elements is beyond the saturation level.
+// Predicts a new node from the previous node. The readings of unsaturated sensing elements give their rate. The rate of
+// clipped elements is beyond the saturation level.
 void CarriedStream::predict(const Node& before, const Eigen::Matrix3d& rows, Knot& knot) const {
   const double h = params_.body.expert.node_s;
   Node& node = knot.node;

@@ -87,7 +87,7 @@ Status RegimeStream::push(const ImuSample& sample, std::span<const AuxiliaryRead
     share = share_of(*out, state);
   }
   std::optional<RateState> carried;
-  // CarriedStream accepts everything that RateStream accepts, except degenerate rows
+  // CarriedStream accepts everything that RateStream accepts, except sensing directions that do not span the axes
   if (state.shares.carried >= params_.carried_min) {
     if (!state.carrying) {
       carried_.restart(state.carried);

@@ -12,8 +12,8 @@ inline constexpr double kLogOdds = 6.9;           ///< 1 to 1000: less probable 
 /// density [rad/s^3 sqrt(s)]. The added rate is 2 pi / T 30 u^2 (1 - u)^2 with u from 0 to 1: carried.md (C28).
 double revolution_cost(double span_s, double jerk_rad_s3_sqrts);
 
-/// Tests, segment by segment, whether the body rotated one more or one less revolution while an element of its gyro was
-/// clipped.
+/// Tests, segment by segment, whether the body rotated one more or one less revolution while a sensing element of its
+/// gyro was clipped.
 ///
 /// Data after a segment determine the segment's angle up to whole revolutions. The optimisation finds the number
 /// closest to its initial values. A segment is tested in two cases. In case 1, the integral of the rate's standard

@@ -26,7 +26,7 @@ struct RangeNoise {
 class LoneReturns {
  public:
   /// Removes the lone returns from `points` and returns their number. The remaining order is kept: firing order per
-  /// ring. O(number of points); allocates only for a sweep larger than those before.
+  /// ring. Cost: O(number of points). Memory is allocated only for a sweep larger than all sweeps before.
   std::size_t drop(const RangeNoise& noise, std::vector<SweepPoint>& points);
 
  private:

@@ -27,7 +27,7 @@ struct KnownVelocity {
 };
 
 /// Constant velocity with the uncertainty of impacts, for an accelerometer that is absent or always saturated. The gyro
-/// is used. Neither `impose` nor `weigh` is needed: the samples are treated as those of a gap
+/// is used. Neither `impose` nor `weigh` is needed: the samples are treated like the samples of a gap
 /// (InertialTrack::exclude_force), which also gives the noise.
 struct ConstantVelocity {};
 

@@ -35,7 +35,7 @@ struct Prediction {
   Registration::Matrix noise = Registration::Matrix::Zero();        ///< process noise
   Registration::Matrix errors = Registration::Matrix::Zero();       ///< covariance of the mean's errors, as reported
 
-  /// Computes weight and errors from those at the boundary, after all other members are set.
+  /// Computes weight and errors from the weight and errors at the boundary, after all other members are set.
   void compose(const StateEstimate& at_boundary);
   /// Sets the velocity to zero and decorrelates the velocity, for a robot known to be at rest. Call before compose().
   void zero_velocity_update(double sigma_m_s);

@@ -17,8 +17,8 @@ constexpr std::size_t kMoreShare = 20;  // per this many sweeps, the second pass
 // If more than one in kSweepsPerRejection sweeps is rejected, the calibration is not used.
 constexpr std::size_t kSweepsPerRejection = 5;
 
-/// Starts with the saturation levels that the stream detected. The uncertainty of the levels is inflated like that of
-/// the calibration.
+/// Starts with the saturation levels that the stream detected. The uncertainty of the saturation levels is inflated
+/// like that of the calibration.
 void start_from_rails(const KnownRails& known, double inflation, RateStream::Params& params) {
   params.expert.planes.known = known.planes;
   params.expert.accel_planes.known = known.accel_planes;

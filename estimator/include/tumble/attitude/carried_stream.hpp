@@ -101,8 +101,8 @@ class CarriedStream {
 
   /// Processes one sample. On error the state is unchanged and `out` is empty: `non_finite`, `time_order`, `gap`,
   /// `out_of_range` (no signs), `degenerate` (sensing directions that do not span the axes).
-  /// - `known.signs`: current clip signs of the newest samples; the last entry belongs to `sample`. Samples in the
-  ///   window whose signs changed are processed again.
+  /// - `known.signs`: current clip signs of the newest samples; the last entry belongs to `sample`. Samples of the
+  ///   window with changed signs are processed again.
   /// - `out`: rate of the sample that is `lag_s` old. The output is empty while the window fills, and if not `wanted`,
   ///   which saves most of the computation.
   /// - `repeated`: repeated readings of the log. A repeated reading counts once, at the time when the sensor took it
