@@ -36,8 +36,8 @@ Eigen::Matrix3d seen_by(const Eigen::Matrix3d& R_CI, const ElementRows& elements
   return by_elements ? Eigen::Matrix3d(elements.rows * R_CI) : R_CI;
 }
 
-// Returns the standard deviation of an unsaturated element's reading due to its uncertain sensing direction, for a
-// saturation deficit of another element of up to `most`.
+// Returns the standard deviation of an unsaturated element's reading due to its uncertain sensing direction. The
+// saturation deficit of another element is at most `most`.
 double unknown_row(const ElementRows& elements, bool by_elements, int j, double most) {
   return by_elements ? elements.slope_sigma[j] * most : 0.0;
 }

@@ -156,7 +156,7 @@ SensorErrorEvidence calibration_evidence_about(const SensorErrors& given, KnownS
   return calibration_evidence(learnt, sizes);
 }
 
-// Fits errors relative to the stated errors. `learnt` is also relative to the stated errors.
+// Fits sensor errors relative to the stated sensor errors. `learnt` is also relative to the stated errors.
 SensorErrorFit fit_about(const SensorErrors& given, SensorErrorEvidence evidence, const SensorErrorSizes& sizes,
                          const SensorErrorEvidence& learnt) {
   evidence.about = SensorErrors::from(evidence.about.vector() - given.vector());

@@ -73,9 +73,9 @@ bool RateStream::near_rails(std::size_t at, const State& state) const {
   return (window[next].near | after.clipping.gyro | after.may_hide()) != 0;
 }
 
-// If the gyro is the later triad, evaluates the rate some time after the sample by a cubic between knots, as
-// RateSmoother does. Beyond the newest knot, the acceleration is assumed constant, with uncertainty. rate_stream.md
-// (R108)
+// If the gyro is later than the accelerometer, move_later() evaluates the rate some time after the sample. The rate is
+// a cubic between knots, as in RateSmoother. Beyond the newest knot, the acceleration is assumed constant, with
+// uncertainty. rate_stream.md (R108)
 void RateStream::move_later(std::size_t at, double late_s, const State& state, RateState& out) const {
   const auto reported = [&](std::size_t k) {
     const Knot& knot = state.window[k];

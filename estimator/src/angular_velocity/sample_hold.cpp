@@ -74,8 +74,8 @@ Phases best_phases(double period, std::span<const std::size_t> moving, const std
   return out;
 }
 
-// Returns the middle one of the best clocks around `first`. Equally good clocks fill an area in period and phase. Most
-// phases are adjacent at the middle of the area.
+// Returns the middle one of the best clocks around `first`. Equally good clocks fill an area in period and phase. At
+// the middle of this area of clocks, most phases are adjacent.
 Clock best_clock(const Clock& first, double reach, int periods, std::span<const std::size_t> moving,
                  const std::vector<bool>& repeats, double& found) {
   Phases best{moving.size()};

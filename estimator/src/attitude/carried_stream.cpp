@@ -212,9 +212,9 @@ void CarriedStream::rebuild(State& state) const {
   for (const Reading& reading : std::span(state.readings).first(state.readings.size() - 1)) add(reading, state);
 }
 
-// Adds a reading to the nodes of the window. Repetitions are skipped. The window of a slow sensor's reading has the
-// length of the sensor's period and ended at an unknown time since the previous sample. For an accelerometer, the
-// length of the window is unknown as well, as in carried.md (C12): rate_stream.md (R95).
+// Adds an IMU reading to the nodes of the stream's window. Repetitions are skipped. The window of a slow sensor's
+// reading has the length of the sensor's period and ended at an unknown time since the previous sample. For an
+// accelerometer, the length of the window is unknown as well, as in carried.md (C12): rate_stream.md (R95).
 void CarriedStream::add(const Reading& reading, State& state) const {
   const double node_s = params_.body.expert.node_s;
   const auto readings_at = [&](std::int64_t node) -> carried::NodeReadings* {

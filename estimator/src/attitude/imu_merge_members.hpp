@@ -4,7 +4,7 @@
 #include "../angular_velocity/rails_members.hpp"
 #include "tumble/attitude/imu_merge.hpp"
 
-/// Members of an ImuMerge's state, and members of its Params that are not Fields: state_visitor.hpp.
+/// Members of ImuMerge's state, and members of ImuMerge::Params that are not Fields, as state_visitor.hpp describes.
 namespace tumble {
 
 template <StateOf<ForceErrors::State> Self, class Visitor>

@@ -6,7 +6,7 @@
 #include "state_visitor.hpp"
 #include "tumble/common/parameters.hpp"
 
-/// Visiting a `Params` that is part of a state: state_visitor.hpp.
+/// Functions that visit a `Params` that is part of a state, as state_visitor.hpp describes.
 namespace tumble {
 
 namespace detail {

@@ -7,7 +7,8 @@
 #include "odometry_members.hpp"
 #include "sweep_members.hpp"
 
-/// Members of the odometry's parts that persist between sweeps: state_visitor.hpp, README.md.
+/// Members of the odometry's parts that persist between sweeps, as state_visitor.hpp describes. README.md explains the
+/// parts.
 namespace tumble {
 
 namespace mapping {

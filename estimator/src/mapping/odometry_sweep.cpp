@@ -132,7 +132,7 @@ Status LidarInertialOdometry::Impl::start_map(TimeNs start_ns, TimeNs end_ns, st
   return {Trouble::too_few, "points", double(points), double(params.expert.matching.least)};
 }
 
-/// Integrates inertially to `end_ns`, without a map. A rest levels the attitude again.
+/// Propagates the state to `end_ns` by inertial integration, without a map. A rest levels the attitude again.
 Status LidarInertialOdometry::Impl::dead_reckon(TimeNs end_ns) {
   MotionState levelled;
   if (!track.border_ns()) {

@@ -23,8 +23,8 @@ struct Clipping {
 /// Parameters of plateaus: consecutive readings that are closer together than noise allows.
 struct RailPlateauParams {
   int samples = 4;  ///< minimum number of readings
-  /// Largest spread of a plateau's readings, as a fraction of the saturation level. The spread is below the noise of an
-  /// unsaturated reading.
+  /// Largest spread of a plateau's readings, as a fraction of the saturation level. The spread of a plateau is below
+  /// the noise of unsaturated readings.
   double spread_share = 2e-5;
   /// A plateau of the gyro below gyro_low_rad_s needs twice as many readings and a jump at its start or end.
   double gyro_low_rad_s = 1.0;

@@ -22,10 +22,10 @@ namespace tumble {
 /// RailPlaneFinder sums the log likelihood ratio of saturation against rounded maxima and constant rates over all
 /// segments. A penalty accounts for the free choice of cross-axis sensitivities and saturation level (Occam factor).
 ///
-/// Repeated readings (sample and hold) count once. Structure below the quantisation or the noise is not resolved. The
-/// three sensing elements of a triad are of one kind. A saturation level far below readings of another axis is
-/// therefore rejected, and a level equal to that of another sensing element is more likely. Elements without a plane
-/// count as unsaturated.
+/// Repeated readings (sample and hold) count once. RailPlaneFinder does not resolve structure below the quantisation or
+/// the noise. The three sensing elements of a triad are of one kind. A saturation level far below readings of another
+/// axis is therefore rejected, and a level equal to that of another sensing element is more likely. Elements without a
+/// plane count as unsaturated.
 ///
 /// RailPlaneFinder does not model saturation levels that drift or recover slowly, overflow, or several levels of one
 /// sensing element.

@@ -26,8 +26,8 @@ struct RateSmootherParams {
   RateModelParams model = {};
   RailDetector::Params rails = {};
   double recovered_sigma_rad_s = 0.5;  ///< a clipped axis with a smaller standard deviation is recovered
-  /// If the constants move further from their prior (RateReport::calibration_mahalanobis), the run is estimated again
-  /// with the constants fixed at the prior.
+  /// Largest accepted distance of the calibration constants from their prior (RateReport::calibration_mahalanobis).
+  /// Beyond this distance, the run is estimated again with the constants fixed at the prior.
   double calibration_mahalanobis_max = 1.5;
   /// Sensor errors from an earlier run (RateReport::sensor_errors). Calibrated errors are used only if sensor errors
   /// are estimated.
@@ -75,8 +75,8 @@ struct RateReport {
   /// Estimated sensor errors.
   KnownSensorErrors sensor_errors;
   double in_sheet_probability = 1.0, synchronous_probability = 1.0;  ///< see SensorErrorFit
-  /// Standard deviation of a delay common to both triads. The value is above 0 if the device deviates from its data
-  /// sheet.
+  /// Standard deviation of a delay common to both triads. The standard deviation is above 0 only if the device deviates
+  /// from its data sheet.
   double common_delay_sigma_s = 0.0;
   double gyro_update_s = 0.0, accel_update_s = 0.0;  ///< update interval of repeated readings; 0: none
   int error_rounds = 0;                              ///< number of optimisations with corrected readings

@@ -31,11 +31,11 @@ namespace tumble {
 /// costs O(window): above 200 Hz in proportion to the sample rate, and below 200 Hz in proportion to its square. No
 /// memory is allocated after the State is created.
 ///
-/// Saturation levels and planes are detected from the readings (RailWatch). After each detection the window is
-/// re-evaluated. A clipped sample is therefore accepted as a measurement only if the sample left the window before the
-/// detection. With the calibration of an earlier run, the error of the rates is 1.1 times that of RateSmoother. In this
-/// case 99 % of the errors are within three standard deviations. If the calibration is estimated during the same
-/// tumble, the error is 1.6 times that of RateSmoother, or 1.2 times with 0.5 s of lag (data:
+/// Saturation levels and planes are detected from the readings (RailWatch). After each detection of a saturation level,
+/// the window is re-evaluated. A clipped sample is therefore accepted as a measurement only if the sample left the
+/// window before the detection. With the calibration of an earlier run, the error of the rates is 1.1 times that of
+/// RateSmoother. In this case 99 % of the errors are within three standard deviations. If the calibration is estimated
+/// during the same tumble, the error is 1.6 times that of RateSmoother, or 1.2 times with 0.5 s of lag (data:
 /// docs/maths/rate_stream.md). Errors of the samples of a flight are correlated. The covariance of the calibration and
 /// of the rates is therefore inflated while few flight samples were processed (`rig_inflation`). The limitations of
 /// RateSmoother apply.

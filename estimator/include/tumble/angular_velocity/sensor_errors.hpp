@@ -109,7 +109,7 @@ struct SensorErrorFit {
 /// each model, the function computes the Gaussian posterior of the errors and the likelihood of the readings. The
 /// result has the mean and covariance of the mixture. A device whose readings fit the data sheet thereby keeps a small
 /// uncertainty of unobservable errors. Cost: O(1), some 30 systems of 29 unknowns.
-/// @param learnt information from earlier runs of the device, from calibration_evidence(), used with full weight
+/// `learnt` is information from earlier runs of the device, from calibration_evidence(), used with full weight.
 SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const SensorErrorSizes& sizes,
                                  const SensorErrorEvidence& learnt = {});
 

@@ -62,7 +62,7 @@ class CarriedSmoother {
     bool converged = false;
     double cost = 0.0;
     /// Largest mean acceleration of the held point over a quarter of a second, in assumed standard deviations. A thrown
-    /// body (specific force about 0) or rough handling gives 2 and more. The value is a diagnostic only.
+    /// body (specific force about 0) or rough handling gives 2 and more. hand_mahalanobis is only a diagnostic.
     double hand_mahalanobis = 0.0;
     /// Clipped segments in which the number of revolutions may differ by one from the solution. `asked`: segments that
     /// are long and uncertain enough for a test. `taken`: segments in which another number fitted better and was used,

@@ -72,9 +72,9 @@ struct ImuMergeParams {
 /// C to which a clipped axis contributes. A reading is clipped if flagged or beyond the range. Lower saturation levels,
 /// in particular tilted planes, must be flagged beforehand (ClippingFinder).
 ///
-/// All decisions and estimates use means over window_s, whatever the IMUs' rate. Bandwidth and tolerances are therefore
-/// fixed. Readings as long as window_s are used unchanged. If an axis was saturated within the window, its mean is a
-/// lower bound.
+/// All decisions and estimates use means over window_s, whatever the IMUs' rate. Bandwidth and tolerances therefore do
+/// not depend on the IMUs' rate. Readings as long as window_s are used unchanged. If an axis was saturated within the
+/// window, its mean is a lower bound.
 ///
 /// A unit whose reading is not finite is absent. A unit is frozen if its gyro or accelerometer repeats a reading while
 /// the other units' readings change. A unit is also frozen if its accelerometer repeats a reading while gravity

@@ -66,9 +66,9 @@ class RegimeEvidence {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit RegimeEvidence(const Params& params);
 
-  /// Computes one RegimeShares per sample. `rates` are those of a smoother that assumes flight and contact, one per
-  /// sample. `lever_arm_m` is from the centre of mass to the IMU, in IMU axes, with its covariance. Errors: `empty`;
-  /// `out_of_range` if `rates` does not have one element per sample. O(N).
+  /// Computes one RegimeShares per sample. `rates` contains one rate per sample, from a smoother that assumes flight
+  /// and contact. `lever_arm_m` is from the centre of mass to the IMU, in IMU axes, with its covariance. Errors:
+  /// `empty`; `out_of_range` if `rates` does not have one element per sample. O(N).
   Status find(std::span<const ImuSample> samples, std::span<const RateState> rates, const Eigen::Vector3d& lever_arm_m,
               const Eigen::Matrix3d& lever_arm_covariance_m2, std::vector<RegimeShares>& out) const;
 
@@ -86,7 +86,7 @@ class RegimeEvidence {
 
 /// Combines two different estimates of a rate. The result has the mean of the more probable estimate and the covariance
 /// of the mixture.
-/// @param share probability of `second`
+/// `share` is the probability of `second`.
 RateState either(const RateState& first, const RateState& second, double share);
 
 }  // namespace tumble

@@ -81,7 +81,7 @@ class FindOutOfBounds {
   OutOfBounds& out_;
 };
 
-/// Throws InvalidParams with the field's full name, unless `found` is empty.
+/// Throws InvalidParams with the full name of the found field, unless `found` is empty.
 void throw_if(const OutOfBounds& found);
 
 }  // namespace detail

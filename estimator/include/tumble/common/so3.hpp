@@ -20,7 +20,7 @@ Eigen::Quaterniond exp(const Eigen::Vector3d& phi);
 Eigen::Vector3d log(const Eigen::Quaterniond& q);
 
 /// Returns the left Jacobian J_l(phi): Exp(phi + d) = Exp(J_l d) Exp(phi) to first order in d. The right Jacobian is
-/// the transpose of the left one.
+/// the transpose of the left Jacobian.
 Eigen::Matrix3d left_jacobian(const Eigen::Vector3d& phi);
 
 /// Returns the inverse of left_jacobian, which is finite for |phi| < 2 pi.

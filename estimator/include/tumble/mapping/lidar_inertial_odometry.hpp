@@ -100,8 +100,8 @@ class LidarInertialOdometry {
   SweepCalibration calibration() const;
   SweepCalibration::Covariance calibration_covariance() const;
   /// Returns the covariance by which the calibration is weighted against the next sweep. The weighting covariance is
-  /// larger than that of the errors because points are correlated and count less. A second run over the recording
-  /// starts from the weighting covariance.
+  /// larger than the covariance of the errors because points are correlated and count less. A second run over the
+  /// recording starts from the weighting covariance.
   SweepCalibration::Covariance calibration_weight() const;
 
   /// Returns the pose at any time within the window of sweeps, from all data so far. Returns `out_of_range` for a time

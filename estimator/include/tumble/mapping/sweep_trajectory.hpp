@@ -48,17 +48,17 @@ struct MotionState {
 /// the motion at any time of the segment.
 ///
 /// Attitude: R(t) = R_k Exp(w_k (t - t_k)) with the rate w_k of sample k, exact for a rate that is constant in body
-/// axes over each sample. Position: p(t) = p_0 + v_0 t + g t^2 / 2 + S(t), with the double integral S of the specific
-/// force. The mean force over a sample of length dt is R_k J_l(w_k dt) f_k, with the measured force f_k and the left
-/// Jacobian J_l. The mean force is exact for a force constant in body axes, for example the centripetal force of a
-/// spin.
+/// axes over each sample. Position: p(t) = p_0 + v_0 t + g t^2 / 2 + S(t), with start position p_0, start velocity v_0,
+/// gravity g and the double integral S of the specific force. The mean force over a sample of length dt is R_k J_l(w_k
+/// dt) f_k, with the measured force f_k and the left Jacobian J_l. The mean force is exact for a force constant in body
+/// axes, for example the centripetal force of a spin.
 ///
 /// The saturation deficit e is the part of the rate hidden by saturation and corrects the clipped axes. The deficit is
 /// linear in time between kKnots knots at equal steps from the start to the end of the segment. The corrected rate is
 /// w_j + s_j e_j(t) where axis j was clipped. The factor s_j has the sign of w_j and the magnitude sigma_j / (largest
-/// sigma_j of the segment's clipped samples), with the rate's standard deviation sigma_j. The deficit thus changes a
-/// well known rate only a little. The magnitude is 1 if all sigma_j are 0. Over a sample, e has the value of the
-/// sample's middle. SweepTrajectory does not model sculling within a sample or the earth's rotation.
+/// sigma_j of the segment's clipped samples), with the rate's standard deviation sigma_j. The saturation deficit thus
+/// changes a well known rate only a little. The magnitude is 1 if all sigma_j are 0. Over a sample, e has the value of
+/// the sample's middle. SweepTrajectory does not model sculling within a sample or the earth's rotation.
 class SweepTrajectory {
  public:
   static constexpr int kKnots = 3;
@@ -97,8 +97,8 @@ class SweepTrajectory {
   /// previous call and speeds up calls in time order. Any hint in [0, intervals()) is valid.
   static constexpr double kBeyond_s = 0.02;
   Instant at(double t_s, std::size_t& hint) const;
-  /// Computes the lever arm vector S(t) + R(t) x of each point. The result equals that of at(), bit for bit, and is
-  /// faster for several points.
+  /// Computes the lever arm vector S(t) + R(t) x of each point. The result equals that of at(), bit for bit. For
+  /// several points, levers() is faster than at().
   void levers(std::span<const SweepPoint> points, std::span<Eigen::Vector3f> levers_W_m) const;
   DeficitDerivative deficit_derivative(double t_s, std::size_t& hint) const;
   std::size_t intervals() const { return intervals_.size(); }

@@ -130,7 +130,7 @@ class RollingOdometry {
   Status load(std::span<const std::byte> bytes);
   static Status saved_params(std::span<const std::byte> bytes, Params& params);
 
-  /// Visits every member of the state. Defined in the library's sources: state_visitor.hpp.
+  /// Passes every member of the state to the visitor. The definition is in the library's sources (state_visitor.hpp).
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
 

@@ -77,7 +77,7 @@ class TumblingOdometry {
   std::optional<Sweep> take();
   /// Registers all sweeps that the IMU covers, at the end of a run or during a halt. Then, take() returns the
   /// registered sweeps. The function mapper().window_trajectories() returns the final poses of sweeps in the window.
-  /// Later rates restart with the current calibration.
+  /// The rates of later samples restart with the current calibration.
   void finish();
 
   /// Predicts pose and velocity of the IMU at its newest sample, with covariance, by inertial integration from the last
@@ -131,7 +131,7 @@ class TumblingOdometry {
   Status load(std::span<const std::byte> bytes);
   /// Reads the parameters stored in a saved state. On error `params` is unchanged.
   static Status saved_params(std::span<const std::byte> bytes, Params& params);
-  /// Visits every member of the state. Defined in the library's sources: state_visitor.hpp.
+  /// Passes every member of the state to the visitor. The definition is in the library's sources (state_visitor.hpp).
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
 

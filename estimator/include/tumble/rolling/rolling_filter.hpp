@@ -106,8 +106,8 @@ class RollingFilter {
                      Listener{&closed, [](void* to, const State& at) { (*static_cast<Closed*>(to))(at); }});
   }
 
-  /// Returns the estimate at the last sample. Only the position block of the covariance is available; all other entries
-  /// are zero.
+  /// Returns the filter's estimate at the last processed sample. Only the position block of the covariance is
+  /// available; all other entries are zero.
   static RollingEstimate estimate(const State& state);
 
   /// Checks the invariants of a state that was loaded from a file. Returns the first violated invariant.

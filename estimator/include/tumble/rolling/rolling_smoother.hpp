@@ -23,8 +23,8 @@ namespace tumble {
 /// two nodes are interpolated from the errors of the two nodes.
 ///
 /// With a fixed lag, the position is constant while the sphere is at rest. Corrections of the earlier path are applied
-/// when motion resumes because the estimates of the earlier path are already reported. Over the whole run, the path
-/// itself is corrected.
+/// when motion resumes because the estimates of the earlier path are already reported. When a whole run is smoothed,
+/// the path itself is corrected.
 ///
 /// The method follows the reference study of this project on slip. The smoother is that of G. J. Bierman, Factorization
 /// Methods for Discrete Sequential Estimation, 1977. RollingSmoother does not model uncertainty of the modes, other

@@ -30,7 +30,7 @@ class Localisation {
   /// Returns `out_of_range` with the finding and the violated limit. Returns `ok` without a finding.
   Status verdict() const;
 
-  /// Visits every member of the state. Defined in the library's sources: state_visitor.hpp.
+  /// Passes every member of the state to the visitor. The definition is in the library's sources (state_visitor.hpp).
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
 

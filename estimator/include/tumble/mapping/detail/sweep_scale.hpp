@@ -60,7 +60,7 @@ class SweepScaleWatch {
 
   const SweepScale& scale() const { return scale_; }
 
-  /// Visits every member of the state. Defined in the library's sources: state_visitor.hpp.
+  /// Passes every member of the state to the visitor. The definition is in the library's sources (state_visitor.hpp).
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
 

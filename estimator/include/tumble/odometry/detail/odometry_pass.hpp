@@ -67,7 +67,7 @@ class OdometryPass {
   const std::optional<RateState>& smoothed_rate() const { return smoothed_; }
   std::size_t rejected_samples() const { return rejected_samples_; }
 
-  /// Visits every member of the state. Defined in the library's sources: state_visitor.hpp.
+  /// Passes every member of the state to the visitor. The definition is in the library's sources (state_visitor.hpp).
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
   /// Checks the invariants between the members. Returns the first violated invariant.

@@ -79,7 +79,7 @@ class SecondPass {
   /// Returns whether the first pass received the map of the second.
   bool taken() const { return taken_; }
 
-  /// Visits every member of the state. Defined in the library's sources: state_visitor.hpp.
+  /// Passes every member of the state to the visitor. The definition is in the library's sources (state_visitor.hpp).
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
   /// Checks the invariants between the members and the first pass. Returns the first violated invariant.

@@ -38,7 +38,7 @@ class WaitingReadings {
   /// Returns the number of readings that were dropped because they span two sweeps.
   std::size_t straddling() const { return straddling_; }
 
-  /// Visits every member of the state. Defined in the library's sources: state_visitor.hpp.
+  /// Passes every member of the state to the visitor. The definition is in the library's sources (state_visitor.hpp).
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
 
