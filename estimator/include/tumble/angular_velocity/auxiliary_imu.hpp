@@ -30,7 +30,7 @@ struct AuxiliaryImu {
   double gyro_error_rad_s = 0.01;  ///< bias, and rate-independent errors of scale and mounting; [1e-9, 10]
   double accel_error_m_s2 = 0.07;  ///< difference of the two biases; [1e-9, 10]
   double share_error = 2e-3;       ///< scale and misalignment error, as a fraction of the reading; [0, 1]
-  double position_error_m = 2e-3;  ///< of p_IC; [1e-9, 1]
+  double position_error_m = 2e-3;  ///< standard deviation of the position p_IC; [1e-9, 1]
   double clock_error_s = 1e-3;     ///< between the clocks of the two IMUs; [0, 0.1]
   ElementRows gyro_elements = {}, accel_elements = {};  ///< sensing directions of the elements; needed if an element
                                                         ///< clips

@@ -16,8 +16,8 @@ namespace tumble {
 /// Saturation levels of an IMU.
 struct KnownRails {
   RailDetector::State upright_rails;  ///< levels found from equal readings, and stated ranges
-  RailPlanes planes;                  ///< of the gyro's sensing elements, where observed
-  RailPlanes accel_planes;            ///< of the accelerometer
+  RailPlanes planes;                  ///< saturation planes of the gyro's sensing elements, where observed
+  RailPlanes accel_planes;            ///< saturation planes of the accelerometer
   bool upright = false;               ///< the device clips its output, so other axes are unaffected
   bool accel_upright = false;         ///< the accelerometer's device clips its output
 

@@ -83,7 +83,7 @@ class Saave {
   /// Result of the recursion for one sample, before smoothing.
   struct Recovered {
     Eigen::Vector3d rate_rad_s;
-    Eigen::Vector3d variance_rad2_s2;  ///< per axis
+    Eigen::Vector3d variance_rad2_s2;  ///< variance per axis
     std::uint8_t clipped_axes = 0;     ///< bits of the axes above the saturation point
     bool accepted = true;              ///< false: the clipped axis could not be recovered
   };

@@ -65,9 +65,9 @@ struct CarriedReadingParams {
 
 /// Standard deviations of the motion of a stationary node.
 struct CarriedStillParams {
-  double rest_sigma_rad_s = 0.01;  ///< of the rate at rest, for one node
-  double rest_sigma_m_s = 0.02;    ///< of the velocity at rest
-  double rest_sigma_m_s2 = 0.1;    ///< of the acceleration at rest
+  double rest_sigma_rad_s = 0.01;  ///< standard deviation of the rate at rest, for one node
+  double rest_sigma_m_s = 0.02;    ///< standard deviation of the velocity at rest
+  double rest_sigma_m_s2 = 0.1;    ///< standard deviation of the acceleration at rest
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {

@@ -65,7 +65,7 @@ class CarriedStream {
     carried::NodeReadings readings;
   };
   struct State {
-    std::vector<Reading> readings;  ///< of the nodes in the window, oldest first
+    std::vector<Reading> readings;  ///< readings of the nodes in the window, oldest first
     std::vector<Knot> window;       ///< oldest first
     std::int64_t first_node = 0;    ///< number of the oldest node
     Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();

@@ -87,7 +87,7 @@ class ImuPlausibility {
     Eigen::Quaterniond turned = Eigen::Quaterniond::Identity();  ///< rotation within the window, from the gyro
     double length_s = 0.0;
     bool open = false, steady = false;
-    bool in_range = true;  ///< of all samples of the window and of the current average
+    bool in_range = true;  ///< whether all samples of the window and of the current average are within the range
     double force_sum_m_s2 = 0.0, windows = 0.0;
     double pushed_s = 0.0;                               ///< time with forces that exclude rest
     std::array<double, kAxisLabels> unexplained_rad2{};  ///< residual for each labelling of the axes

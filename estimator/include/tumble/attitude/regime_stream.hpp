@@ -55,7 +55,7 @@ class RegimeStream {
   struct State {
     RateStream::State rate;
     CarriedStream::State carried;
-    std::vector<ClipSigns> signs;  ///< of RateStream's window; buffer
+    std::vector<ClipSigns> signs;  ///< clip signs of RateStream's window; buffer
     RegimeShares shares{1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0};
     RegimeShares sum{};          ///< sum over all reported samples
     std::size_t reported = 0;    ///< number of reported samples
@@ -67,7 +67,7 @@ class RegimeStream {
     /// Samples of the last clipped segment within `near_s`, without those followed by a smaller probability. The oldest
     /// stored sample has the smallest probability.
     std::vector<ReportedShare> near;
-    TimeNs reported_ns = 0;            ///< of the last reported sample
+    TimeNs reported_ns = 0;            ///< time of the last reported sample
     std::optional<TimeNs> clipped_ns;  ///< last reported clipped sample
   };
 

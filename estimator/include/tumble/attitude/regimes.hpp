@@ -37,7 +37,7 @@ class RegimeEvidence {
     double flight_share = 0.05;        ///< additional standard deviation, as a fraction of the lever arm's force
     double hand_m_s2 = 5.0;            ///< standard deviation of a hand's acceleration
     double grip_m = 0.05;              ///< distance of the IMU from the hand
-    double contact_max_m_s2 = 1000.0;  ///< forces of contact are between 1 m/s^2 and this
+    double contact_max_m_s2 = 1000.0;  ///< largest force of contact; the smallest force is 1 m/s^2
     double memory_s = 0.05;
     double rest_rate_rad_s = 0.5;  ///< slower rotation gives no information
     double contacts_hz = 5.0;      ///< rate of changes between flight and contact

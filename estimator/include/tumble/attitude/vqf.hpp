@@ -15,7 +15,7 @@ struct VqfExpertParams {
   double bias_sigma_motion_rad_s = 1.7453e-3;  ///< 0.1 deg/s: limit of the bias uncertainty in motion
   double bias_sigma_rest_rad_s = 5.2360e-4;    ///< 0.03 deg/s: limit of the bias uncertainty at rest
   double vertical_forgetting = 1e-4;           ///< decay of the unobservable vertical bias to zero
-  double rest_tau_s = 0.5;                     ///< of the rest detector's low-pass
+  double rest_tau_s = 0.5;                     ///< time constant of the rest detector's low-pass
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -31,7 +31,7 @@ struct VqfExpertParams {
 
 /// Parameters of Vqf, named as in the publication.
 struct VqfParams {
-  double tau_s = 3.0;  ///< of the low-pass on the specific force
+  double tau_s = 3.0;  ///< time constant of the low-pass on the specific force
   bool rest_bias_estimation = true;
   bool motion_bias_estimation = true;         ///< both off: the authors' basic filter
   double bias_sigma_start_rad_s = 8.7266e-3;  ///< 0.5 deg/s
@@ -39,7 +39,7 @@ struct VqfParams {
   double bias_clip_rad_s = 3.4907e-2;         ///< 2 deg/s: largest accepted bias
   double rest_time_s = 1.5;
   double rest_rate_rad_s = 3.4907e-2;  ///< 2 deg/s from the low-passed gyro
-  double rest_force_m_s2 = 0.5;        ///< from the low-passed force
+  double rest_force_m_s2 = 0.5;        ///< maximum distance of the force from the low-passed force at rest
   double gap_max_s = 1.0;
 
   using Expert = VqfExpertParams;

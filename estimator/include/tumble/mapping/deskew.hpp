@@ -17,7 +17,7 @@ namespace tumble {
 /// A usable lidar return in the IMU's axes at the time of its firing.
 struct SweepPoint {
   Eigen::Vector3f x_I_m = Eigen::Vector3f::Zero();
-  Eigen::Vector3f x_L_m = Eigen::Vector3f::Zero();  ///< as measured, so that the mounting can be refined
+  Eigen::Vector3f x_L_m = Eigen::Vector3f::Zero();  ///< position as measured, so that the mounting can be refined
   float t_s = 0.0f;                                 ///< time after the start of the trajectory, in the IMU's clock
   float sweep_t_s = 0.0f;                           ///< time after the start of the sweep
   float range_m = 0.0f;                             ///< distance from the lidar

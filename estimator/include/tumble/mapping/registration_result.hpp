@@ -21,8 +21,8 @@ enum class RegistrationVerdict : std::uint8_t {
 struct RegistrationResult {
   RegistrationVerdict verdict = RegistrationVerdict::too_few;
   SweepUnknowns::Estimate mean;
-  SweepUnknowns::Matrix covariance =
-      SweepUnknowns::Matrix::Zero();  ///< of all unknowns, in order; the prior's covariance if nothing was registered
+  SweepUnknowns::Matrix covariance = SweepUnknowns::Matrix::Zero();  ///< covariance of all unknowns, in order; the
+                                                                     ///< prior's covariance if nothing was registered
   /// Covariance of the gradient of the surfaces' cost by the unknowns, measured from the residuals. Points within
   /// RegistrationExpertParams::cluster_m of each other share the map's errors; points farther apart are independent
   /// (cluster-robust covariance, K. Liang, S. Zeger, 1986). For independent points, the covariance equals
@@ -34,7 +34,7 @@ struct RegistrationResult {
   /// information about the motion.
   SweepUnknowns::Matrix errors_in_variables_information = SweepUnknowns::Matrix::Zero();
   std::size_t points = 0, matches = 0, inliers = 0;
-  double correction_m = 0.0;  ///< of the position at the start; also if it exceeded its bound
+  double correction_m = 0.0;  ///< correction of the position at the start, also if it exceeded its limit
   double correction_rad = 0.0;
   int iterations = 0;
   /// Ascending eigenvalues of the normal matrix of (position, attitude scaled to metres by the root-mean-square lever

@@ -39,7 +39,7 @@ class VoxelMap {
 
   struct Params {
     double voxel_m = 0.5;    ///< edge of a cell; a few times the spacing searches fastest
-    double spacing_m = 0.1;  ///< at most one point is kept per cube of this edge; 0 keeps all
+    double spacing_m = 0.1;  ///< edge of the cubes in which at most one point is kept; 0 keeps all points
 
     /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
     template <class Self, class Visitor>

@@ -148,7 +148,7 @@ class RollingOdometry {
 
   Params params_;
   SampleClock clock_;
-  SampleClock::State stamps_;  ///< of accepted samples
+  SampleClock::State stamps_;  ///< state of the clock from accepted samples
   ImuMerge merge_;
   RollingSmoother smoother_;
   UnitRails rails_;

@@ -46,7 +46,7 @@ class TumblingOdometry {
 
   /// Result of one sweep.
   struct Sweep {
-    Status status;  ///< as LidarInertialOdometry::add_sweep; without a pose, `report.trajectory` is empty
+    Status status;  ///< status of LidarInertialOdometry::add_sweep; without a pose, `report.trajectory` is empty
     LidarInertialOdometry::SweepReport report;
   };
 
@@ -151,10 +151,10 @@ class TumblingOdometry {
   OutlierFilter filter_;
   OutlierFilter::State outliers_;
   SampleClock clock_;
-  SampleClock::State stamps_;  ///< of accepted samples
+  SampleClock::State stamps_;  ///< state of the clock from accepted samples
   OdometryPass pass_;
   SecondPass second_pass_;
-  std::optional<TimeNs> newest_ns_;      ///< of accepted samples
+  std::optional<TimeNs> newest_ns_;      ///< time of the newest accepted sample
   std::optional<ImuSample> after_gap_;   ///< first sample after a gap, not yet confirmed
   std::optional<TimeNs> registered_ns_;  ///< end of the last registered sweep; until a sweep is registered, time of the
                                          ///< first sample
@@ -162,7 +162,7 @@ class TumblingOdometry {
   std::deque<WaitingSweep> waiting_;
   WaitingReadings readings_;
   std::deque<Sweep> done_;
-  std::optional<TimeNs> sweep_end_ns_;  ///< of the last accepted sweep
+  std::optional<TimeNs> sweep_end_ns_;  ///< end of the last accepted sweep
 };
 
 }  // namespace tumble

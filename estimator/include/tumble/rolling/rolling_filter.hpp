@@ -50,7 +50,7 @@ class RollingFilter {
     Eigen::Vector3d u_W_m_s = Eigen::Vector3d::Zero();  ///< contact velocity at the last node
     double log_weight = 0.0;                            ///< log probability; the most probable one has zero
     std::int64_t switched_node = 0;                     ///< node at which its current mode began
-    std::int32_t parent = 0;                            ///< index of its parent at the previous node
+    std::int32_t parent = 0;                            ///< index of the hypothesis' parent at the previous node
     RollingMode mode = RollingMode::grip;
     bool operator==(const Hypothesis&) const = default;
   };
@@ -60,21 +60,23 @@ class RollingFilter {
     Eigen::Vector3d p_WG_m = Eigen::Vector3d::Zero();
     Eigen::Vector3d v_WG_m_s = Eigen::Vector3d::Zero();
     Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
-    Eigen::Matrix3d position_covariance_m2 = Eigen::Matrix3d::Zero();  ///< at the last node, over all hypotheses
-    Eigen::Vector3d contact_velocity_m_s = Eigen::Vector3d::Zero();    ///< at the last node, W
+    Eigen::Matrix3d position_covariance_m2 = Eigen::Matrix3d::Zero();  ///< covariance of the position at the last node,
+                                                                       ///< over all hypotheses
+    Eigen::Vector3d contact_velocity_m_s = Eigen::Vector3d::Zero();    ///< contact velocity at the last node, W
     RollingMode mode = RollingMode::grip;
     double slip_probability = 0.0;  ///< probability that the contact moves, over all hypotheses, at the last node
     double bump_probability = 0.0;  ///< part of slip_probability in which the sphere hops
     bool at_rest = false;
     bool spins_in_place = false;  ///< slow rotation about the contact at rest, which does not allow a gyro bias update
-    bool uncertain = false;  ///< in an event that increased the position's standard deviation by more than uncertain_m
+    bool uncertain = false;       ///< an event increased the position's standard deviation by more than uncertain_m
     bool started_in_motion = false;
     std::int64_t gaps = 0;  ///< bridged gaps
     double gap_longest_s = 0.0;
     // Common linearisation point of all hypotheses.
     RollingNominal nominal;
     RollingSums sums;
-    ImuAverage average;                                          ///< of the readings since the last processed average
+    ImuAverage average;                                          ///< average of the readings since the last processed
+                                                                 ///< average
     Eigen::Matrix3d pruned_spread_m2 = Eigen::Matrix3d::Zero();  ///< spread of the hypotheses pruned at the last node
     RestDetector::State rest;
     Eigen::Vector3d slow_rate_rad_s = Eigen::Vector3d::Zero();

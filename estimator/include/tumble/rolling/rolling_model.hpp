@@ -33,7 +33,7 @@ struct RollingEstimate {
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
   RollingMode mode = RollingMode::grip;
   bool at_rest = false;
-  bool uncertain = false;  ///< in an event that made the position uncertain, see RollingModeParams::uncertain_m
+  bool uncertain = false;  ///< an event made the position uncertain, see RollingModeParams::uncertain_m
 };
 
 /// Trajectory and constants that serve as linearisation point of the errors.

@@ -15,8 +15,8 @@ namespace tumble {
 /// command lines.
 struct RollingExpertParams {
   double node_s = 0.02;  ///< time between two measurement updates
-  /// Averaging time of readings, for which all thresholds of RollingExpertParams are set. An averaging time of zero
-  /// disables averaging. Readings of a slower IMU are used unchanged.
+  /// Averaging time of readings, for which all thresholds of RollingExpertParams are set. A time of zero disables
+  /// averaging. Readings of a slower IMU are used unchanged.
   double reading_s = 4e-3;
   /// Parameters of rest detection on the means of nodes. The total rate limit of 0.02 rad/s, shared by the axes, is 3
   /// mm/s of the sphere. A limit of 0.02 rad/s per axis increases the drift of a sphere that comes to rest by half.

@@ -78,9 +78,10 @@ class RollingSmoother {
     RollingNominal nominal;
     RollingFilter::Covariance P = RollingFilter::Covariance::Zero();
     RollingMode mode = RollingMode::grip;
-    double event_variance_m2 = 0.0;                                ///< of the position, when the event began
-    Eigen::Vector3d constrained_p_WG_m = Eigen::Vector3d::Zero();  ///< while `position_constrained`
-    bool position_constrained = false;                             ///< at rest, with constant reported position
+    double event_variance_m2 = 0.0;                                ///< variance of the position when the event began
+    Eigen::Vector3d constrained_p_WG_m = Eigen::Vector3d::Zero();  ///< constant position while `position_constrained`
+    bool position_constrained = false;                             ///< the sphere is at rest, with constant reported
+                                                                   ///< position
     TimeNs last_time_ns = 0;
     Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero();
     // Rate of the gap that contains the node, if any.

@@ -19,8 +19,8 @@ namespace tumble {
 /// the angular acceleration a. FlightSense compares the readings with this force for the true sensor and for each
 /// alternative in `kSenses`. If an alternative agrees within `share` for `run_s`, the flight counts as measured by that
 /// alternative. On the ground, no agreement lasts that long. If one axis of the gyro is saturated, the force along the
-/// lever arm determines the rate of the saturated axis. This force is -|w x t|^2 for any angular acceleration. The
-/// remaining two components of the force verify flight.
+/// lever arm determines the rate of the saturated axis. The force along the lever arm is -|w x t|^2 for any angular
+/// acceleration. The remaining two components of the force verify flight.
 ///
 /// A person who swings a body can produce the forces of a flight with a different lever arm. For a body that may be
 /// hand-held, FlightSense therefore reports only inverted accelerometers and a half-scale gyro, from unsaturated rates.
@@ -28,8 +28,8 @@ namespace tumble {
 /// gyro axes in all flights. An inverted lever arm looks like an inverted accelerometer.
 class FlightSense {
  public:
-  /// Alternatives: true sensor; all axes flipped, x, y or z flipped, x and y, y and z or z and x swapped, for the
-  /// accelerometer and then for the gyro; a gyro with half scale.
+  /// Number of alternatives, and index of the gyro with half scale. Alternative 0 is the true sensor. Errors of the
+  /// accelerometer follow, then errors of the gyro: all axes flipped, one axis flipped, two axes swapped.
   static constexpr std::size_t kSenses = 17, kHalfScaleGyro = 16;
 
   enum class Body { may_be_hand_held, thrown };
@@ -42,10 +42,11 @@ class FlightSense {
     double force_min_m_s2 = 2.5;                            ///< minimum force due to rotation
     double share = 0.25;                                    ///< tolerance as a fraction of this force
     double run_s = 0.02;                                    ///< minimum duration of agreement
-    double alternative_flight_s = 0.1;                      ///< minimum total flight time of an alternative sensor,
+    double alternative_flight_s = 0.1;                      ///< minimum total flight time of an alternative sensor
     double half_scale_flight_s = 0.3;         ///< minimum total flight time of a half-scale gyro (hand-held motion may
                                               ///< give 0.15 s)
-    double alternative_evidence_ratio = 4.0;  ///< as a multiple of the true sensor's flight time,
+    double alternative_evidence_ratio = 4.0;  ///< minimum flight time of an alternative, as a multiple of the true
+                                              ///< sensor's flight time
     double thrown_evidence_ratio = 2.0;       ///< minimum ratio for a body that is certainly not hand-held
     double gap_max_s = 0.1;                   ///< a longer gap resets the current run
 

@@ -23,9 +23,8 @@ namespace tumble {
 /// flags it. The extreme reading of an axis counts from 0.5 of the range on. A saturated axis is frozen if all other
 /// axes of both triads indicate rest for `rail_stationary_s`, because a body with a saturating rate or force is not at
 /// rest. On a body that is never at rest, the axis is frozen after `rail_repeated_s` if another axis of its triad
-/// changes. In this case the axis is frozen or the range is too small for the spin, and in both cases the rate of the
-/// axis is unknown. A frozen axis is not distinguished from a body that spins so evenly about this axis that no other
-/// axis changes.
+/// changes. Either the axis is frozen or the range is too small for the spin. The rate of the axis is then unknown. A
+/// frozen axis is not distinguished from a body that spins so evenly about this axis that no other axis changes.
 class FrozenAxes {
  public:
   struct Params {

@@ -19,7 +19,7 @@ namespace tumble {
 /// A rate between two readings of the gyro, including its bias.
 struct InterpolatedRate {
   Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();
-  Eigen::Vector3d variance_rad2_s2 = Eigen::Vector3d::Zero();  ///< of the interpolation, without noise
+  Eigen::Vector3d variance_rad2_s2 = Eigen::Vector3d::Zero();  ///< variance of the interpolation, without noise
 };
 
 /// Returns the rate of sample `k` of a stream's window. The result is empty in three cases: each sample has its own

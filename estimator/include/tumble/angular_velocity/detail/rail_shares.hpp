@@ -6,7 +6,7 @@ namespace tumble {
 /// Fractions of a range or a saturation level that separate saturated from unsaturated readings. The values are
 /// heuristic.
 
-/// Lowest accepted saturation level as a fraction of the stated range. rails.md (R67). Saturation levels are usually at
+/// Lowest accepted saturation level as a fraction of the stated range: rails.md (R67). Saturation levels are usually at
 /// the stated range or above (1.4 times for one device). The margin covers devices that saturate below the range in
 /// their data sheet.
 inline constexpr double kStatedRailMin = 0.85;

@@ -45,7 +45,7 @@ RateFactor late_flight_factor(const RateKnot& knot, const RigConstants& rig, con
 RateFactor late_flight_by_rig(const RateKnot& knot, const RigConstants& rig, const Eigen::Vector3d& reading_m_s2,
                               double delay_s);
 
-/// Returns the second time derivative of the specific force at the lever arm in free flight [m/s^4]. Half of this
+/// Returns the second time derivative of the specific force at the lever arm in free flight [m/s^4]. Half of the second
 /// derivative, times the variance of a window, is the window's effect on a reading.
 Eigen::Vector3d flight_curvature(const RateKnot& knot, const RigConstants& rig);
 

@@ -70,8 +70,8 @@ class RateModel {
   void add_rig_prior(const RigConstants& rig, arrow::Corner& corner) const;
 
   /// Returns the distance of `rig` from its prior. The distance is the Mahalanobis distance divided by the root of the
-  /// number of components. The largest distance over lever arm, both biases and inertia counts. A value of about 1 is
-  /// expected.
+  /// number of components. The function returns the largest distance among lever arm, gyro bias, accelerometer bias and
+  /// inertia. A value of about 1 is expected.
   double calibration_mahalanobis(const RigConstants& rig) const;
 
   RigConstants prior_constants() const { return prior_constants_; }
@@ -92,7 +92,7 @@ class RateModel {
  private:
   struct ForceFactor {
     RateFactor factor;
-    Eigen::Vector3d information;  ///< of each axis, or element
+    Eigen::Vector3d information;  ///< information of each axis or element
   };
   /// Converts the flight residual to element directions if an accelerometer element clips, and drops satisfied lower
   /// bounds. Returns additional variances due to the uncertain sensing directions and the hidden force.

@@ -26,13 +26,14 @@ struct RateObservation {
   std::uint8_t lone = 0;     ///< few readings as high as other elements' levels, on a side without a known level
   std::uint8_t suspect = 0;  ///< run of readings that may be at an unknown saturation level: lower bounds
   Eigen::Vector3d lost_rad_s = Eigen::Vector3d::Zero();        ///< expected saturation deficit, with the reading's sign
-  Eigen::Vector3d lost_sigma_rad_s = Eigen::Vector3d::Zero();  ///< of all three kinds
+  Eigen::Vector3d lost_sigma_rad_s = Eigen::Vector3d::Zero();  ///< standard deviation for axes in one of the three
+                                                               ///< masks
   /// Age of each triad's reading at the sample's stamp, and whether the gyro repeats the previous reading.
   double gyro_age_s = 0.0, accel_age_s = 0.0;
   bool gyro_repeats = false;
-  ElementRows accel_rows = {};  ///< of the accelerometer's elements; needed if one of them clips
+  ElementRows accel_rows = {};  ///< sensing directions of the accelerometer; needed if an element clips
   std::array<AuxiliaryReading, kAuxiliaryImusMax> auxiliary_imus =
-      {};  ///< in the order of RateModelParams::auxiliary_imus
+      {};  ///< readings in the order of RateModelParams::auxiliary_imus
 
   /// Returns whether an element clips. All axes are then corrupted, and the gyro is used element by element.
   bool by_elements() const { return (clipping.gyro | clipping.missing_gyro) != 0; }

@@ -38,8 +38,9 @@ struct RateDescentParams {
 /// Parameters of RateSmootherParams that few users change, grouped by meaning. Field names equal the names in tables
 /// and on command lines.
 struct RateSmootherExpertParams {
-  RailPlaneFinder::Params planes = {};  ///< without a stated range, that of RateSmootherParams::rails applies
-  RailPlaneFinder::Params accel_planes = RailPlaneFinder::Params::for_accelerometer();  ///< same for the accelerometer
+  RailPlaneFinder::Params planes = {};  ///< without a stated range, the range of RateSmootherParams::rails applies
+  /// parameters of the accelerometer's planes
+  RailPlaneFinder::Params accel_planes = RailPlaneFinder::Params::for_accelerometer();
   RestDetector::Params rests = {};
   RateDescentParams descent = {};
   /// Maximum number of optimisations. Each optimisation uses readings corrected by the sensor errors of the previous

@@ -41,8 +41,9 @@ struct RigInflationParams {
 /// Parameters of RateStreamParams that few users change, grouped by meaning. Field names equal the names in tables and
 /// on command lines.
 struct RateStreamExpertParams {
-  RailPlaneFinder::Params planes = {};  ///< without a stated range, that of RateStreamParams::rails applies
-  RailPlaneFinder::Params accel_planes = RailPlaneFinder::Params::for_accelerometer();  ///< same for the accelerometer
+  RailPlaneFinder::Params planes = {};  ///< without a stated range, the range of RateStreamParams::rails applies
+  /// parameters of the accelerometer's planes
+  RailPlaneFinder::Params accel_planes = RailPlaneFinder::Params::for_accelerometer();
   RestDetector::Params rests = {};
   double widen_first = 8.0;      ///< contact threshold's factor for a new clipped sample, halved in each step
   double step_max_rad_s = 10.0;  ///< longest step of a rate at one sample

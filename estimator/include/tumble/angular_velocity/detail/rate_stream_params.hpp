@@ -21,7 +21,7 @@ struct RateStreamParams {
   RailDetector::Params rails = {};
   double period_s = 0.01;                    ///< nominal time between samples
   double lag_s = 0.2;                        ///< length of the window; [2 period_s, lag_max_s()]
-  double recovered_sigma_rad_s = 0.5;        ///< same as in RateSmootherParams
+  double recovered_sigma_rad_s = 0.5;        ///< see RateSmootherParams
   double calibration_mahalanobis_max = 1.5;  ///< beyond this distance the estimated calibration is reset
   double gap_max_s = 1.0;                    ///< longest time between samples
   double step_s = 0.005;                     ///< minimum time between Gauss-Newton steps; 0: with each sample

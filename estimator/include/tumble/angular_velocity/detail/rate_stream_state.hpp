@@ -38,7 +38,7 @@ struct RateStreamForce {
 struct RateStreamKnot {
   RateObservation observation;  ///< with the force at its own time if the accelerometer is delayed: `read`
   RateStreamForce read;
-  Clipping by_upright_rails;  ///< by flags and equal readings; the observation also uses planes
+  Clipping by_upright_rails;  ///< clipping by flags and equal readings; the observation also uses planes
   RateEstimate estimate;
   Eigen::Matrix3d covariance_rad2_s2 = Eigen::Matrix3d::Zero();
   /// Growth of each axis's magnitude in the two steps up to the sample. The smaller growth of the two steps is stored,
@@ -95,7 +95,8 @@ struct RateStreamState {
   /// State of the device's errors: always one element. The element is on the heap because the state passes through
   /// threads with a small stack.
   std::vector<RateStreamDevice> device = std::vector<RateStreamDevice>(1);
-  std::array<Eigen::Vector3d, 2> extremes{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};  ///< of readings so far
+  /// largest and smallest readings so far
+  std::array<Eigen::Vector3d, 2> extremes{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   LeastRails least;  ///< lower bounds from the readings so far
   /// Data of a run of readings at a possible saturation level that has partly left the window:
   /// RateStreamKnot::approach_rad_s before the run, and the number of samples that left.

@@ -40,7 +40,7 @@ class RepeatDetector {
     bool operator==(const Memory&) const = default;
   };
   struct State {
-    std::array<Memory, 2> memory;  ///< by Triad
+    std::array<Memory, 2> memory;  ///< state of each triad, indexed by Triad
     const RepeatedReading& of(Triad triad) const { return memory[static_cast<std::size_t>(triad)].now; }
     bool operator==(const State&) const = default;
   };

@@ -12,7 +12,7 @@ namespace tumble {
 struct SubsampleSaturation {
   bool saturated = false;
   double lost_rad_s = 0.0;   ///< expected |truth| - |reading|
-  double sigma_rad_s = 0.0;  ///< its standard deviation
+  double sigma_rad_s = 0.0;  ///< standard deviation of the deficit
 };
 
 /// Estimates the saturation deficit of a flagged reading from its unsaturated neighbour. The rate passes the saturation

@@ -9,7 +9,7 @@ struct NormalMoments {
 };
 
 /// Returns the moments of a normal distribution truncated below `bound`. The bound has the variance `softness2`.
-/// Expectation propagation uses these moments (Minka 2001).
+/// Expectation propagation uses the moments of truncated distributions (Minka 2001).
 NormalMoments truncated_below(const NormalMoments& from, double bound, double softness2);
 
 /// A Gaussian factor, as precision and precision * mean.

@@ -6,7 +6,7 @@
 
 namespace tumble {
 
-/// A labelling of an accelerometer's axes relative to the axes of the gyro in the same IMU.
+/// A labelling of an accelerometer's axes relative to the axes of the IMU's gyro.
 ///
 /// A file from another source may use other axis names, or z down. The rotation of gravity distinguishes 24 labellings.
 /// A flip of all three axes is not distinguished because flipped axes rotate like the unflipped ones. An inverted gyro

@@ -13,8 +13,8 @@ namespace tumble {
 /// logarithm).
 namespace carried {
 
-inline constexpr int kState = 18;  ///< of a node: see Index
-inline constexpr int kBorder = 9;  ///< of the constants: see ConstantIndex
+inline constexpr int kState = 18;  ///< size of a node's error: see Index
+inline constexpr int kBorder = 9;  ///< number of constants: see ConstantIndex
 using System = ArrowSystem<kState, kBorder>;
 
 /// First indices of the parts of a node's error. The attitude error is phi with q_true = q_WI Exp(phi).
@@ -27,7 +27,7 @@ struct Node {
   Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
   Eigen::Vector3d w_WI_I_rad_s = Eigen::Vector3d::Zero();
   Eigen::Vector3d angular_acceleration_rad_s2 = Eigen::Vector3d::Zero();  ///< derivative of the rate, sensor axes
-  Eigen::Vector3d a_W_m_s2 = Eigen::Vector3d::Zero();                     ///< of the held point
+  Eigen::Vector3d a_W_m_s2 = Eigen::Vector3d::Zero();                     ///< acceleration of the held point
   Eigen::Vector3d v_W_m_s = Eigen::Vector3d::Zero();
   Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();
   void move(const System::StateVector& step);
@@ -58,24 +58,25 @@ struct NodeReadings {
   Eigen::Vector3d force_bound = Eigen::Vector3d::Zero();  ///< sign of the level where an axis clips, otherwise 0
   double force_n = 0.0;                                   ///< number of force readings
   double force_t_s = 0.0;                                 ///< mean time of the force readings
-  double force_timing_m_s2 = 0.0;                         ///< force error due to the time uncertainty of their windows
+  double force_timing_m_s2 = 0.0;                         ///< force error due to the time uncertainty of the readings'
+                                                          ///< windows
   bool rest = false;
 };
 
 /// Standard deviations for the weights of the factors.
 struct ReadingNoise {
-  double gyro_rad_s = 0.0;    ///< of one reading
+  double gyro_rad_s = 0.0;    ///< standard deviation of one gyro reading
   double window_rad_s = 0.0;  ///< difference between the mean over a window and the rate at its centre, one reading
   double tilt_share = 0.0;    ///< of an unsaturated element while another element clips, per rad/s of saturation
                               ///< deficit
-  double rail_rad_s = 0.0;    ///< of a saturation level
+  double rail_rad_s = 0.0;    ///< standard deviation of a saturation level
   double bound = 1.0;         ///< fraction of a gyro's lower bounds that counts as information
   double force_bound = 1.0;   ///< fraction of an accelerometer's lower bounds that counts as information
-  double accel_m_s2 = 0.0;    ///< of one reading
-  double accel_share = 0.0;   ///< additional, per m/s^2 of difference from gravity
-  double rest_rad_s = 0.0;    ///< of the rate at rest, one node
-  double rest_m_s = 0.0;      ///< of the velocity at rest
-  double rest_m_s2 = 0.0;     ///< of the acceleration at rest
+  double accel_m_s2 = 0.0;    ///< standard deviation of one force reading
+  double accel_share = 0.0;   ///< additional force noise per m/s^2 of difference from gravity
+  double rest_rad_s = 0.0;    ///< standard deviation of the rate at rest, one node
+  double rest_m_s = 0.0;      ///< standard deviation of the velocity at rest
+  double rest_m_s2 = 0.0;     ///< standard deviation of the acceleration at rest
 };
 
 /// Adds the gyro of one node, element by element. Row i of `rows` is the axis m_i of element i. Unsaturated readings

@@ -21,7 +21,7 @@ struct CoarseAlignment {
   double velocity_m2_s2 = 0.0;                            ///< variance of the velocity at the start, one axis
   double lost_rad2 = 0.0;                                 ///< variance of the tilt at the start, one axis
   double grown_rad2 = 0.0;                                ///< growth of the tilt's variance since the start
-  Eigen::Vector3d force_W_m_s = Eigen::Vector3d::Zero();  ///< integral since the start
+  Eigen::Vector3d force_W_m_s = Eigen::Vector3d::Zero();  ///< integral of the specific force since the start
   bool operator==(const CoarseAlignment&) const = default;
 
   void begin(double velocity_variance_m2_s2, double tilt_variance_rad2) {
@@ -40,8 +40,9 @@ struct CoarseAlignment {
   /// Returns the variance of the tilt without the alignment, one axis.
   double tilt_rad2() const { return lost_rad2 + grown_rad2; }
 
-  /// Returns the variance of the tilt from `levelling()`. The variance depends on the velocities at both ends and on
-  /// the gyro between the ends. The magnitude of the mean force reveals a part of the velocities.
+  /// Returns the variance of the tilt from `levelling()`. The variance depends on the velocities at start and end of
+  /// the alignment, and on the gyro's errors between start and end. The magnitude of the mean force reveals a part of
+  /// the velocities.
   double variance_rad2(double velocity_variance_m2_s2, double gravity_m_s2) const {
     const double gravity_m_s = gravity_m_s2 * std::max(time_s, 1e-9);
     const double seen = squared(force_W_m_s.norm() - gravity_m_s);

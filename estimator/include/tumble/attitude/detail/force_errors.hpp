@@ -30,11 +30,12 @@ class ForceErrors {
   struct Params {
     std::array<Eigen::Vector3d, kUnits> p_C_m{};  ///< positions of the units
     int count = 1;                                ///< bound [1, kUnits]
-    double bias_sigma_m_s2 = 0.05;                ///< prior; bound [0, 1e3]
+    double bias_sigma_m_s2 = 0.05;                ///< prior of the bias; bound [0, 1e3]
     double scale_sigma = 4e-3;                    ///< prior of each entry of M; bound [0, 1]
-    double position_sigma_m = 1.5e-3;             ///< prior; bound [0, 10]
-    double noise_m_s2 = 0.06;                     ///< of one difference, over a span; bound (0, 1e3]
-    double acceleration_share = 0.02;  ///< additional, per lever-arm force of the angular acceleration; bound [0, 1]
+    double position_sigma_m = 1.5e-3;             ///< prior of the position error; bound [0, 10]
+    double noise_m_s2 = 0.06;                     ///< noise of one force difference, over a span; bound (0, 1e3]
+    double acceleration_share = 0.02;  ///< additional noise, as a fraction of the lever-arm force of the angular
+                                       ///< acceleration; bound [0, 1]
     double gate_deviations = 5.0;      ///< differences beyond this many sigmas have another cause; bound (0, 1e3]
   };
   struct State {

@@ -6,10 +6,10 @@
 /// Groups of ImuMerge::Params::Expert.
 namespace tumble {
 
-/// Parameters of outliers: a reading far from those of the other units is excluded from its sample.
+/// Parameters of outliers: a reading far from the readings of the other units is excluded from its sample.
 struct ImuOutlierParams {
   double rate_rad_s = 0.15;  ///< difference from the median
-  double rate_share = 0.03;  ///< additional, as a fraction of the rate
+  double rate_share = 0.03;  ///< additional difference, as a fraction of the rate
   double force_m_s2 = 3.0;   ///< difference from the median
   /// A reading above this fraction of the range may have been saturated within its sample.
   double subsample_saturation_share = 0.15;
@@ -59,7 +59,7 @@ struct FrozenImuParams {
 /// excluded permanently.
 struct DisagreeingImuParams {
   double rate_rad_s = 0.1;
-  double rate_share = 0.06;  ///< additional, as a fraction of the rate
+  double rate_share = 0.06;  ///< additional difference, as a fraction of the rate
   double force_m_s2 = 1.0;
   double after_s = 0.3;
 

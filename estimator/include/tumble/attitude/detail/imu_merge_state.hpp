@@ -30,7 +30,7 @@ struct ImuMergeUnit {
 
   Eigen::Matrix<double, kErrors, 1> x = Eigen::Matrix<double, kErrors, 1>::Zero();
   Eigen::Matrix<double, kErrors, kErrors> P = Eigen::Matrix<double, kErrors, kErrors>::Zero();
-  ImuAverage window;  ///< of its readings since the last window
+  ImuAverage window;  ///< average of the unit's readings since the last window
   /// Means over the last window. For an absent unit, the values predicted from the other units.
   Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero(), last_force_m_s2 = Eigen::Vector3d::Zero();
   double suspect_s = 0.0;     ///< remaining time for which it is excluded from the force
@@ -59,7 +59,7 @@ struct ImuMergeState {
   Eigen::Vector3d rate_before_rad_s = Eigen::Vector3d::Zero();  ///< merged mean over the window before
   double rotation_rate_rad_s = 0.0;                             ///< mean of the rate over half a second
   double window_s = 0.0;                                        ///< length of the current window
-  double length_s = 0.0, length_before_s = 0.0;                 ///< of the last two windows
+  double length_s = 0.0, length_before_s = 0.0;                 ///< lengths of the last two windows
   double lever_arm_correlation = 0.0, arm_square_m2_s3 = 0.0;   ///< sums for arm_share()
   UnitSenses senses;
   std::int64_t samples = 0, windows = 0;

@@ -74,7 +74,8 @@ struct AxisNamingParams {
 struct FrozenTriadParams {
   double repeats_s = 1.0;          ///< minimum duration, after as long with changing readings
   double longest_share = 10.0;     ///< minimum ratio to the longest earlier repetition
-  double unexplained_least = 0.5;  ///< of gravity's rotation, for a gyro that never changed
+  double unexplained_least = 0.5;  ///< minimum unexplained fraction of gravity's rotation, for a gyro that never
+                                   ///< changed
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {

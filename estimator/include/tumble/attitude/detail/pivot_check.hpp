@@ -22,8 +22,8 @@ struct PivotCheckParams {
   double rotation_least_rad = 1.0;  ///< minimum rotation within a segment
   double explains_m_s = 0.3;        ///< rms velocity below which the rates explain a segment
   double noise_m_s = 0.03;          ///< rms velocity below which segments explain equally well
-  double evidence_least = 5.0;      ///< minimum sum over the segments of the log ratio of squares,
-  double evidence_of_each = 0.6;    ///< and minimum mean per segment
+  double evidence_least = 5.0;      ///< minimum sum over the segments of the log ratio of squares
+  double evidence_of_each = 0.6;    ///< minimum mean of the log ratio per segment
   double segments_least = 6.0;      ///< minimum number of better explained segments; each moment is in two
   double better_over_worse = 4.0;   ///< minimum ratio of better to worse explained segments
   double arm_most_m = 0.25;         ///< maximum pivot distance of segments that determine the scale

@@ -36,22 +36,22 @@ class RateRecovery {
   /// Standard deviations of readings over kReading_s.
   struct ReadingNoise {
     double rate_rad_s = 0.03;    ///< bound (0, 10]
-    double rate_share = 0.003;   ///< additional, as a fraction of the reading; bound [0, 1]
+    double rate_share = 0.003;   ///< additional noise, as a fraction of the reading; bound [0, 1]
     double force_m_s2 = 0.3;     ///< bound (0, 1e3]
-    double force_share = 0.004;  ///< additional, as a fraction of the reading; bound [0, 1]
+    double force_share = 0.004;  ///< additional noise, as a fraction of the reading; bound [0, 1]
   };
   struct Params {
     std::array<Eigen::Isometry3d, kUnits> T_CI{};   ///< mountings of the units relative to their mean position
     int count = 1;                                  ///< bound [1, kUnits]
     double gyro_range_rad_s = 1e3;                  ///< readings from this value on are saturated; bound (0, 1e3]
     double accel_range_m_s2 = 1e5;                  ///< bound (0, 1e5]
-    double lever_arm_sigma_m = 1.5e-3;              ///< prior; bound (0, 10]
-    double acceleration_walk_rad_s2_sqrts = 200.0;  ///< of the angular acceleration; bound (0, 1e6]
-    double force_walk_m_s2_sqrts = 25.0;            ///< of the common force; bound (0, 1e6]
+    double lever_arm_sigma_m = 1.5e-3;              ///< prior of the lever arm error; bound (0, 10]
+    double acceleration_walk_rad_s2_sqrts = 200.0;  ///< random walk of the angular acceleration; bound (0, 1e6]
+    double force_walk_m_s2_sqrts = 25.0;            ///< random walk of the common force; bound (0, 1e6]
     double recovered_sigma_rad_s = 1.0;             ///< rates with larger sigma remain clipped; bound (0, 1e3]
     ReadingNoise noise;
-    /// Sensing directions of the units' elements. While an element clips, its saturation deficit corrupts the other
-    /// axes. Unsaturated elements are then used along their sensing directions.
+    /// Sensing directions of the units' elements. While a sensing element clips, its saturation deficit corrupts the
+    /// readings of the other axes. Unsaturated elements are then used along their sensing directions.
     std::array<ElementRows, kUnits> gyro_elements{}, accel_elements{};
   };
   struct State {

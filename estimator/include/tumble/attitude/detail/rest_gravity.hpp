@@ -14,10 +14,10 @@ namespace tumble {
 
 /// Checks the plausibility of rates by gravity at rests. The force at rest must have the magnitude g. The rates between
 /// two rests rotate the sensor by R. The direction u_0 of the force at the earlier rest must become that at the later
-/// rest: u_1 = R^T u_0. This relation also holds through flight, impacts and clipping. A gyro with wrong sign, scale or
-/// axis labels gives an arbitrary angle between u_1 and R^T u_0. After a tumble of several revolutions, an arbitrary
-/// angle is below `miss_least_rad` in one of fifty cases. The magnitude of the force reveals an accelerometer with
-/// another unit. The rates come from an estimate, whose covariance widens the tolerance.
+/// rest: u_1 = R^T u_0. The relation u_1 = R^T u_0 also holds through flight, impacts and clipping. A gyro with wrong
+/// sign, scale or axis labels gives an arbitrary angle between u_1 and R^T u_0. After a tumble of several revolutions,
+/// an arbitrary angle is below `miss_least_rad` in one of fifty cases. The magnitude of the force reveals an
+/// accelerometer with another unit. The rates come from an estimate, whose covariance widens the tolerance.
 ///
 /// In addition, the velocity at a rest is zero. The forces between two rests, rotated back by the rates, therefore
 /// integrate to gravity alone. Wrong rates that give the correct final direction by chance rarely give this integral.
@@ -35,9 +35,10 @@ class RestGravity {
     /// motion.
     RestDetector::Params rests = {.rate_max_rad_s = 0.15, .force_min_m_s2 = 0.3};
     double size_share_max = 0.15;     ///< maximum relative difference from gravity at rest: 80 mg of bias, 3 % of scale
-    double miss_deviations = 5.0;     ///< allowed number of the rates' standard deviations over the span; a chord, and
-    double miss_least_rad = 0.3;      ///< at least this: a bias, pushes at rest
-    double miss_most_rad = 0.6;       ///< at most this: less certain rates do not determine the displacement
+    double miss_deviations = 5.0;     ///< maximum angle, as a chord, in standard deviations of the rates
+    double miss_least_rad = 0.3;      ///< minimum tolerance of the angle: covers a bias, and pushes at rest
+    double miss_most_rad = 0.6;       ///< maximum tolerance of the angle: less certain rates do not determine the
+                                      ///< displacement
     double correlation_s = 0.1;       ///< minimum correlation time of a rate's error
     double rotation_least_rad = 1.0;  ///< minimum rotation between two rests
     double span_most_s = 60.0;        ///< maximum duration of a span, limited by the drift of a good gyro's bias
@@ -68,8 +69,8 @@ class RestGravity {
   /// State for the magnitude of the force at rest.
   struct Size {
     RestDetector::State rest, weightless, heavy;
-    double rest_s = 0.0, force_sum_m = 0.0;  ///< of all rests, and of force by time
-    double weightless_s = 0.0;               ///< of what would be rest but that no force holds it
+    double rest_s = 0.0, force_sum_m = 0.0;  ///< duration of all rests, and integral of the force at rest
+    double weightless_s = 0.0;               ///< duration of rests without force
     TimeNs last_time_ns = 0;
     bool started = false, rests = false;
     bool operator==(const Size&) const = default;
@@ -80,9 +81,12 @@ class RestGravity {
     double span_angle_rad = 0.0, variance_rad2 = 0.0;            ///< since then
     Eigen::Vector3d velocity_sum_m_s = Eigen::Vector3d::Zero();  ///< since then, of the force in the axes of that rest
     double span_s = 0.0, hidden_m_s = 0.0;                       ///< since then; deficit of the accelerometer
-    double segment_s = 0.0, segment_rad2_s = 0.0;                ///< of consecutive unmeasured samples
-    double miss_rad = 0.0, miss_sigma_rad = 0.0;                 ///< of the worst span between two rests
-    double velocity_share = 0.0, velocity_allowed_share = 0.0;   ///< of the worst span, over gravity times duration
+    double segment_s = 0.0, segment_rad2_s = 0.0;                ///< duration and variance of consecutive unmeasured
+                                                                 ///< samples
+    double miss_rad = 0.0, miss_sigma_rad = 0.0;                 ///< angle error of the worst span between two rests,
+                                                                 ///< and its standard deviation
+    double velocity_share = 0.0, velocity_allowed_share = 0.0;   ///< velocity of the worst span, and its limit, over
+                                                                 ///< gravity times duration
     std::size_t spans = 0;                                       ///< number of compared spans
   };
 

@@ -22,7 +22,8 @@ struct TumbleAttitudeState {
   /// Covariance of (tilt error phi_x, phi_y in W with q_true = Exp(phi) q_WI; bias in I; velocity; displacement;
   /// heading error phi_z, which is not corrected).
   Covariance covariance = Covariance::Zero();
-  ImuAverage average;                                              ///< of the readings since the last processed average
+  ImuAverage average;                                              ///< average of the readings since the last processed
+                                                                   ///< average
   Eigen::Matrix3d recovered_rad2_s2 = Eigen::Matrix3d::Zero();     ///< mean covariance of the averaged rates, from the
                                                                    ///< caller
   Eigen::Quaterniond q_taken_WI = Eigen::Quaterniond::Identity();  ///< attitude at the last processed average
@@ -39,7 +40,7 @@ struct TumbleAttitudeState {
   RestDetector::State rest;
   bool at_rest = false;
   // State of a rolling sphere.
-  Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();  ///< of the last sample, without bias
+  Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();  ///< rate of the last sample, without bias
   double slip_s = 0.0, fits_s = 0.0;
   bool slipping = false;
   TimeNs last_time_ns = 0;

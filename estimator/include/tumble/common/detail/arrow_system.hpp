@@ -86,8 +86,8 @@ struct ArrowSystem {
   static void subtract_square(const CrossMatrix& border, BorderMatrix& corner);
 };
 
-// Replaces `a` by L^-1, where a = L L' and L is lower. Plain loops over columns, because Eigen's general triangular
-// solvers are several times slower at these sizes. One division per column.
+// Replaces `a` by L^-1, where a = L L' and L is lower. The function uses plain loops over columns, because Eigen's
+// general triangular solvers are several times slower at the sizes of the blocks. One division per column.
 template <int State, int Border>
 bool ArrowSystem<State, Border>::invert_factor(StateMatrix& a) {
   StateMatrix L = a;

@@ -14,9 +14,9 @@ namespace tumble {
 /// Rejects single wild readings of an IMU, as bus faults cause them. A rejected reading counts as missing.
 ///
 /// A reading is an outlier if it leaves both of its neighbours in the same direction while the neighbours agree with
-/// each other, and if the other triad shows no cause. The cause of a jump of the gyro is a change of the force, and the
-/// cause of a jump of the accelerometer is a change of the rate. A stamp that lies ahead of the next stamp is also an
-/// outlier. Equations: outliers.md (O1) to (O6).
+/// each other, and if the readings of the other triad show no cause. The cause of a jump of the gyro is a change of the
+/// force, and the cause of a jump of the accelerometer is a change of the rate. A stamp that lies ahead of the next
+/// stamp is also an outlier. Equations: outliers.md (O1) to (O6).
 ///
 /// The filter is causal. OutlierFilter delays a reading that jumps further than the other triad explains until the next
 /// reading confirms or refutes it. All other readings pass at once, unchanged. Readings beyond kRateMax_rad_s or
@@ -34,7 +34,7 @@ class OutlierFilter {
   struct Device {
     double gyro_range_rad_s = 0.0;
     double accel_range_m_s2 = 0.0;
-    double period_s = 0.0;   ///< from sample to sample: stamps that step by much more are held
+    double period_s = 0.0;   ///< nominal time between samples: a sample whose stamp steps by much more is delayed
     double gap_max_s = 1.0;  ///< a step longer than this is not held: the caller handles gaps
   };
 

@@ -63,7 +63,8 @@ struct InertialNoiseParams {
 struct RailedImuParams {
   double accel_m_s2 = 1e5;
   double force_sigma_m_s2 = 50.0;
-  double rate_sigma_rad_s = 3.0;  ///< assumed for a rate on a clipped axis that the rate method did not recover
+  double rate_sigma_rad_s = 3.0;  ///< assumed standard deviation of a rate on a clipped axis that the rate method did
+                                  ///< not recover
   bool estimate_deficit = false;
   double deficit_sigma_min_rad_s = 1.0;
   double deficit_time_s = 0.3;

@@ -14,8 +14,8 @@ namespace tumble {
 ///    rates underestimated. An IMU or a lidar that does not meet its data sheet causes more.
 ///
 /// Before the first sweep with surfaces there is no map, so tracking cannot fail. The number of well constrained sweeps
-/// is not used because the standard deviation accounts for it. Not detected: a map of another scale (see SweepScale),
-/// and errors of clocks or mounting that the calibration explains.
+/// is not used because the standard deviation accounts for it. Localisation does not detect a map of another scale (see
+/// SweepScale), or errors of clocks or mounting that the calibration explains.
 class Localisation {
  public:
   /// `matched_m`: MatchingParams::distance_m of the mapper.

@@ -11,14 +11,14 @@
 namespace tumble {
 
 /// Readings of the robot's odometer about the motion within a sweep, from wheels, legs, a camera or a radar. A reading
-/// is fused with the prediction from the IMU and earlier sweeps by the covariances of both. The registration starts
-/// from the fused prediction. Times are in the IMU's clock. The errors of a reading are assumed independent of all
-/// other errors. Wheel slip beyond the stated uncertainty therefore corrupts the estimate.
+/// is fused with the prediction from the IMU and earlier sweeps by the covariances of reading and prediction. The
+/// registration starts from the fused prediction. Times are in the IMU's clock. The errors of a reading are assumed
+/// independent of all other errors. Wheel slip beyond the stated uncertainty therefore corrupts the estimate.
 
 /// Velocity of the IMU at one time.
 struct VelocityReading {
   TimeNs time_ns = 0;
-  Eigen::Vector3d v_WI_I_m_s = Eigen::Vector3d::Zero();  ///< in IMU axes at that time
+  Eigen::Vector3d v_WI_I_m_s = Eigen::Vector3d::Zero();  ///< velocity in IMU axes at the reading's time
   double sigma_m_s = 0.0;                                ///< standard deviation of each axis
 };
 

@@ -48,9 +48,10 @@ struct MatchingParams {
 /// Stages of a registration: few iterations with all points, further iterations with a subsample until convergence, and
 /// a coarse stage for starts far from the prior.
 struct RegistrationStagesParams {
-  int full_iterations = 8;              ///< with all points; without convergence, a subsample continues at lower cost
+  int full_iterations = 8;              ///< iterations with all points; without convergence, a subsample continues at
+                                        ///< lower cost
   std::size_t subsample_points = 1000;  ///< sufficient to decide whether a start converges
-  int coarse_iterations = 15;           ///< for a start that may be far off
+  int coarse_iterations = 15;           ///< iterations for a start that may be far off
   std::size_t coarse_points = 300;      ///< points of a coarse start
   std::size_t coarse_matches_min = 50;  ///< minimum number of matches of a coarse start
   double coarse_kernel_min_m = 0.5;     ///< minimum width of its robust kernel
@@ -82,8 +83,9 @@ struct RegistrationStagesParams {
 /// Handling of sweeps without a registration and of tracking failure.
 struct TrackingParams {
   /// A sweep with too few matches still extends the map, as `degenerate`, while the inertial prior has smaller standard
-  /// deviations than these limits. A lidar at rest scans only rings, which give no planes until the lidar rotates.
-  /// LocalMapParams::sigma_max_m excludes points that are too uncertain at their range due to the attitude.
+  /// deviations than extend_sigma_max_m and its counterpart for attitude. A lidar at rest scans only rings, which give
+  /// no planes until the lidar rotates. LocalMapParams::sigma_max_m excludes points that are too uncertain at their
+  /// range due to the attitude.
   double extend_sigma_max_m = 0.1;
   double extend_sigma_max_rad = 0.1;
   /// Maximum number of consecutive sweeps with points but without registration. After this number, the mapper continues

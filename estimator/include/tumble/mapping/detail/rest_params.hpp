@@ -27,8 +27,8 @@ struct RestBoundsParams {
 
 /// Parameters of the start: an IMU levelled at rest, and the corrections that the first sweeps may apply.
 struct OdometryStartParams {
-  /// Standard deviation that weights the levelled attitude: five times the tilt that WorldCovarianceParams reports. The larger value
-  /// allows for a start that was not at rest.
+  /// Standard deviation that weights the levelled attitude: five times the tilt that WorldCovarianceParams reports. The
+  /// larger value allows for a start that was not at rest.
   double level_sigma_rad = 0.01;
   double speed_sigma_m_s = 0.05;  ///< residual speed of an apparent rest
   double bias_rest_s = 0.1;       ///< minimum rest for an estimate of the gyro's bias
@@ -44,8 +44,8 @@ struct OdometryStartParams {
 
 /// Parameters of a stationary robot: at the start, or while the IMU measures only gravity.
 struct StandstillParams {
-  double start_sigma_m_s = 0.01;  ///< of the velocity, during the initial rest
-  double sigma_m_s = 0.05;        ///< of the velocity, while the IMU measures only gravity
+  double start_sigma_m_s = 0.01;  ///< standard deviation of the velocity during the initial rest
+  double sigma_m_s = 0.05;        ///< standard deviation of the velocity while the IMU measures only gravity
   /// While the IMU measures only gravity and no surface constrains the pose, the robot is stationary below this
   /// estimated speed. The rule prevents slow drift in a world without features.
   double creep_max_m_s = 0.5;

@@ -32,10 +32,10 @@ struct SweepScale {
 /// consecutive spans of 0.4 s. The difference of the two velocities equals the integrated acceleration, from gravity in
 /// flight and from impacts, for any velocity. A robust regression (Huber, 1964) of the lidar's differences on the IMU's
 /// differences has slope 1. Ranges 10 % too long give a slope of 1.1, reduced by the mapper's confidence in the IMU.
-/// Attitudes are those of the run. Intervals with a saturated accelerometer or with unconstrained sweeps are skipped.
-/// The standard deviation is heteroscedasticity-consistent (White, 1980). `gravity_m_s2` is the magnitude of gravity.
-/// Without acceleration, the scale is not observable. Gravity at rest detects an accelerometer's scale error instead.
-/// O(N).
+/// The attitudes come from the run's estimate. Intervals with a saturated accelerometer or with unconstrained sweeps
+/// are skipped. The standard deviation is heteroscedasticity-consistent (White, 1980). `gravity_m_s2` is the magnitude
+/// of gravity. Without acceleration, the scale is not observable. Gravity at rest detects an accelerometer's scale
+/// error instead. O(N).
 SweepScale find_sweep_scale(std::span<const ImuSample> samples, std::span<const SweepReport> sweeps,
                             double gravity_m_s2);
 

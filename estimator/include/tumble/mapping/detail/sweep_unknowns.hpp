@@ -22,7 +22,7 @@ struct SweepUnknowns {
 
   /// Current values of the unknowns.
   struct Estimate {
-    MotionState state;  ///< its covariance is not used
+    MotionState state;  ///< motion state, whose covariance is not used
     SweepCalibration calibration;
     Deficit deficit_rad_s = Deficit::Zero();
 

@@ -54,7 +54,7 @@ class OdometryPass {
   /// Restarts the rates with other parameters; the mapper continues.
   void begin_rates(const RegimeStream::Params& rate);
   /// Replaces the map and all dependent state by that of another pass, including its sample buffers. The rates of this
-  /// pass continue after the other pass's last sample. `other` must not be used afterwards.
+  /// OdometryPass continue after the last sample of `other`. `other` must not be used afterwards.
   void take_map(OdometryPass&& other);
 
   const RegimeStream& rates() const { return rates_; }

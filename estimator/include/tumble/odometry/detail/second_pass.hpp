@@ -90,7 +90,7 @@ class SecondPass {
     TimeNs start_ns = 0, end_ns = 0;
     std::vector<LidarPoint> points;
     std::optional<OdometerReading> reading;
-    SweepVerdict verdict = SweepVerdict::first;  ///< of the first pass
+    SweepVerdict verdict = SweepVerdict::first;  ///< verdict of the first pass
     template <class Self, class Visitor>
     static void members(Self& s, Visitor& visit);
   };
@@ -111,7 +111,7 @@ class SecondPass {
   RegimeStream::Params rate_;
   LidarInertialOdometry::Params mapping_;
   bool wanted_, taken_ = false;
-  RestDetector rests_;  ///< with the mapper's parameters
+  RestDetector rests_;  ///< rest detection with the mapper's parameters
   RestDetector::State rest_;
   std::optional<TimeNs> moves_ns_;  ///< end of the initial rest
   OdometryPass::Queue samples_;

@@ -43,7 +43,7 @@ class WaitingReadings {
   static void members(Self& s, Visitor& visit);
 
  private:
-  std::deque<OdometerReading> waiting_;  ///< in order of their middle times
+  std::deque<OdometerReading> waiting_;  ///< waiting readings in the order of their middle times
   std::size_t straddling_ = 0;
 };
 

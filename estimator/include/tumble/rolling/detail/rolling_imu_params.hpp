@@ -44,7 +44,7 @@ struct RollingPriorParams {
 /// Noise of the IMU.
 struct RollingImuNoiseParams {
   double attitude_walk_rad_sqrts = 1e-4;  ///< 0.006 deg/sqrt(s)
-  double rate_error_sqrts = 6e-4;         ///< per rad/s of rotation
+  double rate_error_sqrts = 6e-4;         ///< angle random walk per rad/s of rotation
   double velocity_walk_m_s_sqrts = 6e-3;
   double spin_force_sqrts = 4e-5;  ///< additional velocity random walk per (rad/s)^2: errors of large forces
   double gyro_bias_walk_rad_s_sqrts = 1.7e-5;
