@@ -53,8 +53,8 @@ double deficit_sigma(const Params& params, const MotionWindow& window, const Swe
 }
 
 /// Adds the process noise of the saturation deficit. Knots are samples of a first-order Gauss-Markov process with the
-/// reported standard deviation, mapping.md (R46), (R47), (R49). Equation (R49) applies if the first knot continues from
-/// the last sweep.
+/// reported standard deviation, mapping.md (R46), (R47). If the first knot continues from the last sweep, (R49)
+/// applies.
 void add_deficit_noise(const Params& params, const MotionWindow& window, const SweepTrajectory& trajectory,
                        Prediction& next) {
   if (!params.expert.rails.estimate_deficit) return;
