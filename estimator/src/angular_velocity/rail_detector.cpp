@@ -40,7 +40,7 @@ void RailDetector::observe(const ImuSample& sample, State& state) const {
     const bool continues = channel.run_length > 0 && std::abs(value - channel.run_first) <= spread;
     if (channel.run_length > 0 && !continues) {
       if (channel.digit == 0.0 || change < channel.digit) channel.digit = change;
-      // a plateau ends with smaller readings
+      // smaller readings end a plateau of saturated readings
       if (magnitude < channel.peak && plateau(c, channel, change)) channel.rail = std::abs(channel.run_first);
     }
     channel.peak = std::max(channel.peak, magnitude);

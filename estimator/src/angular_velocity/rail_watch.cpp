@@ -60,8 +60,8 @@ bool RailWatch::is_near(const Vector3d& reading, Triad triad, const Memory& memo
   return false;
 }
 
-// Stores a reading. Without room, drops readings far from the extremes, and if necessary the oldest readings except for
-// the first ones.
+// Stores a reading. If the memory is full, store() drops readings far from the extremes, and if necessary the oldest
+// readings except for the first ones.
 void RailWatch::store(const Vector3d& reading, Triad triad, Memory& memory) const {
   std::vector<Vector3d>& readings = memory.readings;
   if (readings.size() == readings_max_) {

@@ -108,7 +108,7 @@ Status descend_at_prior(const RateSmoother::Params& params, const RateModelParam
     return {Trouble::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
   }
   health.calibration_mahalanobis = mahalanobis;
-  // fixed does not mean known: the rates keep the calibration's uncertainty
+  // a fixed calibration is still uncertain, so the rates keep the calibration's uncertainty
   constexpr int kOpen = RigConstants::kElements;
   fit.solution.rig_covariance.topLeftCorner<kOpen, kOpen>() =
       health.calibration.covariance.topLeftCorner<kOpen, kOpen>();

@@ -159,7 +159,8 @@ void RateStream::marginalise(std::size_t first, State& state) const {
   const double after_it = model_.jump(oldest.estimate.knot, next.estimate.knot, seconds_between(oldest, next));
   const double jump = std::min(jump_before(oldest, state), after_it);
   model_.weigh(oldest.observation, state.rig, RigConstants::Matrix::Zero(), 1.0, jump, oldest.estimate);
-  // 20 constants can explain any short contact as flight, so flights update the calibration only after more samples
+  // the 20 calibration constants can explain any short contact as flight, so flights update the calibration only after
+  // more samples
   std::size_t run = state.flight_run;
   const auto needed = static_cast<std::size_t>(params_.expert.flight_run_min);
   const auto flies = [](const Knot& knot) { return knot.estimate.flight_weight >= 0.5; };

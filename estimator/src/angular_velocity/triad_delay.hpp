@@ -15,8 +15,8 @@ namespace tumble {
 /// Method 1 uses impacts. An impact changes the rotation, so the angular acceleration is large when the specific force
 /// is large. The estimate is the delay with the best correlation of the roots of angular acceleration and force, over
 /// equal intervals between unsaturated gyro readings. The correlation must be at least 0.6, with 30 readings faster
-/// than 1 rad/s, 10 of them above 30 m/s^2 and a tenth below 5 m/s^2. With less, the body may be hand-held. The
-/// accuracy is 0.15 of the slower triad's period.
+/// than 1 rad/s, 10 of them above 30 m/s^2 and a tenth below 5 m/s^2. If a condition is not met, the body may be
+/// hand-held. The accuracy is 0.15 of the slower triad's period.
 ///
 /// Method 2 uses flight, if impacts give no estimate. The estimate is the delay for which most accelerometer readings
 /// equal the force at a rigid body's lever arm. The force at a lever arm t is alpha x t + w x (w x t) + bias, with rate

@@ -141,7 +141,7 @@ bool Problem::eliminate(System::BorderVector& step) {
 // carried.md (C19)
 bool Problem::step(double& largest) {
   if (!eliminate(border_step_)) return false;
-  // the steps overwrite the gradients, which are no longer needed
+  // the solver's steps overwrite the gradients, which are no longer needed
   steps_.resize(blocks_.size());
   double turn = 0.0;
   largest = 0.0;

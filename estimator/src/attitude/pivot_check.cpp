@@ -25,7 +25,7 @@ constexpr double kClearly = 0.4;           // logarithm of a ratio of squares
 
 using Readings = std::array<Eigen::Matrix3d, kReadings>;
 
-/// Factors of the rates, S of imu_merge.md (I27).
+/// Matrices by which the gyro alternatives multiply the rates: S of imu_merge.md (I27).
 Readings all_readings() {
   Readings out;
   for (std::size_t k = 0; k < kAxisLabels; ++k) {
@@ -142,7 +142,7 @@ PivotCheck::PivotCheck(const Params& params) : params_(params) {
 
 PivotCheck::Found PivotCheck::find(std::span<const ImuSample> samples, std::span<const RateState> rates) const {
   static const Readings readings = all_readings();
-  // two series, offset by half a segment, so that no event is split in both series
+  // the two series of segments are offset by half a segment, so that no event is split in both series
   std::array<Segments, 2> series = {Segments(params_, readings), Segments(params_, readings)};
   double mean_s = 0.0, since_s = 0.0;
   Eigen::Vector3d turned = Eigen::Vector3d::Zero(), gained = Eigen::Vector3d::Zero();

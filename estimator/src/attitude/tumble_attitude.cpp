@@ -81,7 +81,7 @@ Status TumbleAttitude::step(const ImuSample& sample, const Eigen::Matrix3d& rate
       state.last_time_ns = sample.time_ns;
       return {};
     }
-    // during an average, the attitude at the start of the average is extrapolated
+    // while readings are averaged, the attitude at the start of the average is extrapolated
     if (state.average.readings == 0) {
       state.q_taken_WI = state.q_WI;
     } else {
@@ -180,8 +180,8 @@ void TumbleAttitude::bridge_gap(const ImuSample& after, const Eigen::Matrix3d& r
   predict_node(state);
   // a gripping sphere has its rolling velocity again, and the change of velocity was not slip
   if (params_.radius_m > 0.0 && !state.slipping) state.v_W_m_s = velocity_of_rotation(state);
-  // computed before the correction, because the update with one reading is not linear either; the axes of an earlier
-  // alignment are lost
+  // the tilt variance is needed before the correction, because the update with one reading is not linear; the axes of
+  // an earlier alignment are lost
   const double tilt = reported_tilt_rad2(state);
   state.alignment = {};
   correct_node(state);

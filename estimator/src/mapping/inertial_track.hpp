@@ -47,7 +47,7 @@ class InertialTrack {
   static void members(Self& s, Visitor& visit);
 
  private:
-  /// Rest at the start of a recording. After the initial rest has ended, it cannot resume, and its results remain.
+  /// Rest at the start of a recording. The initial rest cannot resume after its end, and its results remain.
   struct InitialRest {
     bool lasts = true;
     std::optional<TimeNs> first_ns;  ///< first sample of the recording

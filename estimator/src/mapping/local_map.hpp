@@ -19,7 +19,7 @@ struct InsertedPoint {
   SweepPoint point;     ///< by the calibration at insertion
 };
 
-/// A sweep to be inserted into the map.
+/// A sweep whose points will be inserted into the map.
 struct SweepToInsert {
   const SweepTrajectory& trajectory;
   const Registration::Matrix& covariance;

@@ -121,7 +121,7 @@ void LoneReturns::sort_by_ring(const std::vector<SweepPoint>& points) {
   }
 }
 
-/// Computes the step from each beam to the previous beam on its ring. The step of the first beam is 1.
+/// Computes the step from each beam to the previous beam on its ring. The first beam of a ring has a step of 1.
 void LoneReturns::measure_steps() {
   steps2_.assign(beams_.size(), 1.0f);
   sorted_steps2_.clear();

@@ -12,9 +12,9 @@ struct SweepBoundary;
 struct MotionWindow;
 struct Prediction;
 
-/// Kinds of information about a sweep's motion, in addition to the previous sweeps. Each kind is a type with one of two
-/// functions. `impose` replaces the state at the sweep boundary, before the sweep's noise is added. `weigh` fuses a
-/// measurement with the prediction after all noise is added.
+/// Kinds of information about a sweep's motion, in addition to the previous sweeps. Each kind is a type with a function
+/// `impose` or `weigh`. `impose` replaces the state at the sweep boundary, before the sweep's noise is added. `weigh`
+/// fuses a measurement with the prediction after all noise is added.
 
 /// No additional information: the IMU continues the velocity at the end of the last sweep.
 struct InertialPrior {};

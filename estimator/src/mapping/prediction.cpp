@@ -154,7 +154,8 @@ StateEstimate posterior(const Prediction& prediction) {
 
 namespace {
 
-/// Computes the factor of the prior's errors in mapping.md (R52). The function is separate to limit the stack.
+/// Computes the factor of the prior's errors in mapping.md (R52). weigh_prior() is a separate function to limit the
+/// stack.
 [[gnu::noinline]] void weigh_prior(const Prediction& prediction, const Registration::Result& aligned,
                                    Registration::Matrix& out) {
   // errors in variables are not information and correct nothing

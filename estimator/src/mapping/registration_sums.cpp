@@ -279,7 +279,7 @@ struct Registration::Pulls {
   }
 };
 
-/// Evaluates each match once at the result.
+/// Evaluates the errors of each match at the registered pose.
 void Registration::describe_errors(std::span<const SweepPoint> points, const SweepTrajectory& trajectory,
                                    const SweepCalibration& calibration, const Unknowns& unknowns, double kernel_m,
                                    Result& result) {

@@ -8,7 +8,7 @@
 
 namespace tumble {
 
-/// The free unknowns and their indices in the compact sums.
+/// Unknowns of the registration that are estimated, and their indices in the compact sums.
 struct Registration::Unknowns {
   std::array<int, kUnknowns> free{};  ///< their indices, ascending
   int count = 0;

@@ -25,7 +25,7 @@ bool converged(const Registration::Result& found) {
   return found.verdict == RegistrationVerdict::converged;
 }
 
-/// Returns whether the matched surfaces fit. mapping.md (R68).
+/// Returns whether the matched surfaces fit the sweep: mapping.md (R68).
 bool fits(const Params& params, const Registration::Result& found) {
   return double(found.inliers) >= params.expert.tracking.confirm_inlier_ratio * double(found.matches);
 }

@@ -13,8 +13,8 @@ namespace {
 // the minimum ratio, the error of the direction is below the size of the checked bins: 0.1 rad.
 constexpr float kMovedToRange = 10.0f;
 constexpr int kEmptyMost = 4;  // of nine bins; rings are further apart than bins
-// Margin by which all returns must be beyond a point. The margin covers errors of the sweeps' relative pose, a return's
-// noise, and the slope of the ground within a bin.
+// Margin by which all returns must be beyond a map point that is no longer present. The margin covers errors of the
+// sweeps' relative pose, a return's noise, and the slope of the ground within a bin.
 constexpr float kBeyond_m = 0.3f, kBeyondShare = 0.03f;
 constexpr float kDeviations = 3.0f;
 

@@ -12,7 +12,8 @@ namespace tumble::mapping {
 /// returns, and directions at an edge of the cube, give no information.
 class SightGrid {
  public:
-  /// Sets the ray origin for the following points, and how far the sensor moved around it during the sweep.
+  /// Sets the ray origin for the following points, and the distance that the sensor moved around the origin during the
+  /// sweep.
   void start(const Eigen::Vector3f& from_W_m, float moved_m);
   void add(const Eigen::Vector3f& return_W_m);
 

@@ -7,7 +7,7 @@
 
 namespace tumble::mapping {
 
-/// Estimate of the unknowns at one time. The two covariances are C and E of mapping.md (section 6).
+/// Estimate of the unknowns at one time. The covariances `weight` and `error` are C and E of mapping.md (section 6).
 struct StateEstimate {
   Registration::Estimate mean;  ///< the covariance of its state is the motion block of `weight`
   /// Covariance for weighting the mean against the next sweep. Points count less than their information, for robustness
@@ -27,12 +27,12 @@ Registration::Matrix unknowns_at(const SweepTrajectory& trajectory, double t_s);
 /// matrices on the stack.
 void sandwich(const Registration::Matrix& F, const Registration::Matrix& P, Registration::Matrix& out);
 
-/// Returns the blocks of F errors F^T that involve the pose or the mounting, with F of unknowns_at; zero elsewhere. The
-/// returned blocks equal the blocks of the full product bit for bit, at a third of the cost. The function is called for
-/// each pose of a recording.
+/// Returns the blocks of the product F errors F^T that involve the pose or the mounting. F is the result of
+/// unknowns_at(). All other blocks are zero. The returned blocks equal the blocks of the full product bit for bit, at a
+/// third of the cost. The function is called for each pose of a recording.
 Registration::Matrix pose_and_mounting(const Registration::Matrix& F, const Registration::Matrix& errors);
 
-/// Propagates to the end of the segment, at `end_ns`. The trajectory is that of the mean.
+/// Propagates to the end of the segment, at `end_ns`. `trajectory` is the motion of the estimate's mean.
 void at_end(const StateEstimate& at_start, const SweepTrajectory& trajectory, const Registration::Matrix& end_by_start,
             TimeNs end_ns, StateEstimate& end);
 

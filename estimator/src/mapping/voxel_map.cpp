@@ -40,7 +40,7 @@ void slab_distances(float fraction, float voxel_m, int reach, float* distance2) 
   }
 }
 
-// explicit vectors, because compilers do not vectorise these comparisons
+// explicit SIMD vectors, because compilers do not vectorise the comparisons of a chunk
 using Floats [[gnu::vector_size(16)]] = float;
 using Ints [[gnu::vector_size(16)]] = std::int32_t;
 
@@ -258,7 +258,7 @@ void VoxelMap::search(std::uint32_t first, const Eigen::Vector3f& query, int k, 
     }
     Floats four[kChunk / 4];
     std::memcpy(four, distance2, sizeof(four));
-    // free slots are beyond any limit
+    // free slots of a chunk have coordinates beyond any search radius
     for (std::uint32_t near = within(worst2, four); near != 0; near &= near - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(near));
       if (distance2[i] > worst2 || (found.count == k && distance2[i] == worst2)) continue;

@@ -45,7 +45,7 @@ void WorldCovariance::add_drift(double weakest_sigma_m, const Eigen::Matrix<doub
 }
 
 /// Adds the error of a sweep to the map, by the lidar's pose in the middle of the sweep: mapping.md (R59), (R60). An
-/// error of the mounting is not an error of the map. At its ends, a sweep is less certain than on average.
+/// error of the mounting is not an error of the map. A sweep's pose is less certain at start and end than on average.
 void WorldCovariance::add_insertion(double inserted_share, const SweepTrajectory& trajectory,
                                     const Registration::Matrix& errors, const Eigen::Vector3d& p_IL_m) {
   const double middle_s = 0.5 * trajectory.duration_s();

@@ -16,9 +16,9 @@ std::size_t samples_in(double time_s, const RegimeStream::Params& rate) {
   return static_cast<std::size_t>(std::ceil(time_s / rate.rate.period_s)) + 16;
 }
 
-/// Returns a rate for the mapper. For a clipped axis that is too uncertain for the mapper, the gyro's reading is passed
-/// as a lower bound. The registration then estimates the saturation deficit. With an uncertain calibration, the stream
-/// may extrapolate an impact by tens of rad/s, with a correspondingly large standard deviation.
+/// Returns the rate that the mapper receives. For a clipped axis that is too uncertain for the mapper, the gyro's
+/// reading is passed as a lower bound. The registration then estimates the saturation deficit. With an uncertain
+/// calibration, the stream may extrapolate an impact by tens of rad/s, with a correspondingly large standard deviation.
 RateState for_the_mapper(const RateState& rate, const ImuSample& sample, double sigma_max_rad_s) {
   RateState out = rate;
   for (int axis = 0; axis < 3; ++axis) {

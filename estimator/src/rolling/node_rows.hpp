@@ -26,7 +26,8 @@ void contact_rows(const RollingParams& params, const Contact& c, RollingMode mod
   }
 }
 
-/// Applies rest: velocity and, unless the sphere spins in place, rate are zero. rolling.md (R28).
+/// Applies the measurements at rest: velocity is zero, and rate is zero unless the sphere spins in place. rolling.md
+/// (R28).
 template <class Take>
 void rest_rows(const RollingParams& params, const RollingSums& sums, const RollingNominal& nominal, bool spins_in_place,
                Take&& take) {

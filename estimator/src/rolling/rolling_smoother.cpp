@@ -13,7 +13,7 @@ namespace tumble {
 
 namespace {
 
-// Limit of preallocated samples and nodes. For a longer lag, memory grows with the run.
+// Limit of preallocated samples and nodes. With a lag beyond this limit, memory grows with the run.
 constexpr std::size_t kSetAsideMost = 1'000'000;
 constexpr std::size_t kBeyondStorage = 4;  // maximum number of samples, as a multiple of those with preallocated memory
 
@@ -182,7 +182,7 @@ Status RollingSmoother::check_state(const State& state) const {
   const Committed& committed = state.committed;
   for (std::size_t k = committed.started ? 0 : 1; k < state.samples.size(); ++k) {
     const TimeNs before_ns = k > 0 ? state.samples[k - 1].time_ns : committed.last_time_ns;
-    // a node may be within a gap, so the sample after the node is later
+    // a node may be within a gap, so the next sample may be much later than the node
     const TimeNs from_ns = k == 0 && committed.gap_piece > 0 ? committed.gap_start_ns : before_ns;
     const Status status = check_follows(state.samples[k].time_ns, from_ns, filter.expert.gap.gap_max_s);
     if (!status.ok()) return status;
