@@ -137,7 +137,7 @@ void RateRecovery::step(std::span<const ImuSample> units, double dt_s, State& st
 }
 
 void RateRecovery::start(const ImuSample& merged, State& state) const {
-  // the estimates of the lever arms remain valid when the filter stops
+  // the lever arms keep their estimates when the filter starts again
   state.P.topRows<kArms>().setZero();
   state.P.leftCols<kArms>().setZero();
   auto diagonal = state.P.diagonal();

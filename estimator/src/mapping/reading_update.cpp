@@ -221,7 +221,7 @@ void weigh_reading(const OdometerReading& reading, const SweepBoundary& boundary
   const Sweep sweep(prediction.prior.mean, window);
   if (!holds(sweep, reading)) return;
   const auto work = std::make_unique<Work>();
-  // weighted like the registration: by C, mapping.md section 6
+  // the update is weighted by the covariance C, like the registration: mapping.md section 6
   sandwich(prediction.by_last, boundary.state_estimate.weight, work->at_start);
   Matrix& before = work->before;  // noise at the start: of the deficit, and of earlier saturation
   before = prediction.noise;

@@ -36,7 +36,7 @@ void track(const Params& params, const Registration::Prior& prior, const Scene& 
            SweepTrajectory& trajectory, Registration::Result& found) {
   aligner.in_full(prior, scene, trajectory, found);
   int iterations = found.iterations, tries = 0;
-  // an attempt that exceeded its bound would exceed the bound again
+  // an attempt that exceeded the correction limit would exceed the limit again
   const bool out_of_bounds = found.correction_m > params.expert.matching.correction_max_m ||
                              found.correction_rad > params.expert.matching.correction_max_rad;
   if (found.verdict == RegistrationVerdict::diverged && !out_of_bounds) {

@@ -103,7 +103,7 @@ ImuSample at_time(TimeNs time_ns, ImuSample sample) {
   return sample;
 }
 
-/// Makes a sample that of a unit without readings.
+/// Sets a sample to that of a unit without readings.
 void leave_out(ImuSample& sample) {
   sample.angular_velocity_rad_s.setConstant(std::numeric_limits<double>::quiet_NaN());
 }

@@ -72,7 +72,7 @@ LidarInertialOdometry::Params mapper_params(const TumblingOdometry::Params& para
   return out;
 }
 
-// Largest stamp of a sample or a sweep: 109 years. Differences of stamps then fit into 64 bits.
+// Largest stamp of a sample or a sweep, equal to 109 years. Differences of stamps then fit into 64 bits.
 constexpr TimeNs kStampMax_ns = 3 * (TimeNs{1} << 60);
 constexpr double kSilent_s = 1.0;       // silence of the lidar after which empty sweeps are inserted
 constexpr double kAhead_s = 1.0;        // maximum time by which a sweep may end after the newest sample

@@ -116,8 +116,8 @@ struct Adjoint {
   Covariance Lambda = Covariance::Zero();
 };
 
-/// Applies the modified Bryson-Fraser smoother: fills `smoothed` and `smoothed_P` of consecutive nodes. `adjoint` is
-/// that after the last node. On return, `adjoint` is that before the first node.
+/// Applies the modified Bryson-Fraser smoother: fills `smoothed` and `smoothed_P` of consecutive nodes. On entry,
+/// `adjoint` refers to the time after the last node. On return, `adjoint` refers to the time before the first node.
 void smooth_back(Adjoint& adjoint, std::span<NodeRecord> nodes);
 
 }  // namespace tumble::rolling
