@@ -28,7 +28,7 @@ Marginal marginal(const Conditional& conditional, const BorderMatrix& border_cov
   return System::marginal(conditional, border_covariance);
 }
 
-// Same as the gradients in rate_smoother.md (R27), for each column of (R37).
+// Transforms each column of (R37) as the gradients in rate_smoother.md (R27).
 void eliminate_errors(const Block& block, ErrorMatrix& errors, ErrorMatrix* next, BorderErrors& border) {
   errors = (block.diagonal.lazyProduct(errors)).eval();
   border.noalias() -= block.border.transpose().lazyProduct(errors);
@@ -43,7 +43,7 @@ ErrorMatrix back_substitute_errors(const Block& block, const ErrorMatrix& errors
   return block.diagonal.transpose().lazyProduct(right);
 }
 
-// The rates' part of rate_smoother.md (R35).
+// Computes the block of rate_smoother.md (R35) that belongs to the rates.
 Eigen::Matrix3d rate_covariance(const Conditional& conditional, const BorderMatrix& border_covariance) {
   const Eigen::Matrix<double, 3, kBorder> rows = conditional.by_border.topRows<3>();
   const Eigen::Matrix<double, 3, kBorder> cross = rows.lazyProduct(border_covariance);

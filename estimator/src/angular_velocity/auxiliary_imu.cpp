@@ -24,7 +24,7 @@ struct Between {
 
 Between between(const Vector3d& value, const Vector3d& change, const ImuNeighbours& near, double noise, double error,
                 const AuxiliaryImu& auxiliary_imu) {
-  // interpolation error of up to share (1 - share) of the change, and clock error
+  // the variance covers an interpolation error of up to share (1 - share) of the change, and the clock error
   const double crooked = near.share * (1.0 - near.share) + auxiliary_imu.clock_error_s / near.length_s;
   const double scaled = auxiliary_imu.share_error * value.norm();
   return {value, (Vector3d::Constant(noise * noise + error * error + scaled * scaled) + (crooked * change).cwiseAbs2())
@@ -47,7 +47,7 @@ bool AuxiliaryReading::same(const AuxiliaryReading& other) const {
 
 Status align(const AuxiliaryImu& auxiliary_imu, std::span<const ImuSample> samples, std::span<const Clipping> clippings,
              std::span<const ImuSample> primary, double gap_max_s, std::vector<AuxiliaryReading>& out) {
-  // gaps are not an error here; the readings are empty
+  // a gap is not an error of an auxiliary IMU; its readings are then empty
   const Status status = check_samples(samples, std::numeric_limits<double>::infinity());
   if (!status.ok()) return status;
   if (clippings.size() != samples.size()) {

@@ -11,32 +11,34 @@ namespace tumble {
 
 namespace {
 
-// kDeterminedSlopeSigma: a slope with a smaller standard deviation is known. kNil: a slope of smaller magnitude, up to
-// its uncertainty, is zero.
+// Cross-axis sensitivities with a standard deviation below kDeterminedSlopeSigma are known. Sensitivities whose
+// magnitude is below kNil, up to their uncertainty, are zero.
 constexpr double kDeterminedSlopeSigma = 2e-3, kNil = 3e-3;
-// Maximum relative difference between the levels of the two signs if the device clips its digital output, where both
-// are equal.
+// Maximum relative difference between the positive and the negative saturation level if the device clips its digital
+// output, for which both levels are equal.
 constexpr double kLopsidedShare = 1e-4;
-// Remaining tilt if the device clips its output; minimum standard deviation of a slope (residual misalignment).
+// Remaining tilt if the device clips its output, and minimum standard deviation of a cross-axis sensitivity (residual
+// misalignment).
 constexpr double kUprightSigma = 1e-5, kSlopeSigmaMin = 3e-4;
-// Maximum distance from the level, as a fraction of the step before, of a sample that was saturated for a part of its
-// window.
+// Maximum distance from the saturation level, as a fraction of the preceding step, of a sample that was saturated for a
+// part of its window.
 constexpr double kEdgeOfStep = 0.5;
 
-// Returns the sign of the level at which element j is saturated.
+// Returns the sign of the saturation level at which element j is saturated.
 int side(const ImuSample& sample, Triad triad, std::size_t j) {
   return reading_of(sample, triad)[static_cast<Eigen::Index>(j)] < 0.0 ? -1 : 1;
 }
 
-// Returns whether element j of a sample is saturated, by its plane, rails.md (R55), or by the device's flag.
+// Returns whether sensing element j of a sample is saturated, by its saturation plane, rails.md (R55), or by the
+// device's flag.
 bool at_rail(const ImuSample& sample, Triad triad, const RailPlane& rail, std::size_t j) {
   const Eigen::Vector3d& reading = reading_of(sample, triad);
   return (sample.device_clip_flags >> (first_channel(triad) + j) & 1u) != 0 || rail.holds(reading, -1) ||
          rail.holds(reading, 1);
 }
 
-// Returns whether a sample between a clipped one and `outside` was saturated for a part of its window; the distances
-// are those of rails.md (R54).
+// Returns whether a sample between a clipped sample and `outside` was saturated for a part of its window. rails.md
+// (R54) defines the distances from the saturation level.
 bool meets(const RailPlane& rail, Triad triad, const ImuSample& now, const ImuSample* outside, int sign) {
   const double depth = rail.short_of(reading_of(now, triad), sign);
   if (depth > kBesideRail * rail.distance_rad_s) return false;
@@ -45,13 +47,15 @@ bool meets(const RailPlane& rail, Triad triad, const ImuSample& now, const ImuSa
   return depth < kEdgeOfStep * (before - depth);
 }
 
-// Returns whether the levels of the two signs differ, because the device subtracts the element's offset after clipping.
+// Returns whether the positive and the negative saturation level differ, because the device subtracts the element's
+// offset after clipping.
 bool lopsided(const RailPlane& rail) {
   return rail.seen(-1) && rail.seen(1) &&
          std::abs(rail.offset_rad_s) > kLopsidedShare * rail.distance_rad_s + 4.0 * std::sqrt(rail.covariance(3, 3));
 }
 
-// Two finders: one with the stated range, by default that of the upright rails, and one without.
+// Returns two finders: one with the stated range, by default the range of the axis-aligned saturation levels, and one
+// without.
 std::array<RailPlaneFinder, 2> stated_and_not(RailPlaneFinder::Params params, const std::optional<double>& stated) {
   RailPlaneFinder::Params unstated = params;
   unstated.stated_rad_s = std::nullopt;

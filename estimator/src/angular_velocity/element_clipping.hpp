@@ -14,7 +14,8 @@
 
 namespace tumble {
 
-/// Index of a triad in arrays, and of its first channel in RailDetector and ClipFlag bits.
+/// Returns the index of a triad in arrays. The index of the triad's first channel in RailDetector and ClipFlag bits is
+/// three times as large.
 inline std::size_t index_of(Triad triad) {
   return triad == Triad::gyro ? 0 : 1;
 }
@@ -22,34 +23,37 @@ inline std::size_t first_channel(Triad triad) {
   return 3 * index_of(triad);
 }
 
-/// Plane finders of gyro and accelerometer: with the stated range of the upright rails, and without any.
+/// Returns the plane finders of gyro and accelerometer: with the stated range of the axis-aligned saturation levels,
+/// and without any range.
 std::array<std::array<RailPlaneFinder, 2>, 2> plane_finders(const ClippingFinder::Params& params);
 
-/// Returns whether readings contradict the stated range. The planes then ignore it.
+/// Returns whether readings contradict the stated range. The planes then ignore the stated range.
 bool stated_range_contradicted(const RailDetector& upright_rails, const RailDetector::State& state, Triad triad);
 
 /// Returns whether planes and plateaus of equal readings indicate a device that clips its output, so that other axes
-/// are unaffected. Two slopes known to be zero are sufficient; a plateau counts as one. A single non-zero slope is
-/// sufficient for the contrary.
+/// are unaffected. Two cross-axis sensitivities known to be zero are sufficient; a plateau counts as one sensitivity. A
+/// single non-zero sensitivity is sufficient for the contrary.
 bool are_upright(std::span<const Eigen::Vector3d> readings, const RailPlanes& planes, const RailDetector::State& rails,
                  Triad triad);
 
-/// Returns the planes of elements on whose axis no plateau of equal readings was found.
+/// Returns the planes of sensing elements on whose axis no plateau of equal readings was found.
 RailPlanes without_plateaus(const RailPlanes& planes, const RailDetector::State& rails, Triad triad);
 
-/// Adds the planes of a triad to a classification by equal readings. An element with a plane clips according to its
-/// plane or the device's flag. A neighbour of a clipped sample also counts if it was saturated for a part of its
-/// window. The criterion is a distance from the plane of less than half of that of the next neighbour. `before` and
-/// `after` may be null.
+/// Adds the planes of a triad to a classification by equal readings. A sensing element with a known saturation plane
+/// clips according to this plane or the device's flag. A neighbour of a clipped sample also counts if the neighbour was
+/// saturated for a part of its window. The criterion is a distance from the plane of less than half of the next
+/// sample's distance. `before` and `after` may be null.
 Clipping clip_by_planes(const RailPlanes& planes, Triad triad, const Clipping& by_upright_rails,
                         const ImuSample* before, const ImuSample& now, const ImuSample* after);
 
-/// Same as mark_subsample_saturation() of RateObservation, with the level of each element whose plane is known.
+/// Finds partly saturated axes as mark_subsample_saturation() of RateObservation does, with the saturation level of
+/// each element whose plane is known.
 void mark_subsample_saturation(const RailPlanes& planes, const RailDetector& rails, const RailDetector::State& state,
                                double noise_rad_s, const ImuSample* before, RateObservation& now,
                                const ImuSample* after);
 
-/// Information of saturation planes about the slopes of an element, in the order of RigConstants::elements.
+/// Information from saturation planes about the cross-axis sensitivities of a sensing element, in the order of
+/// RigConstants::elements.
 struct EstimatedSlopes {
   Eigen::Vector2d slopes;
   Eigen::Matrix2d covariance;

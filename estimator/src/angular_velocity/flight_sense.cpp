@@ -33,7 +33,7 @@ constexpr Axes kAsRead{{0, 1, 2}, {1, 1, 1}}, kXFlipped{{0, 1, 2}, {-1, 1, 1}}, 
     kYZSwapped{{0, 2, 1}, {1, 1, 1}}, kZXSwapped{{2, 1, 0}, {1, 1, 1}}, kTwice{{0, 1, 2}, {2, 2, 2}},
     kHalf{{0, 1, 2}, {0.5, 0.5, 0.5}};
 
-/// How readings have to be converted under an alternative.
+/// Conversion of readings under an alternative sign, axis order or scale.
 struct Sense {
   Axes force, rate;
   const char* name;
@@ -59,8 +59,8 @@ constexpr std::array<Sense, FlightSense::kSenses> kSensors = {{
     {kAsRead, kTwice, "seconds of flight as a gyro reads it that reads half the rate"},
 }};
 
-/// imu_merge.md (I32). Converts a reading to that of the alternative sensor. `known` if the rate of a saturated axis
-/// follows from |w x t|^2 = -f t and is beyond the level.
+/// Converts a reading to that of the alternative sensor: imu_merge.md (I32). `known` is true if the rate of a saturated
+/// axis follows from |w x t|^2 = -f t and is beyond the saturation level.
 FlightSense::Reading as_read(const FlightSense::Reading& reading, const Sense& sense, const Eigen::Vector3d& t) {
   FlightSense::Reading out = reading;
   out.rate_rad_s = sense.rate.of(reading.rate_rad_s);
@@ -96,7 +96,8 @@ bool flies(const Sense& sense, const std::array<FlightSense::Reading, 3>& readin
   return size >= params.force_min_m_s2 && (middle.force_m_s2 - expected).norm() <= params.share * size;
 }
 
-/// Returns whether an alternative is tested; for a body that may be hand-held, only the clearest ones are.
+/// Returns whether an alternative is tested. For a body that may be hand-held, only the clearest alternatives are
+/// tested.
 bool is_tested(std::size_t sense, FlightSense::Body body) {
   constexpr std::size_t kSound = 0, kFlippedForce = 1;
   return body == FlightSense::Body::thrown || sense == kSound || sense == kFlippedForce ||

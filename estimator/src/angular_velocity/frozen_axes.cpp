@@ -16,16 +16,16 @@ constexpr double kRotating_rad_s = 0.3;  // change of another gyro axis that ind
 constexpr double kPushed_m_s2 = 1.0;     // same for an accelerometer
 constexpr double kChanging =
     0.2;  // minimum fraction of samples in which another axis changes, for a log five times faster than the sensor
-// A body at rest: no other axis rotates, and forces do not change.
+// Limits of a body at rest: no other axis rotates, and forces do not change.
 constexpr double kStill_rad_s = 0.2, kStill_m_s2 = 0.5;
-// Largest reading of a sound axis at rest: bias, gravity.
+// Largest reading of a working axis at rest, caused by bias and gravity.
 constexpr double kRestMost_rad_s = 1.0, kRestMost_m_s2 = 15.0;
 
 constexpr bool is_gyro(std::size_t channel) {
   return channel < 3;
 }
 
-/// Returns the k-th of the two other channels of the same triad.
+/// Returns the k-th of the two channels that share the triad of `channel`.
 constexpr std::size_t other(std::size_t channel, std::size_t k) {
   return channel / 3 * 3 + (channel + 1 + k) % 3;
 }
@@ -111,7 +111,8 @@ void FrozenAxes::hold(std::size_t channel, const std::array<double, 6>& now, dou
     }
   }
   const double most = is_gyro(channel) ? kRestMost_rad_s : kRestMost_m_s2;
-  // no motion keeps a saturated rate exactly about one axis for so long; the update rate of the others is irrelevant
+  // no motion keeps a saturated rate exactly about one axis for this long; the update rate of the other axes is
+  // irrelevant
   const bool at_its_rail = at_rail(channel, axis);
   const bool of_no_motion = axis.stationary_s >= params_.rail_stationary_s ||
                             (axis.repeated_s >= params_.rail_repeated_s && others_move(channel, 0.0, axis));
@@ -127,12 +128,13 @@ bool FrozenAxes::at_rail(std::size_t channel, const Axis& axis) const {
   const double stated = is_gyro(channel) ? params_.gyro_range_rad_s : params_.accel_range_m_s2;
   const double size = std::abs(axis.reading);
   if (stated > 0.0 && size >= kRailShare * stated) return true;
-  // a flag shows that the device saturated, but not that the repeated value is the level
+  // a flag shows that the device saturated, but not that the repeated value is the saturation level
   if (axis.flagged && size >= kExtremeShare * stated) return true;
   return size >= kExtremeShare * stated && (axis.reading == axis.min_reading || axis.reading == axis.max_reading);
 }
 
-/// Returns whether the other axes change by far more than a quantum of this axis, in at least this fraction of samples.
+/// Returns whether the other axes of the triad change by far more than a quantum of the tested axis, in at least the
+/// fraction `changing_share` of samples.
 bool FrozenAxes::others_move(std::size_t channel, double changing_share, const Axis& axis) const {
   const double least = std::max(is_gyro(channel) ? kRotating_rad_s : kPushed_m_s2, kQuanta * axis.quantum);
   for (std::size_t k = 0; k < 2; ++k) {

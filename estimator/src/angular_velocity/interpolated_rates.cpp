@@ -12,11 +12,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Standard deviation of the time of a reading, in samples. In a stream it is anywhere within the sample before,
-// 1/sqrt(12). In a recording, the clock is known, and it is a fraction of this.
+// Standard deviation of the time of a reading, in samples. In a stream, the time is anywhere within the preceding
+// sample: 1/sqrt(12). In a recording, the clock is known and the standard deviation is smaller.
 constexpr double kTaken = 0.29, kTakenByClock = 0.1;
 
-// A reading and the stamp of a sample whose window would have the same middle.
+// A reading, and the stamp of a sample whose window would have its middle at the middle of the reading's window.
 struct OwnReading {
   double time_s = 0.0;
   Vector3d rate_rad_s = Vector3d::Zero();
@@ -38,7 +38,8 @@ std::optional<InterpolatedRate> between(const OwnReading& z, const OwnReading& a
   InterpolatedRate out;
   out.rate_rad_s = v * v * (1.0 + 2.0 * u) * a.rate_rad_s + u * u * (3.0 - 2.0 * u) * b.rate_rad_s +
                    span_s * u * v * (v * slope_a - u * slope_b);
-  // uncertain: the time of either reading, and the curvature that the mean over a window removes
+  // the uncertainty comes from the times of the two readings, and from the curvature that the mean over a window
+  // removes
   const Vector3d moment = moment_s * chord, bend = span_s / 24.0 * (slope_b - slope_a);
   out.variance_rad2_s2 = moment.cwiseAbs2() + bend.cwiseAbs2();
   return out;

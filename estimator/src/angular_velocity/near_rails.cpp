@@ -10,9 +10,9 @@ namespace tumble {
 
 namespace {
 
-// Number of neighbouring readings whose steps count, for readings close to a saturation level. Reason: a gyro's filter
-// rounds the edges of a plateau. One hand-held wand's readings were up to 2 % below the level while its rate was
-// beyond.
+// Number of neighbouring readings whose steps count, for readings close to a saturation level. A gyro's filter rounds
+// the edges of a plateau. The readings of one hand-held wand were up to 2 % below the saturation level while the rate
+// was beyond the level.
 constexpr std::size_t kReach = 2;
 constexpr double kRoundShare = 0.03;
 

@@ -10,13 +10,14 @@
 
 namespace tumble {
 
-/// Finds readings that may have been saturated for a part of their window. Bit j of each sample: the reading of gyro
-/// element j is free, but not certainly measured. The reading is below the level by less than its larger step to its
-/// neighbours. Within 3 % of the level, the largest step within two readings counts: rails.md (R76). Sides without an
-/// observed level are excluded, so nothing is returned without clipping. Repeated readings count once. O(N).
+/// Finds readings that may have been saturated for a part of their window. Bit j of a sample is set if the reading of
+/// sensing element j of the gyro is unsaturated, but not certainly a full measurement. A reading is suspect if it is
+/// below the saturation level by less than its larger step to its neighbours. Within 3 % of the saturation level, the
+/// largest step within two readings counts: rails.md (R76). Sides without an observed saturation level are excluded, so
+/// nothing is returned without clipping. Repeated readings count once. O(N).
 std::vector<std::uint8_t> may_meet_rails(std::span<const ImuSample> samples, const RailPlanes& planes);
 
-/// Same for one reading, from the steps to its neighbours (null at the ends), for a stream. O(1).
+/// Checks one reading of a stream, from the steps to its neighbours (null at the ends). O(1).
 std::uint8_t may_meet_rails(const ImuSample* before, const ImuSample& now, const ImuSample* after,
                             const RailPlanes& planes);
 

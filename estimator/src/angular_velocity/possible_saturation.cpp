@@ -10,13 +10,13 @@ namespace tumble {
 
 namespace {
 
-// Maximum tilt of other elements' levels relative to the known ones (in addition to kBesideRail); deficit of a few
-// samples at a level, as a fraction of the step to their neighbour.
+// kUnseenTilt: maximum tilt between the saturation planes of elements, in addition to kBesideRail. kUnseenOfStep:
+// deficit of a few samples at a saturation level, as a fraction of the step to their neighbour.
 constexpr double kUnseenTilt = 0.06, kUnseenOfStep = 0.5;
 
-// kTopShare: readings within this fraction of a segment's largest are at its top. The fraction is the effect of a tilt
-// of 0.06 (kUnseenTilt) and a rate on the other axes of a sixth of the level. kElementsApart: maximum difference of
-// elements in standard deviations.
+// kTopShare: readings within this fraction of a segment's largest reading are at the top of the segment. The fraction
+// is the effect of a tilt of 0.06 (kUnseenTilt) and a rate on the other axes of a sixth of the saturation level.
+// kElementsApart: maximum difference between elements in standard deviations.
 constexpr double kTopShare = 0.01, kElementsApart = 3.0;
 
 // Lowest known level, or 0.
@@ -28,14 +28,14 @@ double lowest_rail(const RailPlanes& planes) {
   return rail;
 }
 
-// Height of a motion above a top of `count` samples, extrapolated from the steps before and after until they meet:
-// rails.md (R74).
+// Returns the height of a motion above a top of `count` samples. The steps before and after the top are extrapolated
+// until they meet: rails.md (R74).
 double hidden_rise(double count, double entered, double left) {
   const double both = std::max(0.0, entered) + std::max(0.0, left);
   return both > 0.0 ? count * std::max(0.0, entered) * std::max(0.0, left) / both : 0.0;
 }
 
-// The rate on the other axes. The tilt multiplies it in the reading at a level.
+// Returns the rate on the axes other than `axis`. At a saturation level, the tilt multiplies this rate in the reading.
 double beside_of(const Eigen::Vector3d& rate_rad_s, Eigen::Index axis) {
   return std::hypot(rate_rad_s[(axis + 1) % 3], rate_rad_s[(axis + 2) % 3]);
 }

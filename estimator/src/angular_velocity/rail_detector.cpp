@@ -40,7 +40,7 @@ void RailDetector::observe(const ImuSample& sample, State& state) const {
     const bool continues = channel.run_length > 0 && std::abs(value - channel.run_first) <= spread;
     if (channel.run_length > 0 && !continues) {
       if (channel.digit == 0.0 || change < channel.digit) channel.digit = change;
-      // a plateau ends with smaller readings
+      // smaller readings end a plateau of saturated readings
       if (magnitude < channel.peak && plateau(c, channel, change)) channel.rail = std::abs(channel.run_first);
     }
     channel.peak = std::max(channel.peak, magnitude);
@@ -99,7 +99,7 @@ Clipping RailDetector::classify(const ImuSample& sample, State& state) const {
     if (const std::optional<double> level = rail(state, c)) {
       const double share = channel.clipped ? params_.leave_share : params_.enter_share;
       clipped = clipped || std::abs(value) >= *level * (1.0 - share);
-      // from one level to the opposite within a sample: an overflow, not a motion
+      // a change from one saturation level to the opposite within a sample is an overflow, not a motion
       flipped = c < 3 && channel.clipped && value * channel.last < 0.0 && std::abs(value) >= 0.9 * *level;
     }
     if (flipped) {

@@ -16,31 +16,34 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// Prior fraction of segments with a constant rate (spins, turntables). This fraction limits the evidence of a segment,
-// however long.
+// Prior fraction of segments with a constant rate (spins, turntables). The prior fraction limits the log-likelihood of
+// a segment of any length.
 constexpr double kConstantShare = 0.05;
-// Minimum expected curvature of a rounded maximum within a segment, in standard deviations, for flatness to be
-// evidence.
+// Minimum expected curvature of a rounded maximum within a segment, in standard deviations. Below this curvature, a
+// flat segment does not indicate saturation.
 constexpr double kBend = 3.0;
-// Range of levels of constant rates, as a fraction of the largest.
+// Range of possible constant rates, as a fraction of the largest reading.
 constexpr double kLevelShare = 0.2;
-// Window length for the noise estimate, from residuals of a parabola; quantile of the windows that is used.
+// Window length for the noise estimate from residuals of a parabola, and the quantile of the windows that is used.
 constexpr std::size_t kNoiseWindow = 9;
 constexpr double kNoiseQuantile = 0.2;
-// Maximum evidence from the smoothness of the other axes at the end of a segment.
+// Maximum log-likelihood from the smoothness of the other axes at the end of a segment.
 constexpr double kKinkAlone = 2.5;
-// Minimum motion of the other axes about an end, in standard deviations, for this evidence.
+// Minimum motion of the other axes about the end of a segment, in standard deviations, for the test of smoothness.
 constexpr double kMoving = 10.0;
 // Log likelihood above which a segment with less scatter than noise counts, whatever its ends look like.
 constexpr double kThinAlone = 8.0;
-// Degrees of freedom of a segment's scatter that are lost to its level, its slope and its two partly saturated ends.
+// Degrees of freedom of a segment's scatter that are lost to the fitted mean and slope and to the two partly saturated
+// ends.
 constexpr std::size_t kThinTaken = 4;
-// A reading within this many standard deviations of a facet is on it, up to this fraction of the level.
+// A reading within kAtRail standard deviations of a facet is on the facet, up to the fraction kAtRailShareMax of the
+// saturation level.
 constexpr double kAtRail = 4.0, kAtRailShareMax = 0.006;
-// Evidence of each sample beyond the facet against it; fraction of samples that may be beyond.
+// kBeyond: log-likelihood of each sample beyond the facet against the facet. kStray: fraction of samples that may be
+// beyond.
 constexpr double kBeyond = 5.0, kStray = 0.02;
 
-// Noise of a reading from the root mean square of third differences, rails.md (R56).
+// Returns the noise of a reading from the root mean square of third differences, rails.md (R56).
 double window_noise(std::span<const Vector3d> window, int axis) {
   double squares = 0.0;
   const std::size_t count = window.size() - 3;
@@ -57,15 +60,16 @@ struct Segment {
   std::size_t size() const { return last - first + 1; }
 };
 
-// Returns the run of neighbours that starts with inlier `at`; moves `at` to the first one after the run.
+// Returns the run of neighbours that starts with inlier `at`. On return, `at` is the first inlier after the run.
 Segment next_segment(std::span<const std::size_t> inliers, std::size_t& at) {
   Segment out{inliers[at], inliers[at]};
   for (++at; at < inliers.size() && inliers[at] == out.last + 1; ++at) ++out.last;
   return out;
 }
 
-// Log likelihood ratio for a scatter of the segment's inside about a straight line that is below the noise, rails.md
-// (R65). Sensor noise is part of a rate, but not of a level that clips after it. Zero if quantisation hides the noise.
+// Returns a log likelihood ratio: whether the scatter of the segment's inside about a straight line is below the noise,
+// rails.md (R65). Sensor noise is part of a rate, but not of a saturation level that clips after the noise is added.
+// The ratio is zero if quantisation hides the noise.
 double thinness(const DistinctReadings& readings, const RailFacet& facet, const Segment& s) {
   if (s.size() <= kThinTaken) return 0.0;
   const std::size_t first = s.first + 1, count = s.size() - 2;
@@ -90,17 +94,17 @@ double thinness(const DistinctReadings& readings, const RailFacet& facet, const 
   return scatter < noise ? free * (std::log(noise / scatter) - 0.5 * (1.0 - std::pow(scatter / noise, 2))) : 0.0;
 }
 
-// Curvature of a segment, and the curvature of a rounded maximum between its neighbours.
+// Curvature of a segment, and the curvature of a rounded maximum between the segment's neighbours.
 struct SegmentShape {
   double bend = 0.0, flat = 0.0;
   bool bends() const { return bend >= kBend * flat; }
 };
 
-// Empty for a single reading, and close to both ends of the recording.
+// Returns the shape of a segment. The result is empty for a single reading, and close to both ends of the recording.
 std::optional<SegmentShape> shape_of(const DistinctReadings& readings, const RailFacet& facet, const Segment& s) {
   const std::vector<Vector3d>& rates = readings.rates;
   const auto value = [&](std::size_t k) { return facet.sign * facet.row.dot(rates[k]); };
-  // distance of the second neighbour outside of either end from the level
+  // distance from the saturation level of the second neighbour outside of either end
   double depth = std::numeric_limits<double>::max();
   if (s.first >= 2) depth = std::min(depth, facet.level - value(s.first - 2));
   if (s.last + 2 < rates.size()) depth = std::min(depth, facet.level - value(s.last + 2));
@@ -115,8 +119,8 @@ std::optional<SegmentShape> shape_of(const DistinctReadings& readings, const Rai
   return SegmentShape{depth * inside * inside, std::max(high - low, 2.0 * facet.deviation)};
 }
 
-// Evidence of a kink at one end of a segment, rails.md (R64): second differences of the clipped axis and of the others,
-// on which an impact would also cause a kink.
+// Returns the log-likelihood of a kink at one end of a segment, rails.md (R64). The test compares second differences of
+// the clipped axis with those of the other axes, on which an impact would also cause a kink.
 double kink_evidence(const DistinctReadings& readings, const RailFacet& facet, const Segment& s, bool after) {
   const std::vector<Vector3d>& rates = readings.rates;
   if (s.size() < 3 || (after ? s.last + 3 >= rates.size() : s.first < 3)) return 0.0;
@@ -192,7 +196,7 @@ double segment_evidence(const DistinctReadings& readings, const Eigen::Matrix2d&
     ++facet.segments;
     odds += std::max(0.0, thin);
     if (!shape->bends()) continue;
-    // flatness and recurrence: rails.md (R62), (R63)
+    // flatness of the segment, and recurrence of its mean reading: rails.md (R62), (R63)
     const double flatness = static_cast<double>(s.size() - 1) * std::log(shape->bend / shape->flat);
     odds += std::min(flatness, -std::log(kConstantShare)) + of_level;
     for (const bool after : {false, true}) odds += kink_evidence(readings, facet, s, after);
@@ -204,9 +208,11 @@ double segment_evidence(const DistinctReadings& readings, const Eigen::Matrix2d&
   });
   odds -= kBeyond * std::max(0.0, static_cast<double>(beyond) - kStray * static_cast<double>(inliers.size()));
   if (facet.segments == 0) return -std::numeric_limits<double>::infinity();
-  // readings closer to the level than noise, or than the facet's error elsewhere, are not distinguishable from it
+  // a reading that is closer to the level than noise, or than the facet's error at other readings, is not
+  // distinguishable from the level
   facet.tolerance = std::max(facet.tolerance, std::min(kAtRail * noise, kAtRailShareMax * facet.level));
-  // Occam factor for the free choice of level and slopes, prior over posterior volume: rails.md (R66)
+  // Occam factor for the free choice of saturation level and cross-axis sensitivities, prior over posterior volume:
+  // rails.md (R66)
   const Eigen::Matrix3d posterior_covariance = H.inverse();
   const double of_slopes =
       0.5 * std::log(std::max(1.0, 1.0 / (posterior_covariance.topLeftCorner<2, 2>().determinant() *

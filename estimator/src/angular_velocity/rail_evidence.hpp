@@ -14,11 +14,12 @@ struct DistinctReadings {
   Eigen::Vector3d digit = Eigen::Vector3d::Zero();  ///< smallest change between two readings [rad/s]
   Eigen::Vector3d peak = Eigen::Vector3d::Zero();   ///< largest magnitude of each axis [rad/s]
 };
-/// Computes these from readings in time order; stores the distinct ones in `rates`. `noises`: buffer.
+/// Computes the properties of a gyro from its readings in time order, and stores the distinct readings in `rates`.
+/// `noises` is a buffer.
 DistinctReadings distinct_readings(std::span<const Eigen::Vector3d> readings, std::vector<Eigen::Vector3d>& rates,
                                    std::vector<double>& noises);
 
-/// A plane that bounds the readings, sign * row . y = level, and the readings in the slab at it.
+/// A plane that limits the readings, sign * row . y = level, and the readings in the slab at the plane.
 struct RailFacet {
   int axis = 0, sign = 1;
   Eigen::Vector3d row = Eigen::Vector3d::Zero();
@@ -28,8 +29,8 @@ struct RailFacet {
 };
 
 /// Returns the log likelihood ratio of the facet's samples: saturation against maxima of a motion or constant rates.
-/// Counts the segments of `facet`. `slope_information`: prior of the slopes. `inliers`: ascending indices of the
-/// facet's readings in DistinctReadings::rates.
+/// Counts the segments of `facet`. `slope_information` is the prior information of the cross-axis sensitivities.
+/// `inliers` contains ascending indices of the facet's readings in DistinctReadings::rates.
 double segment_evidence(const DistinctReadings& readings, const Eigen::Matrix2d& slope_information,
                         std::span<const std::size_t> inliers, RailFacet& facet);
 

@@ -16,11 +16,12 @@ using Workspace = RailPlaneFinder::Workspace;
 
 constexpr double kGridStep = 0.01;  // of the slopes
 constexpr int kRefinements = 10;
-// Half width of a slab: standard deviations of the samples, with a minimum and a maximum fraction of the level.
+// Half width of a slab in standard deviations of the samples, with a minimum and a maximum as fractions of the
+// saturation level.
 constexpr double kSlabDeviations = 4.0, kSlabShareMin = 2e-4, kSlabShareMax = 0.006;
 
-// Collects the samples that may be in the slab below the largest value for any slope up to `steepest`. Returns their
-// smallest value.
+// Collects the samples that may be in the slab below the largest value for any cross-axis sensitivity up to `steepest`.
+// Returns the smallest value of the collected samples.
 double candidates(const DistinctReadings& readings, int axis, int sign, double steepest, double slab,
                   std::vector<std::size_t>& out) {
   double sure = -std::numeric_limits<double>::max();
@@ -43,8 +44,9 @@ void collect(const DistinctReadings& readings, double from, Side& side, Workspac
   }
 }
 
-// Fits slopes and level to the inliers by least squares, with the prior of the slopes; computes the samples' standard
-// deviation. Robust (Cauchy), because partly saturated windows are below the plane: rails.md (R58).
+// Fits cross-axis sensitivities and saturation level to the inliers by least squares, with the prior of the
+// sensitivities. Computes the standard deviation of the samples. The fit is robust (Cauchy), because partly saturated
+// windows are below the plane: rails.md (R58).
 void fit(const DistinctReadings& readings, const FacetPrior& prior, double deviation, RailFacet& facet,
          Workspace& workspace) {
   const int axis = facet.axis;

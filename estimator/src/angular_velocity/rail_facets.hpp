@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Search for the facet of one sign of one element: the plane at which its readings are saturated.
+// Search for the facet of one sign of one sensing element: the plane at which the element's readings are saturated.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,14 +11,14 @@
 
 namespace tumble::rails {
 
-/// Condition for readings of a facet: along `row` not below `from`, and close to the extreme for slopes up to
-/// `steepest`.
+/// Condition for readings of a facet: along `row` not below `from`, and close to the extreme for cross-axis
+/// sensitivities up to `steepest`.
 struct Gate {
   Eigen::Vector3d row = Eigen::Vector3d::Zero();
   double from = 0.0, steepest = 0.0, near_from = 0.0;
 };
 
-/// One sign of one element during the search.
+/// State of the search for one sign of one sensing element.
 struct Side {
   int axis = 0, sign = 1;
   RailFacet facet;
@@ -36,7 +36,7 @@ inline Eigen::Vector2d others(const Eigen::Vector3d& y, int axis) {
   return {y[(axis + 1) % 3], y[(axis + 2) % 3]};
 }
 
-/// Returns the largest value of a reading along a row with slopes up to `steepest`.
+/// Returns the largest value of a reading along a row with cross-axis sensitivities up to `steepest`.
 inline double highest_value(const Eigen::Vector3d& y, int axis, int sign, double steepest) {
   return sign * y[axis] + steepest * others(y, axis).lpNorm<1>();
 }
@@ -48,19 +48,19 @@ struct Extreme {
   double steepest = 0.0, near_from = 0.0;
 };
 
-/// Returns nothing if the axis reads too little for saturation. Stores the samples close to the extreme in the
-/// workspace. O(N).
+/// Returns nothing if the readings of the axis are too small for saturation. Stores the samples close to the extreme in
+/// the workspace. O(N).
 std::optional<Extreme> find_extreme(const RailPlaneFinder::Params& params, const DistinctReadings& readings, int axis,
                                     int sign, const FacetPrior& prior, double slope_range,
                                     RailPlaneFinder::Workspace& workspace);
 
-/// Returns the slopes on a grid about the prior whose slab contains the most samples of find_extreme(), minus a penalty
-/// for unlikely slopes: rails.md (R57).
+/// Returns the cross-axis sensitivities, on a grid about the prior, whose slab contains the most samples of
+/// find_extreme(). A penalty for unlikely sensitivities is subtracted: rails.md (R57).
 Eigen::Vector2d search_slopes(const DistinctReadings& readings, const Extreme& extreme, double slope_max,
                               const FacetPrior& prior, RailPlaneFinder::Workspace& workspace);
 
-/// Fits the facet from given slopes; the robust fit (rails.md (R58)) starts with `deviation`. Stores its samples in the
-/// workspace.
+/// Fits the facet from initial cross-axis sensitivities. The robust fit (rails.md (R58)) starts with `deviation`.
+/// Stores the facet's samples in the workspace.
 Side fit_facet(const DistinctReadings& readings, const Extreme& extreme, const FacetPrior& prior,
                const Eigen::Vector2d& slopes, double deviation, RailPlaneFinder::Workspace& workspace);
 

@@ -27,15 +27,18 @@ using rails::Gate;
 using rails::others;
 using rails::Side;
 
-// Initial standard deviations of the robust fit, as fractions of the slab. The small one suits a thin plane with a few
-// samples below it, the large one a thick plane.
+// Initial standard deviations of the robust fit, as fractions of the slab. The small value suits a thin plane with a
+// few samples below the plane, and the large value a thick plane.
 constexpr double kStarts[] = {0.5, 0.02};
-// Usual difference between elements of one device: another axis does not read more than this beyond a level.
+// Usual relative difference between the saturation levels of one device's sensing elements. The reading of another axis
+// exceeds a saturation level by at most this fraction.
 constexpr double kSiblingShare = 0.04;
-// Log odds of a level: near that of another element, of a stated range, of the other sign; and impossible.
+// Changes of a saturation level's log odds: near the level of another sensing element, near a stated range, near the
+// level of the opposite sign, and for impossible levels.
 constexpr double kNearSibling = 5.0, kNearStated = 3.0, kOtherSignAgrees = 5.0, kImpossible = -100.0;
-// Log odds of a level near that of an earlier run; maximum distance of the two as a fraction of the level; minimum log
-// odds of other levels, since the device may be another one.
+// kNearKnown: log odds of a saturation level near that of an earlier run. kKnownShare: maximum distance between old and
+// new level as a fraction of the level. kFarFromKnown: minimum log odds of other levels, since the device may be a
+// different one.
 constexpr double kNearKnown = 6.0, kKnownShare = 0.003, kFarFromKnown = -3.0;
 // Change of slopes between runs.
 constexpr double kKnownSlopeSigma = 2e-3;
@@ -45,7 +48,7 @@ double log_normal_ratio(double value, double sigma) {
   return std::max(kImpossible, -0.5 * z * z);
 }
 
-// Prior log odds of a level: rails.md (R67).
+// Returns the prior log odds of a saturation level: rails.md (R67).
 double level_log_odds(const RailPlaneFinder::Params& params, const DistinctReadings& readings, const RailPlanes& known,
                       const Side& side) {
   const double level = side.facet.level;
@@ -73,7 +76,7 @@ double level_log_odds(const RailPlaneFinder::Params& params, const DistinctReadi
   return odds;
 }
 
-// Combines the two signs of one element, rails.md (R53); either may be missing.
+// Combines the planes of the two signs of one sensing element, rails.md (R53). One of the two may be missing.
 RailPlane joined(const RailPlaneFinder::Params& params, const DistinctReadings& readings, const Side* minus,
                  const Side* plus) {
   Eigen::Matrix4d H = Eigen::Matrix4d::Zero();
@@ -105,7 +108,8 @@ RailPlane joined(const RailPlaneFinder::Params& params, const DistinctReadings& 
     out.tolerance_rad_s = std::max(out.tolerance_rad_s, side->facet.tolerance);
     out.log_odds = std::max(out.log_odds, side->log_odds);
   }
-  // badly conditioned if two elements that always clip together leave a slope undetermined
+  // the system is badly conditioned if two sensing elements that always clip together leave a cross-axis sensitivity
+  // undetermined
   const Eigen::LDLT<Eigen::Matrix4d> factor(H);
   out.covariance = factor.solve(Eigen::Matrix4d::Identity());
   const Eigen::Vector4d x = factor.solve(g);
@@ -129,7 +133,7 @@ struct SideSearch {
   const DistinctReadings& readings;
   RailPlaneFinder::Workspace& workspace;
 
-  // best facet near the known slopes, by the log odds of rails.md (R60)
+  // Returns the best facet near the known cross-axis sensitivities, by the log odds of rails.md (R60).
   Side about(int axis, int sign, const RailPlanes& known, const FacetPrior& prior, double range) const {
     Side side{axis, sign, {}, {}};
     const auto extreme = rails::find_extreme(params, readings, axis, sign, prior, range, workspace);
@@ -147,7 +151,9 @@ struct SideSearch {
     return side;
   }
 
-  // one sign of an element: near its row if known, otherwise near zero slopes or those of an earlier run
+  // Searches the plane of one sign of a sensing element. The search starts near the element's sensing direction if
+  // known. If the direction is unknown, the search starts near zero cross-axis sensitivities or near those of an
+  // earlier run.
   Side look(int axis, int sign, const RailPlanes& known) const {
     const auto element = static_cast<std::size_t>(axis);
     if (const auto& rail = known.element[element]) {
@@ -160,7 +166,7 @@ struct SideSearch {
     const Side side = about(axis, sign, known, {Vector2d::Zero(), unknown}, params.slope_max);
     const auto& earlier = params.known.element[element];
     if (!earlier) return side;
-    // the device of the earlier run, or another one
+    // the device is that of the earlier run, or a different device
     const Matrix2d changed =
         earlier->covariance.topLeftCorner<2, 2>() + kKnownSlopeSigma * kKnownSlopeSigma * Matrix2d::Identity();
     const double range = std::min(params.slope_max, 3.0 * std::sqrt(changed.trace()));
@@ -168,8 +174,8 @@ struct SideSearch {
     return same.log_odds > side.log_odds ? same : side;
   }
 
-  // Searches for side `i` of an element, given the planes in `found`. Returns whether `pair` contains it. `kept`: it
-  // was accepted in the last search.
+  // Searches for the plane of side `i` of a sensing element, given the planes in `found`. Returns whether `pair`
+  // contains side `i`. `kept` is true if the side was accepted in the last search.
   bool add(int axis, std::size_t i, bool kept, const RailPlanes& found, Pair& pair) const {
     const int sign = i == 0 ? -1 : 1;
     const Side side = look(axis, sign, found);
@@ -179,7 +185,7 @@ struct SideSearch {
     }
     const auto& rail = found.element[static_cast<std::size_t>(axis)];
     if (rail || !(side.log_odds > -std::numeric_limits<double>::infinity())) return false;
-    // both signs of one row may be accepted together where neither is alone
+    // the two signs of one sensing element may be accepted together although neither sign is accepted alone
     Pair alone;
     alone[i] = side;
     RailPlanes supposed = found;
@@ -223,7 +229,7 @@ RailPlanes RailPlaneFinder::find(std::span<const Vector3d> readings_rad_s, const
     return with_known(found, readings.rates);
   const SideSearch search{params_, readings, workspace};
   std::array<Pair, 3> sides;
-  // each accepted element or sign changes the odds of the others, so repeat until nothing is added
+  // each accepted plane changes the odds of the remaining planes, so repeat until nothing is added
   for (bool added = true; added;) {
     added = false;
     for (int axis = 0; axis < 3; ++axis) {

@@ -13,12 +13,12 @@ using Eigen::Vector3d;
 // Multiple of the tolerance beyond which readings contradict a plane.
 constexpr double kBeyondTolerance = 4.0;
 constexpr int kContradicting = 2;
-// Maximum difference between levels of one device in two runs, as a fraction.
+// Maximum relative difference between saturation levels of one device in two runs.
 constexpr double kSameShare = 0.003;
 
 }  // namespace
 
-// Adds elements and signs from an earlier run that were not observed in these readings.
+// Adds saturation planes from an earlier run that were not observed in the current readings.
 RailPlanes RailPlaneFinder::with_known(const RailPlanes& found, std::span<const Vector3d> readings_rad_s) const {
   RailPlanes out = found;
   for (std::size_t j = 0; j < 3; ++j) {
@@ -27,7 +27,7 @@ RailPlanes RailPlaneFinder::with_known(const RailPlanes& found, std::span<const 
     if (!earlier) continue;
     if (!rail && !earlier->contradicted_by(readings_rad_s)) rail = earlier;
     for (const int sign : {-1, 1}) {
-      // close enough to be the same device
+      // the saturation levels are close enough to belong to one device
       if (!rail || rail->seen(sign) || !earlier->seen(sign)) continue;
       const double apart = std::abs(rail->distance_rad_s - earlier->distance_rad_s);
       const std::size_t i = sign > 0 ? 1 : 0;

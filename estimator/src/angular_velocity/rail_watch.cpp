@@ -15,15 +15,16 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Fraction of an axis's largest reading above which a reading may be saturated; above which it is stored; number of
-// neighbours stored for judging a segment.
+// kNearShare: readings above this fraction of an axis's largest reading may be saturated. kKeepShare: readings above
+// this fraction are stored. kBeside: number of neighbours that are stored to judge a segment.
 constexpr double kNearShare = 0.9, kKeepShare = 0.85;
 constexpr std::size_t kBeside = 4;
-// Number of latest and of first readings that are always stored; the first ones determine the noise.
+// Number of latest and of first readings that are always stored. The first readings determine the noise.
 constexpr std::size_t kLatest = 48;
-// A new search after this fraction of additional readings near the extremes, at least two.
+// A new search follows when readings near the extremes have grown by the fraction 1 / kMore, and by at least two.
 constexpr std::size_t kMore = 8;
-// Readings below this fraction of the lowest possible level are not near one; gravity is excluded for an accelerometer.
+// Readings below this fraction of the lowest possible saturation level are not near a level. The fraction for an
+// accelerometer excludes gravity.
 constexpr double kLowShare[] = {0.5, 0.9};
 
 std::array<std::optional<double>, 6> rails_of(const RailDetector& upright_rails, const RailDetector::State& state) {
@@ -59,7 +60,8 @@ bool RailWatch::is_near(const Vector3d& reading, Triad triad, const Memory& memo
   return false;
 }
 
-// Without room, drops readings far from the extremes, and if necessary the oldest except for the first ones.
+// Stores a reading. If the memory is full, store() drops readings far from the extremes, and if necessary the oldest
+// readings except for the first ones.
 void RailWatch::store(const Vector3d& reading, Triad triad, Memory& memory) const {
   std::vector<Vector3d>& readings = memory.readings;
   if (readings.size() == readings_max_) {

@@ -12,16 +12,16 @@ namespace tumble {
 
 namespace {
 
-// Alternative first contact thresholds, as multiples of the parameter, and the fraction of clipped samples in flight
-// below which they are tried.
+// Alternative initial contact thresholds, as multiples of the parameter. The alternatives are tried if the fraction of
+// clipped samples in flight is below a limit.
 constexpr double kRestartThresholds[] = {16.0, 0.25};
 constexpr double kFlightShareExpected = 0.5;
 
-// Convergence: the last step changes no combination of unknowns by more than this many standard deviations:
-// rate_smoother.md (R30). A nearly unknown rate may still change by much.
+// Convergence criterion: the last step changes no combination of unknowns by more than this many standard deviations,
+// rate_smoother.md (R30). A nearly unknown rate may still change by a large amount.
 constexpr double kStepDeviations = 0.1;
 
-// rate_smoother.md (R16) to (R19); the jump is the smaller one of (R17).
+// rate_smoother.md (R16) to (R19); the jump is the smaller jump of (R17).
 void weigh_all(const RateModel& model, std::span<const RateObservation> observations, const RigConstants& rig,
                const RigConstants::Matrix& rig_covariance, double widen, std::span<RateEstimate> estimates) {
   double before = std::numeric_limits<double>::max();
@@ -39,7 +39,7 @@ void weigh_all(const RateModel& model, std::span<const RateObservation> observat
   }
 }
 
-// Gauss-Newton from the first guess; returns false if a system is not positive definite.
+// Runs Gauss-Newton from the initial values. Returns false if a system is not positive definite.
 bool descend(const RateSmoother::Params& params, const RateModel& model, std::span<const RateObservation> observations,
              double widen, RateSolution& solution, RateReport& health) {
   solution.estimates = first_guess(observations, params.model, model, params.gap_max_s);
@@ -81,8 +81,9 @@ bool descend(const RateSmoother::Params& params, const RateModel& model, std::sp
   return true;
 }
 
-// Measures how well free flight explains what the gyro does not measure, by the part of the robust cost that differs
-// between local minima, rate_smoother.md (R31). `share`: fraction of these samples that count as flight.
+// Measures how well free flight explains the rates that the gyro does not measure. The measure is the part of the
+// robust cost that differs between local minima, rate_smoother.md (R31). `share` receives the fraction of the
+// unmeasured samples that count as flight.
 double explained(std::span<const RateObservation> observations, std::span<const RateEstimate> estimates,
                  double& share) {
   double sum = 0.0, unseen = 0.0, flight = 0.0;
@@ -98,7 +99,7 @@ double explained(std::span<const RateObservation> observations, std::span<const 
 
 }  // namespace
 
-// Eliminates the system of rate_smoother.md (R26) from the first sample on.
+// Eliminates the system of rate_smoother.md (R26), starting with the first sample.
 bool RateIteration::factorise(const RateModel& model, std::span<const RateEstimate> estimates,
                               const RigConstants& rig) {
   corner_ = {};
@@ -117,7 +118,7 @@ bool RateIteration::factorise(const RateModel& model, std::span<const RateEstima
   return arrow::solve_corner(corner_, rig_step_, rig_covariance_);
 }
 
-// g' H^-1 g, block by block: rate_smoother.md (R30). Blocks contain L^-1 g after elimination.
+// Computes g' H^-1 g, block by block: rate_smoother.md (R30). After elimination, blocks contain L^-1 g.
 double RateIteration::decrement() const {
   double sum = rig_step_.dot(corner_.gradient);
   for (const arrow::Block& block : blocks_) sum += block.gradient.squaredNorm();
@@ -153,7 +154,7 @@ RateIteration::Moved RateIteration::moved_by_errors(const RateModel& model, std:
     model.add_errors(observations_[k], estimates[k], rig, errors, border, out.evidence);
     const bool last = k + 1 == blocks_.size();
     arrow::eliminate_errors(blocks_[k], errors, last ? nullptr : &out.of_sample[k + 1], border);
-    // the part of the errors that the sample explains itself
+    // subtracts the part of the errors that the sample explains by its own unknowns
     out.evidence.information.noalias() -= errors.transpose() * errors;
     out.evidence.gradient.noalias() += errors.transpose() * blocks_[k].gradient;
   }

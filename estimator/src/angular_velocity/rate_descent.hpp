@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Gauss-Newton descent of RateSmoother over a recording.
+// Gauss-Newton optimisation of RateSmoother over a recording.
 #pragma once
 
 #include <span>
@@ -17,7 +17,7 @@ class RateIteration {
 
   /// Returns false if the system is not positive definite.
   bool factorise(const RateModel& model, std::span<const RateEstimate> estimates, const RigConstants& rig);
-  /// Adds the step, limited to step_max; returns the largest change of a rate.
+  /// Adds the step, limited to step_max. Returns the largest change of a rate.
   double apply(const RateModel& model, double step_max, std::span<RateEstimate> estimates, RigConstants& rig) const;
 
   /// Calls use(k, conditional) for the last factorisation, from the last sample to the first.
@@ -30,8 +30,9 @@ class RateIteration {
     }
   }
 
-  /// Derivative of all unknowns by the sensor errors, and evidence of the readings about the errors after all unknowns
-  /// are optimised. Of the last factorisation, with its `estimates` and `rig`, before apply().
+  /// Derivative of all unknowns by the sensor errors, and information of the readings about the errors after all
+  /// unknowns are optimised. The values refer to the last factorisation, with its `estimates` and `rig`, before
+  /// apply().
   struct Moved {
     std::vector<arrow::ErrorMatrix> of_sample;
     arrow::BorderErrors of_rig;
@@ -40,8 +41,8 @@ class RateIteration {
   Moved moved_by_errors(const RateModel& model, std::span<const RateEstimate> estimates, const RigConstants& rig) const;
 
   const RigConstants::Matrix& rig_covariance() const { return rig_covariance_; }
-  /// For the last factorisation, returns twice the predicted decrease of the cost. This number is also the square of
-  /// the largest change of any combination of unknowns in standard deviations.
+  /// Returns twice the predicted decrease of the cost, for the last factorisation. The result is also the square of the
+  /// largest change of any combination of unknowns in standard deviations.
   double decrement() const;
 
  private:
@@ -59,9 +60,10 @@ struct RateSolution {
   RateIteration iteration;
 };
 
-/// Runs the descent. If most clipped samples are classified as contact, repeats it with larger and smaller contact
-/// thresholds. Reason: with a wrong lever arm, the first may end in a minimum without flight. Returns false if a system
-/// is not positive definite. Sets iterations, restarts, convergence and Mahalanobis distance in `health`.
+/// Runs the optimisation. If most clipped samples are classified as contact, solve() repeats the optimisation with
+/// larger and smaller contact thresholds. With a wrong lever arm, the first optimisation may end in a minimum without
+/// flight. Returns false if a system is not positive definite. Sets iterations, restarts, convergence and Mahalanobis
+/// distance in `health`.
 bool solve(const RateSmoother::Params& params, const RateModel& model, std::span<const RateObservation> observations,
            RateSolution& solution, RateReport& health);
 

@@ -14,8 +14,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-// Returns S_i v for each matrix of RigConstants::inertia_basis, as columns; explicit, because it is called for each
-// sample.
+// Returns S_i v for each matrix of RigConstants::inertia_basis, as columns. The formulas are explicit, because the
+// function is called for each sample.
 Eigen::Matrix<double, 3, 5> basis_times(const Vector3d& v) {
   constexpr double kHalf = 0.5 * std::numbers::sqrt2, kSixth = std::numbers::inv_sqrt3 * kHalf;
   Eigen::Matrix<double, 3, 5> out;
@@ -30,7 +30,8 @@ struct Jerk {
   Vector3d Jw, Ja, value;
 };
 
-// The time derivative of J alpha + w x J w = 0: J j = -(alpha x J w + w x J alpha), rate_smoother.md (R11).
+// Computes the jerk j from the time derivative of J alpha + w x J w = 0: J j = -(alpha x J w + w x J alpha),
+// rate_smoother.md (R11).
 Jerk jerk_of(const RateKnot& knot, const RigConstants& rig) {
   const Vector3d &w = knot.rate_rad_s, &alpha = knot.acceleration_rad_s2;
   Jerk out;
@@ -42,7 +43,7 @@ Jerk jerk_of(const RateKnot& knot, const RigConstants& rig) {
   return out;
 }
 
-// Derivatives of the jerk; separate, because most calls need only the jerk.
+// Derivatives of the jerk. The derivatives are separate, because most calls need only the jerk.
 struct JerkDerivatives {
   Matrix3d by_rate, by_acceleration;
   Eigen::Matrix<double, 3, 5> by_inertia;

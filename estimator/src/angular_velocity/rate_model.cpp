@@ -46,13 +46,14 @@ RigConstants::Matrix covariance_of(const RateModelParams& p) {
   return variance.cwiseAbs2().asDiagonal();
 }
 
-// Standard deviation of the additional deficit of a partly clipped reading due to an impact within the window, rad/s.
+// Standard deviation of the additional saturation deficit of a partly clipped reading due to an impact within the
+// window, rad/s.
 constexpr double kSubsampleInContact = 0.25;
 
-// Constants on which a factor depends: lever arm and accelerometer bias in flight, inertia in Euler's equation.
+// First constants on which a factor depends: lever arm and accelerometer bias in flight, inertia in Euler's equation.
 constexpr int kLever = 0, kAccelBias = 6, kInertia = 9;
 
-// Contribution of the calibration's uncertainty to a residual's covariance.
+// Returns the contribution of the calibration's uncertainty to a residual's covariance.
 Eigen::Matrix3d flight_spread(const RateFactor& f, const RigConstants::Matrix& rig) {
   const Eigen::Matrix3d T = f.jacobian_calibration.middleCols<3>(kLever),
                         B = f.jacobian_calibration.middleCols<3>(kAccelBias);
@@ -72,8 +73,8 @@ Eigen::Matrix3d euler_spread(const RateFactor& f, const RigConstants::Matrix& ri
   return IC.lazyProduct(I.transpose());
 }
 
-// Squared residual normalised by its covariance, from the sensor and from the uncertain calibration: rate_smoother.md
-// (R16).
+// Returns the squared residual normalised by its covariance, from the sensor and from the uncertain calibration:
+// rate_smoother.md (R16).
 double normalised(const RateFactor& f, Eigen::Matrix3d spread, double sigma, const Vector3d& more = Vector3d::Zero()) {
   spread.diagonal().array() += sigma * sigma;
   spread.diagonal() += more;
@@ -88,7 +89,8 @@ double mahalanobis(const RigConstants::Vector& moved, const RigConstants::Matrix
   return std::sqrt(part.dot(spread.llt().solve(part)) / kCount);
 }
 
-// Adds the part of a factor that depends on the sample only; returns A' * information.
+// Adds the part of a factor that depends on the sample only. Returns A' * information, with A the derivative by the
+// sample.
 Eigen::Matrix<double, 6, 3> add_to_knot(const RateFactor& f, const Eigen::Matrix3d& information, double time_scale_s,
                                         arrow::Block& block) {
   Eigen::Matrix<double, 3, 6> A = f.by_knot;
@@ -175,13 +177,13 @@ double RateModel::accel_sigma_m_s2(const RateObservation& observation) const {
                     params_.expert.readings.accel_scale_error * observation.sample.specific_force_m_s2.norm());
 }
 
-// Same as a variance for sums over samples: errors that last longer than a sample do not average out.
+// Returns the variance for sums over samples: errors that last longer than a sample do not average out.
 double RateModel::accel_variance_together(const RateObservation& observation) const {
   const double single = accel_sigma_m_s2(observation), noise2 = accel_noise_m_s2_ * accel_noise_m_s2_;
   return share_ < 1.0 ? noise2 + (single * single - noise2) / share_ : single * single;
 }
 
-// The step normalised by its covariance in flight: rate_smoother.md (R17), (R4).
+// Returns the step normalised by its covariance in flight: rate_smoother.md (R17), (R4).
 double RateModel::jump(const RateKnot& from, const RateKnot& to, double dt_s) const {
   const Vector3d e0 = from.rate_rad_s + dt_s * from.acceleration_rad_s2 - to.rate_rad_s;
   const Vector3d e1 = dt_s * (from.acceleration_rad_s2 - to.acceleration_rad_s2);
@@ -291,8 +293,8 @@ Eigen::Matrix3d RateModel::euler_information(const RateEstimate& estimate) const
 void RateModel::add_step(const RateEstimate& from, const RateEstimate& to, double dt_s, arrow::Block& block,
                          arrow::Block& next) const {
   const double h = time_scale_s_, ratio = dt_s / h;
-  // a contact may change the angular acceleration by gain * force within one step of model_error_s, and proportionally
-  // less in shorter steps: rate_smoother.md (R5)
+  // within one step of model_error_s, a contact may change the angular acceleration by gain * force; in shorter steps
+  // the change is proportionally smaller: rate_smoother.md (R5)
   const double change = params_.expert.contact.gain_rad_m * std::max(from.contact_m_s2.norm(), to.contact_m_s2.norm());
   const double psd = params_.expert.flight.jerk_psd_rad2_s5 + share_ * change * change / dt_s;
   // inverse of Q = psd [dt^3/3, dt^2 h/2; dt^2 h/2, dt h^2] of the scaled state: rate_smoother.md (R4)
@@ -336,7 +338,7 @@ double RateModel::calibration_mahalanobis(const RigConstants& rig) const {
   return std::max({lever, gyro, accel, inertia});
 }
 
-// Inverse of scaled(), from the scaled state of rate_smoother.md (R1).
+// Inverts scaled(): converts the scaled state of rate_smoother.md (R1) to physical units.
 Eigen::Matrix<double, 6, 1> RateModel::unscaled(const arrow::StateVector& step) const {
   Eigen::Matrix<double, 6, 1> out = step;
   out.tail<3>() /= time_scale_s_;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Part of RateModel for samples with a clipped element of gyro or accelerometer, which are used element by element.
+// Part of RateModel for samples in which a sensing element of gyro or accelerometer clips. The readings of clipped
+// samples are processed element by element.
 #include <cmath>
 
 #include "tumble/angular_velocity/detail/rate_model.hpp"
@@ -10,9 +11,9 @@ namespace {
 
 constexpr int kGyroBias = 3;
 
-// Adds one row m_j . (rate - age acceleration + bias - reading), with the given information and gradient; `age` is in
-// units of the acceleration's time scale. With `rig_spread`, the row does not update m_j and has a correspondingly
-// reduced weight: rate_smoother.md (R8), rate_stream.md (R92).
+// Adds one component m_j . (rate - age acceleration + bias - reading), with the given information and gradient. `age`
+// is in units of the acceleration's time scale. With `rig_spread`, the component does not update m_j and has a
+// correspondingly reduced weight: rate_smoother.md (R8), rate_stream.md (R92).
 void add_row(const RateFactor& gyro, int j, double age, double information, double pull,
              const RigConstants::Matrix* rig_spread, arrow::Block& block, arrow::Corner& corner) {
   const int first = RigConstants::kElements + 2 * j;

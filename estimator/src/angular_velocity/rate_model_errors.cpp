@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Part of RateModel that protects the calibration from contact, corrects for sensor errors, collects evidence about
-// them, and computes the reported covariance.
+// Part of RateModel that protects the calibration from contact, corrects readings for sensor errors, and sums the
+// information about sensor errors. This part also computes the reported covariance.
 #include "tumble/angular_velocity/detail/rate_model.hpp"
 
 namespace tumble {
@@ -9,8 +9,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-// Weight below which a sample does not update the calibration, although it still affects a clipped rate. The remaining
-// gradient of a contact is small for the rate, but large for uncertain constants.
+// Weight below which a sample does not update the calibration, although the sample still affects a clipped rate. The
+// remaining gradient of a contact is small for the rate, but large for uncertain constants.
 constexpr double kRigWeightMin = 0.05;
 
 }  // namespace
@@ -28,7 +28,7 @@ void RateModel::keep_from_rig(const RateObservation& o, RateFactor& flight) {
   }
 }
 
-// The rate to which a reading refers: rate_smoother.md (R7).
+// Returns the rate to which a reading refers: rate_smoother.md (R7).
 RateKnot RateModel::at_reading(const RateObservation& observation, const RateEstimate& estimate) const {
   const RateKnot& knot = estimate.knot;
   return {knot.rate_rad_s - observation.gyro_age_s * knot.acceleration_rad_s2, knot.acceleration_rad_s2};
@@ -48,7 +48,7 @@ RateFactor RateModel::flight(const RateObservation& observation, const RateKnot&
   if (exact_ && delay_s == 0.0 && by_delay == nullptr) return flight_factor(knot, rig, reading);
   const Vector3d force = reading - params_.errors.accel * reading;
   RateFactor out = late_flight_factor(knot, rig, force, delay_s, by_delay);
-  // small compared with the rest, so its derivatives are neglected: rate_smoother.md (R13)
+  // the curvature term is small, so its derivatives are neglected: rate_smoother.md (R13)
   out.residual += 0.5 * params_.errors.accel_filter_time_variance_s2 * flight_curvature(knot, rig);
   return out;
 }

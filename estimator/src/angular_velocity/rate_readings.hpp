@@ -21,8 +21,8 @@ struct RateReadings {
   std::optional<RepeatedReadings> gyro_repeated;
 };
 
-/// Classifies each of at least two samples with the detected levels: clipped elements, partly saturated axes, suspect
-/// axes, rest, and repeated readings. Sets levels, units and repetitions in `health`. O(N).
+/// Classifies at least two samples with the detected saturation levels: clipped elements, partly saturated axes,
+/// suspect axes, rest, and repeated readings. Sets levels, units and repetitions in `health`. O(N).
 RateReadings read_samples(const RateSmoother::Params& params, const ClippingFinder& rails,
                           const ClippingFinder::Found& found, const std::vector<bool>& rest,
                           std::span<const ImuSample> samples,

@@ -25,7 +25,7 @@ void shift_force(std::span<const ImuSample> samples, std::span<const Clipping> c
   }
 }
 
-// The sizes stated in the data sheet, without uncalibrated ones.
+// Returns the standard deviations stated in the data sheet, without the values of an uncalibrated device.
 SensorErrorSizes as_stated(SensorErrorSizes sizes) {
   sizes.gyro_uncalibrated = sizes.accel_uncalibrated = sizes.g_sensitivity_uncalibrated_s_m =
       sizes.delay_uncalibrated_s = 0.0;
@@ -49,7 +49,7 @@ bool is_conclusive(const TriadDelay& guess) {
   return guess.sigma_s > 0.0 || guess.delay_s != 0.0;
 }
 
-// Returns whether errors differ enough from those already corrected for another descent.
+// Returns whether the estimated errors differ enough from the corrected errors to require another optimisation.
 bool far_apart(const SensorErrors& a, const SensorErrors& b) {
   constexpr double kMatrix = 1e-3, kGSensitivity_s_m = 3e-5, kDelay_s = 3e-4, kFilterTimeVariance_s2 = 3e-6;
   return (a.gyro - b.gyro).cwiseAbs().maxCoeff() > kMatrix || (a.accel - b.accel).cwiseAbs().maxCoeff() > kMatrix ||
@@ -61,7 +61,7 @@ bool far_apart(const SensorErrors& a, const SensorErrors& b) {
 // Mahalanobis distance of three constants that one device in a thousand exceeds, with all causes included.
 constexpr double kMahalanobisOfDevice = 2.33;
 
-// Fixes the calibration at its prior, except for the gyro's elements, which contact does not affect.
+// Fixes the calibration at its prior, except for the sensing directions of the gyro, which contact does not affect.
 RateModelParams fixed_at_prior(const RateModelParams& params, const RateModel& model) {
   constexpr int kFirst = RigConstants::kElements, kCount = RigConstants::kSize - kFirst;
   RateModelParams out = params;
@@ -71,7 +71,8 @@ RateModelParams fixed_at_prior(const RateModelParams& params, const RateModel& m
   return out;
 }
 
-// Distance of the constants from their prior, rate_smoother.md (R32), including changes due to sensor errors.
+// Returns the distance of the constants from their prior, rate_smoother.md (R32), including changes due to sensor
+// errors.
 double mahalanobis_of(const RateModelParams& known, const RateModel& model, double period_s,
                       std::span<const RateObservation> observations, const RateSolution& solution) {
   RateIteration again(observations);
@@ -84,7 +85,7 @@ double mahalanobis_of(const RateModelParams& known, const RateModel& model, doub
   return RateModel(wider, period_s).calibration_mahalanobis(solution.rig);
 }
 
-// Runs the descent, and repeats it with a fixed calibration if contact was mistaken for flight with another
+// Runs the optimisation. Repeats it with a fixed calibration if contact was mistaken for flight with another
 // calibration.
 Status descend_at_prior(const RateSmoother::Params& params, const RateModelParams& known, double period_s,
                         std::span<const RateObservation> observations, bool struck, RateFit& fit, RateReport& health) {
@@ -107,7 +108,7 @@ Status descend_at_prior(const RateSmoother::Params& params, const RateModelParam
     return {Trouble::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
   }
   health.calibration_mahalanobis = mahalanobis;
-  // fixed does not mean known: the rates keep the calibration's uncertainty
+  // a fixed calibration is still uncertain, so the rates keep the calibration's uncertainty
   constexpr int kOpen = RigConstants::kElements;
   fit.solution.rig_covariance.topLeftCorner<kOpen, kOpen>() =
       health.calibration.covariance.topLeftCorner<kOpen, kOpen>();
@@ -117,7 +118,7 @@ Status descend_at_prior(const RateSmoother::Params& params, const RateModelParam
 // A guessed delay further from the assumed one, in standard deviations, becomes the initial value.
 constexpr double kGuessFar = 2.0;
 
-// Adds the evidence from impacts, which the flight model does not use, to rate_smoother.md (R38).
+// Adds the information from impacts, which the flight model does not use, to rate_smoother.md (R38).
 void add_guess(const TriadDelay& guess, SensorErrorEvidence& evidence) {
   if (!(guess.sigma_s > 0.0)) return;
   const double information = 1.0 / (guess.sigma_s * guess.sigma_s);
@@ -125,12 +126,13 @@ void add_guess(const TriadDelay& guess, SensorErrorEvidence& evidence) {
   evidence.gradient[SensorErrors::kDelay] += information * (guess.delay_s - evidence.about.accel_delay_s);
 }
 
-// Odds of a device that matches its data sheet below which the readings clearly contradict it. Above, the mixture over
-// sizes includes the uncertainty.
+// Odds of a device that matches its data sheet below which the readings clearly contradict the data sheet. Above
+// kPlainOdds, the mixture over sizes includes the uncertainty.
 constexpr double kPlainOdds = 0.05;
 
-// Returns whether a device clearly contradicts its data sheet in scale or in sampling; then neither is reliable. Naive
-// Bayes over the two, each relative to its prior. `triads_asynchronous`: the triads are known to be asynchronous.
+// Returns whether a device clearly contradicts its data sheet in scale or in sampling. A device that contradicts one of
+// the two is reliable in neither. The test is naive Bayes over scale and sampling, each relative to its prior.
+// `triads_asynchronous`: the triads are known to be asynchronous.
 bool off_sheet(const SensorErrorFit& device, const SensorErrorSizes& sizes, bool triads_asynchronous) {
   const SensorErrorFit before = fit_sensor_errors({}, sizes);
   const auto odds = [](double p) { return std::max(p, 1e-12) / std::max(1.0 - p, 1e-12); };
@@ -138,7 +140,7 @@ bool off_sheet(const SensorErrorFit& device, const SensorErrorSizes& sizes, bool
   return triads_asynchronous || of_scale * odds(device.synchronous_probability) < kPlainOdds;
 }
 
-// The sizes of a device without a data sheet.
+// Returns the standard deviations of a device without a data sheet.
 SensorErrorSizes unstated(SensorErrorSizes sizes) {
   sizes.gyro = std::max(sizes.gyro, sizes.gyro_uncalibrated);
   sizes.accel = std::max(sizes.accel, sizes.accel_uncalibrated);
@@ -147,14 +149,14 @@ SensorErrorSizes unstated(SensorErrorSizes sizes) {
   return sizes;
 }
 
-// Expresses the estimate of an earlier run relative to the errors stated now.
+// Expresses the estimate of an earlier run relative to the errors that the caller states now.
 SensorErrorEvidence calibration_evidence_about(const SensorErrors& given, KnownSensorErrors learnt,
                                                const SensorErrorSizes& sizes) {
   learnt.errors = SensorErrors::from(learnt.errors.vector() - given.vector());
   return calibration_evidence(learnt, sizes);
 }
 
-// Fits errors relative to the stated ones, as is `learnt`.
+// Fits sensor errors relative to the stated sensor errors. `learnt` is also relative to the stated errors.
 SensorErrorFit fit_about(const SensorErrors& given, SensorErrorEvidence evidence, const SensorErrorSizes& sizes,
                          const SensorErrorEvidence& learnt) {
   evidence.about = SensorErrors::from(evidence.about.vector() - given.vector());
@@ -177,7 +179,7 @@ struct Rounds {
 
   const SensorErrorSizes& stated() const { return known.expert.error_sizes; }
   bool delay_open() const { return estimated && stated().delay_uncalibrated_s > stated().delay_s; }
-  /// A body with impacts and flight is not hand-held; sensor errors may then change its calibration.
+  /// A body with impacts and flight is not hand-held, so sensor errors may change its calibration.
   bool struck() const { return guess.sigma_s > 0.0; }
 };
 
@@ -196,8 +198,8 @@ Rounds rounds_of(const RateSmoother::Params& params, const RateModelParams& know
   return out;
 }
 
-// Initial values of the descents: the assumed errors, and the other of two delays if the first requires a fixed
-// calibration.
+// Initial values of the optimisations: the assumed errors, and an alternative delay, which is used if the assumed delay
+// requires a fixed calibration.
 struct Start {
   SensorErrors errors;
   double other_delay_s = 0.0;
@@ -223,12 +225,12 @@ Status descend_corrected(const Rounds& rounds, const SensorErrors& errors, std::
   return descend_at_prior(rounds.params, corrected, rounds.period_s, observations, rounds.struck(), fit, health);
 }
 
-// Computes the evidence about the errors, relative to those that were corrected: fit.moved.
+// Computes the information about the errors, relative to the errors that were corrected: fit.moved.
 Status take_evidence(const Rounds& rounds, const SensorErrors& errors, RateFit& fit, const RateReport& health) {
   const RateSolution& solution = fit.solution;
   fit.moved = solution.iteration.moved_by_errors(fit.model, solution.estimates, solution.rig);
   if (rounds.estimated) {
-    // without convergence, the remaining gradient must not count as evidence of errors
+    // without convergence, the remaining gradient must not count as information about errors
     RateIteration again = solution.iteration;
     if (!again.factorise(fit.model, solution.estimates, solution.rig)) {
       return {Trouble::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
@@ -247,7 +249,7 @@ struct RoundsState {
   bool is_plausible = true;  ///< plausible for a device
 };
 
-// Repeats the descent until the estimated errors equal the corrected ones.
+// Repeats the optimisation until the estimated errors equal the corrected ones.
 Status descend_rounds(const Rounds& rounds, std::span<RateObservation> observations, RateFit& fit, RateReport& health,
                       RoundsState& rounds_state) {
   const SensorErrors& given = rounds.known.errors;
@@ -285,8 +287,8 @@ Status descend_rounds(const Rounds& rounds, std::span<RateObservation> observati
   }
 }
 
-// For a device that clearly contradicts its data sheet, enlarges the covariance to that of an uncalibrated device. The
-// corrections remain those for which the evidence is clear. Returns the sizes in use.
+// Enlarges the covariance of a device that clearly contradicts its data sheet to that of an uncalibrated device. Only
+// errors that the readings clearly determine are corrected. Returns the sizes in use.
 SensorErrorSizes leave_open(const Rounds& rounds, const RateFit& fit, RoundsState& rounds_state, RateReport& health) {
   const bool open =
       rounds.delay_open() && (off_sheet(rounds_state.found, rounds.stated(), rounds.triads_asynchronous) ||
@@ -302,7 +304,7 @@ SensorErrorSizes leave_open(const Rounds& rounds, const RateFit& fit, RoundsStat
   return sizes;
 }
 
-// Changes the fit to first order, as for readings corrected by `step` more.
+// Changes the fit to first order, as if readings were corrected by an additional `step`.
 void apply_correction(const SensorErrors::Vector& step, RateFit& fit) {
   for (std::size_t k = 0; k < fit.solution.estimates.size(); ++k) {
     const Eigen::Matrix<double, 6, 1> moved = fit.model.unscaled(fit.moved.of_sample[k] * step);
@@ -335,7 +337,8 @@ Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& kno
   health.sensor_errors = rounds_state.found.known;
   if (health.calibration_at_prior) return {};
   health.calibration.constants = fit.solution.rig;
-  // sensor errors remain part of the device: the next run has the same errors and includes them again
+  // sensor errors remain part of the device: the next run is affected by equal errors and includes their uncertainty
+  // again
   const SensorErrors::Matrix of_device = fit_sensor_errors({}, stated).known.covariance;
   health.calibration.covariance += fit.moved.of_rig * of_device * fit.moved.of_rig.transpose();
   return {};

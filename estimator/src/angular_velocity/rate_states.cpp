@@ -28,7 +28,8 @@ std::vector<std::optional<InterpolatedRate>> read_in_time(std::span<const ImuSam
   return rates_between_readings(samples, hidden, readings.gyro_repeated);
 }
 
-// Contribution of the sensor errors' uncertainty to a rate, limited to the largest rate: rate_smoother.md (R44).
+// Returns the contribution of the sensor errors' uncertainty to a rate, limited to the largest rate: rate_smoother.md
+// (R44).
 Eigen::Matrix3d open_of_errors(const arrow::ErrorMatrix& moved, const SensorErrors::Matrix& covariance,
                                double rate_max_rad_s) {
   const Eigen::Matrix<double, 3, SensorErrors::kSize> rates = moved.topRows<3>(), spread = rates * covariance;
@@ -37,8 +38,8 @@ Eigen::Matrix3d open_of_errors(const arrow::ErrorMatrix& moved, const SensorErro
   return std::min(1.0, most / std::max(out.trace(), 1e-300)) * out;
 }
 
-// Maximum change of the rate between two samples in addition to the angular acceleration: from free readings, otherwise
-// bounded by the contact force.
+// Returns the maximum change of the rate between two samples in addition to the angular acceleration. The maximum comes
+// from unsaturated readings if available, and from the contact force if not.
 double change_rad_s2(const RateModelParams& params, std::span<const RateObservation> observations,
                      std::span<const RateEstimate> estimates, std::size_t k) {
   const RateObservation &from = observations[k], &to = observations[k + 1];
@@ -50,8 +51,8 @@ double change_rad_s2(const RateModelParams& params, std::span<const RateObservat
   return (estimates[k + 1].knot.rate_rad_s - estimates[k].knot.rate_rad_s).norm() / dt_s;
 }
 
-// Effect of a delay common to both triads on a rate: its largest change within the delay. Reason: an impact in the next
-// sample's window may belong to this sample.
+// Returns the effect on a rate of a delay common to both triads: the largest change of the rate within the delay. An
+// impact in the next sample's window may belong to the current sample.
 Eigen::Matrix3d of_common_delay(double variance_s2, const RateModelParams& params,
                                 std::span<const RateObservation> observations, std::span<const RateEstimate> estimates,
                                 std::size_t k) {
@@ -67,8 +68,8 @@ Eigen::Matrix3d of_common_delay(double variance_s2, const RateModelParams& param
   return variance_s2 * (alpha * alpha.transpose() + change * change * Eigen::Matrix3d::Identity());
 }
 
-// The rate some time after a sample, by a cubic between the surrounding knots, with its covariance. The covariance is
-// at most the mean of those at the knots.
+// Returns the rate some time after a sample, by a cubic between the surrounding knots, with its covariance. The
+// covariance is at most the mean of the knots' covariances.
 RateState state_later(std::span<const RateObservation> observations, std::span<const RateEstimate> estimates,
                       std::span<const Eigen::Matrix3d> covariances, std::size_t k, double late_s) {
   RateState out;
@@ -134,7 +135,7 @@ std::vector<RateState> rate_states(const RateSmoother::Params& params, std::span
     const RateEstimate& estimate = solution.estimates[k];
     RateState& state = states[k];
     state = state_later(observations, solution.estimates, covariances, k, gyro_late_s);
-    // flight is smoother than readings; in other motion, readings are better than white jerk between them
+    // flight is smoother than readings; in any other motion, readings are better than white jerk between knots
     const bool by_readings = estimate.flight_weight < 0.5 && !o.at_rest && gyro_late_s == 0.0;
     if (by_readings && !own.empty() && own[k]) {
       const Vector3d g_sensitivity = errors.g_sensitivity_s_m * samples[k].specific_force_m_s2;

@@ -36,7 +36,7 @@ void clamp_to_bounds(const RateObservation& o, Vector3d& rate) {
   }
 }
 
-// Adds the prior at another point than its linearisation point: rate_stream.md (R91).
+// Adds the prior at a point that differs from the prior's linearisation point: rate_stream.md (R91).
 void add_prior(const RateStream::State& state, const RateModel& model, const RateKnot& knot, arrow::Block& block,
                arrow::Corner& corner) {
   Eigen::Matrix<double, 6, 1> moved;
@@ -124,7 +124,7 @@ Status RateStream::push(const ImuSample& sample, std::span<const AuxiliaryReadin
   return {};
 }
 
-// Makes room for one more sample before a step, by removing all leaving samples from the window at once.
+// Makes room for one more sample before a step, by removing all leaving samples from the window together.
 void RateStream::marginalise_leaving(State& state) const {
   state.waiting = 0;
   std::size_t count = 0;
@@ -135,7 +135,8 @@ void RateStream::marginalise_leaving(State& state) const {
   state.window.erase(state.window.begin(), state.window.begin() + static_cast<std::ptrdiff_t>(count));
 }
 
-// Provisional covariance of the newest sample: from its reading, or from the motion possible since the last one.
+// Computes the provisional covariance of the newest sample: from its reading, or from the motion possible since the
+// previous sample.
 void RateStream::predict_covariance(State& state) const {
   Knot& newest = state.window.back();
   const Knot& before = state.window[state.window.size() - std::min<std::size_t>(2, state.window.size())];
@@ -153,12 +154,13 @@ void RateStream::marginalise(std::size_t first, State& state) const {
   arrow::Block block, after;
   arrow::Corner corner;
   add_prior(state, model_, oldest.estimate.knot, block, corner);
-  // a sample that leaves cannot be weighed again, so it must be flight under the current calibration, not under a
-  // possible one
+  // a sample that leaves cannot be weighed again, so the sample must be flight under the current calibration, not under
+  // a possible one
   const double after_it = model_.jump(oldest.estimate.knot, next.estimate.knot, seconds_between(oldest, next));
   const double jump = std::min(jump_before(oldest, state), after_it);
   model_.weigh(oldest.observation, state.rig, RigConstants::Matrix::Zero(), 1.0, jump, oldest.estimate);
-  // 20 constants can explain any short contact as flight, so flights update the calibration only after more samples
+  // the 20 calibration constants can explain any short contact as flight, so flights update the calibration only after
+  // more samples
   std::size_t run = state.flight_run;
   const auto needed = static_cast<std::size_t>(params_.expert.flight_run_min);
   const auto flies = [](const Knot& knot) { return knot.estimate.flight_weight >= 0.5; };
@@ -178,7 +180,7 @@ void RateStream::marginalise(std::size_t first, State& state) const {
     state.prior_corner = corner;
     store_errors(block, errors, state);
   } else {
-    // the prior from the past is unusable: restart from the prior calibration
+    // the prior from marginalised samples is unusable: restart from the prior calibration
     reset_prior(state);
     ++state.failures;
   }
@@ -193,7 +195,7 @@ void RateStream::marginalise(std::size_t first, State& state) const {
   }
 }
 
-// Jump from the sample that left last to the oldest in the window.
+// Returns the jump from the sample that left last to the oldest sample in the window.
 double RateStream::jump_before(const Knot& oldest, const State& state) const {
   if (!state.left) return std::numeric_limits<double>::max();
   return model_.jump(*state.left, oldest.estimate.knot, seconds(oldest.observation.sample.time_ns - state.left_ns));
@@ -292,7 +294,7 @@ void RateStream::weigh(State& state) const {
   }
 }
 
-// rate_smoother.md (R26) to (R35) over the window.
+// Applies rate_smoother.md (R26) to (R35) to the window.
 bool RateStream::step(State& state) const {
   const std::size_t count = state.window.size();
   std::vector<arrow::Block>& blocks = state.work;
@@ -347,7 +349,7 @@ RigConstants::Matrix RateStream::inflated(const State& state) const {
   const double largest = std::sqrt(1.0 + params_.expert.inflation.covariance / (1.0 + samples));
   RigConstants::Vector factor;
   for (int i = 0; i < RigConstants::kSize; ++i) {
-    // the prior is the upper limit; the gyro's bias comes from rest, not from flight
+    // the prior is the upper limit of the variance; the gyro's bias comes from rest, not from flight
     const bool of_gyro = i >= 3 && i < 6;
     const double before = std::sqrt(model_.prior_covariance()(i, i) / state.rig_covariance(i, i));
     factor[i] = of_gyro ? 1.0 : std::clamp(before, 1.0, largest);

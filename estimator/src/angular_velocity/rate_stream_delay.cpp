@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Estimation of the accelerometer's delay in a RateStream: first from impacts, then from the evidence about sensor
-// errors. Each force is assigned to the rate at its own time.
+// Estimation of the accelerometer's delay in a RateStream: first from impacts, then from the information about sensor
+// errors. Each force is assigned to the rate at the time of the force.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,10 +17,10 @@ constexpr double kMemory = 2000.0;
 // Time between two evaluations, and minimum change of the delay that is applied.
 constexpr TimeNs kUpdateEvery_ns = 50'000'000;
 constexpr double kMoved_s = 3e-4;
-// Odds of triads as synchronous as the data sheet states, below which impacts clearly contradict it; and distance in
-// standard deviations above which a guess replaces the current delay.
+// kPlainOdds: odds of triads as synchronous as the data sheet states, below which impacts clearly contradict the data
+// sheet. kGuessFar: distance in standard deviations above which a guess replaces the current delay.
 constexpr double kPlainOdds = 0.05, kGuessFar = 3.0;
-// Minimum number of intervals, and minimum gain of the correlation over that at the stated delay: the first impacts of
+// Minimum number of intervals, and minimum gain of the correlation over that at the stated delay. The first impacts of
 // a tumble correlate by chance.
 constexpr double kIntervalsMin = 150.0, kGainMin = 0.06;
 // Maximum delay in standard deviations of an uncalibrated device.
@@ -35,7 +35,8 @@ bool repeats_readings(const RateStream::State& state) {
          state.repeat_state.of(Triad::accelerometer).is_slower_than_log();
 }
 
-// Integral of the force's norm around a sample of the window: linear between readings, constant beyond them.
+// Integral of the force's norm around a sample of the window. The norm is linear between readings, and constant beyond
+// the readings.
 class ForceAbout {
  public:
   ForceAbout(const std::vector<RateStream::Knot>& window, std::size_t middle, std::size_t first) {
@@ -67,7 +68,8 @@ std::ptrdiff_t RateStream::force_shift(const State& state) const {
   return std::lround(state.device.front().delay.in_use_s / params_.period_s);
 }
 
-// Sets the force at the time of sample k, or the closest available one, and its remaining delay. rate_stream.md (R105)
+// Sets the force at the time of sample k, or the closest available force, and the force's remaining delay.
+// rate_stream.md (R105)
 void RateStream::pair_force(std::size_t k, State& state) const {
   Knot& knot = state.window[k];
   const auto last = static_cast<std::ptrdiff_t>(state.window.size()) - 1;
@@ -82,7 +84,7 @@ void RateStream::pair_force(std::size_t k, State& state) const {
   o.accel_age_s = (state.device.front().delay.in_use_s - prior_delay_s_) - seconds_from(knot, source);
 }
 
-// After a new sample: updates samples whose force has arrived, or is closer than before.
+// Updates samples whose force has arrived with a new sample, or for which a closer force has arrived.
 std::size_t RateStream::pair_newest(State& state) const {
   const std::size_t newest = state.window.size() - 1;
   if (state.device.front().delay.in_use_s == prior_delay_s_ && force_shift(state) == 0) return newest;
@@ -92,8 +94,8 @@ std::size_t RateStream::pair_newest(State& state) const {
   return first;
 }
 
-// Adds the interval between two readings as far back in the window as the maximum delay, when their clipping is known.
-// rate_stream.md (R104)
+// Adds the interval between two readings that are as old in the window as the maximum delay, when their clipping is
+// known. rate_stream.md (R104)
 void RateStream::count_strokes(State& state) const {
   if (!delay_open_ || state.window.size() < ForceAbout::kReadings) return;
   const std::size_t first = state.window.size() - ForceAbout::kReadings, after = first + kBeside + 1;
@@ -114,14 +116,15 @@ void RateStream::count_strokes(State& state) const {
   strokes.add((end - begin).norm() / span_s, mean);
 }
 
-// Delay from impacts; empty for a log with repeated readings, since repetitions would count as readings.
+// Returns the delay from impacts. The result is empty for a log with repeated readings, since repetitions would count
+// as readings.
 TriadDelay RateStream::guessed_delay(const State& state) const {
   const StrokeSums& strokes = state.device.front().delay.strokes;
   if (repeats_readings(state) || strokes.intervals < kIntervalsMin) return {};
   return strokes.estimate_delay(params_.period_s, params_.period_s);
 }
 
-// Before a step: decides whether to change the delay. rate_stream.md (R106)
+// Decides before a step whether to change the delay. rate_stream.md (R106)
 void RateStream::seek_delay(State& state) const {
   RateStreamDelay& delay = state.device.front().delay;
   const TimeNs now_ns = state.window.back().observation.sample.time_ns;
@@ -144,7 +147,7 @@ void RateStream::seek_delay(State& state) const {
   if (delay.found && std::abs(delay.estimated_s - delay.in_use_s) > kMoved_s) refine_delay(state);
 }
 
-// Applies another delay: the calibration estimated with the previous one is invalid, and the window restarts.
+// Applies another delay. The calibration estimated with the previous delay is invalid, and the window restarts.
 void RateStream::take_delay(double delay_s, bool found, State& state) const {
   RateStreamDelay& delay = state.device.front().delay;
   delay.in_use_s = delay.estimated_s = delay_s;
@@ -161,7 +164,8 @@ void RateStream::take_delay(double delay_s, bool found, State& state) const {
   }
 }
 
-// Applies a small change of the delay; the prior from the past changes to first order. rate_stream.md (R107)
+// Applies a small change of the delay. The prior from marginalised samples changes to first order. rate_stream.md
+// (R107)
 void RateStream::refine_delay(State& state) const {
   RateStreamDevice& device = state.device.front();
   const std::ptrdiff_t before = force_shift(state);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sensor errors in a RateStream, as considered parameters: collects evidence about them and adds their uncertainty to
-// the covariances.
+// Sensor errors in a RateStream, as considered parameters. RateStream sums the information about sensor errors and adds
+// the uncertainty of the errors to the covariances.
 #include <algorithm>
 #include <cmath>
 
@@ -12,10 +12,10 @@ namespace {
 
 using Eigen::Matrix3d;
 
-// Time between two evaluations: systems of 29 unknowns cost more than a step.
+// Time between two evaluations of the errors, because systems of 29 unknowns cost more than a step.
 constexpr TimeNs kUpdateEvery_ns = 50'000'000;
 
-// rate_smoother.md (R44), limited to the largest rate
+// Computes rate_smoother.md (R44), limited to the largest rate.
 Matrix3d considered(const arrow::ErrorMatrix& moved, const SensorErrors::Matrix& covariance, double rate_max_rad_s) {
   const Eigen::Matrix<double, 3, SensorErrors::kSize> rates = moved.topRows<3>(),
                                                       spread = rates.lazyProduct(covariance);
@@ -66,7 +66,8 @@ KnownSensorErrors RateStream::sensor_errors(const State& state) const {
   return out;
 }
 
-// rate_stream.md (R101) over the window with eliminated blocks, before its estimates and the calibration change.
+// Applies rate_stream.md (R101) to the window with eliminated blocks, before the window's estimates and the calibration
+// change.
 void RateStream::consider_errors(const arrow::BorderVector& rig_step, State& state) const {
   RateStreamDevice& device = state.device.front();
   const std::size_t count = state.window.size();
@@ -101,7 +102,7 @@ void RateStream::consider_errors(const arrow::BorderVector& rig_step, State& sta
   RateStreamDelay& delay = device.delay;
   if (delay.found) {
     if (const TriadDelay& guess = delay.guess; guess.sigma_s > 0.0) {
-      // evidence from impacts has full weight
+      // information from impacts has full weight
       const double information = 1.0 / (DeviceUncertainty::kEvidenceWeight * guess.sigma_s * guess.sigma_s);
       window_evidence.information(SensorErrors::kDelay, SensorErrors::kDelay) += information;
       window_evidence.gradient[SensorErrors::kDelay] += information * (guess.delay_s - delay.in_use_s);
@@ -112,7 +113,7 @@ void RateStream::consider_errors(const arrow::BorderVector& rig_step, State& sta
   device_.update(window_evidence, posterior_work, device.posterior, delay.found);
 }
 
-// Uncertainty of a sample's rate due to sensor errors and a delay common to both triads.
+// Returns the uncertainty of a sample's rate due to sensor errors and a delay common to both triads.
 Matrix3d RateStream::of_device(std::size_t k, const State& state) const {
   const Knot& knot = state.window[k];
   if (!moves(knot)) return Matrix3d::Zero();

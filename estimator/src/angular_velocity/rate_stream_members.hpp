@@ -11,7 +11,8 @@
 
 #include "tumble/angular_velocity/rate_stream.hpp"
 
-/// Members of a RateStream's state, and members of its Params that are not Fields: state_visitor.hpp.
+/// Members of RateStream's state, and members of RateStream::Params that are not Fields, as state_visitor.hpp
+/// describes.
 namespace tumble {
 
 template <StateOf<RateStreamForce> Self, class Visitor>

@@ -16,14 +16,14 @@ namespace {
 
 using Eigen::Vector3d;
 
-// kOpen: standard deviations by which the slopes of a plane may be wrong. kPossibleMin: minimum number of readings
-// within kBesideRail of an axis's largest that may be at one tilted level. kKink: a rounded maximum of n readings is at
-// most (n/(n - 1))^2 <= 2.25 times as high as its readings show. A motion that is cut off exceeds kKink times this
-// height and kPossibleNoise standard deviations of the noise.
+// kOpen: standard deviations by which the cross-axis sensitivities of a plane may be wrong. kPossibleMin: minimum
+// number of readings within kBesideRail of an axis's largest reading that may be at one tilted level. kKink: a rounded
+// maximum of n readings is at most (n/(n - 1))^2 <= 2.25 times as high as its readings show. A motion that is cut off
+// exceeds kKink times this height and kPossibleNoise standard deviations of the noise.
 constexpr double kOpen = 3.0, kKink = 4.0, kPossibleNoise = 5.0;
 constexpr std::ptrdiff_t kPossibleMin = 3;
 
-// Maximum difference between elements' levels, as a fraction (3 % on the wand of RepoIMU).
+// Maximum difference between elements' saturation levels, as a fraction (3 % on the wand of RepoIMU).
 constexpr double kApart = 0.05;
 
 // Returns whether the largest reading of an element may be its saturation level, compared with the other elements.
@@ -33,7 +33,8 @@ bool may_be_rail(const RailPlanes& planes, double peak_rad_s) {
   });
 }
 
-// Returns the first sample with the reading before that of sample k; empty if it is not in the window.
+// Returns the first sample of the reading that precedes the reading of sample k. The result is empty if that sample is
+// not in the window.
 std::optional<std::size_t> reading_before(std::size_t k, const std::vector<RateStream::Knot>& window) {
   while (k > 0 && window[k].repeats) --k;
   if (k == 0) return std::nullopt;
@@ -42,7 +43,8 @@ std::optional<std::size_t> reading_before(std::size_t k, const std::vector<RateS
   return k;
 }
 
-// Returns the first sample with the reading after that of sample k; the window's size before it arrives.
+// Returns the first sample of the reading that follows the reading of sample k. Before the next reading arrives,
+// returns the window's size.
 std::size_t reading_after(std::size_t k, const std::vector<RateStream::Knot>& window) {
   const std::size_t size = window.size();
   if (k >= size) return size;
@@ -51,12 +53,12 @@ std::size_t reading_after(std::size_t k, const std::vector<RateStream::Knot>& wi
   return k;
 }
 
-// Samples with the gyro readings before and after that of a sample, or null.
+// Samples with the gyro readings before and after the reading of a sample, or null.
 struct Beside {
   const ImuSample *before = nullptr, *after = nullptr;
 };
 
-// Neighbours of sample k by the gyro's readings: a repeated reading has the same neighbours.
+// Returns the neighbours of sample k by the gyro's readings. All samples of a repeated reading have equal neighbours.
 Beside readings_beside(std::size_t k, const RateStream::State& state) {
   const std::optional<std::size_t> before = reading_before(k, state.window);
   const std::size_t after = reading_after(k, state.window);
@@ -82,8 +84,9 @@ void RateStream::classify_again(State& state) const {
   for (std::size_t k = 0; force_shift(state) != 0 && k < state.window.size(); ++k) pair_force(k, state);
 }
 
-// Classifies samples of the window again with the current levels. Starts with a changed sample and those with the
-// previous reading, whose classification depends on their neighbours. A newly clipped sample is initialised again.
+// Classifies samples of the window again with the current saturation levels. The update starts with the changed sample
+// and the samples with the previous reading, whose classification depends on their neighbours. A newly clipped sample
+// is initialised again.
 void RateStream::judge_from(std::size_t changed, State& state) const {
   const std::size_t first = reading_before(changed, state.window).value_or(0);
   const KnownRails& rails = state.rails.known;
@@ -121,8 +124,9 @@ void RateStream::judge_from(std::size_t changed, State& state) const {
   }
 }
 
-// Returns whether a reading may be saturated: if a known level is within reach of its uncertain slopes. Without a known
-// level, the largest reading so far is used if it is close to the other elements' levels. rate_stream.md (R93)
+// Returns whether a reading may be saturated, because a known saturation level is within reach of its uncertain
+// cross-axis sensitivities. Without a known level, the largest reading so far is used if this reading is close to the
+// saturation levels of the other sensing elements. rate_stream.md (R93)
 bool RateStream::may_clip(const ImuSample& sample, int axis, int sign, const State& state) const {
   const Vector3d& y = sample.angular_velocity_rad_s;
   const RailPlanes planes = state.rails.known.planes_in_use();
@@ -138,7 +142,7 @@ bool RateStream::may_clip(const ImuSample& sample, int axis, int sign, const Sta
   return high && std::abs(y[axis]) >= (1.0 - kBesideRail) * extreme;
 }
 
-// Computes the possible deficit of a single sample of the window, near a level of the other elements.
+// Computes the possible deficit of a single sample of the window, near a saturation level of the other elements.
 void RateStream::mark_undetected_clipping(std::size_t k, State& state) const {
   RateObservation& now = state.window[k].observation;
   now.lone = 0;
@@ -148,7 +152,7 @@ void RateStream::mark_undetected_clipping(std::size_t k, State& state) const {
                               after);
 }
 
-// Clears suspicions in the window that are refuted by a larger reading, or by a level found elsewhere.
+// Clears suspicions in the window that a larger reading refutes, or for which a saturation level is now known.
 void RateStream::clear_suspects(State& state) const {
   for (std::size_t k = 0; k < state.window.size(); ++k) {
     if (state.window[k].observation.may_hide() == 0) continue;
@@ -157,7 +161,7 @@ void RateStream::clear_suspects(State& state) const {
   }
 }
 
-// Marks runs of three or more unflagged readings that may be saturated. Repeated with each sample.
+// Marks runs of three or more unflagged readings that may be saturated. The marks are computed again with each sample.
 void RateStream::mark_possible_rails(State& state) const {
   const unsigned stood = state.window.front().observation.suspect;
   clear_suspects(state);
@@ -167,7 +171,7 @@ void RateStream::mark_possible_rails(State& state) const {
       const int sign = state.window[k].observation.sample.angular_velocity_rad_s[j] < 0.0 ? -1 : 1;
       std::size_t end = k;
       while (end < state.window.size() && may_clip(state.window[end].observation.sample, j, sign, state)) ++end;
-      // the rest of a run that was suspect before part of it left
+      // the remaining part of a run that was suspect before a part of the run left
       const bool goes_on = k == 0 && end > k && (stood >> j & 1u) != 0;
       const auto readings = std::count_if(state.window.begin() + static_cast<std::ptrdiff_t>(k),
                                           state.window.begin() + static_cast<std::ptrdiff_t>(end),
@@ -178,8 +182,8 @@ void RateStream::mark_possible_rails(State& state) const {
   }
 }
 
-// The larger of the slopes before and after a run, per sample. Each is the smaller of two steps, because an impact is a
-// single step.
+// Returns the larger of the reading's slopes before and after a run of suspect readings, per sample. Each slope is the
+// smaller of two steps, because an impact is a single step.
 double RateStream::run_slope(int axis, std::size_t first, std::size_t last, const State& state) {
   const auto size = [&](std::size_t k) {
     return std::abs(state.window[k].observation.sample.angular_velocity_rad_s[axis]);
@@ -193,7 +197,8 @@ double RateStream::run_slope(int axis, std::size_t first, std::size_t last, cons
   return std::max({in, out, 0.0});
 }
 
-// Marks one such run: a smooth motion that is cut off would have continued with the slopes at its ends. (R94)
+// Marks one run of suspect readings. A smooth motion that is cut off would have continued with the slopes at its ends.
+// (R94)
 void RateStream::mark_suspect_run(int axis, std::size_t first, std::size_t last, State& state) const {
   const auto size = [&](std::size_t k) {
     return std::abs(state.window[k].observation.sample.angular_velocity_rad_s[axis]);
@@ -219,8 +224,8 @@ void RateStream::mark_suspect_run(int axis, std::size_t first, std::size_t last,
   }
 }
 
-// Slope at the newest sample, per sample of the log. Two steps are used, because an impact is a single step and a spin
-// after it is not saturation.
+// Returns the growth of the gyro's reading at the newest sample, per sample of the log. Two steps are used, because an
+// impact is a single step, and a spin after an impact is not saturation.
 Vector3d RateStream::approach(const std::vector<Knot>& window) {
   const std::optional<std::size_t> one = reading_before(window.size() - 1, window);
   const std::optional<std::size_t> two = one ? reading_before(*one, window) : std::nullopt;
@@ -234,7 +239,7 @@ Vector3d RateStream::approach(const std::vector<Knot>& window) {
   return now.cwiseMin(before).cwiseMax(0.0);
 }
 
-// Stores the entry slope of a run that continues in the window after its first reading left.
+// Stores the entry slope of a run that continues in the window after the run's first reading left.
 void RateStream::store_entry(const Knot& leaving, const Knot& next, State& state) {
   const auto hidden = [](const Knot& knot, int j) {
     return ((knot.observation.clipping.gyro | knot.observation.read_in_part()) >> j & 1) != 0;
@@ -246,7 +251,7 @@ void RateStream::store_entry(const Knot& leaving, const Knot& next, State& state
   }
 }
 
-// Adds the planes' information about the clipped elements; repeated with each step, since it improves.
+// Adds the planes' information about the clipped elements. The information is added in each step, because it improves.
 void RateStream::add_rails(const State& state, arrow::Corner& corner) const {
   const KnownRails& rails = state.rails.known;
   const RailPlanes planes = rails.planes_in_use();

@@ -20,8 +20,8 @@ bool RateStream::in_long_flight(std::size_t at, const State& state) const {
   return last - first + 1 + (first > 0 ? 0 : state.flight_run) >= needed;
 }
 
-// Deficit of a sample in a run of clipped readings by the slopes at its ends. A flight also ends the run, since the
-// force then determines the rate. rate_stream.md (R99)
+// Returns the saturation deficit of a sample in a run of clipped readings by the slopes at the run's ends. A flight
+// also ends the run, since the force then determines the rate. rate_stream.md (R99)
 double RateStream::hidden_by_slopes(std::size_t at, int axis, const State& state) const {
   const std::vector<Knot>& window = state.window;
   const auto hidden = [&](std::size_t k) {
@@ -34,7 +34,7 @@ double RateStream::hidden_by_slopes(std::size_t at, int axis, const State& state
   const bool from_flight = state.flight_run >= static_cast<std::size_t>(params_.expert.flight_run_min);
   const double before =
       static_cast<double>(at - first) + 0.5 + (first > 0 || from_flight ? 0.0 : state.entry_samples[axis]);
-  // a run that continues lasts at least as long again
+  // the remaining part of a run that has not ended is assumed at least as long as the past part
   const double left = static_cast<double>(last - at) + 0.5,
                after = last + 1 < window.size() ? left : std::max(before, left);
   const double slope = run_slope(axis, first, last, state);
@@ -60,8 +60,8 @@ Eigen::Matrix3d RateStream::suspect_covariance(std::size_t at, const State& stat
   return out;
 }
 
-// Returns whether the readings of a rate may be partly saturated: its own, and for repeated readings the neighbouring
-// ones.
+// Returns whether the readings of a rate may be partly saturated: the reading of the sample, and for repeated readings
+// the neighbouring ones.
 bool RateStream::near_rails(std::size_t at, const State& state) const {
   const std::vector<Knot>& window = state.window;
   if (window[at].near != 0) return true;
@@ -73,9 +73,9 @@ bool RateStream::near_rails(std::size_t at, const State& state) const {
   return (window[next].near | after.clipping.gyro | after.may_hide()) != 0;
 }
 
-// If the gyro is the later triad, evaluates the rate some time after the sample by a cubic between knots, as
-// RateSmoother does. Beyond the newest knot, the acceleration is assumed constant, with uncertainty. rate_stream.md
-// (R108)
+// If the gyro is later than the accelerometer, move_later() evaluates the rate some time after the sample. The rate is
+// a cubic between knots, as in RateSmoother. Beyond the newest knot, the acceleration is assumed constant, with
+// uncertainty. rate_stream.md (R108)
 void RateStream::move_later(std::size_t at, double late_s, const State& state, RateState& out) const {
   const auto reported = [&](std::size_t k) {
     const Knot& knot = state.window[k];

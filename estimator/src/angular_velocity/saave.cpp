@@ -18,8 +18,8 @@ std::uint8_t axes_beyond(const Eigen::Vector3d& rate, double bound) {
   return axes;
 }
 
-// |w|^2 from the specific force along the vector from the IMU to the axis; NaN if the IMU is on the axis. saave.md
-// (S1), (S2)
+// Returns |w|^2 from the specific force along the vector from the IMU to the axis; NaN if the IMU is on the axis.
+// saave.md (S1), (S2)
 double squared_rate(const Eigen::Vector3d& lever_arm, const Eigen::Vector3d& axis, const Eigen::Vector3d& force) {
   const Eigen::Vector3d to_axis = lever_arm.dot(axis) * axis - lever_arm;
   const double r = to_axis.norm();
@@ -47,7 +47,7 @@ Status Saave::step(const ImuSample& sample, State& state, Recovered& out) const 
   out.clipped_axes = axes_beyond(reading, params_.saturation_point_rad_s);
   out.accepted = true;
   if (out.clipped_axes != 0) {
-    // as published: at most one axis, the first in x, y, z order; saave.md (S3)
+    // as published, at most one axis is recovered: the first clipped axis in x, y, z order; saave.md (S3)
     int j = 0;
     while ((out.clipped_axes >> j & 1u) == 0) ++j;
     Eigen::Vector3d unclipped = reading;

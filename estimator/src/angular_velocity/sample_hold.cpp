@@ -14,10 +14,11 @@ namespace {
 
 using sample_hold::kMoving_rad_s, sample_hold::kRepeatsMin, sample_hold::kMovingMin, sample_hold::kMovingMax;
 
-// Clocks tried: periods around the mean (as a fraction of it), and phases; repeated around the best.
+// Clocks that are tried: periods around the mean period (as a fraction of it), and phases. The search is repeated
+// around the best clock.
 constexpr int kPeriods = 100, kPhases = 24, kFine = 10;
 constexpr double kPeriodShare = 0.03;
-// Window of an accelerometer as a fraction of its period: the middle between none and all.
+// Window of an accelerometer as a fraction of its period: the middle between no window and the whole period.
 constexpr double kForceWindow = 0.5;
 
 struct Clock {
@@ -26,14 +27,14 @@ struct Clock {
   double age(double sample) const { return sample - phase - period * reading(sample); }
 };
 
-// Number of samples that a clock does not explain; counting stops at `most` + 1.
+// Returns the number of samples that a clock does not explain. Counting stops at `most` + 1.
 std::size_t misses_of(const Clock& clock, std::span<const std::size_t> moving, const std::vector<bool>& repeats,
                       std::size_t most) {
   std::size_t misses = 0;
   double last_at = -1.0, last = 0.0;
   for (const std::size_t k : moving) {
     const auto at = static_cast<double>(k);
-    // in continuous motion, it was evaluated at the previous sample
+    // in continuous motion, the clock was evaluated at the previous sample
     const double before = at - 1.0 == last_at ? last : clock.reading(at - 1.0);
     last = clock.reading(at);
     last_at = at;
@@ -42,14 +43,15 @@ std::size_t misses_of(const Clock& clock, std::span<const std::size_t> moving, c
   return misses;
 }
 
-// Longest run of adjacent phases on the circle with which a period explains most.
+// Longest run of adjacent phases on the circle with which a period explains most samples.
 struct Phases {
   std::size_t misses = 0;
   double first = 0.0;
   int count = 0;
 };
 
-// Stops early for a period that leaves more than `most` samples unexplained, as most periods do.
+// Finds the best phases of a period. The search stops early for a period that leaves more than `most` samples
+// unexplained, as most periods do.
 Phases best_phases(double period, std::span<const std::size_t> moving, const std::vector<bool>& repeats,
                    std::size_t most) {
   // keep the phase at the middle of the motion while the period changes
@@ -72,8 +74,8 @@ Phases best_phases(double period, std::span<const std::size_t> moving, const std
   return out;
 }
 
-// Returns the middle one of the best clocks around `first`. Equally good clocks fill an area in period and phase, in
-// whose middle most phases are adjacent.
+// Returns the middle one of the best clocks around `first`. Equally good clocks fill an area in period and phase. At
+// the middle of this area of clocks, most phases are adjacent.
 Clock best_clock(const Clock& first, double reach, int periods, std::span<const std::size_t> moving,
                  const std::vector<bool>& repeats, double& found) {
   Phases best{moving.size()};

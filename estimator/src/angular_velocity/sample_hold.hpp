@@ -18,8 +18,9 @@ struct RepeatedReadings {
   double agreement = 0.0;     ///< fraction of samples whose novelty or repetition a regular clock explains
   std::vector<double> age_s;  ///< per sample: additional age of its reading
   std::vector<bool> repeats;  ///< the reading equals the previous sample's
-  /// Time from the middle of a reading's window to the middle of the sample's window, if both end together. A gyro
-  /// integrates over its period; an accelerometer over an unknown part of it. docs/maths/carried.md (C11), (C12).
+  /// Time from the middle of a reading's window to the middle of the sample's window, if both windows end together. A
+  /// gyro integrates over its period; an accelerometer integrates over an unknown part of its period.
+  /// docs/maths/carried.md (C11), (C12).
   double window_lag_s = 0.0;
 
   bool steady() const { return agreement >= sample_hold::kAgreementMin; }
@@ -28,9 +29,9 @@ struct RepeatedReadings {
 };
 
 /// Detects repeated readings. Returns nothing if less than a twentieth of the moving samples (faster than 0.3 rad/s, at
-/// least 30) repeat all three numbers. Period and phase are those of the regular clock that best explains the
-/// repetitions. Ages and window lag follow from it, or are zero if no clock does (agreement below 0.9). O(N) for each
-/// of some 5000 clocks, on at most 1000 samples.
+/// least 30) repeat all three numbers. Period and phase belong to the regular clock that best explains the repetitions.
+/// Ages and window lag follow from the clock, or are zero if no clock explains the repetitions (agreement below 0.9).
+/// O(N) for each of some 5000 clocks, on at most 1000 samples.
 std::optional<RepeatedReadings> find_repeated(std::span<const ImuSample> samples, Triad triad);
 
 /// The nearest samples with a different reading, or null.
@@ -38,7 +39,7 @@ struct Neighbours {
   const ImuSample *before = nullptr, *after = nullptr;
 };
 /// Returns the neighbours of each sample. All samples of a run of equal readings (repetition, rest, saturation) have
-/// the same neighbours. O(N).
+/// equal neighbours. O(N).
 std::vector<Neighbours> other_readings(std::span<const ImuSample> samples, Triad triad);
 
 }  // namespace tumble

@@ -17,7 +17,7 @@ using Vector = SensorErrors::Vector;
 using Matrix = SensorErrors::Matrix;
 using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
-// Sizes between data sheet (0) and uncalibrated (1), and their prior probabilities.
+// A prior size of the errors between data sheet (0) and uncalibrated (1), and its prior probability.
 struct Size {
   double share, probability;
 };
@@ -52,11 +52,11 @@ Vector deviations(const SensorErrorSizes& s, const Shares& shares) {
   return out;
 }
 
-// Probability of the data sheet's values below which the readings clearly contradict it.
+// Probability of the data sheet's values below which the readings clearly contradict the data sheet.
 constexpr double kPlain = 0.05;
 
-// Weight of the evidence about the errors' values in the covariance. Sample errors are correlated, because errors of
-// the flight model last longer than a sample. The evidence for the kind of device has full weight.
+// Weight of the information about the errors' values in the covariance. Sample errors are correlated, because errors of
+// the flight model last longer than a sample. The likelihood of the kind of device has full weight.
 constexpr double kEvidenceWeight = 0.03;
 
 struct Hypothesis {
@@ -66,8 +66,8 @@ struct Hypothesis {
   Matrix covariance;
 };
 
-// Evidence in units of the prior's standard deviations, h = gamma + information * errors: rate_smoother.md (R40),
-// (R41), (R43).
+// Computes the posterior in units of the prior's standard deviations, h = gamma + information * errors:
+// rate_smoother.md (R40), (R41), (R43).
 Hypothesis posterior(const Matrix& information, const Matrix& learnt, const Vector& h, const Vector& deviation,
                      double log_prior) {
   constexpr int kRest = SensorErrors::kSize - SensorErrors::kGSensitivity;
@@ -81,7 +81,8 @@ Hypothesis posterior(const Matrix& information, const Matrix& learnt, const Vect
   Vector sharpened = scaled_h;
   all.solve_vector(sharpened);
   out.log_odds = log_prior + 0.5 * scaled_h.dot(sharpened) - all.half_log_determinant();
-  // scale and misalignment are not corrected, because errors of the flight model look like them
+  // scale and misalignment are not corrected, because errors of the flight model look like scale and misalignment
+  // errors
   Vector mean = Vector::Zero();
   mean.tail<kRest>() = scaled_h.tail<kRest>();
   dense::Cholesky(sharp.bottomRightCorner<kRest, kRest>()).solve_vector(mean.tail<kRest>());
@@ -141,7 +142,7 @@ void discount_unobservable(double share, SensorErrorEvidence& evidence) {
     unobservable(3 * j + k, 2 + i) = unobservable(SensorErrors::kAccel + 3 * j + k, 2 + i) = 0.5;
     unobservable(3 * k + j, 2 + i) = unobservable(SensorErrors::kAccel + 3 * k + j, 2 + i) = -0.5;
   }
-  // (I - d U U') on both sides, by U's few columns, because a stream's thread may have a small stack
+  // applies (I - d U U') on both sides by the few columns of U, because a stream's thread may have a small stack
   Eigen::Matrix<double, 5, SensorErrors::kSize> said = unobservable.transpose().lazyProduct(evidence.information);
   evidence.information.noalias() -= (1.0 - share) * unobservable.lazyProduct(said);
   said = unobservable.transpose().lazyProduct(evidence.information.transpose());
@@ -191,7 +192,7 @@ SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const Sens
     kept += one.log_odds;
   }
   mean /= std::max(kept, 1e-300);
-  // relative to the mean in use: rate_smoother.md (R42)
+  // deviations are relative to the mean in use: rate_smoother.md (R42)
   for (const Hypothesis& one : all) {
     const Vector off = one.mean - mean;
     out.known.covariance += one.log_odds * (one.covariance + off * off.transpose());

@@ -8,20 +8,22 @@ namespace tumble {
 
 namespace {
 
-// Maximum hidden fraction of the window; beyond it the free part does not determine the slope.
+// Maximum hidden fraction of the window. Beyond this fraction, the unsaturated part does not determine the slope.
 constexpr double kShareMax = 0.85;
-// Standard deviation of the deficit: as a fraction of itself, and of the distance from the level (up to 1 rad/s).
+// Standard deviation of the saturation deficit, as a fraction of the deficit and of the distance from the level (up to
+// 1 rad/s).
 constexpr double kOfLoss = 0.5, kOfDepth = 0.25, kDepthMax = 1.0;
 
 }  // namespace
 
-// A rate of constant slope that passes the level: rails.md (R69), (R70).
+// Assumes a rate of constant slope that passes the saturation level: rails.md (R69), (R70).
 SubsampleSaturation subsample_saturation(double reading_rad_s, double neighbour_rad_s, double rail_rad_s,
                                          double noise_rad_s) {
   const double depth = rail_rad_s - reading_rad_s, slope = reading_rad_s - neighbour_rad_s;
-  // a mean of clipped values is exactly at the level; noise before clipping lowers it by less than this
+  // a mean of clipped values is exactly at the saturation level; noise before clipping lowers the mean by less than a
+  // tenth of the noise
   if (!(depth > 0.1 * noise_rad_s)) return {};
-  // a constant rate does not cross the level; a slightly tilted plane looks like a decreasing plateau
+  // a constant rate does not cross the saturation level; a slightly tilted plane looks like a decreasing plateau
   if (!(slope > noise_rad_s)) return {};
   double share = 0.0;  // rails.md (R71)
   if (slope > 2.0 * depth) {

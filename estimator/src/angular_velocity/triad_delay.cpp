@@ -26,7 +26,7 @@ constexpr int kPerSample = 4;  // delays per sample on the coarse grid; as many 
 constexpr double kRateMin_rad_s = 2.0;
 constexpr std::size_t kSamplesMin = 20, kSamplesMax = 2000;
 constexpr double kLeverSigma_m = 0.02, kBiasSigma_m_s2 = 0.3;
-// Readings closer in time are the same one with jitter.
+// Readings closer in time than this are one reading with jitter.
 constexpr double kApart_s = 1e-4;
 // Kernel widths from the first iteration to the last [m/s^2].
 constexpr double kScales_m_s2[] = {3.0, 1.5, 0.8, 0.4, 0.25, 0.2};
@@ -68,7 +68,8 @@ struct Instant {
   Matrix3d by_lever;  ///< [alpha]x + [w]x [w]x
 };
 
-// Cubic interpolation of four readings around a time; `from`: index of the last reading before it, which is advanced.
+// Interpolates four readings around a time by a cubic. `from` is the index of the last reading before the time, and is
+// advanced.
 bool force_at(const TriadReadings& force, double time_s, std::size_t& from, Vector3d& out) {
   while (from + 2 < force.size() && force.time_s[from + 1] <= time_s) ++from;
   if (from < 1 || from + 2 >= force.size() || force.time_s[from] > time_s) return false;
@@ -97,7 +98,7 @@ std::vector<Instant> instants_of(const TriadReadings& gyro) {
   return out;
 }
 
-// Robust cost of a delay, minimised over lever arm and bias: residuals of rate_smoother.md (R10).
+// Returns the robust cost of a delay, minimised over lever arm and bias: residuals of rate_smoother.md (R10).
 double cost(const TriadReadings& accel, std::span<const Instant> instants, const Vector3d& lever_arm_m,
             double delay_s) {
   Unknown prior, at, information;
@@ -130,7 +131,8 @@ double cost(const TriadReadings& accel, std::span<const Instant> instants, const
   return sum;
 }
 
-// Integral of the force's norm from the first reading on, linear between readings and constant beyond the ends.
+// Integral of the force's norm from the first reading on. The norm is linear between readings and constant beyond the
+// ends.
 class ForceIntegral {
  public:
   explicit ForceIntegral(const TriadReadings& force)
@@ -155,7 +157,7 @@ class ForceIntegral {
   std::vector<double> norm_, sum_;
 };
 
-// From impacts, rate_smoother.md (R45); sigma 0 without information.
+// Estimates the delay from impacts, rate_smoother.md (R45). sigma_s is 0 without information.
 TriadDelay struck(const TriadReadings& gyro, const TriadReadings& accel, double period_s) {
   if (accel.size() < 4) return {};
   const ForceIntegral force(accel);

@@ -9,7 +9,7 @@ namespace tumble {
 
 namespace {
 
-// phi(z) / Phi(z) of the normal distribution, by its asymptotic series where both underflow
+// Returns phi(z) / Phi(z) of the normal distribution, by its asymptotic series where phi and Phi underflow.
 double density_over_share(double z) {
   if (z < -8.0) return -z / (1.0 - 1.0 / (z * z) + 3.0 / (z * z * z * z));
   const double density = std::exp(-0.5 * z * z) * std::numbers::inv_sqrtpi / std::numbers::sqrt2;
@@ -26,7 +26,7 @@ NormalMoments truncated_below(const NormalMoments& from, double bound, double so
           from.variance - from.variance * from.variance * r * (z + r) / spread2};
 }
 
-// Cavity and new site: rate_smoother.md (R22), (R25).
+// Computes the marginal without its Gaussian factor (cavity) and the new factor (site): rate_smoother.md (R22), (R25).
 NormalSite refined_bound(const NormalMoments& marginal, const NormalSite& now, double bound, double softness2,
                          double widest2, double share) {
   const double precision = std::max(1.0 / marginal.variance - now.precision, 1.0 / widest2);

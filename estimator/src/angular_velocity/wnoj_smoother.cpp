@@ -11,15 +11,15 @@ namespace {
 constexpr double kVarianceMin = 1e-18;
 constexpr double kVarianceMax = 1e18;
 
-// One eliminated knot of one axis: R x_k + S x_{k+1} = z with noise of unit variance, R upper triangular.
-// The state x is (rate, acceleration * time_scale), so that both columns have similar magnitudes for any sample rate.
-// saave.md (S6)
+// One eliminated knot of one axis: R x_k + S x_{k+1} = z with noise of unit variance, R upper triangular. The state x
+// is (rate, acceleration * time_scale), so that rate and scaled acceleration have similar magnitudes for any sample
+// rate. saave.md (S6)
 struct EliminatedKnot {
   Eigen::Matrix2d R, S;
   Eigen::Vector2d z;
 };
 
-// Information about the current knot from all earlier ones: R x = z, R upper triangular.
+// Information about the current knot from all earlier knots: R x = z, R upper triangular.
 struct Carried {
   Eigen::Matrix2d R = Eigen::Matrix2d::Zero();
   Eigen::Vector2d z = Eigen::Vector2d::Zero();

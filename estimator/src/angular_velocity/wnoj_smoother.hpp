@@ -14,22 +14,23 @@ namespace tumble {
 /// Smooths angular velocity with a white-noise-on-jerk prior, exact and linear in the number of samples.
 ///
 /// The state per knot is angle, rate and angular acceleration. The prior between knots is that of Tang, Yoon and
-/// Barfoot (RA-L 2019), with Phi and Q of order three and density `jerk_psd`. Each knot measures the rate with a
-/// separate variance per axis. The angle is not measured. Its value at the first knot is fixed. Eliminating it from the
-/// last knot backwards is therefore exact and leaves the prior of (rate, acceleration) with Q = q [dt^3/3, dt^2/2;
-/// dt^2/2, dt]. Only this pair is computed. Orthogonal (square-root information) elimination and back-substitution give
-/// mean and variance of the rate at every knot, also for variances many orders of magnitude apart.
+/// Barfoot (RA-L 2019), with transition matrix Phi and noise Q of order three and density `jerk_psd`. Each knot
+/// measures the rate with a separate variance per axis. The angle is not measured, and its value at the first knot is
+/// fixed. Eliminating the angle from the last knot backwards is therefore exact. The prior of (rate, acceleration)
+/// remains, with Q = q [dt^3/3, dt^2/2; dt^2/2, dt]. Only rate and acceleration are computed. Orthogonal (square-root
+/// information) elimination and back-substitution give mean and variance of the rate at every knot, also for variances
+/// many orders of magnitude apart.
 ///
-/// Not modelled: coupling of the three axes. The commutators of SO(3) would add about dt^2 |w x alpha| / 4. The
-/// published code feeds +gyro although its convention requires -gyro. This sign only acts through the commutators,
-/// since negating angle, rate and acceleration together does not change this linear problem. The sign therefore has no
-/// parameter here.
+/// WnojSmoother does not model the coupling of the three axes. The commutators of SO(3) would add about dt^2 |w x
+/// alpha| / 4. The published code feeds +gyro although its convention requires -gyro. The sign of the gyro only acts
+/// through the commutators, since negating angle, rate and acceleration together does not change this linear problem.
+/// The sign therefore has no parameter here.
 class WnojSmoother {
  public:
   struct Params {
     double jerk_psd_rad2_s5 = 1e6;  ///< larger values follow the readings more closely
 
-    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
+    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.jerk_psd_rad2_s5,

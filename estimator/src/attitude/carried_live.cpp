@@ -47,7 +47,8 @@ Status CarriedLive::push(const ImuSample& sample, State& state, std::optional<Ra
   return status;
 }
 
-/// Classifies the newest sample of the window with its neighbour `next`, and all samples if the levels have changed.
+/// Classifies the newest sample of the window with its neighbour `next`, and all samples if the saturation levels have
+/// changed.
 void CarriedLive::judge_window(const ImuSample& next, State& state) const {
   const std::vector<CarriedStream::Reading>& window = state.stream.readings;
   RailDetector::State& upright_rails = state.rails.known.upright_rails;

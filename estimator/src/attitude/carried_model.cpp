@@ -21,8 +21,8 @@ using BorderRow = Eigen::Matrix<double, 1, kBorder>;  // by the constants
 using ForceState = Eigen::Matrix<double, 3, 12>;      // by attitude, rate, and both accelerations
 using ForceBorder = Eigen::Matrix<double, 3, kBorder>;
 
-// carried.md (C14): slope h = -d/du log Phi(u) is the hazard phi/Phi; asymptotic series in the tail, where both
-// underflow
+// carried.md (C14): the slope h = -d/du log Phi(u) is the hazard phi/Phi. In the tail, where phi and Phi underflow, the
+// asymptotic series is used.
 double hazard(double u) {
   if (u < -12.0) return -u - 1.0 / u * (1.0 - 2.0 / (u * u));
   const double density = std::exp(-0.5 * u * u) / std::sqrt(2.0 * std::numbers::pi);
@@ -44,7 +44,7 @@ void add_gyro_row(const GyroRow& state, const BorderRow& border, double weight, 
   corner.gradient.noalias() -= slope * border.transpose();
 }
 
-// rows of one element for its value at the node and its derivative
+// Derivatives of one sensing element's rate, and of the rate's time derivative, by the node's errors.
 struct GyroRows {
   GyroRow value = GyroRow::Zero(), slope = GyroRow::Zero();
   BorderRow border = BorderRow::Zero();
@@ -63,7 +63,8 @@ GyroRows gyro_rows(const Eigen::RowVector3d& m, const Node& node, const Constant
   return rows;
 }
 
-// total deficit of clipped elements, and deviation of unusable ones from their readings, at the current estimate
+// Returns the total saturation deficit of clipped elements, and the deviation of unusable elements from their readings,
+// at the current estimate.
 double deficit(const NodeReadings& readings, const std::array<GyroRows, 3>& rows, int except) {
   double sum = 0.0;
   for (int i = 0; i < 3; ++i) {
@@ -77,8 +78,8 @@ double deficit(const NodeReadings& readings, const std::array<GyroRows, 3>& rows
   return sum;
 }
 
-// replaces n readings at times t by two independent ones, of the value at their mean time and of the slope: carried.md
-// (C13)
+// replaces n readings at times t by two independent readings, of the value at their mean time and of the slope:
+// carried.md (C13)
 double add_free(const ElementSums& e, const GyroRows& rows, double information, System::Block& block,
                 System::Corner& corner) {
   const double mean_t = e.t_s / e.n;
@@ -107,14 +108,14 @@ double add_bound(const ElementSums& e, const GyroRows& rows, double sigma, doubl
   return minus_two_log_phi(u);
 }
 
-// adds a scalar information `w` for zero of three entries at `i`, whose current values are `value`
+// Adds a scalar information `w` that three entries at `i`, whose current values are `value`, are zero.
 double add_zero(const Vector3d& value, double w, int i, System::Block& block) {
   block.diagonal.diagonal().segment<3>(i).array() += w;
   block.gradient.segment<3>(i) -= w * value;
   return w * value.squaredNorm();
 }
 
-// information of `n` channels of both nodes, the same on each axis, with the first channel at `first`
+// Adds the information of `N` channels of both nodes, equal on each axis, with the first channel at `first`.
 template <int N>
 double add_chain(const Eigen::Matrix<double, 2 * N, 2 * N>& information, double scale, int first,
                  const Eigen::Matrix<double, 3, 2 * N>& values, System::Block& block, System::Block& next) {
@@ -161,7 +162,7 @@ double add_gyro(const NodeReadings& readings, const Matrix3d& rows, const Readin
     const ElementSums& e = readings.gyro[static_cast<std::size_t>(i)];
     const GyroRows& element = elements[static_cast<std::size_t>(i)];
     if (e.n > 0.0) {
-      // the same error in each reading of the node, so it does not average out
+      // all readings of the node share one error, so the error does not average out
       const double tilt = noise.tilt_share * deficit(readings, elements, i);
       cost += add_free(e, element, 1.0 / (variance + e.n * (tilt * tilt + e.open * e.open)), block, corner);
     }
@@ -240,13 +241,15 @@ Vector3d turned(const Node& from, const Node& to, double h) {
 Motion::Motion(const Params& params) : params_(params) {
   const double h = params.step_s;
   const double q = params.jerk_rad_s3_sqrts * params.jerk_rad_s3_sqrts;
-  // white jerk, carried.md (C2): rate and angular acceleration after the step, conditional on those before
+  // white jerk, carried.md (C2): covariance Q of rate and angular acceleration after the step, conditional on their
+  // values before the step
   Eigen::Matrix2d Q;
   Q << h * h * h / 3.0, h * h / 2.0, h * h / 2.0, h;
   Eigen::Matrix<double, 2, 4> J;
   J << -1.0, -h, 1.0, 0.0, 0.0, -1.0, 0.0, 1.0;
   jerk_ = J.transpose() * (q * Q).inverse() * J;
-  // the angle conditional on rate and angular acceleration at both ends, remainder of a quintic: carried.md (C4)
+  // variance of the angle conditional on rate and angular acceleration at both ends, remainder of a quintic: carried.md
+  // (C4)
   phi_variance_ = q * std::pow(h, 5) / 720.0 + 1e-12;
 
   // the held point: carried.md (C6), (C7), (C8)

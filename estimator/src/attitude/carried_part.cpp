@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Separate solution of a part of the hand-held motion's problem: information from the other nodes, and its cost.
+// Separate solution of a part of the hand-held motion's problem: information from all other nodes, and the cost of the
+// part.
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -55,7 +56,7 @@ Problem::Problem(const Problem& whole, const Part& part)
 // Computes the Schur complements of carried.md (C17), from both ends.
 bool Problem::condense_rest(std::span<Part> parts) const {
   System::Corner unused;
-  // from the left: the prior of a node from all earlier ones
+  // from the left: the prior of a node from all earlier nodes
   System::Block here, next;
   motion_.add_first(nodes_[0], here);
   for (std::size_t i = 0; i < nodes_.size(); ++i) {

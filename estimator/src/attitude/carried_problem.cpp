@@ -50,9 +50,9 @@ ReadingNoise reading_noise(const CarriedSmoother::Params& p, double period_s) {
 
 namespace {
 
-// Returns the noise for the covariances. A bound contains no information about how far the rate is beyond it. The mean
-// over a window P differs from the rate at its centre: white jerk of density q causes the variance q P^3/320,
-// carried.md (C26).
+// Returns the noise for the covariances. A lower bound contains no information about how far the rate is beyond the
+// bound. The mean over a window P differs from the rate at the window's centre: white jerk of density q causes the
+// variance q P^3/320, carried.md (C26).
 ReadingNoise stated_noise(const CarriedSmoother::Params& params, ReadingNoise noise, double period_s) {
   noise.bound = 0.0;
   noise.window_rad_s = params.jerk_rad_s3_sqrts * std::sqrt(period_s * period_s * period_s / 320.0);
@@ -141,7 +141,7 @@ bool Problem::eliminate(System::BorderVector& step) {
 // carried.md (C19)
 bool Problem::step(double& largest) {
   if (!eliminate(border_step_)) return false;
-  // the steps overwrite the gradients, which are no longer needed
+  // the solver's steps overwrite the gradients, which are no longer needed
   steps_.resize(blocks_.size());
   double turn = 0.0;
   largest = 0.0;
@@ -166,7 +166,7 @@ void Problem::go(double share) {
   constants_.move(share * border_step_);
 }
 
-// adapts the density of the held point's acceleration to its recent power, with a lower limit: carried.md (C10)
+// Adapts the density of the held point's acceleration to its recent power, with a lower limit: carried.md (C10)
 void Problem::adapt_process_noise() {
   const std::size_t count = nodes_.size();
   const double assumed = 3.0 * params_.hand_m_s2 * params_.hand_m_s2;
@@ -217,8 +217,8 @@ Status Problem::solve(CarriedSmoother::Report& report) {
   return {};
 }
 
-// Tries shorter steps if the last one increased the cost. Returns false if none decreases it; the nodes are then
-// restored and linearised again.
+// Tries shorter steps if the last step increased the cost. Returns false if no step decreases the cost; the nodes are
+// then restored and linearised again.
 bool Problem::descend_from(const Iterate& before, double& cost) {
   const auto goes_down = [&] { return cost < before.cost + kRises; };
   for (int k = 0; k < kHalvings && !goes_down(); ++k) {
@@ -234,7 +234,8 @@ bool Problem::descend_from(const Iterate& before, double& cost) {
   return false;
 }
 
-// carried.md (C21), (C22), with the jerk of (C23) and bounds without information about the distance beyond
+// carried.md (C21), (C22), with the jerk of (C23). Lower bounds give no information about the distance beyond the
+// bound.
 Status Problem::covariances(CarriedSmoother::Report& report) {
   for (std::size_t i = 0; i < jerk_.size(); ++i)
     jerk_[i] = std::max(params_.expert.jerk_inflation, jerk_seen_[i] / params_.jerk_rad_s3_sqrts);

@@ -13,7 +13,7 @@ namespace tumble::carried {
 /// Returns the weights of motion and reading factors; `jerk` multiplies the root density of the jerk.
 Motion::Params motion_params(const CarriedSmoother::Params& params, double jerk = 1.0);
 ReadingNoise reading_noise(const CarriedSmoother::Params& params, double period_s);
-/// Adds gyro, force, bounds and rest of one node.
+/// Adds the factors of gyro, force, velocity and position limits, and rest of one node.
 double add_node(const NodeReadings& readings, const Eigen::Matrix3d& rows, const ReadingNoise& noise,
                 const Eigen::Vector3d& g_W_m_s2, const Motion& motion, const Node& node, const Constants& constants,
                 System::Block& block, System::Corner& corner);
@@ -30,7 +30,8 @@ struct Message {
   double add(const Node& node, System::Block& block) const;
 };
 
-/// Nodes [first, last] of a problem, with the information from all other nodes about its ends for fixed constants.
+/// Nodes [first, last] of a problem, with the information from all other nodes about the ends of the part, for fixed
+/// constants.
 struct Part {
   std::size_t first = 0, last = 0;
   Message before = {}, after = {};
@@ -40,11 +41,11 @@ class Problem {
  public:
   Problem(const CarriedSmoother::Params& params, const Eigen::Matrix3d& rows, const Collected& collected,
           std::vector<Node> nodes);
-  /// A part of another problem; tell() must have set `part.before` and `part.after`. Constants and density of the held
-  /// point's acceleration are copied and fixed.
+  /// Constructs a part of another problem; tell() must have set `part.before` and `part.after`. Constants and density
+  /// of the held point's acceleration are copied and fixed.
   Problem(const Problem& whole, const Part& part);
 
-  /// Gauss-Newton; returns `diverged` if the equations are not positive definite.
+  /// Solves the problem by Gauss-Newton. Returns `diverged` if the equations are not positive definite.
   Status solve(CarriedSmoother::Report& report);
   /// Computes the covariances of all nodes at the solution.
   Status covariances(CarriedSmoother::Report& report);
@@ -58,10 +59,10 @@ class Problem {
   };
   Answer answer() const { return {nodes_, constants_, constants_covariance_, hand_, covariances_}; }
   void restore(Answer answer);
-  /// Computes the information about each part's ends, with one sweep from either side. Returns false if not positive
-  /// definite.
+  /// Computes the information about each part's ends, with one sweep from either side. Returns false if a system is not
+  /// positive definite.
   bool condense_rest(std::span<Part> parts) const;
-  /// Gauss-Newton of a part. Returns the cost at the solution, or infinity without convergence.
+  /// Solves a part by Gauss-Newton. Returns the cost at the solution, or infinity without convergence.
   double converge();
 
   const Eigen::Matrix3d& rows() const { return rows_; }
@@ -73,10 +74,10 @@ class Problem {
   const Eigen::Vector3d& gravity_W_m_s2() const { return g_W_m_s2_; }
   const NodeReadings& readings(std::size_t node) const { return readings_[node]; }
   std::span<const Node> nodes() const { return nodes_; }
-  /// Replaces the nodes from `first` on, as other initial values.
+  /// Replaces the nodes from `first` on, to start from other initial values.
   void place(std::size_t first, std::span<const Node> nodes);
   void widen(std::size_t node, const Eigen::Matrix<double, 9, 9>& by) { covariances_[node] += by; }
-  /// Covariance of attitude (error in sensor axes), rate, angular acceleration.
+  /// Returns the covariance of attitude (error in sensor axes), rate and angular acceleration.
   const Eigen::Matrix<double, 9, 9>& covariance(std::size_t node) const { return covariances_[node]; }
 
  private:
@@ -84,7 +85,7 @@ class Problem {
   double add_node(std::size_t i, System::Block& block, System::Corner& corner) const;
   bool eliminate(System::BorderVector& step);
   bool step(double& largest);
-  /// State before a step of the descent.
+  /// State of the problem before a Gauss-Newton step.
   struct Iterate {
     std::vector<Node> nodes;
     Constants constants;

@@ -45,17 +45,17 @@ double since_s(std::span<const ImuSample> samples, std::size_t from, std::size_t
   return seconds(samples[to].time_ns - samples[from].time_ns);
 }
 
-// agreement with a regular clock from which on equal readings are repetitions
+// Agreement with a regular clock above which equal readings are repetitions.
 constexpr double kMinClockAgreement = 0.9;
-// In nodes: longer windows may be partly saturated. Measured: pendulums' windows of 20 ms were, hand-held wands'
-// windows of 10 ms were not.
+// Window length in nodes above which windows may be partly saturated. The windows of 20 ms of pendulums were partly
+// saturated, and the windows of 10 ms of hand-held wands were not (measured).
 constexpr double kLongWindow = 1.5;
 
 TimeNs nanoseconds(double s) {
   return static_cast<TimeNs>(std::llround(1e9 * s));
 }
 
-/// With fewer than two samples, `otherwise_s`.
+/// Returns the median step. With fewer than two samples, returns `otherwise_s`.
 double median_step_or(std::span<const ImuSample> samples, double otherwise_s) {
   if (samples.size() < 2) return otherwise_s;
   std::vector<double> periods(samples.size() - 1);
@@ -106,7 +106,8 @@ void fill_segment(std::span<const ImuSample> samples, const std::vector<double>&
   }
 }
 
-/// A segment from `begin` on, in which an element is at one level, including unusable readings, or free (sign 0).
+/// A segment from `begin` on, in which an element is at one saturation level or unusable. An unsaturated segment has
+/// sign 0.
 struct HiddenSegment {
   std::size_t end = 0;
   int sign = 0;
@@ -124,12 +125,12 @@ HiddenSegment hidden_segment(std::span<const ClipSigns> signs, std::size_t eleme
     if (sign == 0 || (sign != ClipSigns::kMissing && out.sign != 0 && sign != out.sign)) break;
     if (sign != ClipSigns::kMissing) out.sign = sign;
   }
-  // only unusable readings: beyond the level on the side of the previous reading
+  // with only unusable readings, the rate is assumed beyond the saturation level on the side of the previous reading
   if (out.sign == 0) out.sign = raw[begin == 0 ? begin : begin - 1] < 0.0 ? -1 : 1;
   return out;
 }
 
-// Computes ends and centres of windows for readings every `period_s`; a window after a drop-out has the usual length.
+// Computes ends and centres of windows for readings every `period_s`. A window after a drop-out has the usual length.
 Windows windows_of(std::span<const ImuSample> samples, TimeNs origin_ns, double period_s) {
   Windows out;
   out.period_s = period_s;
@@ -151,8 +152,9 @@ void place(double node_s, std::size_t nodes, Windows& windows) {
   }
 }
 
-// A slow accelerometer averages over an unknown part of its period. Window centres are moved to the middle of the
-// possible range, and the force's change over the rest is added as uncertainty: carried.md (C12)
+// Corrects window centres of a slow accelerometer, which averages over an unknown part of its period. Window centres
+// are moved to the middle of the possible range. The force's change over the remaining range is added as uncertainty:
+// carried.md (C12)
 std::vector<double> open_forces(OwnReadings& forces, double log_period_s) {
   const std::vector<ImuSample>& samples = forces.samples;
   std::vector<double> out(samples.size(), 0.0);
@@ -166,7 +168,7 @@ std::vector<double> open_forces(OwnReadings& forces, double log_period_s) {
   return out;
 }
 
-// Corrects free readings next to clipped ones for subsample saturation by rails.md (R69) to (R73).
+// Corrects unsaturated readings next to clipped readings for subsample saturation by rails.md (R69) to (R73).
 void whole_windows(double noise_rad_s, const Eigen::Matrix3d& rows, GyroReadings& rates) {
   const std::size_t count = rates.samples.size();
   const auto along = [&](std::size_t k, Eigen::Index j) {
@@ -334,7 +336,7 @@ Status start_nodes(const CarriedSmoother::Params& params, const Eigen::Matrix3d&
     const double off = std::abs(windows.centre_s[k] - static_cast<double>(i) * params.expert.node_s);
     if (off < nearest[i]) nearest[i] = off, nodes[i].q_WI = state.q_WI;
   }
-  // samples without a reading are between two with one, or beyond the last
+  // samples without a reading are between two samples with a reading, or beyond the last reading
   std::size_t before = 0;
   for (std::size_t i = 1; i < count; ++i) {
     if (!(readings[i] > 0.0)) continue;

@@ -9,7 +9,8 @@
 /// Readings of a hand-held body's IMU, summed by node: input of Problem.
 namespace tumble::carried {
 
-/// Minimum determinant of the elements' rows; below, they do not span the axes.
+/// Minimum determinant of the matrix of sensing directions. Below this determinant, the directions do not span the
+/// axes.
 inline constexpr double kRowsMin = 0.1;
 /// Standard deviation of the time of a repeated reading, uniform within the previous sample: 1/sqrt(12).
 inline constexpr double kTaken_samples = 0.29;
@@ -51,13 +52,13 @@ Collected collect(const CarriedSmoother::Params& params, std::span<const ImuSamp
 inline constexpr double kLongest = 1.5;  ///< longest window, in periods
 
 /// Estimates the root density of the angular jerk near each of `nodes` nodes from readings [rad/s^3 sqrt(s)]. The
-/// estimate uses the curvature of free readings, and the change of slope across hidden segments. 0 without information.
-/// carried.md (C24), (C25). O(N).
+/// estimate uses the curvature of unsaturated readings, and the change of slope across clipped segments. The estimate
+/// is 0 without information. carried.md (C24), (C25). O(N).
 std::vector<double> seen_jerk(const GyroReadings& rates, const Eigen::Matrix3d& rows, double noise_rad_s, double node_s,
                               std::size_t nodes);
 
-/// Returns the rates with clipped segments of each element replaced by cubics. Value and slope are continuous at both
-/// ends, and the cubic is limited to the range from the saturation level to kFillMost times it.
+/// Returns the rates with clipped segments of each sensing element replaced by cubics. Value and slope are continuous
+/// at both ends of a segment. The cubic stays between the saturation level and kFillMost times the level.
 std::vector<Eigen::Vector3d> filled_rates(std::span<const ImuSample> samples, const ClippedElements& clipped);
 
 inline constexpr double kFillMost = 2.5;  ///< only an initial value
@@ -72,7 +73,8 @@ bool clips(const NodeReadings& readings);
 /// 1/(4 sqrt(3)). The centre is uniform between the window's end and its middle.
 inline constexpr double kOpenShare = 0.144;
 
-/// Adds one reading of the gyro, `t` seconds from the node; `open_rad_s`: additional standard deviation per element.
+/// Adds one reading of the gyro, `t` seconds from the node. `open_rad_s` is the additional standard deviation per
+/// element.
 void add_rate(const ImuSample& sample, const Eigen::Matrix3d& rows, const ClipSigns& signs, double t,
               const Eigen::Vector3d& open_rad_s, NodeReadings& node);
 void add_force(const ImuSample& sample, const ClipSigns& signs, double t, NodeReadings& node);

@@ -37,7 +37,7 @@ Status check(const CarriedSmoother::Params& params, std::span<const ImuSample> s
   return check_samples(samples, params.expert.gap_max_s);
 }
 
-// Elements that are saturated in the reading's window, completely or partly.
+// Returns the sensing elements that are saturated in the reading's window, completely or partly.
 std::uint8_t clipped_axes(const carried::GyroReadings& rates, std::size_t k) {
   const std::size_t reading = rates.of_sample[k];
   std::uint8_t axes = 0;
@@ -55,7 +55,8 @@ RateSource source(const RateState& rate, double recovered_sigma) {
 }
 
 /// Adds the effect of the gyro's scale error for a body that is not hand-held and rotates on in one direction. The
-/// error grows with the rotation since the last rest or until the next one, whichever is smaller. carried.md (C27).
+/// error grows with the rotation since the last rest or with the rotation until the next rest. The smaller rotation
+/// counts. carried.md (C27).
 void widen_by_rotation(const CarriedSmoother::Params& params, const carried::Collected& collected,
                        const std::vector<RateState>& rates, std::vector<AttitudeState>& attitudes) {
   const double share = params.expert.readings.recovered_scale_share;

@@ -51,7 +51,7 @@ CarriedStream::CarriedStream(const Params& params)
   require_within("window_s", params.window_s, params.lag_s + 4.0 * params.body.expert.node_s, 20.0);
   nodes_max_ = static_cast<std::size_t>(std::lround(params.window_s / params.body.expert.node_s)) + 1;
   delay_ = static_cast<std::size_t>(std::lround(params.lag_s / params.period_s));
-  // up to twice the nominal sample rate; beyond it, the oldest readings are dropped
+  // room for up to twice the nominal sample rate; at higher rates, the oldest readings are dropped
   readings_max_ = 2 * static_cast<std::size_t>(std::ceil(params.window_s / params.period_s)) + 4;
 }
 
@@ -142,7 +142,7 @@ Status CarriedStream::push(const ImuSample& sample, const ClippedElements& known
   if (begun) extend(state);
   add(latest, state);
   if (begun) predict_newest(state);
-  // with a free gyro, the nodes are already accurate: occasional steps update attitude and constants
+  // while the gyro is unsaturated, the nodes are already accurate: occasional steps update attitude and constants
   const bool due =
       begun && (latest.node % carried::kFreeNodes == 0 || latest.node < kFirstNodes || anything_clips(state));
   const bool factorised = due && step(state);
@@ -192,7 +192,7 @@ void CarriedStream::append(const ImuSample& sample, const RepeatDetector::State&
   ++state.samples;
 }
 
-// Updates signs and rows. Returns whether samples in the window have changed.
+// Updates clip signs and sensing directions. Returns whether samples in the window have changed.
 bool CarriedStream::read_again(const ClippedElements& known, State& state) const {
   bool changed = state.rows != known.rows;
   state.rows = known.rows;
@@ -212,9 +212,9 @@ void CarriedStream::rebuild(State& state) const {
   for (const Reading& reading : std::span(state.readings).first(state.readings.size() - 1)) add(reading, state);
 }
 
-// Adds a reading to the nodes of the window. Repetitions are skipped. A reading of a slow sensor has a window of its
-// own period, which ended at an unknown time since the previous sample. For an accelerometer, the length of the window
-// is unknown as well, as in carried.md (C12): rate_stream.md (R95).
+// Adds an IMU reading to the nodes of the stream's window. Repetitions are skipped. The window of a slow sensor's
+// reading has the length of the sensor's period and ended at an unknown time since the previous sample. For an
+// accelerometer, the length of the window is unknown as well, as in carried.md (C12): rate_stream.md (R95).
 void CarriedStream::add(const Reading& reading, State& state) const {
   const double node_s = params_.body.expert.node_s;
   const auto readings_at = [&](std::int64_t node) -> carried::NodeReadings* {
@@ -251,7 +251,7 @@ void CarriedStream::add(const Reading& reading, State& state) const {
   if (carried::NodeReadings* const own = readings_at(reading.node)) own->rest = own->rest || reading.rest;
 }
 
-// Noise of readings with the gyro's own period, if the log repeats them.
+// Returns the noise of readings with the gyro's own period, if the log repeats readings.
 carried::ReadingNoise CarriedStream::noise_of(const State& state) const {
   const RepeatedReading& gyro = state.readings.back().gyro;
   return gyro.is_slower_than_log() ? carried::reading_noise(params_.body, gyro.period_samples * params_.period_s)
@@ -267,8 +267,8 @@ Node CarriedStream::begin(const State& state) const {
   return out;
 }
 
-// Predicts a new node from the previous one: with its rate, measured for free elements, and beyond the level for
-// others.
+// Predicts a new node from the previous node. The readings of unsaturated sensing elements give their rate. The rate of
+// clipped elements is beyond the saturation level.
 void CarriedStream::predict(const Node& before, const Eigen::Matrix3d& rows, Knot& knot) const {
   const double h = params_.body.expert.node_s;
   Node& node = knot.node;
@@ -312,7 +312,8 @@ void CarriedStream::add_prior(const State& state, System::Block& block, System::
   corner.gradient += state.prior_corner.gradient - state.prior_corner.matrix * c - state.prior.border.transpose() * x;
 }
 
-// carried.md (C17), as rate_stream.md (R90); the held point's power is that of carried.md (C41).
+// Marginalises the oldest node: carried.md (C17), as rate_stream.md (R90). The held point's power is that of carried.md
+// (C41).
 void CarriedStream::marginalise_oldest(State& state) const {
   keep_rates_of_oldest(state);
   const Knot& oldest = state.window[0];
@@ -327,7 +328,7 @@ void CarriedStream::marginalise_oldest(State& state) const {
     state.prior = after;
     state.prior_corner = corner;
   } else {
-    // the prior from the past is unusable: restart from the initial one
+    // the prior from marginalised nodes is unusable: restart from the initial prior
     state.prior = {};
     state.prior_corner = {};
     (void)motion_.add_first(next, state.prior);

@@ -28,8 +28,8 @@ std::uint8_t clipped_axes(const ClipSigns& signs) {
 
 }  // namespace
 
-// Returns the rate of reading `at`. A node's covariance is reused until the next step of the window. `factorised`: as
-// in publish().
+// Returns the rate of reading `at`. A node's covariance is reused until the next step of the window. `factorised` has
+// the meaning that publish() defines.
 RateState CarriedStream::give(std::size_t at, bool due, bool factorised, State& state) const {
   const Reading& reading = state.readings[at];
   if (reading.smoothed) return *reading.smoothed;
@@ -43,12 +43,13 @@ RateState CarriedStream::give(std::size_t at, bool due, bool factorised, State& 
   return rate;
 }
 
-// Among the readings, excluding the one being processed.
+// Returns the first unreported reading, excluding the reading that is being processed.
 std::size_t CarriedStream::first_unreported(const State& state) const {
   return state.readings.size() - std::min(state.readings.size(), delay_ + 1);
 }
 
-// With samples sparser than stated, a node may leave before its rate is reported: stores the current rate.
+// Stores the current rate of the oldest node. With samples sparser than stated, a node may leave before its rate is
+// reported.
 void CarriedStream::keep_rates_of_oldest(State& state) const {
   const std::size_t first = first_unreported(state);
   for (std::size_t k = first; k < state.readings.size() && state.readings[k].node <= state.first_node; ++k) {
@@ -97,8 +98,8 @@ void CarriedStream::count_revolutions(std::size_t at, const RateState& rate, Sta
   }
 }
 
-// Reports the rates of the readings [first, last] with their covariances; near clipped nodes those of carried.md (C23),
-// (C42). `factorised`: the buffer contains the equations with the assumed jerk.
+// Reports the rates of the readings [first, last] with their covariances. Near clipped nodes, the covariances are those
+// of carried.md (C23), (C42). `factorised`: the buffer contains the equations with the assumed jerk.
 void CarriedStream::publish(std::size_t first, std::size_t last, bool factorised, State& state,
                             std::span<RateState> out) const {
   const auto of = [&](std::size_t k) {
@@ -111,7 +112,7 @@ void CarriedStream::publish(std::size_t first, std::size_t last, bool factorised
   for (std::size_t i = from; i < to; ++i) clipped = clipped || carried::clips(state.window[i].readings);
   System::BorderVector unused;
   carried::ReadingNoise noise = noise_of(state);
-  // a bound contains no information about how far a rate or a force is beyond it: carried.md (C42)
+  // a lower bound contains no information about how far a rate or a force is beyond the bound: carried.md (C42)
   if (clipped) noise.bound = noise.force_bound = 0.0;
   const bool known = (factorised && !clipped) || factorise(clipped ? inflated_ : motion_, noise, state, unused);
   System::Conditional here, next;

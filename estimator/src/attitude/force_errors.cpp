@@ -25,7 +25,8 @@ ForceErrors::ForceErrors(const Params& p) : params_(p) {
   require_within("gate_deviations", p.gate_deviations, 1e-12, 1e3);
 }
 
-/// Accumulates both sides of imu_merge.md (I10), (I11): the difference, and the terms of its derivatives.
+/// Accumulates both sides of imu_merge.md (I10), (I11): the force difference, and the terms of the difference's
+/// derivatives.
 void ForceErrors::calibrate(std::span<const Eigen::Vector3d> forces, const Eigen::Vector3d& rate,
                             const Eigen::Vector3d& acceleration, double dt_s, State& state) const {
   const auto count = static_cast<std::size_t>(params_.count);

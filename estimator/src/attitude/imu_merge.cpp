@@ -174,7 +174,7 @@ ImuSample ImuMerge::merge(State& state) const {
 /// Selects unsaturated units whose rate and force agree with the median: imu_merge.md (I5).
 ImuMerge::Flags ImuMerge::choose(const Readings& readings, const Flags& present, const Vectors& rates,
                                  const Vectors& forces, double h, State& state) const {
-  // at different positions, forces differ due to the rotation, which the tolerance must cover
+  // at different positions, forces differ due to the rotation; the tolerance must cover the difference
   const Eigen::Vector3d middle_rate = median(rates, present), middle_force = median(forces, present);
   const auto units = std::count(present.begin(), present.end(), true);
   const double rate_tolerance =
@@ -185,12 +185,12 @@ ImuMerge::Flags ImuMerge::choose(const Readings& readings, const Flags& present,
     const double turned = (params_.T_CI[i].translation() - p_C_m_).norm() * middle_rate.squaredNorm() * 2.0;
     const bool agrees = units < 3 || ((rates[i] - middle_rate).norm() < rate_tolerance &&
                                       (forces[i] - middle_force).norm() < params_.expert.outliers.force_m_s2 + turned);
-    // with three or more units, a clipped gyro is a bound, and its accelerometer is needed
+    // with three or more units, a clipped gyro provides a lower bound, and its accelerometer is needed
     const int clipping = units < kRecovering ? kClipAccel | kClipGyro : kClipAccel;
     used[i] = agrees && (readings[i].device_clip_flags & clipping) == 0;
   }
   const auto kept = std::count(used.begin(), used.end(), true);
-  // without a majority all are used; of one or two units, only free ones
+  // without a majority all units are used; of one or two units, only unsaturated units are used
   if (units < kRecovering ? kept == 0 : 2 * kept <= units && kept < units) used = present;
   const bool apart = state.windows > 0 && h > 0.0;  // whether a previous window allows derivatives
   if (units >= kRecovering && apart && middle_rate.cwiseAbs().maxCoeff() < params_.gyro_range_rad_s) {
@@ -200,7 +200,7 @@ ImuMerge::Flags ImuMerge::choose(const Readings& readings, const Flags& present,
   return used;
 }
 
-/// Mean of the selected units, transformed to the mean position of all: imu_merge.md (I1), (I2).
+/// Returns the mean of the selected units, transformed to the mean position of all units: imu_merge.md (I1), (I2).
 ImuSample ImuMerge::mean_of_used(const Vectors& rates, const Vectors& forces, const Flags& used, double h,
                                  const State& state) const {
   const auto kept = static_cast<int>(std::count(used.begin(), used.end(), true));
@@ -230,12 +230,13 @@ std::optional<double> ImuMerge::arm_share(const State& state) {
   return state.lever_arm_correlation / state.arm_square_m2_s3;
 }
 
-/// Updates the error estimates with the means over the windows, and starts the next.
+/// Updates the error estimates with the means over the windows, and starts the next windows.
 void ImuMerge::close_windows(const Flags& present, const Vectors& rates, const Vectors& forces, bool all_used,
                              const ImuSample& merged, State& state) const {
   const double length_s = state.windows > 0 ? state.window_s : params_.window_s;
   const bool follows = state.windows > 1 && length_s < kWindowMax_s;
-  // a unit with a repeated reading may be frozen and does not update the errors; if all repeat, the rate is constant
+  // a unit with a repeated reading may be frozen and does not update the errors; if all units repeat, the rate is
+  // constant
   const auto end = state.units.begin() + params_.count;
   const auto some_repeat = [&](Hold Unit::*hold) {
     const auto holding = std::count_if(state.units.begin(), end,
@@ -268,9 +269,9 @@ void ImuMerge::close_windows(const Flags& present, const Vectors& rates, const V
 }
 
 /// Excludes units that may be saturated for less than a sample by an impact. On a rigid body, one unit predicts the
-/// force on the others along the connecting line, without the angular acceleration. Units that disagree with the
-/// accepted one are excluded: imu_merge.md (I6). If no two units agree, a common angular acceleration that started
-/// within the window is tested first: (I7).
+/// force on another unit along the connecting line, without the angular acceleration. Units that disagree with the
+/// accepted unit are excluded: imu_merge.md (I6). If no two units agree, a common angular acceleration that started
+/// within the window is tested before any exclusion: (I7).
 void ImuMerge::exclude_subsample_saturated(const Readings& samples, const Flags& present, const Vectors& forces,
                                            const Eigen::Vector3d& rate, double h, State& state, Flags& used) const {
   const double since_s = 0.5 * (h + state.length_s);

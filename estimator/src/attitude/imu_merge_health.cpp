@@ -5,7 +5,7 @@
 
 #include "tumble/attitude/imu_merge.hpp"
 
-// faults of units: saturation, freezing, disagreement
+// Detection of faulty units: saturation, freezing, disagreement.
 namespace tumble {
 
 namespace {
@@ -16,7 +16,7 @@ constexpr double kComparable = 0.8;  // units are compared up to this fraction o
 
 constexpr double kPart = 0.02;  // contribution of a clipped axis above which another axis counts as clipped
 
-/// Rotation of gravity in the body, if the repeated force is mostly gravity.
+/// Returns the rotation of gravity in the body, if the repeated force is mostly gravity.
 double turned_across(const ImuMerge::Hold& hold) {
   return hold.turned_rad.cross(hold.reading.stableNormalized()).norm();
 }
@@ -108,7 +108,7 @@ Status ImuMerge::verdict(const State& state) const {
           params_.expert.frozen.after_s};
 }
 
-/// Detects units that disagree with the others for long.
+/// Detects units that disagree with the other units for long.
 void ImuMerge::watch_misfits(const Flags& present, const Vectors& rates, const Vectors& forces, TimeNs time_ns,
                              State& state) const {
   if (std::count(present.begin(), present.end(), true) < kBlaming) return;

@@ -81,8 +81,8 @@ void ImuPlausibility::take(State& state) const {
   state.average = {};
   if (std::abs(force.norm() - params_.gravity_m_s2) > kPushed * params_.gravity_m_s2) state.pushed_s += length_s;
   if (state.open) {
-    // forces are at the centres of their averages, so the first and the last rotation count by half; to first order
-    // this equals all but the first
+    // forces are at the centres of their averages, so the first and the last rotation count by half; to first order,
+    // the sum equals that of all rotations but the first
     state.turned = (state.turned * so3::exp(turned)).normalized();
     state.length_s += length_s;
     const double start = state.force_start_m_s2.norm();
@@ -146,9 +146,9 @@ double ImuPlausibility::unexplained_share(const State& state) const {
   return turned(state) ? state.unexplained_rad2.front() / std::max(state.by_force_rad2, state.by_gyro_rad2) : 0.0;
 }
 
-/// A device that never changed counts as frozen only while the body moves. For a gyro, evidence of motion is an
-/// unexplained rotation of the force, or forces that exclude rest. For an accelerometer, evidence of motion comes from
-/// the gyro, while the readings are zero for longer than a free fall lasts.
+/// Returns the duration of a frozen reading. A device that never changed counts as frozen only while the body moves.
+/// For a gyro, motion is indicated by an unexplained rotation of the force, or by forces that exclude rest. For an
+/// accelerometer, motion is indicated by the gyro, while the readings are zero for longer than a free fall lasts.
 double ImuPlausibility::frozen_s(const State& state) const {
   const auto never_moved = [&](const Hold& hold) {
     return hold.moved_s == 0.0 && hold.repeated_s >= params_.expert.frozen.repeats_s;
@@ -185,7 +185,7 @@ std::optional<AxisLabels> ImuPlausibility::other_labels(const State& state) cons
   return axis_labels()[static_cast<std::size_t>(least - state.unexplained_rad2.begin())];
 }
 
-/// Pushes rotate the force, too, and leave the same residual for any gyro scale: imu_merge.md (I21).
+/// Pushes also rotate the force, and leave an equal residual for any gyro scale: imu_merge.md (I21).
 bool ImuPlausibility::explains_more(const State& state) const {
   const double slope = rotation_slope(state), agreement = rotation_agreement(state);
   const double left = state.by_force_rad2 * (1.0 - agreement * agreement);

@@ -25,7 +25,7 @@ constexpr double kClearly = 0.4;           // logarithm of a ratio of squares
 
 using Readings = std::array<Eigen::Matrix3d, kReadings>;
 
-/// Factors of the rates, S of imu_merge.md (I27).
+/// Matrices by which the gyro alternatives multiply the rates: S of imu_merge.md (I27).
 Readings all_readings() {
   Readings out;
   for (std::size_t k = 0; k < kAxisLabels; ++k) {
@@ -46,7 +46,7 @@ struct ScaleVote {
   double step, weight;
 };
 
-/// Results of the completed segments, and the current one.
+/// Results of the completed segments, and the current segment.
 class Segments {
  public:
   Segments(const PivotCheckParams& params, const Readings& readings) : params_(params), readings_(readings) {}
@@ -59,7 +59,7 @@ class Segments {
     rotated_rad_ += dt_s * rate_rad_s.norm();
     if (length_s_ >= params_.segment_s) close();
   }
-  /// Completes the current segment, which counts if it has at least half of the full length.
+  /// Completes the current segment. A segment counts if it has at least half of the full length.
   void close() {
     if (length_s_ >= 0.5 * params_.segment_s && rotated_rad_ >= params_.rotation_least_rad) take();
     sums_ = {};
@@ -81,7 +81,7 @@ class Segments {
 
   /// imu_merge.md (I28), (I29).
   void compare(const std::array<PivotFit, kReadings>& fits) {
-    // a force magnitude other than gravity's counts as an error, like an unexplained velocity
+    // a force magnitude that differs from gravity counts as an error, like an unexplained velocity
     const auto residual = [&](std::size_t k) {
       return std::hypot(fits[k].residual_m_s,
                         length_s_ * (fits[k].gravity_m_s2 - params_.gravity_m_s2) / std::sqrt(12.0));
@@ -142,7 +142,7 @@ PivotCheck::PivotCheck(const Params& params) : params_(params) {
 
 PivotCheck::Found PivotCheck::find(std::span<const ImuSample> samples, std::span<const RateState> rates) const {
   static const Readings readings = all_readings();
-  // two series, offset by half a segment, so that no event is split in both
+  // the two series of segments are offset by half a segment, so that no event is split in both series
   std::array<Segments, 2> series = {Segments(params_, readings), Segments(params_, readings)};
   double mean_s = 0.0, since_s = 0.0;
   Eigen::Vector3d turned = Eigen::Vector3d::Zero(), gained = Eigen::Vector3d::Zero();

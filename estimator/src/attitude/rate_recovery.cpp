@@ -25,13 +25,14 @@ void update(const Row& row, double innovation, double variance, RateRecovery::St
   state.x += scalar_update(row, innovation, variance, state.P);
 }
 
-// Readings of one triad: per axis, or along the rows of its elements while one of them clips, by rails.md (R52).
+// Readings of one triad: per axis, or along the sensing directions of its elements while an element clips, by rails.md
+// (R52).
 struct Seen {
   Eigen::Matrix3d rows_C;
   Eigen::Vector3d reading, slope_sigma = Eigen::Vector3d::Zero();
   std::array<bool, 3> railed{};
 
-  // Returns the deficit of the clipped elements for the expected values.
+  // Returns the saturation deficit of the clipped elements for the expected values.
   double hidden(const Eigen::Vector3d& expected) const {
     double sum2 = 0.0;
     for (int axis = 0; axis < 3; ++axis) {
@@ -101,15 +102,16 @@ RateRecovery::Met RateRecovery::met_by(std::span<const ImuSample> units) const {
     }
     clipped += force;
   }
-  // with a correct rate, the remaining units give a better force than the filter, so it counts as clipped only if they
-  // are few
+  // with a correct rate, the remaining units give a better force than the filter, so the force counts as clipped only
+  // if few units remain
   out.force = clipped > 0 && (out.rate || 2 * clipped > received);
   return out;
 }
 
 void RateRecovery::step(std::span<const ImuSample> units, double dt_s, State& state, ImuSample& merged) const {
   const Met met = met_by(units);
-  // saturation occurs when gravity and rotation add up, so the remaining mean is biased in one direction of W
+  // saturation occurs when gravity and rotation add up, so the mean of the remaining units is biased in one direction
+  // of W
   merged.device_clip_flags = met.force ? kClipAccelX | kClipAccelY | kClipAccelZ : 0;
   const bool fast = merged.angular_velocity_rad_s.cwiseAbs().maxCoeff() >= kFast * params_.gyro_range_rad_s;
   if (!fast && !met.rate) {
@@ -135,7 +137,7 @@ void RateRecovery::step(std::span<const ImuSample> units, double dt_s, State& st
 }
 
 void RateRecovery::start(const ImuSample& merged, State& state) const {
-  // the lever arms keep their estimates
+  // the lever arms keep their estimates when the filter starts again
   state.P.topRows<kArms>().setZero();
   state.P.leftCols<kArms>().setZero();
   auto diagonal = state.P.diagonal();

@@ -11,12 +11,13 @@ namespace tumble {
 
 namespace {
 
-/// Returns whether a reading is clipped or suspect; one that is only partly saturated counts as measured.
+/// Returns whether a reading is clipped or suspect. A partly saturated reading counts as measured.
 bool unread(const RateReport& report, const RateState& rate, std::size_t k) {
   return rate.clipped_axes != 0 || report.suspect_axes[k] != 0;
 }
 
-/// Returns the samples with forces at the times of the rates; those of a slow accelerometer are older. carried.md (C38)
+/// Returns the samples with forces at the times of the rates, because the forces of a slow accelerometer are older.
+/// carried.md (C38)
 std::vector<ImuSample> forces_in_time(std::span<const ImuSample> samples) {
   std::vector<ImuSample> out(samples.begin(), samples.end());
   const std::vector<Eigen::Vector3d> forces = forces_between_readings(samples);
@@ -69,13 +70,13 @@ void RegimeSmoother::join(std::span<const ImuSample> samples, std::vector<RateSt
     if (by_segment[k] <= params_.carried_min) continue;
     const bool only_suspect = rates[k].clipped_axes == 0 && rates[k].source != RateSource::measured;
     rates[k] = either(rates[k], other[k], by_segment[k]);
-    // no clipping was detected there, in any regime
+    // no clipping was detected at this sample, in any kind of motion
     if (only_suspect) rates[k].clipped_axes = 0, rates[k].source = RateSource::bounded_only;
   }
 }
 
-/// Probability of hand-held motion within `near_s` of a sample, restricted to its segment of clipped or suspect
-/// samples; 0 away from all segments. carried.md (C40)
+/// Returns the probability of hand-held motion within `near_s` of a sample, restricted to the sample's segment of
+/// clipped or suspect samples. The probability is 0 away from all segments. carried.md (C40)
 std::vector<double> RegimeSmoother::carried_segments(std::span<const RegimeShares> shares, const RateReport& report,
                                                      std::span<const RateState> rates) const {
   std::vector<double> out(rates.size(), 0.0);

@@ -26,14 +26,14 @@ bool clips(const RateStream::Knot& knot) {
   return (knot.observation.unseen() | knot.observation.read_in_part()) != 0;
 }
 
-// A run of suspect readings is a lower bound, like a clipped one.
+// A run of suspect readings is a lower bound, like a clipped reading.
 ClipSigns signs_of(const RateObservation& observation) {
   Clipping clipping = observation.clipping;
   clipping.gyro = static_cast<std::uint8_t>(clipping.gyro | observation.read_in_part());
   return clip_signs(observation.sample, clipping);
 }
 
-// The source marks suspect readings; they are not called clipped in any regime.
+// The source marks suspect readings. A suspect reading is not called clipped in any kind of motion.
 RateState joined_rate(const RateState& rate, const RateState& carried, double share) {
   RateState out = either(rate, carried, share);
   out.clipped_axes = rate.clipped_axes;
@@ -42,10 +42,10 @@ RateState joined_rate(const RateState& rate, const RateState& carried, double sh
   return out;
 }
 
-// Derivative of the rates around sample k, over kTurn_s if there are enough samples. RateStream's own angular
-// acceleration depends on the force to be judged, even if the gyro measures the rate: carried.md (C44)
+// Returns the derivative of the rates around sample k, over kTurn_s if there are enough samples. RateStream's own
+// angular acceleration depends on the force to be judged, even if the gyro measures the rate: carried.md (C44)
 Eigen::Vector3d angular_acceleration(std::span<const RateStream::Knot> window, std::size_t k) {
-  // integer differences, since seconds since the clock's start would lose precision
+  // integer differences keep the precision that seconds since the clock's start would lose
   const auto between_s = [&](std::size_t from, std::size_t to) {
     return seconds(window[to].observation.sample.time_ns - window[from].observation.sample.time_ns);
   };
@@ -87,7 +87,7 @@ Status RegimeStream::push(const ImuSample& sample, std::span<const AuxiliaryRead
     share = share_of(*out, state);
   }
   std::optional<RateState> carried;
-  // CarriedStream accepts everything that RateStream accepts, except degenerate rows
+  // CarriedStream accepts everything that RateStream accepts, except sensing directions that do not span the axes
   if (state.shares.carried >= params_.carried_min) {
     if (!state.carrying) {
       carried_.restart(state.carried);
@@ -122,7 +122,7 @@ ClippedElements RegimeStream::known_of(State& state) const {
 RegimeShares RegimeStream::next(const RegimeShares& before, double dt_s, std::span<const RateStream::Knot> window,
                                 std::size_t k, const RigCalibration& rig, bool unstable) const {
   const RateStream::Knot& knot = window[k];
-  // a rate that was fitted to the force with an invalid calibration agrees with the force in any regime
+  // a rate that was fitted to the force with an invalid calibration agrees with the force in any kind of motion
   if (unstable && knot.observation.unseen() != 0) return before;
   RateState rate;
   rate.w_WI_I_rad_s = knot.estimate.knot.rate_rad_s;
@@ -139,14 +139,14 @@ std::size_t RegimeStream::index_of(const RateState& rate, const State& state) co
   return k;
 }
 
-// Returns whether RateStream resets its calibration repeatedly, which indicates that there is no flight. Evaluated over
-// its lag, because the steps of this time determined the reported rate.
+// Returns whether RateStream resets its calibration repeatedly, which indicates that there is no flight. Resets are
+// counted over RateStream's lag, because the steps within the lag determined the reported rate.
 bool RegimeStream::calibration_is_unstable(const State& state) const {
   const RateStream::Params& rate = params_.rate;
   return state.resets > kResetShare * rate.lag_s / std::max(rate.period_s, rate.step_s);
 }
 
-// Updates the evidence with the reported sample and its rate: the forward pass of carried.md (C38).
+// Updates the probabilities with the reported sample and its rate: the forward pass of carried.md (C38).
 void RegimeStream::judge(const RateState& rate, State& state) const {
   const double dt_s = state.reported == 0 ? params_.evidence.memory_s : seconds(rate.time_ns - state.reported_ns);
   state.shares = next(state.shares, dt_s, state.rate.window, index_of(rate, state), rate_.calibration(state.rate),
@@ -162,7 +162,7 @@ void RegimeStream::judge(const RateState& rate, State& state) const {
 }
 
 // Returns the weight of CarriedStream for the reported sample, s of carried.md (C40). The weight is the smallest nearby
-// probability in the segment of clipped samples, within the window; 0 away from all segments.
+// probability in the segment of clipped samples, within the window. The weight is 0 away from all segments.
 double RegimeStream::share_of(const RateState& rate, State& state) const {
   const auto near_ns = static_cast<TimeNs>(std::llround(1e9 * params_.near_s));
   const std::vector<RateStream::Knot>& window = state.rate.window;

@@ -5,7 +5,8 @@
 #include "carried_stream_members.hpp"
 #include "tumble/attitude/regime_stream.hpp"
 
-/// Members of a RegimeStream's state, and members of its Params that are not Fields: state_visitor.hpp.
+/// Members of RegimeStream's state, and members of RegimeStream::Params that are not Fields, as state_visitor.hpp
+/// describes.
 namespace tumble {
 
 template <StateOf<RegimeShares> Self, class Visitor>

@@ -41,8 +41,8 @@ double log_carried(double n, double g, double hand_variance, double grip_varianc
   return larger + std::log(((kRoughly - 1.0) * std::exp(gentle - larger) + std::exp(rough - larger)) / kRoughly);
 }
 
-// contact means impacts with forces of any size, or gentle rolling. A single moment of gentle rolling looks hand-held;
-// only the samples before and after decide: carried.md (C34)
+// Contact means impacts with forces of any size, or gentle rolling. A single moment of gentle rolling looks hand-held.
+// Only the samples before and after the moment decide: carried.md (C34)
 constexpr double kRolls = 0.5;
 
 double log_contact(double left, double n, double most, double g, double variance) {
@@ -58,7 +58,7 @@ Vector3d angular_acceleration(std::span<const RateState> rates, std::size_t k) {
   return (rates[b].w_WI_I_rad_s - rates[a].w_WI_I_rad_s) / dt_s;
 }
 
-// probabilities of no change and of each change, over dt: carried.md (C37)
+// Returns the probabilities of no change and of each change, over dt: carried.md (C37).
 Matrix3d changes(const RegimeEvidence::Params& p, double dt_s) {
   const double contacts = 1.0 - std::exp(-p.contacts_hz * dt_s), throws = 0.5 * (1.0 - std::exp(-p.throws_hz * dt_s));
   Matrix3d out;
@@ -97,7 +97,7 @@ Vector3d RegimeEvidence::likelihood(double dt_s, const ImuSample& sample, const 
   return (logs.array() - logs.maxCoeff()).exp().cwiseMax(1e-300);
 }
 
-// One forward step of carried.md (C38).
+// Computes one forward step of carried.md (C38).
 RegimeShares RegimeEvidence::next(const RegimeShares& before, double dt_s, const ImuSample& sample,
                                   const RateState& rate, const Vector3d& alpha, const Vector3d& lever_arm_m,
                                   const Matrix3d& lever_arm_covariance_m2) const {
@@ -146,7 +146,7 @@ Status RegimeEvidence::find(std::span<const ImuSample> samples, std::span<const 
 RateState either(const RateState& first, const RateState& second, double share) {
   RateState out = share > 0.5 ? second : first;
   const Vector3d apart = second.w_WI_I_rad_s - first.w_WI_I_rad_s;
-  // the distance `apart` between the two adds to the covariance about the more probable one
+  // the distance `apart` between the two estimates adds to the covariance about the more probable one
   out.covariance_rad2_s2 = (1.0 - share) * first.covariance_rad2_s2 + share * second.covariance_rad2_s2 +
                            std::min(share, 1.0 - share) * apart * apart.transpose();
   return out;

@@ -22,7 +22,8 @@ RestDetector::Params without_force(RestDetector::Params rests) {
   return rests;
 }
 
-/// Of readings in mg, cm/s^2 or counts, whose noise is larger by as much. No robot stands still in ten times gravity.
+/// Returns the parameters for readings in mg, cm/s^2 or counts, whose noise is larger in proportion. No robot stands
+/// still in ten times gravity.
 RestDetector::Params of_larger_numbers(RestDetector::Params rests) {
   constexpr double kLarger = 100.0;
   rests.force_min_m_s2 = kLarger;
@@ -88,7 +89,7 @@ void RestGravity::step(const ImuSample& sample, const RateState& rate, State& st
   state.span_angle_rad = state.variance_rad2 = state.segment_s = state.segment_rad2_s = 0.0;
 }
 
-/// A reading is a mean over its window and refers to the middle of it: imu_merge.md (I25).
+/// A reading is a mean over its window and refers to the window's middle: imu_merge.md (I25).
 void RestGravity::turn(const ImuSample& sample, const RateState& rate, double dt_s, State& state) const {
   const Eigen::Quaterniond half = so3::exp(0.5 * dt_s * rate.w_WI_I_rad_s);
   const Eigen::Vector3d& force = sample.specific_force_m_s2;

@@ -28,24 +28,24 @@ constexpr double kTakeLogOdds = 3.0;       // 1 to 20: stricter for a change, be
 constexpr int kTurnsMax = 2;               // more or less than the descent's solution
 constexpr int kRounds = 3;                 // maximum rounds of tests, with a complete solution after each
 
-/// Nodes [first, last] in which `element` was saturated and had no free reading.
+/// Nodes [first, last] in which `element` was saturated and had no unsaturated reading.
 struct Segment {
   std::size_t element = 0, first = 0, last = 0;
 };
 
-/// One number of revolutions: nodes from `from` on, and its cost.
+/// One number of revolutions: nodes from `from` on, and the cost of these nodes.
 struct Hypothesis {
   std::vector<Node> nodes;
   double cost = 0.0;
 };
 
-/// Remaining alternatives of a segment: the probable ones other than the current solution, with their probabilities.
+/// Remaining alternatives of a segment: the probable solutions other than the current one, with their probabilities.
 struct Open {
   std::size_t from = 0;
   std::vector<std::pair<double, std::vector<Node>>> others;
 };
 
-/// Cost of an additional revolution within this many steps.
+/// Returns the cost of an additional revolution within `steps` steps.
 double revolution_cost(const Problem& problem, std::size_t steps) {
   return carried::revolution_cost(static_cast<double>(steps) * problem.node_s(), problem.jerk_rad_s3_sqrts());
 }
@@ -81,8 +81,8 @@ std::vector<Segment> suspect_segments(const Problem& problem) {
   return out;
 }
 
-/// Returns the nodes of a part with `turns` additional revolutions about `axis` between nodes a and b. Adds a smooth
-/// bump to the rate, integrates the attitudes, and distributes the remaining error at b evenly.
+/// Returns the nodes of a part with `turns` additional revolutions about `axis` between nodes a and b. The function
+/// adds a smooth bump to the rate, integrates the attitudes, and distributes the remaining error at b evenly.
 std::vector<Node> with_more_revolutions(const Problem& part, const Vector3d& axis, double turns, std::size_t a,
                                         std::size_t b) {
   std::vector<Node> nodes(part.nodes().begin(), part.nodes().end());
@@ -98,7 +98,7 @@ std::vector<Node> with_more_revolutions(const Problem& part, const Vector3d& axi
   const Vector3d& g_W = part.gravity_W_m_s2();
   for (std::size_t i = a; i <= b; ++i) {
     nodes[i].q_WI = (nodes[i].q_WI * so3::exp(along(i) * missed)).normalized();
-    // the same specific force in the sensor
+    // the specific force in the sensor remains unchanged
     const Node& before = part.nodes()[i];
     nodes[i].a_W_m_s2 = nodes[i].q_WI * (before.q_WI.conjugate() * (before.a_W_m_s2 - g_W)) + g_W;
   }
@@ -111,7 +111,7 @@ double angle_between(std::span<const Node> from, std::span<const Node> to, const
   return out;
 }
 
-/// Returns the descent's number of revolutions and the possible alternatives.
+/// Returns the optimised number of revolutions and the possible alternatives.
 std::vector<Hypothesis> hypotheses(const Problem& whole, const Segment& segment, const Part& part) {
   const Eigen::RowVector3d m = whole.rows().row(static_cast<Eigen::Index>(segment.element));
   const Vector3d axis = whole.rows().inverse().col(static_cast<Eigen::Index>(segment.element)).normalized();
@@ -121,7 +121,7 @@ std::vector<Hypothesis> hypotheses(const Problem& whole, const Segment& segment,
     Hypothesis found{{}, problem.converge()};
     found.nodes.assign(problem.nodes().begin(), problem.nodes().end());
     if (!std::isfinite(found.cost)) return false;
-    // converged to the same number of revolutions as another
+    // the test converged to a number of revolutions that another hypothesis already has
     for (const Hypothesis& other : out)
       if (std::abs(angle_between(other.nodes, found.nodes, m, whole.node_s())) < kPi) return false;
     const bool likely = out.empty() || found.cost < out.front().cost + 2.0 * kLogOdds;
@@ -139,13 +139,13 @@ std::vector<Hypothesis> hypotheses(const Problem& whole, const Segment& segment,
       if (!keep(other)) break;
     }
   }
-  // alternatives that a better one, found later, rules out
+  // removes alternatives that a better alternative, found later, rules out
   std::erase_if(out, [&](const Hypothesis& each) { return each.cost > out.front().cost + 2.0 * kLogOdds; });
   return out;
 }
 
-/// Result of testing one segment: the solutions of the part's nodes from `from` on, best first; which of them is the
-/// current solution, if it is still among them; and whether another one is to replace it.
+/// Result of testing one segment. The result contains the solutions of the part's nodes from `from` on, best first. The
+/// result also states which solution is the current one, if still present, and whether another solution replaces it.
 struct TestedSegment {
   std::size_t from = 0;
   std::vector<Hypothesis> found;
@@ -153,7 +153,7 @@ struct TestedSegment {
   bool another = false;
 };
 
-/// Returns the probabilities of carried.md (C29) of all but `standing`.
+/// Returns the probabilities of carried.md (C29) of all solutions but `standing`.
 Open shares_of(const TestedSegment& tested, std::optional<std::size_t> standing) {
   Open out{tested.from, {}};
   const double least = tested.found.front().cost;
@@ -194,8 +194,8 @@ std::vector<Part> with_surroundings(const Problem& problem, std::span<const Segm
   return out;
 }
 
-/// Tests each part. The descent's solution remains until an alternative is clearly better; if it was ruled out
-/// (`fallen`), the best alternative is used.
+/// Tests each part. The optimised solution remains until an alternative is clearly better. If the optimised solution
+/// was ruled out (`fallen`), the best alternative is used.
 std::vector<TestedSegment> test_segments(const Problem& problem, std::span<const Segment> segments,
                                          std::span<const Part> parts, std::vector<bool>& fallen) {
   std::vector<TestedSegment> out;

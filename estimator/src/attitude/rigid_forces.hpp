@@ -43,7 +43,7 @@ struct RigidForces {
            e.norm() <= hidden_force_m_s2 + uncertainty_rad_s2 * d.norm();
   }
 
-  /// Returns the unit with which most others agree; among equals, the one whose force changed least.
+  /// Returns the unit with which most other units agree. Among equals, returns the unit whose force changed least.
   Agreed most_agreed() const {
     Agreed best;
     for (std::size_t k = 0; k < kUnits; ++k) {

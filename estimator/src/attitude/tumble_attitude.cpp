@@ -21,8 +21,8 @@ constexpr double kDisplacementSigmaStart_m = 0.1;
 constexpr double kContradicts_sigma2 = 4.0;
 constexpr int kTilt = 0, kBias = 2, kVelocity = 5, kDisplacement = 7, kHeading = 9;
 
-/// Kalman update by a scalar measurement of state `index` of attitude.md (A4): `innovation` is measurement minus
-/// prediction. The heading's variance is unchanged: attitude.md (A9).
+/// Applies a Kalman update by a scalar measurement of state `index` of attitude.md (A4). `innovation` is measurement
+/// minus prediction. The heading's variance is unchanged: attitude.md (A9).
 void update(int index, double innovation, double variance, TumbleAttitude::State& state) {
   const double heading = state.covariance(kHeading, kHeading);
   const Eigen::Matrix<double, TumbleAttitude::State::kStates, 1> correction =
@@ -38,7 +38,8 @@ double tilt_variance_rad2(const TumbleAttitude::State& state) {
   return state.covariance.diagonal().segment<2>(kTilt).maxCoeff();
 }
 
-/// Reported tilt variance; during a coarse alignment, at least the value at its start.
+/// Returns the reported tilt variance. During a coarse alignment, the variance is at least its value at the start of
+/// the alignment.
 double reported_tilt_rad2(const TumbleAttitude::State& state) {
   const double filtered = tilt_variance_rad2(state);
   return state.alignment.running ? std::max(filtered, state.alignment.tilt_rad2()) : filtered;
@@ -80,7 +81,7 @@ Status TumbleAttitude::step(const ImuSample& sample, const Eigen::Matrix3d& rate
       state.last_time_ns = sample.time_ns;
       return {};
     }
-    // during an average, the attitude before it is extrapolated
+    // while readings are averaged, the attitude at the start of the average is extrapolated
     if (state.average.readings == 0) {
       state.q_taken_WI = state.q_WI;
     } else {
@@ -121,7 +122,8 @@ void TumbleAttitude::take_average(State& state) const {
   if (state.node_s >= params_.expert.node_s - 0.5 * length_s) end_node(state);
 }
 
-/// attitude.md (A16): whether the mean rate of the run agrees with the bias, within the uncertainty of both.
+/// attitude.md (A16): returns whether the mean rate of the run agrees with the bias, within the uncertainty of rate and
+/// bias.
 bool TumbleAttitude::rotates_by_bias_alone(const State& state) const {
   const Eigen::Array3d off_rad_s = (state.rest.mean_rate_rad_s() - state.bias_rad_s).array();
   const Eigen::Array3d variance = state.covariance.diagonal().segment<3>(kBias).array() +
@@ -176,10 +178,10 @@ void TumbleAttitude::bridge_gap(const ImuSample& after, const Eigen::Matrix3d& r
     state.covariance.diagonal().segment<2>(kVelocity).array() += squared(gap.velocity_walk_m_s_sqrts) * gap_s;
   }
   predict_node(state);
-  // a gripping sphere has its rolling velocity again, and the change of velocity was no slip
+  // a gripping sphere has its rolling velocity again, and the change of velocity was not slip
   if (params_.radius_m > 0.0 && !state.slipping) state.v_W_m_s = velocity_of_rotation(state);
-  // before the correction, because the update with one reading is not linear either. The axes of an earlier alignment
-  // are lost.
+  // the tilt variance is needed before the correction, because the update with one reading is not linear; the axes of
+  // an earlier alignment are lost
   const double tilt = reported_tilt_rad2(state);
   state.alignment = {};
   correct_node(state);
@@ -197,7 +199,7 @@ void TumbleAttitude::end_node(State& state) const {
   clear_node(state);
 }
 
-/// Variance of a body's velocity, one axis, known only from its motion so far and its rotation.
+/// Returns the variance of a body's velocity, one axis, known only from the body's earlier motion and its rotation.
 double TumbleAttitude::own_velocity_m2_s2(double power_m2_s2, const State& state) const {
   if (state.at_rest) return squared(params_.expert.at_rest.velocity_sigma_m_s);
   const double assumed = squared(params_.velocity_m_sqrts) / params_.motion_tau_s;
@@ -205,11 +207,11 @@ double TumbleAttitude::own_velocity_m2_s2(double power_m2_s2, const State& state
   return std::max({assumed, power_m2_s2, turning});
 }
 
-/// Updates an alignment after this node's correction, a rotation of W; attitude.md (A19), (A20).
+/// Updates an alignment after the node's correction, a rotation of W; attitude.md (A19), (A20).
 void TumbleAttitude::align(const Eigen::Quaterniond& corrected, State& state) const {
   CoarseAlignment& alignment = state.alignment;
   alignment.force_W_m_s = corrected * alignment.force_W_m_s;
-  // the filter's velocity since then relies on a tilt that may be wrong
+  // the filter's velocity since the gap relies on a tilt that may be wrong
   const double velocity = own_velocity_m2_s2(alignment.velocity_m2_s2, state);
   const double variance = alignment.variance_rad2(velocity, params_.gravity_m_s2);
   if (variance > squared(params_.expert.gap.aligned_tilt_rad)) {
@@ -223,8 +225,8 @@ void TumbleAttitude::align(const Eigen::Quaterniond& corrected, State& state) co
   alignment = {};
 }
 
-/// Restarts from an attitude with the variance `tilt_rad2`: rotates W by `levelling` and resets the velocity to that
-/// known from the body's motion.
+/// Restarts from an attitude with the variance `tilt_rad2`. Rotates W by `levelling` and resets the velocity to the
+/// value known from the body's motion.
 void TumbleAttitude::restart(const Eigen::Quaterniond& levelling, double tilt_rad2, double velocity_m2_s2,
                              State& state) const {
   state.q_WI = (levelling * state.q_WI).normalized();
@@ -288,7 +290,7 @@ void TumbleAttitude::predict_node(State& state) const {
   state.covariance.diagonal().segment<2>(kVelocity).array() += squared(params_.expert.acceleration_noise_m_s_sqrts) * h;
 }
 
-/// Returns whether the rolling constraint is not usable at this node.
+/// Returns whether the rolling constraint is not usable at the current node.
 bool TumbleAttitude::watch_slip(const Eigen::Vector2d& misfit_m_s, State& state) const {
   const double misfit = misfit_m_s.norm();
   state.slip_s = state.slipping ? state.slip_s + state.node_s : 0.0;
@@ -306,7 +308,8 @@ bool TumbleAttitude::watch_slip(const Eigen::Vector2d& misfit_m_s, State& state)
   return state.slipping;
 }
 
-/// attitude.md (A13): variance of a body's own velocity or displacement, one axis. `power` is the previous value.
+/// attitude.md (A13): returns the variance of a body's own velocity or displacement, one axis. `power` is the previous
+/// value.
 double TumbleAttitude::own_motion(const Eigen::Vector2d& misfit, int index, double sigma_sqrts, double power,
                                   const State& state) const {
   const double seen = 0.5 * (misfit.squaredNorm() - state.covariance.block<2, 2>(index, index).trace());
@@ -314,7 +317,7 @@ double TumbleAttitude::own_motion(const Eigen::Vector2d& misfit, int index, doub
   return std::max({squared(sigma_sqrts) / params_.motion_tau_s, seen, remembered});
 }
 
-/// A body other than a sphere: velocity, while it moves, and displacement about zero. attitude.md (A12), (A14).
+/// Corrects a body other than a sphere: velocity while it moves, and displacement about zero. attitude.md (A12), (A14).
 void TumbleAttitude::correct_body(const Eigen::Vector2d& turned_m_s, State& state) const {
   const double memories = params_.motion_tau_s / state.node_s;
   if (!state.at_rest) {
@@ -332,14 +335,15 @@ void TumbleAttitude::correct_body(const Eigen::Vector2d& turned_m_s, State& stat
   }
 }
 
-/// Velocity of the IMU due to the body's rotation about the centre, and of the rolling centre. attitude.md (A11).
+/// Returns the velocity of the IMU due to the body's rotation about the centre, and of the rolling centre. attitude.md
+/// (A11).
 Eigen::Vector2d TumbleAttitude::velocity_of_rotation(const State& state) const {
   const Eigen::Vector3d w_W = state.q_WI * state.rate_rad_s;
   const Eigen::Vector3d arm_W = state.q_WI * params_.lever_arm_m + params_.radius_m * Eigen::Vector3d::UnitZ();
   return w_W.cross(arm_W).head<2>();
 }
 
-/// Velocity of a sphere or of a body at rest, and the bias at rest. attitude.md (A11), (A12).
+/// Corrects the velocity of a sphere or of a body at rest, and the bias at rest. attitude.md (A11), (A12).
 void TumbleAttitude::correct_node(State& state) const {
   const double h = state.node_s;
   const Eigen::Vector2d turned = velocity_of_rotation(state);

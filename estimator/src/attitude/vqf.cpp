@@ -14,11 +14,11 @@ namespace tumble {
 namespace {
 
 constexpr double kNoDirection_m_s2 = 1e-6;
-/// The bias variance grows to the square of this in the forgetting time (0.1 deg/s, fixed by the publication).
+/// The bias variance grows to the square of this rate in the forgetting time (0.1 deg/s, fixed by the publication).
 constexpr double kForgottenSigma_rad_s = 1.7453292519943295e-3;
 
-/// Measurement variance for which the scalar filter of a bias with random walk `growth` converges to the variance
-/// sigma^2.
+/// Returns the measurement variance for which the scalar filter of a bias with random walk `growth` converges to the
+/// variance sigma^2.
 double steady_noise(double sigma, double growth) {
   const double variance = sigma * sigma;
   return variance * variance / growth + variance;
@@ -65,7 +65,7 @@ void Vqf::detect_rest(const ImuSample& sample, double dt_s, State& state) const 
   state.at_rest = state.rest_s >= params_.rest_time_s && quiet;
 }
 
-/// Corrects q_WN; returns the unit vector "up" according to the force, in W before the correction.
+/// Corrects q_WN. Returns the unit vector "up" according to the force, in W before the correction.
 Eigen::Vector3d Vqf::level_inertial_frame(const Eigen::Vector3d& f_I_m_s2, double dt_s, State& state) const {
   // attitude.md (A3)
   state.f_N_m_s2.advance(state.q_NI * f_I_m_s2, params_.tau_s, dt_s, low_pass_warp(params_.tau_s, dt_s));

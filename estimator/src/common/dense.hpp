@@ -4,8 +4,9 @@
 #include <Eigen/Core>
 
 /// Decompositions of large symmetric matrices, compiled once. Eigen's fixed-size versions would be instantiated per
-/// file and size, which doubles the compile time of such files. Factorisations equal those of fixed size bit for bit,
-/// eigenvalues to rounding. Each call allocates, so use at most once per sweep or run.
+/// file and size, which doubles the compile time of files that use them. Factorisations equal those of fixed size bit
+/// for bit; eigenvalues are equal up to rounding. Each call allocates, so call a decomposition at most once per sweep
+/// or run.
 namespace tumble::dense {
 
 using Symmetric = Eigen::Ref<const Eigen::MatrixXd>;  ///< only the lower triangle is read

@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Thresholds, and the readings that they were measured on: docs/maths/outliers.md, "Thresholds".
+// Thresholds. docs/maths/outliers.md, "Thresholds", states the readings from which the thresholds were measured.
 constexpr double kRateMin_rad_s = 1.0;    // smallest outlier of a gyro
 constexpr double kForceMin_m_s2 = 30.0;   // smallest outlier of an accelerometer
 constexpr double kAgreement = 3.0;        // an outlier is larger than this multiple of the neighbours' difference
@@ -24,7 +24,8 @@ constexpr double kHitMost_m_s = 20.0;     // nor changes its velocity by so much
 constexpr double kNear_s = 0.1;           // neighbours further away than this are not compared
 constexpr double kPeriodsAhead = 4.0;     // a longer step of the stamps is held
 
-// A reading may hide more than it shows from this share of the stated range on; so may a repeated large reading.
+// From this fraction of the stated range on, a reading may be smaller than the true value. A repeated large reading may
+// also be smaller.
 constexpr double kAtRange = 0.95;
 constexpr double kRepeats_rad_s = 1.0, kRepeats_m_s2 = 15.0;
 
@@ -59,12 +60,13 @@ Triad accel_of(const OutlierFilter::Device& device) {
   return {&ImuSample::specific_force_m_s2, kClipAccel, device.accel_range_m_s2, kRepeats_m_s2};
 }
 
-/// From an earlier stamp to a later one; unsigned, since the difference of any two stamps may not fit otherwise.
+/// Returns the time from an earlier stamp to a later stamp. The difference is unsigned, since the difference of any two
+/// stamps may not fit into a signed integer.
 double step_s(const ImuSample& from, const ImuSample& to) {
   return 1e-9 * static_cast<double>(static_cast<std::uint64_t>(to.time_ns) - static_cast<std::uint64_t>(from.time_ns));
 }
 
-/// Samples next to each other, oldest first.
+/// Consecutive samples, oldest first.
 struct Sequence {
   std::array<const ImuSample*, 4> samples{};
   std::size_t count = 0;
@@ -80,7 +82,8 @@ Sequence passed_near(const OutlierFilter::State& state) {
   return out;
 }
 
-/// Largest change from one reading to the next: outliers.md (O3). Unknown where a rail may hide it.
+/// Returns the largest change from one reading to the next: outliers.md (O3). The change is unknown where saturation
+/// may hide it.
 double largest_step(const Sequence& sequence, const Triad& triad) {
   double out = 0.0;
   for (std::size_t k = 1; k < sequence.count; ++k) {
@@ -90,7 +93,7 @@ double largest_step(const Sequence& sequence, const Triad& triad) {
   return out;
 }
 
-/// Largest change of that change: outliers.md (O4).
+/// Returns the largest change between consecutive steps: outliers.md (O4).
 double largest_bend(const Sequence& sequence, const Triad& triad) {
   double out = 0.0;
   for (std::size_t k = 1; k < sequence.count; ++k) {
@@ -102,7 +105,8 @@ double largest_bend(const Sequence& sequence, const Triad& triad) {
   return out;
 }
 
-/// How far a reading leaves both neighbours in the same direction, on the axis where it does so most: outliers.md (O1).
+/// Returns how far a reading leaves both neighbours in one direction, on the axis with the largest departure:
+/// outliers.md (O1).
 double departure(const Vector3d& before, const Vector3d& now, const Vector3d& after) {
   double out = 0.0;
   for (int axis = 0; axis < 3; ++axis) {
@@ -112,8 +116,8 @@ double departure(const Vector3d& before, const Vector3d& now, const Vector3d& af
   return out;
 }
 
-/// How far a reading lies from the last one that passed, or from the line through the last two: the smaller of both:
-/// outliers.md (O2).
+/// Returns the distance of a reading from the last reading that passed, or from the line through the last two if
+/// smaller: outliers.md (O2).
 double distance(const ImuSample& sample, const OutlierFilter::State& state, const Triad& triad) {
   const ImuSample &first = state.passed[0], &last = state.passed[1];
   const Vector3d step = triad.of(sample) - triad.of(last);
@@ -170,13 +174,14 @@ bool OutlierFilter::keeps_back(const ImuSample& sample, State& state) const {
   return true;
 }
 
-/// The last step of the stamps, or the nominal one where that is longer; infinite where neither is known.
+/// Returns the last step of the stamps, or the nominal period if it is longer. The result is infinite if neither is
+/// known.
 double OutlierFilter::period_s(const State& state) const {
   if (!(device_.period_s > 0.0) || state.count < 2) return kUnknown;
   return std::max(device_.period_s, step_s(state.passed[0], state.passed[1]));
 }
 
-/// Whether a reading jumps further than the other triad explains: outliers.md (O5).
+/// Returns whether a reading jumps further than the other triad explains: outliers.md (O5).
 bool OutlierFilter::is_suspicious(const ImuSample& sample, const State& state) const {
   if (state.count == 0) return false;
   const ImuSample& before = state.passed[1];
@@ -191,7 +196,7 @@ bool OutlierFilter::is_suspicious(const ImuSample& sample, const State& state) c
          distance(sample, state, accel_of(device_)) > accel_threshold(device_, sequence, sample, step);
 }
 
-/// Whether the held reading is an outlier, now that the one after it is known: outliers.md (O6).
+/// Returns whether the delayed reading is an outlier, given the reading after it: outliers.md (O6).
 bool OutlierFilter::is_outlier(const ImuSample& held, const ImuSample& after, const State& state) const {
   const ImuSample& before = state.passed[1];
   if (state.count == 0 || step_s(before, held) > kNear_s || step_s(held, after) > kNear_s) return false;

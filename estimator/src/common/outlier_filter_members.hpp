@@ -4,7 +4,7 @@
 #include "imu_members.hpp"
 #include "tumble/common/detail/outlier_filter.hpp"
 
-/// Members of the filter that rejects wild readings: state_visitor.hpp.
+/// Members of OutlierFilter's state, as state_visitor.hpp describes.
 namespace tumble {
 
 template <StateOf<OutlierFilter::State> Self, class Visitor>

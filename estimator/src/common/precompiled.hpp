@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Headers used by nearly every source, and types of Eigen expressions used by at least a dozen sources. The compiler
-// needs longer for the classes of an expression than for its code (docs/figures.md). Precompiled (CMakeLists.txt) and
-// never included: it only reduces the compile time.
+// needs longer for the classes of an expression than for its code (docs/figures.md). CMakeLists.txt precompiles this
+// header, and no source includes it. Precompiling only reduces the compile time.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -29,7 +29,7 @@ constexpr bool known_squares = known_matrices<Matrices...>&& known<decltype(Matr
 template <int rows, int columns = 1>
 using Real = Eigen::Matrix<double, rows, columns>;
 
-// operands of the following expressions; never defined
+// Operands of the expressions below. The variables are never defined.
 extern const Eigen::Vector3d a, b;
 extern Eigen::Vector3d c;
 extern const Eigen::Matrix3d R;

@@ -166,7 +166,7 @@ void SampleClock::follow(double step_ns, TimeNs stamp_ns, State& state) const {
   state.mean_error_product_ns2 += fading * (limited_ns * state.error_ns - state.mean_error_product_ns2);
   state.error_ns = limited_ns;
 
-  // numbers count from this sample; only its residual about the line is not zero
+  // sample numbers count from the current sample; only its residual about the line is not zero
   const double keep = 1.0 - fading;
   state.sum_nn = keep * (state.sum_nn - 2.0 * number * state.sum_n + number * number * state.sum);
   state.sum_n = keep * (state.sum_n - number * state.sum);

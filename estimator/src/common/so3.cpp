@@ -9,10 +9,11 @@ namespace {
 
 // below this angle two terms of the series are exact to rounding
 constexpr double kSmallAngle = 1e-4;
-// below this angle x - sin(x) cancels; six terms of its series are exact to rounding up to here
+// below this angle, x - sin(x) loses digits by cancellation; six terms of its series are exact to rounding up to this
+// angle
 constexpr double kCancellingAngle = 0.5;
 
-// (1 - cos x) / x^2, by the half angle because 1 - cos x cancels
+// Returns (1 - cos x) / x^2, by the half angle because 1 - cos x loses digits by cancellation.
 double cosine_term(double angle, double angle2) {
   if (angle < kSmallAngle) return 0.5 - angle2 / 24.0;
   const double s = std::sin(0.5 * angle);
@@ -77,8 +78,8 @@ Eigen::Matrix3d left_jacobian_inverse(const Eigen::Vector3d& phi) {
 }
 
 Eigen::Quaterniond shortest_arc(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
-  // q = (|h| / 2, from x to / |h|) with h = from + to. from x to = from x h, and h is exact to rounding for nearly
-  // opposite vectors, so nothing cancels up to a half turn.
+  // q = (|h| / 2, from x to / |h|) with h = from + to. The product from x to equals from x h, and h is exact to
+  // rounding for nearly opposite vectors. Nothing cancels up to a half turn.
   const Eigen::Vector3d h = from + to;
   const double length = h.norm();
   if (length < 1e-15) {

@@ -10,7 +10,7 @@
 #include <type_traits>
 #include <vector>
 
-/// Kinds of members that a StateVisitor distinguishes: state_visitor.hpp.
+/// Kinds of members that a StateVisitor (state_visitor.hpp) distinguishes.
 namespace tumble {
 
 /// Constrains the first argument of `members` and `others`: `Of` or const `Of`.

@@ -16,7 +16,7 @@
 namespace tumble {
 
 /// Compares visited members with bytes. Returns `out_of_range` with the name of the first number that differs, the
-/// stored and the visited value; `too_few` if the bytes end.
+/// stored and the visited value. Returns `too_few` if the bytes end.
 class StateMatcher : public StateVisitor<StateMatcher> {
  public:
   static constexpr bool kReads = false;
@@ -57,8 +57,8 @@ class StateMatcher : public StateVisitor<StateMatcher> {
   Status status_;
 };
 
-/// Computes a 64-bit digest of the names, widths and order of visited members. Bytes of another layout are rejected by
-/// it.
+/// Computes a 64-bit digest of the names, widths and order of visited members. A reader rejects bytes with another
+/// digest.
 class StateLayout : public StateVisitor<StateLayout> {
  public:
   static constexpr bool kReads = false;

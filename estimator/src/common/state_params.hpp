@@ -6,7 +6,7 @@
 #include "state_visitor.hpp"
 #include "tumble/common/parameters.hpp"
 
-/// Visiting a `Params` that is part of a state: state_visitor.hpp.
+/// Functions that visit a `Params` that is part of a state, as state_visitor.hpp describes.
 namespace tumble {
 
 namespace detail {
@@ -36,7 +36,7 @@ class FieldsAsMembers {
 
 }  // namespace detail
 
-/// Visits all of a `Params`: its Fields and other members.
+/// Visits all members of a `Params`: its Fields and the members that are not Fields.
 template <class Params, class Visitor>
 void visit_params(Params& params, Visitor& visit) {
   detail::FieldsAsMembers<Visitor> fields(visit);

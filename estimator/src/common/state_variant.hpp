@@ -6,7 +6,7 @@
 #include <utility>
 #include <variant>
 
-/// Visiting variants in a state: state_visitor.hpp.
+/// Functions that visit the variants in a state, as state_visitor.hpp describes.
 namespace tumble {
 
 /// Visits the index of the current alternative and its members.

@@ -8,14 +8,15 @@
 
 #include "state_kinds.hpp"
 
-/// Description of an estimator's state, member by member, in one place. Saving, loading and comparing are visitors.
+/// Description of an estimator's state, member by member, in one place. Saving, loading and comparing are visitors of
+/// the description.
 ///
-/// A state has a function `members(Self& s, Visitor& visit)` in its namespace, or a static one if its members are
+/// A state has a function `members(Self& s, Visitor& visit)` in its namespace, or a static function if its members are
 /// private. The function calls `visit("name", s.member)` for each member: numbers, fixed-size Eigen types, arrays,
 /// vectors, deques, optionals and nested states. Indices and counts are visited with their bounds, enumerations with
 /// their last value. Values that may be NaN use `with_nan`, buffers `scratch`. Self may be const. A `Params` that is
-/// part of a state is visited by `visit_params`: its Fields, and its other members by `others(Self& p, Visitor&
-/// visit)`.
+/// part of a state is visited by `visit_params`: its Fields, and its members that are not Fields by `others(Self& p,
+/// Visitor& visit)`.
 namespace tumble {
 
 /// Visits the members of a state. `Derived` has
@@ -75,7 +76,7 @@ class StateVisitor {
     if constexpr (Derived::kReads) value = static_cast<T>(number);
   }
 
-  /// The first `count` elements of an array; the others are in their initial state.
+  /// Visits the first `count` elements of an array. The remaining elements are in their initial state.
   template <class Array>
   void leading(const char* name, Array& array, std::size_t count) {
     if (Derived::kDescribes) count = 1;
@@ -112,7 +113,7 @@ class StateVisitor {
       for (const Element& element : value) (*this)(name, element);
     } else {
       value.clear();
-      // one by one, so that no more memory is requested than there are bytes
+      // visits elements one by one, so that no more memory is requested than there are bytes
       for (std::size_t k = 0; k < count && self().going(); ++k) (*this)(name, value.emplace_back());
     }
   }

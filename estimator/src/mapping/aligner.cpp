@@ -16,7 +16,7 @@ Registration::Params full_params(const LidarInertialOdometry::Params& params) {
 
 constexpr double kCoarseReach = 2.0;  // multiple of the matching distance with useful matches
 
-/// Wider bounds: finds the neighbourhood of the solution only.
+/// Returns parameters with wider limits, which find only the neighbourhood of the solution.
 Registration::Params coarse_params(const LidarInertialOdometry::Params& params) {
   const MatchingParams& matching = params.expert.matching;
   const RegistrationStagesParams& stages = params.expert.stages;
@@ -33,7 +33,7 @@ Registration::Params coarse_params(const LidarInertialOdometry::Params& params) 
   return out;
 }
 
-/// Selects at most `count` points, evenly.
+/// Selects at most `count` points, spread evenly.
 void thin(std::span<const SweepPoint> points, std::size_t count, std::vector<SweepPoint>& out) {
   out.clear();
   const std::size_t every = std::max<std::size_t>(1, (points.size() + count - 1) / count);

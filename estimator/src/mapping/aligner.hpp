@@ -17,20 +17,21 @@ struct Scene {
   const VoxelMap& map;
 };
 
-/// Registers a sweep in stages. The verdict of `found` indicates success. `trajectory` is then that of the result,
-/// otherwise one of a failed attempt.
+/// Registers a sweep in stages. The verdict of `found` indicates success. After success, `trajectory` is the registered
+/// motion. After a failure, `trajectory` is that of a failed attempt.
 class Aligner {
  public:
   explicit Aligner(const LidarInertialOdometry::Params& params);
 
-  /// With all points and few iterations. Without convergence, the other stages continue at lower cost.
+  /// Registers with all points and few iterations. Without convergence, the stages with fewer points continue at lower
+  /// cost.
   void in_full(const Registration::Prior& prior, const Scene& scene, SweepTrajectory& trajectory,
                Registration::Result& found);
-  /// With some of the points until convergence, then with all points from the result.
+  /// Registers with some of the points until convergence, then with all points from the converged pose.
   void to_convergence(const Registration::Prior& prior, const Scene& scene, SweepTrajectory& trajectory,
                       Registration::Result& found);
-  /// From a start that may be far off: first coarsely with few points, then to convergence if that succeeds. A failed
-  /// start thus costs a fraction of a registration and returns only its verdict.
+  /// Registers from a start that may be far from the solution: coarsely with few points, then to convergence if the
+  /// coarse stage succeeds. A failed start thus costs a fraction of a registration and returns only its verdict.
   void from_afar(const Registration::Prior& start, const Registration::Prior& prior, const Scene& scene,
                  SweepTrajectory& trajectory, Registration::Result& found);
 

@@ -15,7 +15,8 @@ namespace u = unknowns;
 using Motion = Eigen::Matrix<double, 9, 9>;
 using Params = LidarInertialOdometry::Params;
 
-// Robots of this library are slower, except for moments.
+// Prior of the speed and its correlation time. Robots that use the library are slower than kSpeed_m_s, except for
+// moments.
 constexpr double kSpeed_m_s = 10.0, kSpeedTime_s = 1.0;
 
 StateEstimate of_motion(const MotionState& state, const SweepCalibration& calibration, const Motion& weight,
@@ -33,7 +34,8 @@ double yaw_rad(const Eigen::Quaterniond& q) {
   return 2.0 * std::atan2(q.z(), q.w());
 }
 
-/// Errors of a motion in a frame that is moved and turned to the IMU by errors in the frame before.
+/// Transforms errors of a motion to a frame that is moved and turned to the IMU. The movement of the frame is an error
+/// in the old frame.
 Motion by_frame(const Eigen::Matrix3d& turn, const Eigen::Vector3d& v_WI_m_s) {
   Motion T = Motion::Zero();
   T.block<2, 3>(3, 3) = turn.topRows<2>();
@@ -42,7 +44,7 @@ Motion by_frame(const Eigen::Matrix3d& turn, const Eigen::Vector3d& v_WI_m_s) {
   return T;
 }
 
-/// Kalman update by a velocity of 0, which leaves E consistent with the gain of C.
+/// Applies a Kalman update by a velocity of 0, which keeps E consistent with the gain of C.
 void bound_speed(double sigma_m_s, MotionState& state, Motion& C, Motion& E) {
   const Eigen::Matrix3d R = sigma_m_s * sigma_m_s * Eigen::Matrix3d::Identity();
   const Eigen::Matrix3d S = u::block(C, u::velocity) + R;
@@ -79,8 +81,8 @@ StateEstimate without_place(const StateEstimate& reckoned, double step_s) {
   return of_motion(state, reckoned.mean.calibration, T * C * T.transpose(), T * E * T.transpose());
 }
 
-/// A frame that is turned by the tilt error φ so that the IMU's attitude has no error sees the velocity v and gravity g
-/// turned back: δv + v × φ, g × φ.
+/// The frame is turned by the tilt error φ so that the IMU's attitude has no error. In the turned frame, velocity v and
+/// gravity g are turned back: δv + v × φ, g × φ.
 StateEstimate belief_at_first_sweep(const Params& params, const StateEstimate& reckoned) {
   MotionState start = reckoned.mean.state;
   start.covariance.setZero();

@@ -9,7 +9,7 @@
 
 namespace tumble::mapping {
 
-/// Longer windows of the IMU do not describe the motion inside.
+/// IMU windows longer than this do not describe the motion inside.
 inline constexpr TimeNs kGap_ns = 50'000'000;
 
 /// Rate of one window of the IMU, in IMU axes, with its standard deviation.
@@ -24,9 +24,9 @@ struct WindowRate {
 };
 
 /// Appends samples from the end of `before` to the start of `after`. The rate is interpolated linearly, with the
-/// standard deviation of a random walk that is known at both ends; mapping.md (R44). All axes count as clipped, so
-/// that a registration that estimates the saturation deficit also estimates the interpolation error. The force is
-/// unknown (`bridges_gap`). Steps of 10 ms, longer ones over gaps beyond 0.64 s.
+/// standard deviation of a random walk that is known at both ends; mapping.md (R44). All axes count as clipped. A
+/// registration that estimates the saturation deficit then also estimates the interpolation error. The force is unknown
+/// (`bridges_gap`). The samples are 10 ms long, or longer over gaps beyond 0.64 s.
 void bridge_gap(const InertialNoiseParams& params, const WindowRate& before, const WindowRate& after,
                 std::vector<MotionSample>& samples);
 

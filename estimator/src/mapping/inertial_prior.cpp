@@ -46,7 +46,7 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
       .setConstant(std::pow(params.expert.prior.sigma_m_s * span, 2) +
                    std::pow(params.expert.prior.force_share * pushed_m_s, 2) + gap_m2_s2);
   u::variances(noise, u::position).array() += gap_m2;
-  // stationary: velocity is zero and its effect on the position is ignored
+  // a stationary robot has zero velocity, and the effect of the velocity on the position is ignored
   const auto rests = [&](const MotionSample& sample) {
     return sample.at_rest || seconds(sample.from_ns - start_ns) >= trajectory.duration_s();
   };

@@ -9,24 +9,25 @@
 
 namespace tumble::mapping {
 
-/// Returns the errors of inertial integration over one segment as uncertainty of the state at its start. Reason: the
-/// registration refines a segment by its start. A rate error is assumed constant over the segment because it comes from
-/// saturation, not from white noise. The attitude's standard deviation is thus the time integral of the rate's. Axes in
-/// `deficit_axes` (bits) are excluded because they are estimated separately.
+/// Returns the errors of inertial integration over one segment as uncertainty of the state at the segment's start,
+/// because the registration refines a segment by its start. A rate error is assumed constant over the segment because
+/// the error comes from saturation, not from white noise. The attitude's standard deviation is thus the time integral
+/// of the rate's standard deviation. Axes in `deficit_axes` (bits) are excluded because the saturation deficit of these
+/// axes is estimated separately.
 Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& params,
                                            const SweepTrajectory& trajectory, std::span<const MotionSample> samples,
                                            unsigned deficit_axes);
 
-/// Returns the variance of the velocity change over the segment due to accelerometer saturation, in W. The deficit of
-/// one saturation is assumed constant.
+/// Returns the variance of the velocity change over the segment due to accelerometer saturation, in W. The saturation
+/// deficit is assumed constant while a saturation lasts.
 Eigen::Matrix3d railed_velocity_variance(const LidarInertialOdometry::Params& params, const SweepTrajectory& trajectory,
                                          std::span<const MotionSample> samples);
 
 /// Computes the state at rest at the start of the first sample's window: origin of W, yaw 0. The mean specific force of
-/// the samples within `rest_s` levels the attitude. Returns `degenerate` if this force is below 1 m/s^2.
+/// the samples within `rest_s` levels the attitude. Returns `degenerate` if the mean force is below 1 m/s^2.
 Status start_at_rest(const LidarInertialOdometry::Params& params, std::span<const MotionSample> samples,
                      MotionState& state);
-/// The same by that force, without a time.
+/// Computes the state at rest, levelled by a specific force, without a time.
 Status level_at_rest(const LidarInertialOdometry::Params& params, const Eigen::Vector3d& force_I_m_s2,
                      MotionState& state);
 

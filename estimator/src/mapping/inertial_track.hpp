@@ -18,22 +18,22 @@ class InertialTrack {
 
   explicit InertialTrack(const Params& params);
 
-  /// Returns `time_order` unless the sample is later than all before.
+  /// Returns `time_order` unless the sample is later than all samples before.
   Status check(const ImuSample& sample) const;
   /// Adds a checked sample with its angular velocity.
   void take(const Params& params, const ImuSample& sample, const RateState& rate);
 
-  /// Starts with the window that contains the last sweep's end.
+  /// Returns the stored samples, starting with the window that contains the last sweep's end.
   std::span<const MotionSample> samples() const { return samples_; }
   /// Returns the samples that end after `from_ns`.
   std::span<const MotionSample> samples_from(TimeNs from_ns) const;
-  /// Returns the end of the last sweep; nothing before the first.
+  /// Returns the end of the last sweep. Returns nothing before the first sweep.
   std::optional<TimeNs> border_ns() const { return boundary_ns_; }
   /// Returns the mean specific force of the current rest, if it had lasted for `lasted_s` by `time_ns`.
   std::optional<Eigen::Vector3d> resting_force(TimeNs time_ns, double lasted_s) const;
   /// Returns whether the rest at the start continues.
   bool has_not_moved() const { return initial_.lasts; }
-  /// Time of the newest sample, or of the last sweep's end.
+  /// Returns the time of the newest sample, or of the last sweep's end.
   std::optional<TimeNs> last_ns() const;
   /// Returns whether the IMU measures only gravity up to `end_ns`.
   bool rests_until(TimeNs end_ns) const;
@@ -47,7 +47,7 @@ class InertialTrack {
   static void members(Self& s, Visitor& visit);
 
  private:
-  /// The rest at the start of a recording. After its end it cannot resume, and its results remain.
+  /// Rest at the start of a recording. The initial rest cannot resume after its end, and its results remain.
   struct InitialRest {
     bool lasts = true;
     std::optional<TimeNs> first_ns;  ///< first sample of the recording

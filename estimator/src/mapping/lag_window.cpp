@@ -21,8 +21,8 @@ WindowSweep& LagWindow::enter() {
   return sweeps_.emplace_back();
 }
 
-/// mapping.md (R63). Backward pass over the window (H. Rauch, F. Tung, C. Striebel, 1965). The registration of each
-/// sweep is the linear measurement to which it converged. The result is the maximum a posteriori of all sweeps'
+/// mapping.md (R63). Backward pass over the window (H. Rauch, F. Tung, C. Striebel, 1965). The measurement of each
+/// sweep is the registration, linearised at its converged value. The result is the maximum a posteriori of all sweeps'
 /// unknowns, to first order. Smoothing improves sweeps with few features. With many features everywhere, the final
 /// error does not depend on the window (1.0 to 1.9 cm for windows of 1, 2 and 3).
 void LagWindow::smooth() {

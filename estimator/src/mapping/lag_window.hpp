@@ -14,7 +14,7 @@ struct Estimated {
   Registration::Matrix errors = Registration::Matrix::Zero();
 };
 
-/// A sweep that later sweeps still refine. Unknowns are those of its start.
+/// A sweep that later sweeps still refine. The unknowns refer to the start of the sweep.
 struct WindowSweep {
   Estimated predicted;
   Registration::Matrix by_before = Registration::Matrix::Identity();  ///< derivative by the previous sweep
@@ -33,15 +33,15 @@ class LagWindow {
   LagWindow() = default;
   explicit LagWindow(int sweeps) : length_(static_cast<std::size_t>(sweeps)) {}
 
-  /// Adds an empty sweep. If the window is full, the oldest leaves.
+  /// Adds an empty sweep. If the window is full, the oldest sweep leaves.
   WindowSweep& enter();
   /// Returns whether the oldest sweep has its final estimate.
   bool is_full() const { return sweeps_.size() == length_; }
-  /// Smooths each sweep but the newest with the later ones: mapping.md (R63).
+  /// Smooths each sweep but the newest with the later sweeps: mapping.md (R63).
   void smooth();
   /// Moves the map points of all sweeps but the newest to their smoothed positions.
   void move_inserted(LocalMap& map) const;
-  /// Keeps all inserted points where they are, because indices of the map changed.
+  /// Fixes the positions of all inserted points, because indices of the map changed.
   void clear_inserted();
 
   std::size_t length() const { return length_; }

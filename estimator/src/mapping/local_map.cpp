@@ -11,8 +11,8 @@ namespace tumble::mapping {
 
 namespace {
 
-/// Uncertainty of the trajectory between start and end of a segment, as variance of a point. Its part of mapping.md
-/// (R64).
+/// Uncertainty of the trajectory between start and end of a segment, as variance of a point. The variance is the
+/// trajectory's term of mapping.md (R64).
 class PoseVariance {
  public:
   PoseVariance(const Registration::Matrix& covariance, const SweepTrajectory& trajectory)

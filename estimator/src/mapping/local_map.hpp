@@ -19,7 +19,7 @@ struct InsertedPoint {
   SweepPoint point;     ///< by the calibration at insertion
 };
 
-/// A sweep to be inserted into the map.
+/// A sweep whose points will be inserted into the map.
 struct SweepToInsert {
   const SweepTrajectory& trajectory;
   const Registration::Matrix& covariance;
@@ -38,21 +38,22 @@ class LocalMap {
   const VoxelMap& voxels() const { return map_; }
   bool empty() const { return map_.size() == 0; }
 
-  /// Adds the points of a sweep and appends the added ones to `inserted`. `noise` computes a return's variance. If the
-  /// sweep's pose is certain, each point of the map is checked against its free space: O(points of the map).
+  /// Adds the points of a sweep and appends the added points to `inserted`. `noise` computes a return's variance. If
+  /// the sweep's pose is certain, each point of the map is checked against the sweep's free space: O(points of the
+  /// map).
   std::size_t insert(const Params& params, const SweepToInsert& sweep, const Registration& noise,
                      std::vector<InsertedPoint>& inserted);
   /// Moves points to their refined positions, with `later_s` added to their times, mapping.md (R3).
   void move(const SweepTrajectory& trajectory, const Eigen::Isometry3d& T_IL, double later_s,
             std::span<const InsertedPoint> inserted);
 
-  /// Number of sweeps that contributed points; each point has the number of its sweep.
+  /// Returns the number of sweeps that contributed points. Each point stores the number of its sweep.
   std::uint32_t sweeps() const { return static_cast<std::uint32_t>(seen_from_W_m_.size()); }
-  /// Removes the points of this and later sweeps. Indices change. O(number of points).
+  /// Removes the points of `first_sweep` and all later sweeps. Indices change. O(number of points).
   void withdraw(std::uint32_t first_sweep);
 
-  /// Removes distant points once the sensor has moved far enough. Returns whether points were removed; indices then
-  /// change.
+  /// Removes distant points once the sensor has moved far enough. Returns whether points were removed. A removal
+  /// changes the indices.
   bool prune(const Params& params, const Eigen::Vector3d& p_WI_m);
 
   std::size_t bytes() const { return map_.bytes() + seen_from_W_m_.capacity() * sizeof(Eigen::Vector3f); }

@@ -11,15 +11,15 @@ namespace {
 
 // sin 10 deg; lines steeper against the beam are surfaces (Bogoslavskyi, Stachniss).
 constexpr float kSurfaceSine = 0.17365f;
-// sin 2 deg: ground 0.5 m below is seen at this angle at 14 m; smaller angles are edges.
+// sin 2 deg: ground 0.5 m below the sensor is seen at this angle at a distance of 14 m. Smaller angles are edges.
 constexpr float kGrazingSine = 0.0349f;
 constexpr float kBend = 0.15f;                     // tolerance of the range difference for uneven ground
 constexpr int kNeighbours = 2;                     // on each side along the ring
 constexpr float kReachSteps = kNeighbours + 0.5f;  // angular steps; beams further apart are no neighbours
 constexpr float kStepMax = 0.05f;                  // rad; rings of 16-channel lidars are 0.035 apart
 constexpr float kDeviations = 3.0f;
-// Lone returns of a sweep in clear air: thin objects, edges and distant ground. Measured: 0.05 % at rest, 0.3 to 0.7 %
-// in motion, 1.6 % where a thrown rig sees little ground.
+// Fraction of lone returns of a sweep in clear air: thin objects, edges and distant ground. Measured: 0.05 % at rest,
+// 0.3 to 0.7 % in motion, 1.6 % where a thrown rig sees little ground.
 constexpr float kClearShare = 0.02f;
 
 float square(float x) {
@@ -28,7 +28,7 @@ float square(float x) {
 
 }  // namespace
 
-/// Squared sine of the angle between two beams; 1 for right or larger angles.
+/// Returns the squared sine of the angle between two beams. Returns 1 for right or larger angles.
 float LoneReturns::sine2_between(const Beam& a, const Beam& b) {
   if (a.x_L_m.dot(b.x_L_m) <= 0.0f) return 1.0f;
   return a.x_L_m.cross(b.x_L_m).squaredNorm() / (square(a.range_m) * square(b.range_m));
@@ -38,18 +38,18 @@ float LoneReturns::variance_m2(const RangeNoise& noise, const Beam& beam) {
   return square(std::max(static_cast<float>(noise.sigma_m), static_cast<float>(noise.share) * beam.range_m));
 }
 
-/// Whether two returns are at the same range: mapping.md (R13).
+/// Returns whether the ranges of two returns are equal within noise: mapping.md (R13).
 bool LoneReturns::same_range(const RangeNoise& noise, const Beam& a, const Beam& b) {
   return square(a.range_m - b.range_m) <= square(kDeviations) * (variance_m2(noise, a) + variance_m2(noise, b));
 }
 
-/// Whether the line between two returns forms at least this angle with the beam: mapping.md (R14).
+/// Returns whether the line between two returns forms at least the angle of `sine` with the beam: mapping.md (R14).
 bool LoneReturns::stands(float sine, const Beam& a, const Beam& b) {
   const float farther = std::max(a.range_m, b.range_m);
   return a.x_L_m.cross(b.x_L_m).squaredNorm() >= square(sine * farther) * (a.x_L_m - b.x_L_m).squaredNorm();
 }
 
-/// Whether a return is on the line between the returns before and after it: mapping.md (R15).
+/// Returns whether a return is on the line between the returns before and after it: mapping.md (R15).
 bool LoneReturns::between(const RangeNoise& noise, const Beam& before, const Beam& beam, const Beam& after) {
   if (!stands(kGrazingSine, before, after)) return false;
   const float to_before = std::sqrt(sine2_between(before, beam)), to_after = std::sqrt(sine2_between(beam, after));
@@ -70,7 +70,7 @@ struct LoneReturns::Beside {
   auto end() const { return beam.begin() + count; }
 };
 
-/// Whether two sorted beams are on one ring and within reach of each other.
+/// Returns whether two sorted beams are on one ring and within reach of each other.
 bool LoneReturns::is_neighbour(std::size_t at, std::size_t other, float reach2) const {
   if (other >= beams_.size() || beams_[other].ring != beams_[at].ring) return false;
   const bool next = other + 1 == at || at + 1 == other;
@@ -104,7 +104,7 @@ bool LoneReturns::is_confirmed(const RangeNoise& noise, std::size_t at, float re
   });
 }
 
-/// Sorts the points by ring, in firing order within each. Overwrites the start indices of the rings.
+/// Sorts the points by ring, in firing order within each ring. Overwrites the start indices of the rings.
 void LoneReturns::sort_by_ring(const std::vector<SweepPoint>& points) {
   ring_next_.assign(1, 0);
   for (const SweepPoint& point : points) {
@@ -121,7 +121,7 @@ void LoneReturns::sort_by_ring(const std::vector<SweepPoint>& points) {
   }
 }
 
-/// Computes the step from each beam to the previous one on its ring, or 1 for the first.
+/// Computes the step from each beam to the previous beam on its ring. The first beam of a ring has a step of 1.
 void LoneReturns::measure_steps() {
   steps2_.assign(beams_.size(), 1.0f);
   sorted_steps2_.clear();
@@ -132,7 +132,7 @@ void LoneReturns::measure_steps() {
   }
 }
 
-/// Median of the steps along the rings; 1 without steps.
+/// Returns the median of the steps along the rings. Returns 1 without steps.
 float LoneReturns::median_step2() {
   if (sorted_steps2_.empty()) return 1.0f;
   const auto middle = sorted_steps2_.begin() + static_cast<std::ptrdiff_t>(sorted_steps2_.size() / 2);

@@ -16,21 +16,21 @@ struct RangeNoise {
 
 /// Detects lone returns, which no neighbouring beam confirms: dust, rain, snow, blades of grass, birds.
 ///
-/// A surface returns many neighbouring beams. A return is confirmed in one of three ways. One of the two returns before
-/// or after it on its ring has the same range within noise. Or the line to the next one is steep enough against the
-/// beam to be a surface (I. Bogoslavskyi, C. Stachniss, IROS 2016). Or it is on the line between one before and one
-/// after it, as on ground at a grazing angle: mapping.md (R13), (R14), (R15). Neighbours are within the sweep's angular
-/// step, so a return among misses is alone. All returns are kept if successive returns are too far apart for this test.
-/// All returns are also kept if there are no more lone returns than in clear air. Larger moving objects (people, cars)
-/// are not lone returns.
+/// A surface returns many neighbouring beams. A neighbour on the ring confirms a return in one of three ways. The range
+/// of one of the two returns before or after is equal within noise. Or the line to an adjacent return is steep enough
+/// against the beam to be a surface (I. Bogoslavskyi, C. Stachniss, IROS 2016). Or the return is on the line between a
+/// return before and a return after, as on ground at a grazing angle: mapping.md (R13), (R14), (R15). Neighbours are
+/// within the sweep's angular step, so a return among misses is alone. All returns are kept if successive returns are
+/// too far apart to be compared. All returns are also kept if there are no more lone returns than in clear air. Larger
+/// moving objects (people, cars) are not lone returns.
 class LoneReturns {
  public:
   /// Removes the lone returns from `points` and returns their number. The remaining order is kept: firing order per
-  /// ring. O(number of points); allocates only for a sweep larger than those before.
+  /// ring. Cost: O(number of points). Memory is allocated only for a sweep larger than all sweeps before.
   std::size_t drop(const RangeNoise& noise, std::vector<SweepPoint>& points);
 
  private:
-  /// Data of a return for these tests; contiguous per ring.
+  /// Data of a return for the comparison of neighbours; contiguous per ring.
   struct Beam {
     Eigen::Vector3f x_L_m;
     float range_m;

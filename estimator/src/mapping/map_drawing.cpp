@@ -9,7 +9,8 @@ namespace {
 
 constexpr double kSameLineCosine = 0.9988;  // 0.05 rad, less than the angle between two rings
 constexpr int kRingBits = 16;
-// Sweeps that must see through a point before it is left out: a single one may be wrong about an edge.
+// Number of sweeps that must see through a point before the point is left out, because a single sweep may be wrong
+// about an edge.
 constexpr std::uint8_t kSeenThrough = 2;
 
 }  // namespace

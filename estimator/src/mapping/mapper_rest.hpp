@@ -7,8 +7,8 @@
 namespace tumble::mapping {
 
 /// Returns the rest detection of the mapper, used from the first reading on. The mean rate is within `rest_rate_rad_s`
-/// of the gyro's bias on each axis, and readings within 1/sqrt(3) of that of their mean. The force is within
-/// `rest_force_m_s2` of gravity and of its mean. Heuristic.
+/// of the gyro's bias on each axis. Readings are within 1/sqrt(3) of `rest_rate_rad_s` of their mean. The force is
+/// within `rest_force_m_s2` of gravity and of its mean. The limits are heuristic.
 RestDetector::Params mapper_rest(const LidarInertialOdometry::Params& params);
 
 }  // namespace tumble::mapping

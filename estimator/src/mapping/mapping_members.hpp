@@ -7,7 +7,8 @@
 #include "odometry_members.hpp"
 #include "sweep_members.hpp"
 
-/// Members of the odometry's parts that persist between sweeps: state_visitor.hpp, README.md.
+/// Members of the odometry's parts that persist between sweeps, as state_visitor.hpp describes. README.md explains the
+/// parts.
 namespace tumble {
 
 namespace mapping {
@@ -80,7 +81,7 @@ void LocalMap::members(Self& s, Visitor& visit) {
 
 }  // namespace mapping
 
-/// Without the parameters, which are set at construction.
+/// Visits the members without the parameters, which are set at construction.
 template <class Self, class Visitor>
 void LidarInertialOdometry::Impl::members(Self& s, Visitor& visit) {
   visit.scratch(s.params);

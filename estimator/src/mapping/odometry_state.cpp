@@ -10,10 +10,11 @@ namespace tumble {
 
 namespace {
 
-// Limit of stamps, so that twice a difference fits into 64 bits: 2067 for a clock that starts in 1970.
+// Limit of stamps, so that twice a difference fits into 64 bits. The limit is the year 2067 for a clock that starts in
+// 1970.
 constexpr TimeNs kStamp_ns = 3'070'000'000'000'000'000;
 
-/// Parameters that an earlier run may have estimated: SecondPass.
+/// Visits parameters that an earlier run may have estimated: SecondPass.
 template <StateOf<LidarInertialOdometry::Params> Self, class Visitor>
 void visit_estimated(Self& p, Visitor& visit) {
   visit("T_IL", p.T_IL);

@@ -60,7 +60,7 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
   }
   report.verdict = placed->verdict;
 
-  // updated state and motion, map update, and state for the next sweep
+  // The updated state determines the motion, the map update, and the state for the next sweep.
   const std::unique_ptr<const StateEstimate> start(new StateEstimate(update(motion, *placed, *prediction)));
   if (!placed->alignment) {  // a failed attempt may have changed it
     const Registration::Estimate& mean = start->mean;
@@ -89,7 +89,7 @@ Status LidarInertialOdometry::Impl::check_sweep(TimeNs start_ns, TimeNs end_ns,
   if (samples.back().time_ns < end_ns) {
     return {Trouble::too_few, "imu time_ns", double(samples.back().time_ns), double(end_ns)};
   }
-  // with a wrong clock, the first sweep may start before the first sample: extend the initial rest backwards
+  // with a wrong clock, the first sweep may start before the first sample, so the initial rest is extended backwards
   const double early_s = seconds(samples.front().from_ns - start_ns);
   if (!started && early_s > (params.time_offset_s != 0.0 ? SweepTrajectory::kBeyond_s : 0.0)) {
     return {Trouble::too_few, "start_ns", double(start_ns), double(samples.front().from_ns)};
@@ -106,8 +106,8 @@ Status LidarInertialOdometry::Impl::level_at_first() {
   return {};
 }
 
-/// Starts the map with the first sweep that has enough points. If the sweep begins with the IMU, its start is the
-/// levelled state; otherwise it is the result of dead reckoning (mapping.md, "Start").
+/// Starts the map with the first sweep that has enough points. If the sweep begins with the IMU, the sweep's start is
+/// the levelled state. If the sweep begins later, its start is the result of dead reckoning (mapping.md, "Start").
 Status LidarInertialOdometry::Impl::start_map(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns,
                                               SweepReport& report) {
   const SweepCalibration calibration = boundary.state_estimate.mean.calibration;
@@ -132,7 +132,7 @@ Status LidarInertialOdometry::Impl::start_map(TimeNs start_ns, TimeNs end_ns, st
   return {Trouble::too_few, "points", double(points), double(params.expert.matching.least)};
 }
 
-/// Integrates inertially to `end_ns`, without a map. A rest levels the attitude again.
+/// Propagates the state to `end_ns` by inertial integration, without a map. A rest levels the attitude again.
 Status LidarInertialOdometry::Impl::dead_reckon(TimeNs end_ns) {
   MotionState levelled;
   if (!track.border_ns()) {
@@ -159,7 +159,7 @@ Status LidarInertialOdometry::Impl::dead_reckon(TimeNs end_ns) {
   return {};
 }
 
-/// Returns whether the IMU measures only gravity, and no more than gravity by the estimated attitude.
+/// Returns whether the IMU measures only gravity, and whether gravity agrees with the estimated attitude.
 bool LidarInertialOdometry::Impl::rests(const mapping::InertialTrack& inertial, const SweepTrajectory& motion,
                                         TimeNs end_ns) const {
   if (!inertial.rests_until(end_ns)) return false;
@@ -195,8 +195,8 @@ void LidarInertialOdometry::Impl::register_to_map(const Prediction& prediction, 
   mapping::judge(params, tracking, scene.points.size(), prior_certain, attempt, placed);
 }
 
-/// Returns the state at the sweep's start. After tracking failure at rest, first corrects the prediction, because the
-/// window uses it, too.
+/// Returns the state at the sweep's start. After tracking failure at rest, the prediction is corrected before the
+/// update, because the window also uses the prediction.
 StateEstimate LidarInertialOdometry::Impl::update(const MotionWindow& motion, const Placed& placed,
                                                   Prediction& prediction) const {
   if (placed.alignment) return mapping::posterior(prediction, *placed.alignment);
@@ -227,8 +227,8 @@ std::vector<InsertedPoint> LidarInertialOdometry::Impl::insert(const UpdatedSwee
   return inserted;
 }
 
-/// Updates the persistent state after a sweep. The window links the sweep to the last one by the old boundary, so the
-/// sweep enters it before boundary_after() replaces the boundary.
+/// Updates the persistent state after a sweep. The window links the sweep to the last sweep by the old boundary. The
+/// sweep therefore enters the window before boundary_after() replaces the boundary.
 void LidarInertialOdometry::Impl::propagate(const UpdatedSweep& sweep, const Placed& placed, const MotionWindow& motion,
                                             std::vector<InsertedPoint> inserted, SweepReport& report) {
   const Registration::Result* aligned = placed.alignment ? &*placed.alignment : nullptr;
@@ -245,7 +245,7 @@ void LidarInertialOdometry::Impl::propagate(const UpdatedSweep& sweep, const Pla
     window.smooth();
     window.move_inserted(map);
   }
-  // no later sweep refines it; it leaves with the next one
+  // no later sweep refines the oldest sweep, which leaves the window with the next sweep
   if (window.is_full()) report.smoothed = poses_of(window.sweeps().front());
   mapping::boundary_after(params, sweep.start, motion, sweep.trajectory, aligned, boundary);
   report.pose = boundary.state_estimate.mean.state.pose();
@@ -254,7 +254,7 @@ void LidarInertialOdometry::Impl::propagate(const UpdatedSweep& sweep, const Pla
   prune_until(motion.end_ns);
 }
 
-/// Points of the sweep have the error of its pose, which adds to the map's error where the robot is.
+/// Adds the pose error of a sweep to the map's error where the robot is, because the sweep's points have this error.
 void LidarInertialOdometry::Impl::add_map_drift(const UpdatedSweep& sweep, const SweepReport& report) {
   const double inserted_share =
       report.points_used == 0 ? 0.0 : double(report.map_points_added) / double(report.points_used);
@@ -271,8 +271,8 @@ void LidarInertialOdometry::Impl::prune_until(TimeNs end_ns) {
   if (map.prune(params, boundary.state_estimate.mean.state.p_WI_m)) window.clear_inserted();
 }
 
-/// Propagates the alternative pose by inertial prediction. This pose is the one without an unconfirmed relocalisation,
-/// or a contradicted one after tracking failed again.
+/// Propagates the alternative pose by inertial prediction. The alternative is the pose without an unconfirmed
+/// relocalisation, or a contradicted pose after tracking failed again.
 void LidarInertialOdometry::Impl::propagate_alternative(const MotionWindow& motion, bool unconfirmed_before) {
   const bool unconfirmed = mapping::is_unconfirmed(tracking);
   if (unconfirmed && !unconfirmed_before) {
@@ -289,8 +289,8 @@ void LidarInertialOdometry::Impl::propagate_alternative(const MotionWindow& moti
   if (!go_on_by_inertia(motion, rests, other->boundary, &other->window).ok()) other.reset();
 }
 
-/// From a border to a sweep's end without its points. `rests`: the velocity is known to be 0. The sweep enters the
-/// window, if there is one.
+/// Propagates from the boundary to a sweep's end without the sweep's points. With `rests`, the velocity is known to be
+/// 0. The sweep enters the window, if there is one.
 Status LidarInertialOdometry::Impl::go_on_by_inertia(const MotionWindow& motion, bool rests, mapping::SweepBoundary& at,
                                                      mapping::LagWindow* into) const {
   const Registration::Estimate& before = at.state_estimate.mean;
@@ -311,8 +311,8 @@ Status LidarInertialOdometry::Impl::go_on_by_inertia(const MotionWindow& motion,
   return {};
 }
 
-/// Reverts a contradicted relocalisation: removes its points from the map and returns to inertial prediction. The
-/// contradicted pose remains as a start of the search.
+/// Reverts a contradicted relocalisation. The points of the relocalisation are removed from the map, and inertial
+/// prediction resumes. The contradicted pose remains as a start of the search.
 void LidarInertialOdometry::Impl::go_back_to_inertia() {
   map.withdraw(std::exchange(other->inserted_from, 0));  // pruning changes sweep numbers
   std::swap(boundary, other->boundary);

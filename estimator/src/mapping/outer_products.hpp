@@ -11,7 +11,7 @@ namespace tumble::mapping {
 
 /// Computes a sum of outer products of columns of up to `Rows` numbers. The result equals
 /// SelfAdjointView<Lower>::rankUpdate bit for bit. Eigen's function stores its blocks by value: 86 KiB of stack for 128
-/// columns of 28 numbers. This class stores the blocks on the heap and therefore calls Eigen's kernel directly.
+/// columns of 28 numbers. OuterProducts stores the blocks on the heap and therefore calls Eigen's kernel directly.
 template <int Rows, int Columns>
 class OuterProducts {
  public:

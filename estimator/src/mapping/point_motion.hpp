@@ -20,7 +20,7 @@ class PointMotion {
   /// Computes the derivative of the point's position along a direction of the world by all unknowns: mapping.md (R17).
   void along(const Eigen::Vector3d& direction_W, SweepUnknowns::Vector& derivative) const;
 
-  /// Returns u of SweepTrajectory::base_m, in W.
+  /// Returns the lever arm vector u of SweepTrajectory::base_m, in W.
   const Eigen::Vector3d& lever_m() const { return lever_; }
 
  private:

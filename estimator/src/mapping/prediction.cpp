@@ -19,7 +19,8 @@ namespace {
 namespace u = unknowns;
 using Params = LidarInertialOdometry::Params;
 
-/// Continues the deficit of an axis that is saturated at the boundary, with exponential decay: mapping.md (R48).
+/// Continues the saturation deficit of an axis that is saturated at the boundary, with exponential decay: mapping.md
+/// (R48).
 void carry_deficit(const Params& params, const SweepBoundary& boundary, const SweepTrajectory& trajectory,
                    Prediction& next) {
   constexpr int kLast = SweepTrajectory::kKnots - 1;
@@ -39,8 +40,8 @@ void carry_deficit(const Params& params, const SweepBoundary& boundary, const Sw
   }
 }
 
-/// Largest standard deviation that the rate method reports for the axis while clipped within the segment, at least the
-/// parameter's value.
+/// Returns the largest standard deviation that the rate method reports for the axis while clipped within the segment.
+/// The result is at least the parameter's value.
 double deficit_sigma(const Params& params, const MotionWindow& window, const SweepTrajectory& trajectory, int axis) {
   double sigma = params.expert.rails.deficit_sigma_min_rad_s;
   for (const MotionSample& sample : window.samples) {
@@ -51,8 +52,9 @@ double deficit_sigma(const Params& params, const MotionWindow& window, const Swe
   return sigma;
 }
 
-/// Knots are samples of a first-order Gauss-Markov process with the reported standard deviation, mapping.md (R46),
-/// (R47), (R49). The last one applies if the first knot continues from the last sweep.
+/// Adds the process noise of the saturation deficit. Knots are samples of a first-order Gauss-Markov process with the
+/// reported standard deviation, mapping.md (R46), (R47). If the first knot continues from the last sweep, (R49)
+/// applies.
 void add_deficit_noise(const Params& params, const MotionWindow& window, const SweepTrajectory& trajectory,
                        Prediction& next) {
   if (!params.expert.rails.estimate_deficit) return;
@@ -110,7 +112,7 @@ Prediction predict(const Params& params, const SweepBoundary& boundary, const Mo
   next.prior.mean.calibration = boundary.state_estimate.mean.calibration;
   carry_deficit(params, boundary, trajectory, next);
   if (window.samples.front().at_rest) next.zero_velocity_update(params.expert.standstill.start_sigma_m_s);
-  // without this, a slow drive with well constrained sweeps would count as rest
+  // without the speed limit, a slow drive with well constrained sweeps would count as rest
   const bool creeps = boundary.state_estimate.mean.state.v_WI_m_s.norm() < params.expert.standstill.creep_max_m_s;
   if (window.resting_sweeps >= params.expert.standstill.sweeps_min && !boundary.constrained && creeps)
     next.zero_velocity_update(params.expert.standstill.sigma_m_s);
@@ -119,7 +121,7 @@ Prediction predict(const Params& params, const SweepBoundary& boundary, const Mo
   MotionNoise within = inertial_noise(params, trajectory, window.samples, axes);
   const Eigen::Matrix3d railed_m2_s2 = railed_velocity_variance(params, trajectory, window.samples);
   u::block(next.noise, u::motion) += within;
-  // a force late in a segment hardly changes the fitted velocity, so it is also added to the next segment
+  // a force late in a segment hardly changes the fitted velocity, so its variance is also added to the next segment
   u::block(next.noise, u::velocity) += boundary.railed_velocity_m2_s2 + railed_m2_s2;
   u::block(within, u::velocity) += railed_m2_s2;
   add_deficit_noise(params, window, trajectory, next);
@@ -152,7 +154,8 @@ StateEstimate posterior(const Prediction& prediction) {
 
 namespace {
 
-/// Computes the factor of the prior's errors in mapping.md (R52). A separate function to limit the stack.
+/// Computes the factor of the prior's errors in mapping.md (R52). weigh_prior() is a separate function to limit the
+/// stack.
 [[gnu::noinline]] void weigh_prior(const Prediction& prediction, const Registration::Result& aligned,
                                    Registration::Matrix& out) {
   // errors in variables are not information and correct nothing
@@ -165,7 +168,7 @@ namespace {
 }  // namespace
 
 /// Computes the errors of the unknowns after the registration: mapping.md (R52). The errors of the prior and the
-/// gradient of the surfaces, with the measured score_covariance, pass through the same normal equations.
+/// gradient of the surfaces, with the measured score_covariance, pass through one system of normal equations.
 StateEstimate posterior(const Prediction& prediction, const Registration::Result& aligned) {
   StateEstimate start{aligned.mean, aligned.covariance, Registration::Matrix::Zero()};
   const auto from_prior = std::make_unique<Registration::Matrix>();

@@ -27,7 +27,7 @@ using OfMotion = Eigen::Matrix<double, Values, kMotion>;
 constexpr int kIterations = 6;     // usually two or three are enough
 constexpr double kSettled = 1e-9;  // m, rad, m/s, rad/s
 
-/// Current unknowns relative to the prediction: those at the boundary, and the noise since.
+/// Current unknowns relative to the prediction: unknowns at the boundary, and noise since the boundary.
 struct Offsets {
   Registration::Vector start = Registration::Vector::Zero();
   Eigen::Matrix<double, kMotion, 1> noise = Eigen::Matrix<double, kMotion, 1>::Zero();
@@ -90,7 +90,7 @@ class Sweep {
   const MotionWindow& window_;
 };
 
-/// `by_moment`: derivative of the reading by errors of the motion at that time.
+/// `by_moment` is the derivative of the reading by errors of the motion at the reading's time.
 template <int Size>
 void add(const OfMotion<Size>& by_moment, const Moment& moment, Expected& out) {
   const Eigen::Matrix<double, Size, kUnknowns> by_start = by_moment * moment.by_start;
@@ -190,7 +190,7 @@ bool find_gains(const MotionNoise& within, Work& work) {
   return true;
 }
 
-/// Applies the update, and its effect on the boundary's errors: mapping.md (R38).
+/// Applies the update, and the effect of the update on the boundary's errors: mapping.md (R38).
 [[gnu::noinline]] void move(Work& work, Prediction& prediction) {
   Registration::Vector moved = work.offsets.start;
   u::segment(moved, u::motion) += work.offsets.noise;
@@ -202,7 +202,7 @@ bool find_gains(const MotionNoise& within, Work& work) {
   work.left.noalias() -= work.by_start * work.expected.by_start;
 }
 
-/// Adds the noise within the sweep, reduced by the gains, and that of the reading: mapping.md (R38).
+/// Adds the noise within the sweep, reduced by the gains, and the noise of the reading: mapping.md (R38).
 [[gnu::noinline]] void add_noise(const MotionNoise& within, Work& work, Prediction& prediction) {
   const Gain<kUnknowns>& K = work.by_start;
   Eigen::Matrix<double, kUnknowns, kMotion> left = -K * work.expected.by_noise;
@@ -221,7 +221,7 @@ void weigh_reading(const OdometerReading& reading, const SweepBoundary& boundary
   const Sweep sweep(prediction.prior.mean, window);
   if (!holds(sweep, reading)) return;
   const auto work = std::make_unique<Work>();
-  // weighted like the registration: by C, mapping.md section 6
+  // the update is weighted by the covariance C, like the registration: mapping.md section 6
   sandwich(prediction.by_last, boundary.state_estimate.weight, work->at_start);
   Matrix& before = work->before;  // noise at the start: of the deficit, and of earlier saturation
   before = prediction.noise;

@@ -188,7 +188,7 @@ RegistrationVerdict Registration::judge(const Problem& problem, const Descent& a
   return RegistrationVerdict::converged;
 }
 
-/// Computes mean, covariance and diagnostics of an accepted descent.
+/// Computes mean, covariance and diagnostics of an accepted optimisation.
 Status Registration::conclude(const Problem& problem, const Descent& at, SweepTrajectory& trajectory, Result& result) {
   Matrix posterior = Matrix::Identity();  // mapping.md (R24)
   dense::solve_semidefinite(at.H, posterior);

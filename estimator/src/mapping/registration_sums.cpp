@@ -73,14 +73,14 @@ void Registration::Sums::add(const Sums& other) {
   inliers += other.inliers;
 }
 
-/// Range and skew part of mapping.md (R18).
+/// Computes the variance due to range and skew, the first part of mapping.md (R18).
 double Registration::point_variance_m2(const SweepPoint& point) const {
   const double range = std::max(params_.range_sigma_m, params_.range_sigma_share * point.range_m);
   const double skew = params_.skew_sigma_m_s * point.sweep_t_s;
   return range * range + skew * skew;
 }
 
-/// mapping.md (R16) and (R17), the distance and its derivative.
+/// Computes the distance to a plane and its derivative, mapping.md (R16) and (R17).
 double Registration::residual(const SweepTrajectory& trajectory, const SweepCalibration& calibration,
                               const SweepPoint& point, const PlaneFit& plane, std::size_t& hint, Vector& derivative) {
   const Eigen::Vector3d n = plane.normal_W.cast<double>();
@@ -96,7 +96,8 @@ void Registration::find_match(const VoxelMap& map, std::size_t point, Neighbours
   if (match.searched) {
     const float moved2 = (positions_[point] - match.searched_at_W_m).squaredNorm();
     if (moved2 <= rematch2) return;
-    // the former neighbours are within this radius, so the new ones are, too; a small margin covers rounding
+    // the former neighbours are within this radius, so the new neighbours are also within it; a small margin covers
+    // rounding
     radius_m = std::min(radius_m, kRounding * (match.reach_m + std::sqrt(moved2)));
   }
   match.searched = true;
@@ -111,7 +112,7 @@ void Registration::find_match(const VoxelMap& map, std::size_t point, Neighbours
     const float sigma = map.sigma_m(found.index[k]);
     variance += sigma * sigma;
   }
-  // the map's part of mapping.md (R18)
+  // the part of mapping.md (R18) due to the map
   match.map_variance_m2 = variance / static_cast<float>(found.count) + match.plane.thickness2_m2;
 }
 
@@ -124,7 +125,7 @@ Registration::Weight Registration::weigh(const SweepPoint& point, const Match& m
   return {variance, robust, robust * params_.expert.correlation_discount / variance};
 }
 
-/// Computes the points' positions by this trajectory, their planes, and the distances: mapping.md (R3), (R16).
+/// Computes the points' positions by the given trajectory, their planes, and the distances: mapping.md (R3), (R16).
 void Registration::match_points(const SweepTrajectory& trajectory, std::span<const SweepPoint> points,
                                 const VoxelMap& map) {
   levers_.resize(points.size());
@@ -155,11 +156,12 @@ double Registration::kernel_width_m() {
   return std::max(params_.expert.kernel_min_m, 3.0 * 1.4826 * static_cast<double>(*middle));
 }
 
-/// Sums over the points of mapping.md (R23).
+/// Computes the sums of mapping.md (R23) over a block of points.
 void Registration::accumulate_block(std::span<const SweepPoint> points, std::size_t block,
                                     const SweepTrajectory& trajectory, const SweepCalibration& calibration,
                                     const Unknowns& unknowns, double kernel_m, Products& products, Sums& sum) {
-  // a column per match: derivatives by the free unknowns and the distance, both times the square root of the weight
+  // One column per match contains the derivatives by the free unknowns and the distance. Derivatives and distance are
+  // multiplied by the square root of the weight.
   auto& rows = products.columns;
   Eigen::Matrix<double, static_cast<int>(kBlock), 1> weighted;
   const bool rigid = !unknowns.deficit && !unknowns.calibration;
@@ -210,8 +212,9 @@ void Registration::accumulate(std::span<const SweepPoint> points, const SweepTra
   sum.H = lower.selfadjointView<Eigen::Lower>();
 }
 
-/// mapping.md (R28), (R29), for all free unknowns. For the motion alone, it would constrain unobservable combinations
-/// of motion and calibration, for example attitude and mounting rotation. (R52) would grow there without bound.
+/// Part of the normal matrix due to noise of the normals, for all free unknowns: mapping.md (R28), (R29). Computed for
+/// the motion alone, this part would constrain unobservable combinations of motion and calibration, for example
+/// attitude and mounting rotation. The covariance (R52) of unobservable combinations would then grow without bound.
 struct Registration::NoiseOfNormals {
   const Unknowns& unknowns;
   using Products = mapping::OuterProducts<kUnknowns, 2 * static_cast<int>(kBlock)>;
@@ -276,7 +279,7 @@ struct Registration::Pulls {
   }
 };
 
-/// Evaluates each match once at the result.
+/// Evaluates the errors of each match at the registered pose.
 void Registration::describe_errors(std::span<const SweepPoint> points, const SweepTrajectory& trajectory,
                                    const SweepCalibration& calibration, const Unknowns& unknowns, double kernel_m,
                                    Result& result) {

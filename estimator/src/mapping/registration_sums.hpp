@@ -8,7 +8,7 @@
 
 namespace tumble {
 
-/// The free unknowns and their indices in the compact sums.
+/// Unknowns of the registration that are estimated, and their indices in the compact sums.
 struct Registration::Unknowns {
   std::array<int, kUnknowns> free{};  ///< their indices, ascending
   int count = 0;
@@ -17,9 +17,9 @@ struct Registration::Unknowns {
   /// The motion is always free; other unknowns are free if they have a variance.
   explicit Unknowns(const Matrix& covariance);
 
-  /// Expands the sums to normal equations over all unknowns; rows of fixed ones are 0.
+  /// Expands the sums to normal equations over all unknowns. Rows of fixed unknowns are 0.
   void expand(const Sums& sum, Matrix& H, Vector& g) const;
-  /// Removes the fixed unknowns: their step is 0.
+  /// Removes the fixed unknowns, so that their step is 0.
   void hold(Matrix& H, Vector& g) const;
   void cut_fixed(Matrix& M) const;
   void clear_fixed(Matrix& covariance) const;

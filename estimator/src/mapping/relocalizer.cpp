@@ -14,7 +14,7 @@ namespace {
 
 using Params = LidarInertialOdometry::Params;
 
-// Multiples of deficit_try_rad_s: densely where most deficits are, then one larger value.
+// Multiples of deficit_try_rad_s. The multiples are dense where most saturation deficits are, and one is larger.
 constexpr double kDeficitTries[] = {1.0, 2.0, 3.0, 5.0};
 constexpr double kDeficitSigmas = 5.0;  // deficits beyond this many standard deviations are not tried
 
@@ -25,18 +25,18 @@ bool converged(const Registration::Result& found) {
   return found.verdict == RegistrationVerdict::converged;
 }
 
-/// Returns whether the matched surfaces fit. mapping.md (R68).
+/// Returns whether the matched surfaces fit the sweep: mapping.md (R68).
 bool fits(const Params& params, const Registration::Result& found) {
   return double(found.inliers) >= params.expert.tracking.confirm_inlier_ratio * double(found.matches);
 }
 
-/// Registers the sweep. If this fails and a clipped axis may have a deficit, tries larger saturation deficits. Reason:
-/// saturation that ends within one sweep may rotate the start by a radian.
+/// Registers the sweep. If the registration fails and a clipped axis may have a saturation deficit, track() tries
+/// larger deficits. Saturation that ends within one sweep may rotate the start by a radian.
 void track(const Params& params, const Registration::Prior& prior, const Scene& scene, Aligner& aligner,
            SweepTrajectory& trajectory, Registration::Result& found) {
   aligner.in_full(prior, scene, trajectory, found);
   int iterations = found.iterations, tries = 0;
-  // an attempt that exceeded its bound would do so again
+  // an attempt that exceeded the correction limit would exceed the limit again
   const bool out_of_bounds = found.correction_m > params.expert.matching.correction_max_m ||
                              found.correction_rad > params.expert.matching.correction_max_rad;
   if (found.verdict == RegistrationVerdict::diverged && !out_of_bounds) {
@@ -59,8 +59,8 @@ void track(const Params& params, const Registration::Prior& prior, const Scene& 
   found.iterations = iterations;
 }
 
-/// Searches for the pose from the prior and from starts around it, until the surfaces fit; otherwise returns the pose
-/// with most inliers. The search continues with the next sweep, to limit the cost per sweep.
+/// Searches for the pose from the prior and from starts around the prior, until the surfaces fit. If no pose fits,
+/// returns the pose with most inliers. The search continues with the next sweep, to limit the cost per sweep.
 void search(const Params& params, const SearchContext& from, const Scene& scene, Aligner& aligner,
             SweepTrajectory& trajectory, Registration::Result& found) {
   const RelocalizationParams& starts = params.expert.search;

@@ -6,7 +6,7 @@
 #include "aligner.hpp"
 #include "tracking.hpp"
 
-/// Choice of the registration's starts; owns all restarts.
+/// Choice of the registration's starting poses, including all restarts.
 namespace tumble::mapping {
 
 struct Attempt {
@@ -19,12 +19,13 @@ struct Attempt {
 struct SearchContext {
   const TrackingState& tracking;
   const Registration::Prior& prior;
-  /// State by a relocalisation that this sweep contradicted, as a start of the search. Null: none.
+  /// State by a relocalisation that the sweep contradicted, as a start of the search. Null if no relocalisation was
+  /// contradicted.
   const MotionState* contradicted = nullptr;
 };
 
 /// Aligns a sweep by all means that its tracking state allows. `trajectory` is that of the alignment, or of a failed
-/// attempt. `alignment` is that of the sweep's start, empty if none was found.
+/// attempt. `alignment` is that of the sweep's start, and is empty if no alignment was found.
 Attempt attempt(const LidarInertialOdometry::Params& params, const SearchContext& from, const Scene& scene,
                 Aligner& aligner, SweepTrajectory& trajectory, std::optional<Registration::Result>& alignment);
 
@@ -37,14 +38,14 @@ struct Placed {
   std::optional<Registration::Result> alignment;  ///< of its start
 };
 
-/// Sets the verdict of an attempt with `points` points. `placed` already contains the alignment and whether it was
-/// expected. If the map had too few points, or after enough failed searches, the motion continues by inertial
-/// prediction as `degenerate`.
+/// Sets the verdict of an attempt with `points` points. `placed` already contains the alignment and whether the
+/// alignment was expected. If the map had too few points, or after enough failed searches, the motion continues by
+/// inertial prediction as `degenerate`.
 void judge(const LidarInertialOdometry::Params& params, const TrackingState& before, std::size_t points,
            bool prior_certain, const Attempt& attempt, Placed& placed);
 
-/// Computes start number `index` of a search: the prior itself, then shifts along each axis by its uncertainty, closest
-/// first, mapping.md (R66).
+/// Computes start number `index` of a search. Start 0 is the prior. The further starts are shifts along each axis by
+/// its uncertainty, closest first, mapping.md (R66).
 void move_start(const RelocalizationParams& params, int index, Registration::Prior& prior);
 
 }  // namespace tumble::mapping

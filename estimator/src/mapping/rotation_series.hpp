@@ -3,13 +3,13 @@
 
 #include <utility>
 
-/// Cosine and sine of half a small angle by their series. Start with c = s = 1. For each pair, with h the half angle
-/// squared, c = 1 - h first c and s = 1 - h second s. The result s is sin(x) / x.
+/// Cosine and sine of half a small angle by their series. The computation starts with c = s = 1, and h is the half
+/// angle squared. Each pair of ratios (a, b) gives c = 1 - h a c and s = 1 - h b s. The result s is sin(x) / x.
 namespace tumble::rotation_series {
 
-/// Maximum whole angle, squared; larger angles would need more terms.
+/// Maximum whole angle, squared. Larger angles would need more terms.
 inline constexpr double kAngle2_rad2 = 1.0;
-/// Ratios of successive terms of cos and of sin(x) / x, last first.
+/// Ratios of successive terms of the series of cos and of sin(x) / x, last term first.
 inline constexpr std::pair<double, double> kRatios[] = {
     {1.0 / 182, 1.0 / 210}, {1.0 / 132, 1.0 / 156}, {1.0 / 90, 1.0 / 110}, {1.0 / 56, 1.0 / 72},
     {1.0 / 30, 1.0 / 42},   {1.0 / 12, 1.0 / 20},   {1.0 / 2, 1.0 / 6}};

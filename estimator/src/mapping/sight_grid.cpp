@@ -10,11 +10,11 @@ namespace tumble::mapping {
 namespace {
 
 // Minimum ratio of range to sensor motion on each side. Returns are binned by their direction from one position. Above
-// this ratio, the error of the direction is below the bins that are checked: 0.1 rad.
+// the minimum ratio, the error of the direction is below the size of the checked bins: 0.1 rad.
 constexpr float kMovedToRange = 10.0f;
 constexpr int kEmptyMost = 4;  // of nine bins; rings are further apart than bins
-// Margin by which all returns must be beyond a point. The margin covers errors of the sweeps' relative pose, a return's
-// noise, and the slope of the ground within a bin.
+// Margin by which all returns must be beyond a map point that is no longer present. The margin covers errors of the
+// sweeps' relative pose, a return's noise, and the slope of the ground within a bin.
 constexpr float kBeyond_m = 0.3f, kBeyondShare = 0.03f;
 constexpr float kDeviations = 3.0f;
 
@@ -26,7 +26,7 @@ void SightGrid::start(const Eigen::Vector3f& from_W_m, float moved_m) {
   nearest_m_.assign(std::size_t{6} * kBins * kBins, std::numeric_limits<float>::infinity());
 }
 
-/// Empty for the position itself and for non-finite values.
+/// Returns the direction of a point. The result is empty for the ray origin and for non-finite values.
 std::optional<SightGrid::Direction> SightGrid::direction(const Eigen::Vector3f& lever_m) {
   Eigen::Index axis = 0;
   const float along = lever_m.cwiseAbs().maxCoeff(&axis);
@@ -46,7 +46,8 @@ void SightGrid::add(const Eigen::Vector3f& return_W_m) {
   nearest_m = std::min(nearest_m, lever_m.norm());
 }
 
-/// Smallest range of the returns around a direction; 0 with too few returns or at the edge of the cube.
+/// Returns the smallest range of the returns around a direction. Returns 0 with too few returns or at the edge of the
+/// cube.
 float SightGrid::free_m(const Direction& towards) const {
   float nearest_m = std::numeric_limits<float>::infinity();
   int empty = 0;

@@ -8,11 +8,12 @@
 namespace tumble::mapping {
 
 /// Free space of a sweep: the nearest return per direction, in bins of a cube around one position, axes of the world. A
-/// point closer than all returns around its direction is no longer there, mapping.md (R65). Directions with few
-/// returns, and those at an edge of the cube, give no information.
+/// map point closer than all returns around its direction is no longer present, mapping.md (R65). Directions with few
+/// returns, and directions at an edge of the cube, give no information.
 class SightGrid {
  public:
-  /// Sets the ray origin for the following points, and how far the sensor moved around it during the sweep.
+  /// Sets the ray origin for the following points, and the distance that the sensor moved around the origin during the
+  /// sweep.
   void start(const Eigen::Vector3f& from_W_m, float moved_m);
   void add(const Eigen::Vector3f& return_W_m);
 

@@ -57,7 +57,7 @@ Matrix unknowns_at(const SweepTrajectory& trajectory, double t_s) {
   return F;
 }
 
-/// Multiplies blocks of whole SIMD packets, so that each sum has the same order as in the full product. Rows of F
+/// Multiplies blocks of whole SIMD packets, so that the order of each sum equals that in the full product. Rows of F
 /// beyond the motion are those of the identity: mapping.md (R11).
 Matrix pose_and_mounting(const Matrix& F, const Matrix& errors) {
   constexpr int kSize = 8, kMounting = 16;

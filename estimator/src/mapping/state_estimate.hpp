@@ -7,13 +7,13 @@
 
 namespace tumble::mapping {
 
-/// Estimate of the unknowns at one time. The two covariances are C and E of mapping.md (section 6).
+/// Estimate of the unknowns at one time. The covariances `weight` and `error` are C and E of mapping.md (section 6).
 struct StateEstimate {
   Registration::Estimate mean;  ///< the covariance of its state is the motion block of `weight`
   /// Covariance for weighting the mean against the next sweep. Points count less than their information, for robustness
   /// to outliers.
   Registration::Matrix weight = Registration::Matrix::Zero();
-  /// Covariance of the mean's actual errors, propagated through the gains that the weights produced.
+  /// Covariance of the mean's actual errors, propagated through the gains that `weight` produced.
   Registration::Matrix error = Registration::Matrix::Zero();
 };
 
@@ -27,16 +27,17 @@ Registration::Matrix unknowns_at(const SweepTrajectory& trajectory, double t_s);
 /// matrices on the stack.
 void sandwich(const Registration::Matrix& F, const Registration::Matrix& P, Registration::Matrix& out);
 
-/// Returns the blocks of F errors F^T that involve the pose or the mounting, with F of unknowns_at; zero elsewhere.
-/// Equals the full product bit for bit at a third of the cost. Called for each pose of a recording.
+/// Returns the blocks of the product F errors F^T that involve the pose or the mounting. F is the result of
+/// unknowns_at(). All other blocks are zero. The returned blocks equal the blocks of the full product bit for bit, at a
+/// third of the cost. The function is called for each pose of a recording.
 Registration::Matrix pose_and_mounting(const Registration::Matrix& F, const Registration::Matrix& errors);
 
-/// Propagates to the end of the segment, at `end_ns`; the trajectory is that of the mean.
+/// Propagates to the end of the segment, at `end_ns`. `trajectory` is the motion of the estimate's mean.
 void at_end(const StateEstimate& at_start, const SweepTrajectory& trajectory, const Registration::Matrix& end_by_start,
             TimeNs end_ns, StateEstimate& end);
 
-/// Returns the derivative of the IMU's pose error by mounting errors for an exact lidar pose, at this attitude of the
-/// IMU: K of mapping.md (R54).
+/// Returns the derivative of the IMU's pose error by mounting errors for an exact lidar pose, at the given attitude of
+/// the IMU: K of mapping.md (R54).
 Eigen::Matrix<double, 6, 6> pose_by_mounting(const Eigen::Quaterniond& q_WI, const Eigen::Vector3d& p_IL_m);
 
 /// Returns the matrix with variances of 0 replaced by small ones, so that it can be inverted.

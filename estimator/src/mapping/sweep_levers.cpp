@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// SweepTrajectory::at for several points of a sweep at a time. The operations and their order equal those of Eigen's
+// SweepTrajectory::at for several points of a sweep at a time. Operations and their order are those of Eigen's
 // quaternions on a processor with packets of two doubles.
 #include <algorithm>
 #include <limits>

@@ -5,7 +5,7 @@
 #include "odometry_impl.hpp"
 #include "odometry_members.hpp"
 
-/// Members of the odometry's parts that belong to sweeps and readings: state_visitor.hpp.
+/// Members of the odometry's parts that belong to sweeps and readings, as state_visitor.hpp describes.
 namespace tumble {
 
 template <StateOf<MotionSample> Self, class Visitor>

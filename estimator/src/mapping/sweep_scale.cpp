@@ -15,8 +15,8 @@ namespace tumble {
 namespace {
 
 constexpr double kLeast = 0.02, kScaleDeviations = 5.0;
-// The mapper's prior comes from the IMU and hides scale errors over short spans. Ranges that are 10 % too long give
-// 1.02 to 1.03 over 0.1 s, and 1.08 over 0.4 s. Correct ranges give 0.998 to 1.006.
+// Duration of a span. The mapper's prior comes from the IMU and hides scale errors over short spans. Ranges that are 10
+// % too long give a scale of 1.02 to 1.03 over 0.1 s, and 1.08 over 0.4 s. Correct ranges give 0.998 to 1.006.
 constexpr double kSpan_s = 0.4;
 constexpr double kChange_m_s = 0.5;  // smaller changes of velocity are dominated by noise
 constexpr std::size_t kChangesMin = 5, kChangesMax = 1000;
@@ -36,8 +36,8 @@ class ImuMotion {
       attitudes_.insert(attitudes_.end(), sweep.trajectory.begin(), sweep.trajectory.end());
   }
 
-  /// Mean velocity from `middle_ns` to `to_ns` minus that from `from_ns` to `middle_ns`. Empty if a force is saturated
-  /// or in a gap.
+  /// Returns the mean velocity from `middle_ns` to `to_ns` minus the mean velocity from `from_ns` to `middle_ns`. The
+  /// result is empty if a force is saturated or in a gap.
   std::optional<Eigen::Vector3d> change(TimeNs from_ns, TimeNs middle_ns, TimeNs to_ns) const {
     if (attitudes_.empty()) return std::nullopt;
     const auto later = [](const ImuSample& sample, TimeNs time_ns) { return sample.time_ns <= time_ns; };
@@ -87,7 +87,8 @@ std::size_t sweeps_in(double span_s, const Sweeps& sweeps) {
   return static_cast<std::size_t>(std::clamp(std::round(count), 1.0, static_cast<double>(sweeps.size())));
 }
 
-/// Over the two spans that end with sweep `last`; empty if unknown or too small.
+/// Returns the change of velocity over the two spans that end with sweep `last`. The result is empty if the change is
+/// unknown or too small.
 template <class Sweeps>
 std::optional<Change> change_until(std::size_t last, std::size_t span, const Sweeps& sweeps,
                                    const ImuMotion& imu_motion) {

@@ -12,8 +12,8 @@ namespace tumble {
 
 namespace {
 
-/// Largest standard deviation of each axis among the segment's samples in which it was clipped. Later samples are not
-/// included.
+/// Returns the largest standard deviation of each axis among the segment's samples in which the axis was clipped. Later
+/// samples are not included.
 Eigen::Vector3d least_known(std::span<const MotionSample> samples, TimeNs end_ns) {
   Eigen::Vector3d sigma = Eigen::Vector3d::Zero();
   for (const MotionSample& sample : samples) {
@@ -25,7 +25,8 @@ Eigen::Vector3d least_known(std::span<const MotionSample> samples, TimeNs end_ns
   return sigma;
 }
 
-/// Factors s_j of the saturation deficit for a sample: signed, in proportion to its uncertainty. mapping.md (R8).
+/// Returns the signed factors s_j of the saturation deficit for a sample, in proportion to the sample's uncertainty.
+/// mapping.md (R8).
 Eigen::Vector3d signed_shares(const MotionSample& sample, const Eigen::Vector3d& least_known_rad_s) {
   Eigen::Vector3d share = Eigen::Vector3d::Zero();
   for (int axis = 0; axis < 3; ++axis) {
@@ -37,7 +38,7 @@ Eigen::Vector3d signed_shares(const MotionSample& sample, const Eigen::Vector3d&
   return share;
 }
 
-/// Weights of the knots at a fraction of the segment: linear between neighbours, mapping.md (R7).
+/// Returns the weights of the knots at a fraction of the segment: linear between neighbours, mapping.md (R7).
 Eigen::Matrix<double, SweepTrajectory::kKnots, 1> knot_weights(double share) {
   Eigen::Matrix<double, SweepTrajectory::kKnots, 1> weights;
   const double place = std::clamp(share, 0.0, 1.0) * (SweepTrajectory::kKnots - 1);
@@ -45,8 +46,8 @@ Eigen::Matrix<double, SweepTrajectory::kKnots, 1> knot_weights(double share) {
   return weights;
 }
 
-/// Same as so3::exp(rate_rad_s * s), by its series, exact to rounding. Called for each point of a sweep, with small
-/// angles.
+/// Returns so3::exp(rate_rad_s * s), by its series, exact to rounding. The function is called for each point of a
+/// sweep, with small angles.
 Eigen::Quaterniond rotated_by(const Eigen::Vector3d& rate_rad_s, double s) {
   const double angle2 = s * s * rate_rad_s.squaredNorm();
   if (!(angle2 <= rotation_series::kAngle2_rad2)) return so3::exp(rate_rad_s * s);
@@ -84,7 +85,7 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
     return {Trouble::too_few, "imu time_ns", samples.empty() ? 0.0 : double(samples.back().time_ns), double(end_ns)};
   }
   if (samples.front().from_ns > start.time_ns) {
-    // in seconds, as for every gap
+    // the gap is in seconds, as in every gap error
     return {Trouble::gap, "imu window start", seconds(samples.front().from_ns - start.time_ns), 0.0};
   }
 
@@ -135,7 +136,7 @@ const SweepTrajectory::Interval& SweepTrajectory::interval_at(double t_s, std::s
   return intervals_[i];
 }
 
-/// mapping.md (R2), (R4), (R6), within an interval.
+/// Evaluates mapping.md (R2), (R4), (R6) within an interval.
 SweepTrajectory::Instant SweepTrajectory::at(double t_s, std::size_t& hint) const {
   const double t = std::clamp(t_s, -kBeyond_s, duration_s_ + kBeyond_s);
   const Interval& now = interval_at(t, hint);
@@ -154,7 +155,8 @@ SweepTrajectory::Instant SweepTrajectory::at(double t_s, const Eigen::Vector3d& 
   return {now.q_WI * turned, now.preintegrated_p + s * now.preintegrated_v + (0.5 * s * s) * now.a_W};
 }
 
-/// Attitude change by the deficit up to `s` seconds into an interval, per unit of each knot's axes: mapping.md (R9).
+/// Returns the attitude change by the saturation deficit up to `s` seconds into an interval, per unit of each knot's
+/// axes: mapping.md (R9).
 SweepTrajectory::ByDeficit SweepTrajectory::gained_by_deficit(const Interval& now, double s) {
   if (now.deficit_share.isZero(0.0)) return ByDeficit::Zero();
   const Eigen::Matrix3d gained =
@@ -164,7 +166,7 @@ SweepTrajectory::ByDeficit SweepTrajectory::gained_by_deficit(const Interval& no
   return out;
 }
 
-/// mapping.md (R9), (R10), within an interval.
+/// Evaluates mapping.md (R9), (R10) within an interval.
 SweepTrajectory::DeficitDerivative SweepTrajectory::deficit_derivative(double t_s, std::size_t& hint) const {
   const double t = std::clamp(t_s, 0.0, duration_s_);
   const Interval& now = interval_at(t, hint);

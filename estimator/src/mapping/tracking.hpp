@@ -10,7 +10,8 @@ namespace tumble::mapping {
 
 struct WaitingForStart {};
 
-/// Tracking. A sweep without registration may still be accepted, by a certain prior or after the search was abandoned.
+/// Normal tracking. A sweep without registration may still be accepted, by a certain prior or after the search was
+/// abandoned.
 struct Tracking {
   int failed_searches = 0;  ///< consecutive sweeps with points but without registration
 };
@@ -20,8 +21,8 @@ struct Lost {
   int failed_searches = 0;
 };
 
-/// An unconfirmed relocalisation. Inertial prediction continues in parallel (DeadReckoning) and replaces it if a sweep
-/// contradicts it. mapping.md (R67), (R68).
+/// Unconfirmed relocalisation. Inertial prediction continues in parallel (DeadReckoning) and replaces the
+/// relocalisation if a sweep contradicts it. mapping.md (R67), (R68).
 struct Relocalised {
   int after_sweeps = 0;  ///< rejected sweeps before it
   int failed_searches = 0;
@@ -40,7 +41,7 @@ enum class Placement : std::uint8_t {
 
 TrackingState after_sweep(const TrackingState& before, Placement placement, SweepVerdict verdict);
 
-/// Returns whether a sweep with this result contradicts the relocalisation.
+/// Returns whether a sweep with the given placement contradicts the relocalisation.
 bool contradicts(const TrackingState& before, Placement placement);
 /// Returns the state after a relocalisation is reverted.
 Lost given_up(const TrackingState& relocalised);

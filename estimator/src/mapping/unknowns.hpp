@@ -3,8 +3,8 @@
 
 #include "tumble/mapping/registration.hpp"
 
-/// Names for the blocks of a vector or a matrix over all or the first unknowns of a sweep, as listed in
-/// docs/maths/mapping.md. Use `rows(F, velocity)` instead of an index, `segment(step, velocity)` for a vector.
+/// Names for the blocks of a vector or a matrix over all unknowns of a sweep, or over their first part, as listed in
+/// docs/maths/mapping.md. Use `rows(F, velocity)` instead of an index, and `segment(step, velocity)` for a vector.
 namespace tumble::mapping::unknowns {
 
 template <int First, int Size>
@@ -27,12 +27,12 @@ inline constexpr Block<Registration::kCalibration + 7, 3> gravity;
 
 /// Variance of an unknown whose prior is exact, so that the prior can be inverted.
 inline constexpr double kLeastVariance = 1e-12;
-/// Bound of the squared Mahalanobis distance at which a sweep's motion agrees with its prior: the 95 % quantile of
+/// Limit of the squared Mahalanobis distance at which a sweep's motion agrees with its prior: the 95 % quantile of
 /// chi-square with nine degrees of freedom. mapping.md (R25), (R71).
 inline constexpr double kAgrees = 16.9;
 static_assert(SweepUnknowns::kMotion == 9);
 
-/// Index of an axis of the saturation deficit at a knot.
+/// Returns the index of an axis of the saturation deficit at a knot.
 constexpr int deficit_at(int axis, int knot) {
   return Registration::kDeficit + 3 * knot + axis;
 }

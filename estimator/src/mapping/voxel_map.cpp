@@ -31,8 +31,8 @@ inline void keep(float distance2, std::uint32_t index, int k, Neighbours& best) 
   best.index[place] = index;
 }
 
-/// Squared distance from a query to the slabs of cells at -reach..reach along one axis. `fraction` is the query's
-/// position within its cell, in cells.
+/// Computes the squared distances from a query to the slabs of cells at -reach..reach along one axis. `fraction` is the
+/// query's position within its cell, in cells.
 void slab_distances(float fraction, float voxel_m, int reach, float* distance2) {
   for (int d = -reach; d <= reach; ++d) {
     const float cells = d > 0 ? static_cast<float>(d) - fraction : d < 0 ? fraction - static_cast<float>(d + 1) : 0.0f;
@@ -40,7 +40,7 @@ void slab_distances(float fraction, float voxel_m, int reach, float* distance2) 
   }
 }
 
-// explicit vectors, because compilers do not vectorise these comparisons
+// explicit SIMD vectors, because compilers do not vectorise the comparisons of a chunk
 using Floats [[gnu::vector_size(16)]] = float;
 using Ints [[gnu::vector_size(16)]] = std::int32_t;
 
@@ -53,7 +53,7 @@ inline std::uint32_t within(float limit, const Floats (&values)[4]) {
   return static_cast<std::uint32_t>(bits[0] | bits[1] | bits[2] | bits[3]);
 }
 
-/// Offsets 0, 1, -1, 2, -2 ...: near cells first, so that the search radius shrinks early.
+/// Returns the offsets 0, 1, -1, 2, -2 ... in order. Near cells come first, so that the search radius shrinks early.
 inline int alternating(int i) {
   return (i & 1) ? (i + 1) / 2 : -i / 2;
 }
@@ -79,7 +79,7 @@ inline Eigen::Vector3i VoxelMap::Group::of(const Eigen::Vector3i& cell) {
   return {cell.x() >> kBits, cell.y() >> kBits, cell.z() >> kBits};
 }
 
-/// The cells of a search, row by row. Groups of cells are looked up once, at first use.
+/// The cells of a search, row by row. Groups of cells are looked up one time, at first use.
 class VoxelMap::Rows {
  public:
   Rows(const VoxelMap& map, const Eigen::Vector3i& cell, int reach) : map_(map), first_x_(cell.x() - reach) {
@@ -88,7 +88,7 @@ class VoxelMap::Rows {
     groups_.fill(kUnasked);
   }
 
-  /// Bit mask of the occupied cells of a row, from the smallest x on.
+  /// Returns the bit mask of the occupied cells of a row, from the smallest x on.
   std::uint32_t occupied(int y, int z) {
     const Eigen::Vector3i away = Group::of({first_x_, y, z}) - low_;
     std::uint32_t bits = 0;
@@ -121,7 +121,7 @@ class VoxelMap::Rows {
   std::array<std::uint32_t, kAcross * kAcross * kAcross> groups_;
 };
 
-/// Returns the first chunk of a cell for writing; marks the cell as occupied.
+/// Returns the first chunk of a cell for writing. Marks the cell as occupied.
 std::uint32_t& VoxelMap::first_of(const Eigen::Vector3i& cell) {
   const std::uint32_t group =
       groups_of_.insert(SpatialHash::key(Group::of(cell)), static_cast<std::uint32_t>(groups_.size()));
@@ -130,7 +130,7 @@ std::uint32_t& VoxelMap::first_of(const Eigen::Vector3i& cell) {
   return groups_[group].first[Group::place_of(cell)];
 }
 
-/// Inserts an empty chunk before the first one of a cell.
+/// Inserts an empty chunk before the first chunk of a cell.
 std::uint32_t VoxelMap::new_chunk(std::uint32_t& first) {
   Chunk chunk;
   chunk.x.fill(kFar);
@@ -147,7 +147,8 @@ std::uint32_t VoxelMap::new_chunk(std::uint32_t& first) {
   return first;
 }
 
-/// Uses one margin for cells and cubes of the spacing; also false for NaN.
+/// Returns whether a position is within the map's range. Cells and cubes of the spacing have one margin. Returns false
+/// for NaN.
 bool VoxelMap::has_room_for(const Eigen::Vector3f& position) const {
   return (position * cubes_per_m_).cwiseAbs().maxCoeff() < static_cast<float>(SpatialHash::kLimit - 2);
 }
@@ -165,7 +166,7 @@ std::uint32_t VoxelMap::add(const Eigen::Vector3f& position, float sigma_m, std:
 }
 
 std::uint32_t VoxelMap::put(const Eigen::Vector3f& position, float sigma_m, std::uint32_t sweep, std::uint32_t line) {
-  // the newest chunk of a cell is the first and the only one with free slots
+  // the newest chunk of a cell is the first chunk, and the only chunk with free slots
   std::uint32_t& first = first_of(cube_of(position, cells_per_m_));
   if (first == kNone || chunks_[first].count == kChunk) new_chunk(first);
   Chunk& chunk = chunks_[first];
@@ -245,7 +246,7 @@ std::size_t VoxelMap::bytes() const {
          seen_through_.capacity();
 }
 
-/// Adds the points of a cell's chunks to the k nearest so far; `worst2` is the current bound.
+/// Adds the points of a cell's chunks to the k nearest points so far. `worst2` is the current squared search radius.
 void VoxelMap::search(std::uint32_t first, const Eigen::Vector3f& query, int k, float& worst2,
                       Neighbours& found) const {
   for (std::uint32_t c = first; c != kNone; c = chunks_[c].next) {
@@ -257,7 +258,7 @@ void VoxelMap::search(std::uint32_t first, const Eigen::Vector3f& query, int k, 
     }
     Floats four[kChunk / 4];
     std::memcpy(four, distance2, sizeof(four));
-    // free slots are beyond any limit
+    // free slots of a chunk have coordinates beyond any search radius
     for (std::uint32_t near = within(worst2, four); near != 0; near &= near - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(near));
       if (distance2[i] > worst2 || (found.count == k && distance2[i] == worst2)) continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Serialisation of a map; the search structure is rebuilt.
+// Serialisation of a map. Loading rebuilds the search structure.
 #include "../common/state_bytes.hpp"
 #include "../common/state_layout.hpp"
 #include "tumble/mapping/voxel_map.hpp"
@@ -41,8 +41,8 @@ void VoxelMap::load(StateReader& in) {
   if (in.going()) *this = std::move(map);
 }
 
-/// Loads the next chunk. The chunks of a cell are stored in the order in which they were filled. All but the last are
-/// full, so slots need no further information.
+/// Loads the next chunk. The chunks of a cell are stored in the order in which they were filled. All chunks but the
+/// last are full, so slots need no further information.
 void VoxelMap::load_chunk(StateReader& in) {
   std::uint8_t count = 0;
   in("map.chunk.count", count, 1.0, kChunk);

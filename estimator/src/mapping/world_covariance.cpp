@@ -12,7 +12,7 @@ namespace {
 
 using Pose = WorldCovariance::Pose;
 
-/// Covariance of (error of the pose) - by_mounting (error of the mounting): mapping.md (R57).
+/// Returns the covariance of (error of the pose) - by_mounting (error of the mounting): mapping.md (R57).
 Pose less_mounting(const Registration::Matrix& joint, const Pose& by_mounting) {
   Eigen::Matrix<double, 6, Registration::kUnknowns> G = Eigen::Matrix<double, 6, Registration::kUnknowns>::Zero();
   unknowns::columns(G, unknowns::pose).setIdentity();
@@ -23,7 +23,7 @@ Pose less_mounting(const Registration::Matrix& joint, const Pose& by_mounting) {
 
 }  // namespace
 
-/// Adds the map's error at this position, and the tilt of the start: mapping.md (R58).
+/// Adds the map's error at the pose's position, and the tilt of the start: mapping.md (R58).
 Pose WorldCovariance::in_world(const Registration::Matrix& joint, const Eigen::Vector3d& p_WI_m) const {
   // rotation of the map about the start moves distant points: mapping.md (R56)
   Pose start = start_by_mounting_;
@@ -44,8 +44,8 @@ void WorldCovariance::add_drift(double weakest_sigma_m, const Eigen::Matrix<doub
   drift_m2_ += (sigma_m * sigma_m) * direction * direction.transpose();
 }
 
-/// Uses the lidar's pose in the map in the middle of the sweep: mapping.md (R59), (R60). An error of the mounting is
-/// not an error of the map, and at its ends a sweep is less certain than on average.
+/// Adds the error of a sweep to the map, by the lidar's pose in the middle of the sweep: mapping.md (R59), (R60). An
+/// error of the mounting is not an error of the map. A sweep's pose is less certain at start and end than on average.
 void WorldCovariance::add_insertion(double inserted_share, const SweepTrajectory& trajectory,
                                     const Registration::Matrix& errors, const Eigen::Vector3d& p_IL_m) {
   const double middle_s = 0.5 * trajectory.duration_s();

@@ -16,14 +16,14 @@ class WorldCovariance {
   WorldCovariance(const WorldCovarianceParams& params, const Eigen::Quaterniond& q_WI, const Eigen::Vector3d& p_IL_m)
       : params_(params), start_by_mounting_(pose_by_mounting(q_WI, p_IL_m)) {}
 
-  /// Returns the covariance of a pose's error in the world from a joint covariance of all unknowns in the map at that
-  /// time.
+  /// Returns the covariance of a pose's error in the world from a joint covariance of all unknowns in the map at the
+  /// time of the pose.
   Pose in_world(const Registration::Matrix& joint, const Eigen::Vector3d& p_WI_m) const;
 
-  /// Adds the drift of a moving sweep with this weakest standard deviation and direction (position, scaled attitude).
+  /// Adds the drift of a moving sweep, with its weakest standard deviation and direction (position, scaled attitude).
   void add_drift(double weakest_sigma_m, const Eigen::Matrix<double, 6, 1>& weakest_direction);
-  /// Adds the error of a sweep that inserted this fraction of the visible map, from the middle of its motion; `errors`
-  /// are those at its start.
+  /// Adds the error of a sweep that inserted a fraction of the visible map, from the middle of the sweep's motion.
+  /// `errors` are the errors at the sweep's start.
   void add_insertion(double inserted_share, const SweepTrajectory& trajectory, const Registration::Matrix& errors,
                      const Eigen::Vector3d& p_IL_m);
 

@@ -16,9 +16,9 @@ std::size_t samples_in(double time_s, const RegimeStream::Params& rate) {
   return static_cast<std::size_t>(std::ceil(time_s / rate.rate.period_s)) + 16;
 }
 
-/// For a clipped axis that is too uncertain for the mapper, passes the gyro's reading as a bound. The registration then
-/// estimates the deficit. Reason: with an uncertain calibration, the stream may extrapolate an impact by tens of rad/s,
-/// with a correspondingly large standard deviation.
+/// Returns the rate that the mapper receives. For a clipped axis that is too uncertain for the mapper, the gyro's
+/// reading is passed as a lower bound. The registration then estimates the saturation deficit. With an uncertain
+/// calibration, the stream may extrapolate an impact by tens of rad/s, with a correspondingly large standard deviation.
 RateState for_the_mapper(const RateState& rate, const ImuSample& sample, double sigma_max_rad_s) {
   RateState out = rate;
   for (int axis = 0; axis < 3; ++axis) {
@@ -32,7 +32,7 @@ RateState for_the_mapper(const RateState& rate, const ImuSample& sample, double 
   return out;
 }
 
-/// Samples as RateStream classified them, with saturated forces flagged. Must be queried in time order.
+/// Samples as RateStream classified them, with saturated forces flagged. Queries must be in time order.
 class ClassifiedSamples {
  public:
   ClassifiedSamples(std::span<const ImuSample> samples, const RateStream::State& state)

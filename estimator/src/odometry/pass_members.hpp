@@ -16,7 +16,7 @@ namespace tumble {
 
 namespace odometry {
 
-/// Parameters of the rates that may come from an earlier run.
+/// Visits the parameters of the rates that may come from an earlier run.
 template <StateOf<RegimeStream::Params> Self, class Visitor>
 void visit_estimated(Self& p, Visitor& visit) {
   visit("calibration", p.rate.model.calibration);
@@ -26,7 +26,7 @@ void visit_estimated(Self& p, Visitor& visit) {
 
 }  // namespace odometry
 
-/// Only the samples that are still in use.
+/// Visits only the samples that are still in use.
 template <class Self, class Visitor>
 void OdometryPass::Queue::members(Self& s, Visitor& visit) {
   if constexpr (std::is_const_v<Self>) {
@@ -98,7 +98,7 @@ void SecondPass::members(Self& s, Visitor& visit) {
     s.pass_.reset();
     if (under_way && visit.going()) s.pass_.emplace(s.lagging_rate(), s.mapping_);
   }
-  // has the members of the first pass, which the layout already contains
+  // the second pass has the members of the first pass, which the layout already contains
   if (s.pass_ && !Visitor::kDescribes) visit("second_pass.pass", *s.pass_);
   visit.scratch(s.pass_);
   visit("second_pass.next_sample", s.next_sample_, 0.0, double(s.samples_.all().size()));

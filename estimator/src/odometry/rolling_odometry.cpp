@@ -34,7 +34,7 @@ constexpr std::array<std::array<const char*, 6>, ImuMerge::kImus> kFrozenFields 
        "seconds for which unit 4's accel y repeats one reading",
        "seconds for which unit 4's accel z repeats one reading"}}}};
 
-// Checks the radius of RollingOdometry; the smoother's has no default.
+// Checks the radius of RollingOdometry, because the smoother's radius has no default.
 void require_stated(RollingOdometry::Params params) {
   params.expert.rolling.filter.radius_m = params.radius_m;
   require_fields(params);
@@ -103,7 +103,7 @@ ImuSample at_time(TimeNs time_ns, ImuSample sample) {
   return sample;
 }
 
-/// Makes a sample that of a unit which has nothing to say.
+/// Sets a sample to that of a unit without readings.
 void leave_out(ImuSample& sample) {
   sample.angular_velocity_rad_s.setConstant(std::numeric_limits<double>::quiet_NaN());
 }
@@ -171,7 +171,7 @@ Status RollingOdometry::add_imus(std::span<const ImuSample> samples) {
   if (finished_) return {Trouble::out_of_range, "samples after finish()", 1.0, 0.0};
   if (samples.size() != params_.units.size())
     return {Trouble::too_few, "samples", double(samples.size()), double(params_.units.size())};
-  // a time that does not rise, and units without any reading: add_inliers() returns what is wrong
+  // for a time that does not increase, and for units without any reading, add_inliers() returns the error
   if (!any_reading(samples) || (stamps_.stamp_ns && samples.front().time_ns <= *stamps_.stamp_ns))
     return add_inliers(samples);
   if (const Status status = add_held(samples); !status.ok()) return status;
@@ -192,7 +192,7 @@ Status RollingOdometry::add_imus(std::span<const ImuSample> samples) {
   return holds || !any_reading(inliers) ? Status{} : add_inliers(inliers);
 }
 
-/// Adds the samples that are held, but for readings that the next samples do not confirm.
+/// Adds the delayed samples, without the readings that the next samples do not confirm.
 Status RollingOdometry::add_held(std::span<const ImuSample> next) {
   if (!held_) return {};
   for (std::size_t k = 0; k < next.size(); ++k) {

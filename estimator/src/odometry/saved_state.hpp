@@ -46,7 +46,7 @@ void seal(SavedKind kind, std::uint64_t layout, std::vector<std::byte>& bytes);
 Status open(SavedKind kind, std::uint64_t layout, std::span<const std::byte> bytes,
             std::span<const std::byte>& payload);
 
-/// `whole`: an odometry object, or the state of a stream.
+/// Serialises `whole`, which is an odometry object or the state of a stream.
 template <class Whole, class Params>
 std::uint64_t layout_of(const Whole& whole, const Params& params) {
   StateLayout layout;
@@ -65,7 +65,7 @@ std::vector<std::byte> save(SavedKind kind, const Whole& whole, const Params& pa
   return bytes;
 }
 
-/// Loads into an object that was created with the same parameters. On error it must be discarded.
+/// Loads into an object that was created with the saved parameters. On error the object must be discarded.
 template <class Whole, class Params>
 Status load(SavedKind kind, std::span<const std::byte> bytes, const Params& params, Whole& whole) {
   std::span<const std::byte> payload;
@@ -80,7 +80,8 @@ Status load(SavedKind kind, std::span<const std::byte> bytes, const Params& para
   return in.status();
 }
 
-/// Reads only the parameters. `params`: any valid ones, with which `whole` was created; unchanged on error.
+/// Reads only the parameters. `params` are any valid parameters, with which `whole` was created. On error, `params` is
+/// unchanged.
 template <class Whole, class Params>
 Status load_params(SavedKind kind, std::span<const std::byte> bytes, const Whole& whole, Params& params) {
   std::span<const std::byte> payload;

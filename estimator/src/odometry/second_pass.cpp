@@ -14,10 +14,11 @@ namespace {
 
 constexpr double kBefore_s = 0.1;       // samples before the first buffered sweep, because clocks may differ
 constexpr std::size_t kMoreShare = 20;  // per this many sweeps, the second pass may reject one more than the first
-// With more than one rejected sweep in this many, the calibration is not used.
+// If more than one in kSweepsPerRejection sweeps is rejected, the calibration is not used.
 constexpr std::size_t kSweepsPerRejection = 5;
 
-/// Starts with the saturation levels that the stream detected, with the same inflation as the calibration.
+/// Starts with the saturation levels that the stream detected. The uncertainty of the saturation levels is inflated
+/// like that of the calibration.
 void start_from_rails(const KnownRails& known, double inflation, RateStream::Params& params) {
   params.expert.planes.known = known.planes;
   params.expert.accel_planes.known = known.accel_planes;
@@ -180,7 +181,7 @@ void SecondPass::take_over(OdometryPass& first) {
   if (rejected_ <= rejected_by_first_ + sweeps_.size() / kMoreShare && (!lost_ || first_lost)) {
     first.take_map(std::move(*pass_));
     taken_ = true;
-    // an early pass serves as first pass of the regular one
+    // an early pass serves as first pass of the regular second pass
     rejected_by_first_ = rejected_;
     if (!lost_) newest = SweepVerdict::registered;
   }

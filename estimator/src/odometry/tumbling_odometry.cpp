@@ -14,7 +14,7 @@ namespace {
 // Standard deviation of gravity's horizontal part, after levelling in a world that is not exactly level.
 constexpr double kGravitySigma_m_s2 = 0.03;
 
-/// Returns the points fired at `from_ns` or later, with times relative to it.
+/// Returns the points fired at `from_ns` or later, with times relative to `from_ns`.
 std::vector<LidarPoint> points_from(TimeNs from_ns, TimeNs start_ns, std::span<const LidarPoint> points) {
   std::vector<LidarPoint> out;
   out.reserve(points.size());
@@ -27,7 +27,7 @@ std::vector<LidarPoint> points_from(TimeNs from_ns, TimeNs start_ns, std::span<c
   return out;
 }
 
-/// Drops the sweeps that ended by then and returns how many.
+/// Drops the sweeps that ended by `time_ns` and returns their number.
 std::size_t drop_until(TimeNs time_ns, std::deque<WaitingSweep>& sweeps) {
   std::size_t dropped = 0;
   for (; !sweeps.empty() && sweeps.front().end_ns <= time_ns; sweeps.pop_front()) ++dropped;
@@ -72,7 +72,7 @@ LidarInertialOdometry::Params mapper_params(const TumblingOdometry::Params& para
   return out;
 }
 
-// Largest stamp of a sample or a sweep, 109 years: differences of stamps then fit into 64 bits.
+// Largest stamp of a sample or a sweep, equal to 109 years. Differences of stamps then fit into 64 bits.
 constexpr TimeNs kStampMax_ns = 3 * (TimeNs{1} << 60);
 constexpr double kSilent_s = 1.0;       // silence of the lidar after which empty sweeps are inserted
 constexpr double kAhead_s = 1.0;        // maximum time by which a sweep may end after the newest sample
@@ -229,8 +229,8 @@ void TumblingOdometry::register_sweep(TimeNs start_ns, TimeNs end_ns, std::vecto
   second_pass_.advance(pass_);
 }
 
-/// Returns whether the sweep would be more than lag_s old at the sample after the newest one. In addition, the covering
-/// sample must have the whole lag ahead of it except one period, which is not the case after a gap.
+/// Returns whether the sweep would be more than lag_s old at the sample after the newest sample. In addition, the whole
+/// lag except one period must follow the covering sample, which is not the case after a gap.
 bool TumblingOdometry::is_due(TimeNs end_ns) const {
   const std::optional<TimeNs> covering_ns = pass_.covering_ns(end_ns);
   if (!covering_ns) return false;
@@ -242,7 +242,7 @@ bool TumblingOdometry::is_due(TimeNs end_ns) const {
 void TumblingOdometry::register_covered() {
   while (!waiting_.empty()) {
     const TimeNs end_ns = waiting_.front().end_ns;
-    // the covering sample ends up to one period later, so its rate is reported this much earlier
+    // the covering sample ends up to one period later, so its rate is reported one period earlier
     if (!pass_.covers(end_ns) && is_due(end_ns)) pass_.flush_until(pass_.needed_ns(end_ns));
     if (!pass_.covers(end_ns)) break;
     WaitingSweep sweep = std::move(waiting_.front());
@@ -271,7 +271,7 @@ void TumblingOdometry::restart() {
 
 void TumblingOdometry::begin_rates() {
   RegimeStream::Params params = rate_params(params_);
-  // if the estimated calibration is out of bounds, restart from the stated one
+  // if the estimated calibration is out of bounds, restart from the stated calibration
   if (const RigCalibration learnt = rig(); check_calibration(learnt).ok()) params.rate.model.calibration = learnt;
   pass_.begin_rates(params);
 }

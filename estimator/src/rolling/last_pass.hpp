@@ -15,8 +15,8 @@ namespace tumble::rolling {
 ///
 /// The backward pass needs more than 10 KiB per node. Nodes are therefore cut into segments, and only the filter at the
 /// start of each segment and the adjoint at its end are stored. The records of one segment are recomputed when needed,
-/// bit for bit. A window of one segment is processed once, a longer one three times. The object contains four filters
-/// of 13 KiB, so do not put it on the stack.
+/// bit for bit. A window of one segment is processed one time, a longer window three times. The object contains four
+/// filters of 13 KiB, so do not put a LastPass on the stack.
 class LastPass {
  public:
   static constexpr std::size_t kSegment = 128;  ///< nodes; 1.6 MiB of records, 0.2 KiB of stored states per node
@@ -38,12 +38,13 @@ class LastPass {
     std::size_t index;
   };
 
-  /// All arguments must outlive the pass. `distance`, if known, is measured at the end of the samples. `segment`:
-  /// number of nodes whose records are stored at a time; affects only memory and computing time.
+  /// Constructs the pass. All arguments must outlive the pass. `distance`, if known, is measured at the end of the
+  /// samples. `segment` is the number of nodes whose records are stored at a time. The number of nodes affects only
+  /// memory and computing time.
   LastPass(const RollingParams& params, std::span<const ImuSample> samples, std::span<const PathNode> path,
            std::optional<Distance> distance, std::size_t segment = kSegment);
 
-  /// Runs forward from `start`, and backward. `cut` is the number of nodes after which cut() is taken.
+  /// Runs forward from `start`, and then backward. `cut` is the number of nodes after which cut() is taken.
   void run(const Checkpoint& start, std::size_t cut);
 
   std::size_t nodes() const { return horizontal_m2_.size(); }

@@ -5,12 +5,13 @@
 
 #include "rolling_node.hpp"
 
-/// Prevents false information about the heading, which contact does not determine. A whole run rotated about the
-/// vertical gives the same readings. A linearised filter with a large heading error still gains false information,
-/// because the linearisation points of successive updates differ: rolling.md (R34) to (R36).
+/// Prevents false information about the heading, which contact does not determine. The readings do not change if a
+/// whole run is rotated about the vertical. A linearised filter with a large heading error still gains false
+/// information, because the linearisation points of successive updates differ: rolling.md (R34) to (R36).
 namespace tumble::rolling {
 
-/// Standard deviation of the heading above which this correction is applied; the false information is quadratic in it.
+/// Standard deviation of the heading above which the correction is applied. The false information is quadratic in the
+/// standard deviation.
 inline constexpr double kLostHeading_rad = 0.1;
 
 inline bool lost_heading(const Covariance& P) {
@@ -23,8 +24,8 @@ inline void blind_to_heading(Contact& c) {
   c.H.col(kAttitude + 2) -= Eigen::Vector3d::UnitZ().cross(c.u_W_m_s);
 }
 
-/// Returns the change of the effect of a rotation about the vertical on velocity, position and slope, when the nominal
-/// moves by `x`. (R36)
+/// Returns the change that a move of the nominal by `x` causes in the effect of a rotation about the vertical on
+/// velocity, position and slope. (R36)
 inline Vector turned_by_heading(const Vector& x) {
   const auto turned = [](const auto& v) { return Eigen::Vector2d(-v.y(), v.x()); };
   Vector out = Vector::Zero();
@@ -34,7 +35,7 @@ inline Vector turned_by_heading(const Vector& x) {
   return out;
 }
 
-/// Transforms the covariance of errors about the old nominal to the new one: P <- T P T^T. (R36)
+/// Transforms the covariance P of errors about the old nominal to errors about the new nominal: P <- T P T^T. (R36)
 inline void move_errors(const Vector& turned, Covariance& P) {
   P += (turned * P.row(kAttitude + 2)).eval();
   P += (P.col(kAttitude + 2) * turned.transpose()).eval();

@@ -5,13 +5,13 @@
 
 #include "rolling_node.hpp"
 
-/// Measurements of a node as rows, for the filter's hypotheses and for the smoother, which also stores them. `take(row,
-/// measured, variance)` processes one: measurement = row x + noise. `row` is a Row or the index of a single state.
-/// Calls are in order, and may change `x` and `P`, from which the next row is computed.
+/// Measurements of a node as scalar rows, for the filter's hypotheses and for the smoother, which also stores the rows.
+/// `take(row, measured, variance)` processes one measurement: measurement = row x + noise. `row` is a Row or the index
+/// of a single state. Calls are in order, and may change `x` and `P`, from which the next row is computed.
 namespace tumble::rolling {
 
-/// Rolling constraint: the contact point does not move (when slipping, it stays on the floor). An unknown velocity is
-/// assumed to be small: rolling.md (R17), (R20).
+/// Applies the rolling constraint: the contact point does not move (when slipping, it stays on the floor). An unknown
+/// velocity is assumed to be small: rolling.md (R17), (R20).
 template <class Take>
 void contact_rows(const RollingParams& params, const Contact& c, RollingMode mode, double node_s,
                   const Eigen::Vector3d& v_WI_m_s, const Vector& x, const Covariance& P, Take&& take) {
@@ -26,7 +26,8 @@ void contact_rows(const RollingParams& params, const Contact& c, RollingMode mod
   }
 }
 
-/// Rest: velocity and, unless the sphere spins in place, rate are zero. rolling.md (R28).
+/// Applies the measurements at rest: velocity is zero, and rate is zero unless the sphere spins in place. rolling.md
+/// (R28).
 template <class Take>
 void rest_rows(const RollingParams& params, const RollingSums& sums, const RollingNominal& nominal, bool spins_in_place,
                Take&& take) {

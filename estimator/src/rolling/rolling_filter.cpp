@@ -112,7 +112,7 @@ void RollingFilter::close_node(const Eigen::Vector3d& next_rate_rad_s, State& st
   }
   state.position_covariance_m2 =
       state.hypotheses[0].P.block<3, 3>(rolling::kPosition, rolling::kPosition) + position_spread(state);
-  // their disagreement about the past is a spread of the current position
+  // the disagreement of the hypotheses about the past is a spread of the current position
   if (state.at_rest && state.count == 1) {
     state.hypotheses[0].P.block<3, 3>(rolling::kPosition, rolling::kPosition) += state.pruned_spread_m2;
     state.position_covariance_m2 += state.pruned_spread_m2;
@@ -152,8 +152,8 @@ bool RollingFilter::spins_in_place(const State& state) const {
   return (off.square() > kSpinSigmas * kSpinSigmas * variance).any();
 }
 
-/// Contribution of the other hypotheses to the position's covariance about the best one: sum of w d d^T over the sum of
-/// w, rolling.md (R27).
+/// Returns the contribution of the other hypotheses to the position's covariance about the best hypothesis: sum of w d
+/// d^T over the sum of w, with weight w and position difference d, rolling.md (R27).
 Eigen::Matrix3d RollingFilter::position_spread(const State& state) {
   const Eigen::Vector3d best = state.hypotheses[0].x.segment<3>(rolling::kPosition);
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
@@ -201,8 +201,8 @@ void RollingFilter::constrain_position(State& state) const {
   state.position_constrained = stands;
 }
 
-/// Moves the errors of the best hypothesis into the nominal trajectory and constants; the others are expressed relative
-/// to it.
+/// Moves the errors of the best hypothesis into the nominal trajectory and constants. The remaining hypotheses are
+/// expressed relative to the best one.
 void RollingFilter::rebase(bool lost_heading, State& state) const {
   const Vector x = state.hypotheses[0].x, turned = rolling::turned_by_heading(x);
   rolling::rebase(x, state.nominal);

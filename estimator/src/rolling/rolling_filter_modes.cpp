@@ -21,13 +21,13 @@ namespace {
 constexpr double kDropped = -120.0;   // log weight relative to the best below which a hypothesis is pruned
 constexpr double kRestFloor = -60.0;  // minimum log likelihood at rest: a single bad node must not decide
 constexpr double kLongAgo_s = 1.0;    // time in one mode after which its start no longer matters
-// horizontal change of u per node; the plateau component is as narrow as grip, otherwise each plateau would be
-// classified as grip
+// Horizontal change of the contact velocity u per node. The plateau component is as narrow as grip; a wider component
+// would classify each plateau as grip.
 constexpr double kPlateau_m_s = 0.004, kSteady_m_s = 0.01, kJump_m_s = 0.08, kPlateauShare = 0.4, kSteadyShare = 0.35;
 constexpr double kRise_m_s = 0.03, kHit_m_s = 0.3, kRiseShare = 0.7;  // vertical change of u per node, on a bump
 constexpr std::int64_t kAgesApart = 4;
-// Minimum number of hypotheses that do not contain the best one's last mode change. Reason: a slip with constant spin
-// looks like grip until it ends, when a hundred variants of the last nodes are more probable.
+// Minimum number of hypotheses that do not contain the best hypothesis' last mode change. A slip with constant spin
+// looks like grip until the slip ends. At this time, a hundred variants of the last nodes are more probable.
 constexpr std::size_t kDissenters = 6;
 constexpr double kRoughCost = 0.2;  // per node: less than the residual of a slope, more than that of grip on a plane
 constexpr double kInclineAfterBump = 4.0;  // the foot of a ramp is a bump
@@ -39,7 +39,8 @@ double log_normal(double value, double variance) {
   return -0.5 * (value * value / variance + std::log(2.0 * std::numbers::pi * variance));
 }
 
-/// Log density of a vertical change of u per node on a bump: rolling over it, or hitting it. m1 of rolling.md (R25).
+/// Returns the log density of a vertical change of the contact velocity u per node on a bump: rolling over the bump, or
+/// hitting it. m1 of rolling.md (R25).
 double log_rise(double change) {
   const auto density = [&](double sigma) {
     return std::exp(-0.5 * change * change / (sigma * sigma)) / (sigma * std::sqrt(2.0 * std::numbers::pi));
@@ -47,8 +48,8 @@ double log_rise(double change) {
   return std::log(kRiseShare * density(kRise_m_s) + (1.0 - kRiseShare) * density(kHit_m_s) + 1e-300);
 }
 
-/// Log density of a horizontal change of u per node with squared length `square`: plateau, drift or jump. m2 of
-/// rolling.md (R24).
+/// Returns the log density of a horizontal change of the contact velocity u per node with squared length `square`:
+/// plateau, drift or jump. m2 of rolling.md (R24).
 double log_change(double square) {
   double density = 0.0;
   for (const auto& [share, sigma] : {std::pair(kPlateauShare, kPlateau_m_s), std::pair(kSteadyShare, kSteady_m_s),
@@ -58,7 +59,7 @@ double log_change(double square) {
   return std::log(density + 1e-300);
 }
 
-/// Log density of a stationary contact point, for hypothesis `h` in mode `mode`: rolling.md (R23).
+/// Returns the log density of a stationary contact point, for hypothesis `h` in mode `mode`: rolling.md (R23).
 double log_still(const rolling::Contact& c, const RollingFilter::Hypothesis& h, RollingMode mode,
                  const RollingParams& params) {
   RollingFilter::Vector x = h.x;
@@ -80,7 +81,7 @@ double log_still(const rolling::Contact& c, const RollingFilter::Hypothesis& h, 
   Eigen::LLT<Eigen::Matrix3d> factor;
   double log_det = 0.0, cost = 0.0;
   if (mode == RollingMode::rough) {
-    // roughness lasts many nodes, which must not be penalised for its width each time
+    // roughness lasts many nodes; its width must not be penalised in each node
     log_det = log_det_with(rolling::contact_variance(params, c, RollingMode::grip), factor);
     cost = kRoughCost;
   }
@@ -90,8 +91,8 @@ double log_still(const rolling::Contact& c, const RollingFilter::Hypothesis& h, 
   return -cost - 0.5 * (square + log_det + 3.0 * std::log(2.0 * std::numbers::pi));
 }
 
-/// Log density of a moving contact point, by the change of its velocity `u` since the last node: rolling.md (R24),
-/// (R25).
+/// Returns the log density of a moving contact point, by the change of its velocity `u` since the last node: rolling.md
+/// (R24), (R25).
 double log_moving(const rolling::Contact& c, const RollingFilter::Hypothesis& h, RollingMode mode,
                   const Eigen::Vector3d& u, const RollingParams& params) {
   const Eigen::Vector3d change = u - h.u_W_m_s;
@@ -160,7 +161,7 @@ std::span<const Candidate> propose(const RollingParams& params, const rolling::C
   return {out.data(), total};
 }
 
-/// Returns the start node after merging. Two starts of the same mode merge the sooner, the older they are.
+/// Returns the start node after merging. Two starts of one mode merge the sooner, the older they are.
 std::int64_t beginning(std::int64_t switched_node, std::int64_t node, double node_s) {
   const auto long_ago = static_cast<std::int64_t>(kLongAgo_s / node_s);
   const std::int64_t age = std::min(node - switched_node, long_ago);
@@ -174,7 +175,7 @@ struct Kept {
   std::size_t count = 0;
 };
 
-/// Selects the candidates that remain: the most probable of each mode and start, with kDissenters reserved.
+/// Selects the candidates that remain: the most probable candidates of each mode and start, with kDissenters reserved.
 Kept keep(std::span<const Candidate> candidates, std::int64_t node, double node_s) {
   Kept kept;
   for (const Candidate& candidate : candidates) {
@@ -193,7 +194,8 @@ Kept keep(std::span<const Candidate> candidates, std::int64_t node, double node_
 
 using Origins = std::array<std::size_t, RollingFilter::kHypotheses>;
 
-/// Replaces the first `count` by copies of those in `from`, in place: a second array would be 420 KiB of stack.
+/// Replaces the first `count` hypotheses by copies of the hypotheses in `from`. The copies are made in place, because a
+/// second array would need 420 KiB of stack.
 void rearrange(const Origins& from, std::size_t count, std::span<RollingFilter::Hypothesis> all) {
   std::array<int, RollingFilter::kHypotheses> readers{};  // number of pending readers of each slot
   std::array<bool, RollingFilter::kHypotheses> waits{};
@@ -201,7 +203,7 @@ void rearrange(const Origins& from, std::size_t count, std::span<RollingFilter::
     waits[k] = from[k] != k;
     readers[from[k]] += waits[k] ? 1 : 0;
   }
-  // a slot without readers can be overwritten, which may free its source
+  // a slot without readers can be overwritten, which may free the slot's source
   for (std::size_t first = 0; first < count; ++first) {
     for (std::size_t k = first; k < count && waits[k] && readers[k] == 0; k = from[k]) {
       all[k] = all[from[k]];
@@ -286,7 +288,7 @@ void RollingFilter::correct_at_rest(State& state) const {
     return std::tuple(-state.hypotheses[a].log_weight, a) < std::tuple(-state.hypotheses[b].log_weight, b);
   });
   rearrange(order, count, state.hypotheses);
-  // they agree about the present, so one is sufficient after a while
+  // the hypotheses agree about the present, so one is sufficient after a while
   const bool rested = seconds(state.rest.quiet_ns) > kLongAgo_s;
   if (rested && state.count > 1) state.pruned_spread_m2 = position_spread(state);
   const double best = state.hypotheses[0].log_weight;

@@ -30,14 +30,15 @@ constexpr double kForceTilt_rad = 0.35;               // direction error of a fo
 constexpr double kLostTilt_rad = kForceTilt_rad;      // a tilt with a larger standard deviation is levelled by a force
 constexpr double kUncertainTilt_rad = 0.1;            // same at rest, where the force is gravity
 constexpr double kRestTilt_rad = 5e-3;
-// as a fraction of gravity: larger differences are a push or a fast rotation
+// Fraction of gravity above which a difference of the force from gravity is a push or a fast rotation.
 constexpr double kPush = 0.15;
 constexpr double kLostSpeed_m_s = 1.0;
 constexpr double kRecoveredTau_s = 0.1;  // correlation time of the error of a recovered rate
 constexpr double kFastRate_rad_s = 6.0;  // at higher rates, a node's force rotates too far to level by
 constexpr double kUnsureSpeed_m_s = 0.1, kSpeedWindow_s = 1.0;
 constexpr double kStartTilt_rad = 0.15;  // of a start in motion: a push of 1.5 m/s^2
-// a sphere with smaller rates on both sides of a gap was hardly pushed during it
+// Limits of the motion around a gap. A sphere with smaller rates on both sides of a gap was hardly pushed during the
+// gap.
 constexpr double kGapRate_rad_s = 1.0, kGapStill_rad_s2 = 0.5;
 constexpr double kGapTurned = 0.5;  // in a gap, as a fraction of the rolling velocity's change
 constexpr double kGapStep = 0.15;   // uncertain time of a rate change within a gap, as a fraction of the gap
@@ -75,7 +76,7 @@ RollingNominal start_nominal(const RollingParams& params, const Eigen::Quaternio
   return nominal;
 }
 
-/// Prior of the states in the order of rolling.md (R1).
+/// Sets the prior of the states in the order of rolling.md (R1).
 void set_prior(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s, Covariance& P) {
   P.setZero();
   auto prior = P.diagonal();
@@ -102,7 +103,8 @@ struct RailedForce {
   Eigen::Vector3d least_m_s2 = Eigen::Vector3d::Zero();  ///< components for which the reading is a lower bound
 };
 
-/// Returns the reading, or the force that keeps the centre's velocity constant if it is larger. rolling.md (R8).
+/// Returns the reading, or the force that keeps the centre's velocity constant if this force is larger. rolling.md
+/// (R8).
 RailedForce railed_force(const ImuSample& sample, const Eigen::Vector3d& read_m_s2, const Eigen::Vector3d& kept_m_s2) {
   int largest = 0;
   sample.specific_force_m_s2.cwiseAbs().maxCoeff(&largest);
@@ -132,8 +134,8 @@ void integrate(const RollingParams& params, const ImuAverage& reading, RollingNo
   const Eigen::Vector3d w = w_raw - nominal.gyro_bias_rad_s - nominal.gyro_scale * w_raw;
   Eigen::Vector3d f =
       f_raw - nominal.accel_bias_m_s2 - nominal.accel_scale * f_raw - nominal.accel_delay_s * w.cross(f_raw);
-  // the mean over the window of a force rotating in the sensor is reduced across the axis by (|w| dt)^2 / 24:
-  // rolling.md (R4)
+  // averaging over the window reduces a force that rotates in the sensor by the fraction (|w| dt)^2 / 24 across the
+  // axis: rolling.md (R4)
   f -= dt_s * dt_s / 24.0 * w.cross(w.cross(f));
   const Eigen::Quaterniond half = so3::exp(0.5 * dt_s * w);
   const Eigen::Quaterniond q_mid = nominal.q_WI * half;
@@ -149,7 +151,7 @@ void integrate(const RollingParams& params, const ImuAverage& reading, RollingNo
   const Eigen::Vector3d arm = params.lever_arm_m + nominal.lever_arm_error_m;
   const Eigen::Vector3d change_rad_s = w_raw - nominal.last_rate_I_rad_s;  // angular acceleration times dt_s
   nominal.last_rate_I_rad_s = w_raw;
-  // a force rotated by an unknown rate gives no information: the centre's velocity is kept, (R7)
+  // a force rotated by an unknown rate gives no information, so the centre's velocity is kept constant, (R7)
   const Eigen::Vector3d keeps_centre = R_T * w.cross(w.cross(arm)) + q_mid * change_rad_s.cross(arm);
   const Eigen::Vector3d fallen = dt_s * gravity * Eigen::Vector3d::UnitZ();
   Eigen::Vector3d least = Eigen::Vector3d::Zero();
@@ -211,7 +213,8 @@ ImuAverage gap_piece(const RollingParams& params, const ImuSample& before, const
   const double turning = std::max(before.angular_velocity_rad_s.norm(), after.angular_velocity_rad_s.norm());
   const double acceleration =
       kGapStill_rad_s2 + params.expert.gap.gap_acceleration_rad_s2 * std::min(1.0, turning / kGapRate_rad_s);
-  // a parabola between two known rates has the integral a T^3 / 12: rolling.md (R31)
+  // a parabola between two known rates has the integral a T^3 / 12, with acceleration a and gap length T: rolling.md
+  // (R31)
   const double off_rad = acceleration * gap_s * gap_s * gap_s / 12.0 + kGapStep * change.norm() * gap_s;
   uncertainty.rad2 = off_rad * off_rad / pieces;
   // rolling.md (R32)
@@ -271,7 +274,7 @@ void predict(const RollingParams& params, const RollingSums& sums, const Moving&
   diagonal.segment<3>(kAccelBias).array() += squared(params.expert.noise.accel_bias_walk_m_s2_sqrts) * h;
 }
 
-/// rolling.md (R15), (R16), and the variance of (R18).
+/// Computes rolling.md (R15), (R16), and the variance of (R18).
 Contact contact(const RollingParams& params, const RollingNominal& nominal, const Eigen::Vector3d& rate_I_rad_s,
                 const RollingSums& sums) {
   const Eigen::Matrix3d R = nominal.q_WI.toRotationMatrix();
@@ -279,13 +282,13 @@ Contact contact(const RollingParams& params, const RollingNominal& nominal, cons
   const Eigen::Vector3d arm_W = R * (params.lever_arm_m + nominal.lever_arm_error_m);
   const Eigen::Vector3d n = normal(nominal.slope);
   const double r = params.radius_m + nominal.radius_error_m;
-  // from the IMU to the contact point: u = v + w x (-arm - r n)
+  // vector from the IMU to the contact point, with the contact velocity u = v + w x (-arm - r n)
   const Eigen::Matrix3d reach = so3::hat(arm_W + r * n);
   Contact out;
   out.u_W_m_s = nominal.v_WI_m_s + reach * w_W;
   out.H.setZero();
   out.H.middleCols<3>(kVelocity).setIdentity();
-  // an attitude error rotates w and the arm, but not the normal
+  // an attitude error rotates the rate w and the lever arm, but not the floor's normal
   out.H.middleCols<3>(kAttitude) = so3::hat(w_W.cross(arm_W)) - r * so3::hat(n) * so3::hat(w_W);
   out.H.middleCols<3>(kGyroBias) = -reach * R;
   for (int axis = 0; axis < 3; ++axis) {

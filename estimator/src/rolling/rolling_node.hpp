@@ -21,7 +21,8 @@ using Row = Eigen::Matrix<double, 1, kStates>;
 using Covariance = Eigen::Matrix<double, kStates, kStates>;
 using Moving = Eigen::Matrix<double, 9, kStates>;
 
-/// The sphere is at rest, and the reported position constant, after this time without motion and below this speed.
+/// After kConstrainAfter_s without motion and below the speed limit, the sphere is at rest, and the reported position
+/// is constant.
 inline constexpr double kConstrainAfter_s = 0.1, kConstrainSpeed_m_s = 0.02;
 
 /// Contact velocity of the nominal trajectory and its derivative by the error state.
@@ -38,7 +39,7 @@ struct Contact {
   Eigen::Vector3d velocity(const Vector& x) const;
 };
 
-/// Returns the variance of a stationary contact point's velocity; when slipping, only its vertical component is used.
+/// Returns the variance of a stationary contact point's velocity. When slipping, only the vertical component is used.
 Eigen::Vector3d contact_variance(const RollingParams& params, const Contact& c, RollingMode mode);
 
 bool starts_in_motion(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s);
@@ -48,7 +49,7 @@ RollingNominal start_nominal(const RollingParams& params, const Eigen::Quaternio
                              const Eigen::Vector3d& rate_I_rad_s);
 void set_prior(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s, Covariance& P);
 
-/// Whether a force was measured, at least up to saturation. In a gap it is unknown.
+/// Kind of force: measured, at least up to saturation, or unknown, as in a gap.
 enum class Force { read, unknown };
 
 void integrate(const RollingParams& params, const ImuAverage& reading, RollingNominal& nominal, RollingSums& sums,
@@ -73,31 +74,32 @@ void integrate_gap(const RollingParams& params, const ImuAverage& piece, const G
 Moving transition(const RollingSums& sums);
 void predict(const RollingParams& params, const RollingSums& sums, const Moving& B, Vector& x, Covariance& P);
 
-/// `rate_I_rad_s` is the raw reading at the node.
-/// `sums` are those of the node; the rate's uncertainty in a gap adds to the noise of the contact.
+/// Computes the contact at a node. `rate_I_rad_s` is the raw reading at the node. `sums` are the sums over the node;
+/// the rate's uncertainty in a gap adds to the noise of the contact.
 Contact contact(const RollingParams& params, const RollingNominal& nominal, const Eigen::Vector3d& rate_I_rad_s,
                 const RollingSums& sums);
 
-/// Applies a change of mode to the floor's slope. The slope is a random walk while it lasts, and becomes level or
-/// unknown when the contact point stops again. `h_s` is the length of the node.
+/// Applies a change of mode to the floor's slope. The slope is a random walk while the mode lasts. When the contact
+/// point stops again, the slope becomes level or unknown. `h_s` is the length of the node.
 void change_floor(const RollingParams& params, RollingMode from, RollingMode to, double h_s,
                   const RollingNominal& nominal, Vector& x, Covariance& P);
 
-/// Returns the variance of the pseudo-measurement of zero velocity at a node with unknown velocity; empty otherwise.
+/// Returns the variance of the pseudo-measurement of zero velocity at a node with unknown velocity. The result is empty
+/// at a node with known velocity.
 std::optional<double> lost_velocity_variance(const RollingParams& params, double node_s, const Covariance& P);
 
-/// Returns whether this mode change makes the slope unknown.
+/// Returns whether a mode change from `from` to `to` makes the slope unknown.
 bool resets_slope(RollingMode from, RollingMode to);
 
-/// Levels a tilt that was lost during clipping, by the node's mean force, at rest or not, and resets the velocity.
-/// Returns false if not needed, or if the node's force is not usable.
+/// Levels a tilt that was lost during clipping, by the node's mean force, at rest or in motion, and resets the
+/// velocity. Returns false if levelling is not needed, or if the node's force is not usable.
 bool reset_tilt(const RollingParams& params, const RollingSums& sums, bool at_rest, RollingNominal& nominal,
                 Covariance& P);
 
-/// Kalman update by a scalar row: measurement = row x + noise.
+/// Applies a Kalman update by a scalar row: measurement = row x + noise.
 void update(const Row& row, double measured, double variance, Vector& x, Covariance& P);
 
-/// Same for a row that selects one state.
+/// Applies a Kalman update by a measurement of a single state.
 void update(int index, double measured, double variance, Vector& x, Covariance& P);
 
 /// Moves the error `x` into the nominal trajectory and constants.

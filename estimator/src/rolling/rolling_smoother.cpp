@@ -13,7 +13,7 @@ namespace tumble {
 
 namespace {
 
-// Limit of preallocated samples and nodes; for a longer lag, memory grows with the run.
+// Limit of preallocated samples and nodes. With a lag beyond this limit, memory grows with the run.
 constexpr std::size_t kSetAsideMost = 1'000'000;
 constexpr std::size_t kBeyondStorage = 4;  // maximum number of samples, as a multiple of those with preallocated memory
 
@@ -39,7 +39,7 @@ bool equal(const ImuSample& a, const ImuSample& b) {
          a.specific_force_m_s2 == b.specific_force_m_s2;
 }
 
-/// Ratio of the reported variance to that of the final pass, which uses reduced process noise.
+/// Returns the ratio of the reported variance to that of the final pass, which uses reduced process noise.
 double stated(const RollingSmoother::Params& params) {
   return 1.0 / (params.path_noise * params.path_noise);
 }
@@ -52,7 +52,7 @@ rolling::Readings::Cursor start_cursor(const ImuSample& sample) {
   return cursor;
 }
 
-/// Covariance of (centre, attitude) from that of the reported states: rolling.md (R40).
+/// Returns the covariance of (centre, attitude) from that of the reported states: rolling.md (R40).
 Eigen::Matrix<double, 6, 6> pose_covariance(const rolling::NodeRecord& node, const Eigen::Vector3d& arm_W) {
   Eigen::Matrix<double, 6, rolling::kReported> J = Eigen::Matrix<double, 6, rolling::kReported>::Zero();
   J.block<3, 3>(0, 0) = so3::hat(arm_W);
@@ -75,7 +75,7 @@ RollingSmoother::Take appending(std::vector<RollingEstimate>& out) {
   return [&out](const RollingEstimate& estimate) { out.push_back(estimate); };
 }
 
-/// Start of the final pass: the committed node, or the first sample.
+/// Returns the start of the final pass: the committed node, or the first sample.
 void start_window(const RollingParams& filter, const RollingParams& path, const RollingSmoother::State& state,
                   rolling::LastPass::Checkpoint& start) {
   const RollingSmoother::Committed& last = state.committed;
@@ -182,7 +182,7 @@ Status RollingSmoother::check_state(const State& state) const {
   const Committed& committed = state.committed;
   for (std::size_t k = committed.started ? 0 : 1; k < state.samples.size(); ++k) {
     const TimeNs before_ns = k > 0 ? state.samples[k - 1].time_ns : committed.last_time_ns;
-    // a node may be within a gap, so the sample after it is later
+    // a node may be within a gap, so the next sample may be much later than the node
     const TimeNs from_ns = k == 0 && committed.gap_piece > 0 ? committed.gap_start_ns : before_ns;
     const Status status = check_follows(state.samples[k].time_ns, from_ns, filter.expert.gap.gap_max_s);
     if (!status.ok()) return status;

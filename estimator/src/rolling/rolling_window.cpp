@@ -15,8 +15,8 @@ namespace {
 constexpr double kMaxSigmas = 5.0;
 constexpr double kNoDirection_m = 0.05;  // minimum distance of two positions with a defined direction
 
-/// Reduces the weight of a measurement beyond kMaxSigmas, because large linear corrections would distort the whole
-/// run: rolling.md (R37).
+/// Reduces the weight of a measurement beyond kMaxSigmas, because large linear corrections would distort the whole run:
+/// rolling.md (R37).
 void measure(const Row& H, double measured, double variance, NodeRecord& record, Vector& x, Covariance& P) {
   const auto k = static_cast<std::size_t>(record.rows++);
   const Vector PHt = P * H.transpose();
@@ -38,7 +38,8 @@ Reported reported(const Vector& x) {
   return out;
 }
 
-/// Transforms the adjoint after a move of the nominal to that before it: T^T lambda, T^T Lambda T. rolling.md (R36)
+/// Transforms the adjoint after a move of the nominal to the adjoint before the move: T^T lambda, T^T Lambda T.
+/// rolling.md (R36)
 void move_back(const Vector& turned, Adjoint& adjoint) {
   constexpr int kHeading = kAttitude + 2;
   adjoint.lambda[kHeading] += turned.dot(adjoint.lambda);

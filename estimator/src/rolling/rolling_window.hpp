@@ -52,7 +52,7 @@ struct Reading {
   TimeNs end_ns = 0;
 };
 
-/// Iterates over stored samples in the form that the live filter processes. O(1) each, no allocation.
+/// Iterates over stored samples in the form that the live filter processes. Each step is O(1) and does not allocate.
 class Readings {
  public:
   /// Position in the samples: before the next reading.
@@ -101,11 +101,12 @@ Eigen::Matrix<double, kReported, kStates> output_covariance_rows(const Covarianc
 void close_node(const RollingParams& params, const RollingSums& sums, const Eigen::Vector3d& rate_I_rad_s,
                 const PathNode& path, PathFilter& filter, NodeRecord& record);
 
-/// Returns the smoothed error at the node about the nominal before the update.
+/// Returns the smoothed error at the node about the nominal before the node's update.
 Reported error_before_update(const NodeRecord& node);
 
 /// Measures the horizontal distance `distance_m` of the centre of `filter` from the start, at or just after the last
-/// node. Returns the correction of the nominal; zero if start and end are too close to define a direction.
+/// node. Returns the correction of the nominal. The correction is zero if start and end are too close to define a
+/// direction.
 Reported measure_distance(const RollingParams& params, double distance_m, double sigma_m, NodeRecord& last,
                           PathFilter& filter);
 
@@ -115,8 +116,8 @@ struct Adjoint {
   Covariance Lambda = Covariance::Zero();
 };
 
-/// Modified Bryson-Fraser smoother: fills `smoothed` and `smoothed_P` of consecutive nodes. `adjoint` is that after the
-/// last node; on return, that before the first.
+/// Applies the modified Bryson-Fraser smoother: fills `smoothed` and `smoothed_P` of consecutive nodes. On entry,
+/// `adjoint` refers to the time after the last node. On return, `adjoint` refers to the time before the first node.
 void smooth_back(Adjoint& adjoint, std::span<NodeRecord> nodes);
 
 }  // namespace tumble::rolling

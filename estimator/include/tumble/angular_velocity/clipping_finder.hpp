@@ -16,57 +16,60 @@ namespace tumble {
 /// Saturation levels of an IMU.
 struct KnownRails {
   RailDetector::State upright_rails;  ///< levels found from equal readings, and stated ranges
-  RailPlanes planes;                  ///< of the gyro's sensing elements, where observed
-  RailPlanes accel_planes;            ///< of the accelerometer
+  RailPlanes planes;                  ///< saturation planes of the gyro's sensing elements, where observed
+  RailPlanes accel_planes;            ///< saturation planes of the accelerometer
   bool upright = false;               ///< the device clips its output, so other axes are unaffected
-  bool accel_upright = false;         ///< same for the accelerometer
+  bool accel_upright = false;         ///< the accelerometer's device clips its output
 
-  /// Returns the planes that classify readings. If the device clips its output, equal readings identify clipped samples
-  /// exactly, and planes are used only for the remaining elements.
+  /// Returns the saturation planes that classify readings. If the device clips its output, equal readings identify
+  /// clipped samples exactly. Planes are then used only for sensing elements whose saturation level is not known from
+  /// equal readings.
   RailPlanes planes_in_use(Triad triad = Triad::gyro) const;
-  /// Returns the sensing directions of the elements. `unknown_sigma` is the standard deviation of slopes that no
-  /// saturation plane determines.
+  /// Returns the sensing directions of the triad's elements. `unknown_sigma` is the standard deviation of a cross-axis
+  /// sensitivity that no saturation plane determines.
   ElementRows rows(Triad triad, double unknown_sigma) const;
   bool operator==(const KnownRails&) const = default;
 };
 
-/// How the reading of one element may be used.
+/// Information that the reading of one sensing element provides.
 enum class ElementReading : std::uint8_t {
   measured,
-  clipped_high,  ///< a bound: the true value along the element's row is at this level or beyond
+  clipped_high,  ///< lower bound: the true value along the element's row is at this level or beyond
   clipped_low,
   unreadable  ///< no information
 };
-/// Returns the use of element `axis` of a classified sample.
+/// Returns the information that sensing element `axis` of a classified sample provides.
 ElementReading element_reading(const ImuSample& sample, const Clipping& clipping, Triad triad, int axis);
 
-/// Returns the ClipFlag bits of a classified sample, as the device should have set them.
+/// Returns the ClipFlag bits of a classified sample, as a device with correct flags would set them.
 std::uint8_t clip_flags(const Clipping& clipping);
 
-/// Saturation levels that are certain enough for tests across units, used for units that may freeze. Equal readings
-/// alone are not sufficient. Excluded are flat maxima of slow motion far below the stated range, and repeated readings
-/// without a stated range. Saturation planes are included because neither of these effects creates a plane.
+/// Saturation levels that are certain enough for tests across units, used for units that may freeze. A saturation level
+/// is not certain if it is derived from equal readings alone. Flat maxima of slow motion far below the stated range are
+/// excluded, and so are repeated readings without a stated range. Saturation planes are included because slow motion
+/// and frozen sensors do not produce planes.
 struct CertainRails {
-  RailPlanes gyro, accel;                                 ///< in use
+  RailPlanes gyro, accel;                                 ///< planes in use
   double gyro_range_rad_s = 0.0, accel_range_m_s2 = 0.0;  ///< stated range; 0: not stated
-  /// Returns the flags of a classified sample, in addition to its own flags.
+  /// Returns the clip flags of a classified sample, in addition to the flags that the device set.
   std::uint8_t flags(const ImuSample& sample, const Clipping& judged) const;
 };
 
-/// Finds the clipped readings of a recording, for all readers of recordings. The class combines the flags of the
-/// device, levels of equal readings (RailDetector) and tilted planes (RailPlaneFinder), for gyro and accelerometer.
-/// RateStream applies the same rules to its window (RailWatch).
+/// Finds the clipped readings of a recording, for every estimator that processes whole recordings. ClippingFinder
+/// combines flags of the device, saturation levels from equal readings (RailDetector) and tilted planes
+/// (RailPlaneFinder), for gyro and accelerometer. RailWatch applies the rules of ClippingFinder to the window of
+/// RateStream.
 class ClippingFinder {
  public:
   struct Params {
     RailDetector::Params upright_rails = {};
-    RailPlaneFinder::Params planes = {};  ///< without a stated range, that of `upright_rails` applies
-    /// same for the accelerometer
+    RailPlaneFinder::Params planes = {};  ///< without a stated range, the range of `upright_rails` applies
+    /// Parameters of the search for saturation planes of the accelerometer.
     RailPlaneFinder::Params accel_planes = RailPlaneFinder::Params::for_accelerometer();
-    /// False: use only flags and levels of equal readings, as in the published methods.
+    /// If false, clipping is detected only from flags and equal readings, as in the published methods.
     bool tilted = true;
 
-    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
+    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("rails_", p.upright_rails);
@@ -86,7 +89,7 @@ class ClippingFinder {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit ClippingFinder(const Params& params);
 
-  /// Classifies all samples. Samples must be finite and in time order. O(N) apart from the search of RailPlaneFinder.
+  /// Classifies all samples. Samples must be finite and in time order. Cost: O(N) plus the search of RailPlaneFinder.
   Found find(std::span<const ImuSample> samples) const;
 
   const RailDetector& upright_rails() const { return upright_rails_; }
@@ -96,7 +99,7 @@ class ClippingFinder {
                          bool& upright) const;
 
   RailDetector upright_rails_;
-  // gyro and accelerometer; the second of each applies if readings exceed the stated range
+  // index 0: gyro, 1: accelerometer; the inner index 1 applies if readings exceed the stated range
   std::array<std::array<RailPlaneFinder, 2>, 2> planes_;
   bool tilted_;
 };

@@ -15,17 +15,18 @@ namespace tumble {
 /// Clipped axes of a sample.
 struct Clipping {
   std::uint8_t gyro = 0;          ///< bit j: axis j is saturated; the true value is at or beyond the reading
-  std::uint8_t accel = 0;         ///< same for the accelerometer
+  std::uint8_t accel = 0;         ///< bit j: axis j of the accelerometer is saturated
   std::uint8_t missing_gyro = 0;  ///< bit j: the reading of axis j is unusable (overflow with flipped sign)
   bool operator==(const Clipping&) const = default;
 };
 
-/// Plateaus: consecutive readings that are closer together than noise allows.
+/// Parameters of plateaus: consecutive readings that are closer together than noise allows.
 struct RailPlateauParams {
   int samples = 4;  ///< minimum number of readings
-  /// Largest spread as a fraction of the level. Below the noise of an unsaturated reading.
+  /// Largest spread of a plateau's readings, as a fraction of the saturation level. The spread of a plateau is below
+  /// the noise of unsaturated readings.
   double spread_share = 2e-5;
-  /// A plateau of the gyro below this level needs twice as many readings and a jump at its start or end.
+  /// A plateau of the gyro below gyro_low_rad_s needs twice as many readings and a jump at its start or end.
   double gyro_low_rad_s = 1.0;
   double gyro_min_rad_s = 0.02;  ///< minimum level of a plateau
   double accel_min_m_s2 = 15.0;  ///< minimum level of a plateau of the accelerometer; above gravity
@@ -65,12 +66,12 @@ struct RailDetectorParams {
   std::optional<double> stated_accel_m_s2 = std::nullopt;
   double enter_share = 0.003;        ///< clipping starts within this fraction of the saturation level
   double leave_share = 0.02;         ///< neighbours of a clipped reading are clipped within this fraction of the level
-  double disagreement_share = 0.02;  ///< minimum relative difference that counts as contradiction of the stated range
+  double disagreement_share = 0.02;  ///< minimum relative difference that contradicts the stated range
 
   using Expert = RailDetectorExpertParams;
   Expert expert = {};  ///< parameters that few users change
 
-  /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
+  /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.enter_share, {"enter_share", "1", 0.0, 0.1,
@@ -84,20 +85,20 @@ struct RailDetectorParams {
   }
 };
 
-/// Finds the saturation level of each axis of an IMU from its readings. The level differs from unit to unit and from
-/// the data sheet. One gyro with a stated range of 450 deg/s saturated at 600 deg/s.
+/// Finds the saturation level of each axis of an IMU from its readings. The saturation level differs from unit to unit
+/// and from the data sheet. For example, one gyro with a stated range of 450 deg/s saturated at 600 deg/s.
 ///
-/// A plateau is a run of readings of one sign, closer together than noise allows, at the largest magnitude so far on
-/// the axis. Low plateaus must be longer and start or end with a jump of many digits of the device. The rule excludes
-/// the rounded maximum of a slow, coarsely quantised motion and an axis at rest. A stated range is used until a plateau
-/// is found or a reading exceeds it. Flags of the device are always used. Clipping has hysteresis, so that the
-/// irregular edge of a plateau belongs to it. Not modelled: levels that drift or differ between the two signs of an
-/// axis.
+/// A plateau is a run of readings of one sign that are closer together than noise allows. The readings of a plateau
+/// have the largest magnitude so far on the axis. Low plateaus must be longer and must start or end with a jump of many
+/// digits of the device. The required jump excludes the rounded maximum of a slow, coarsely quantised motion and an
+/// axis at rest. A stated range is used until a plateau is found or a reading exceeds the range. Flags of the device
+/// are always used. The classification has hysteresis, so that the irregular edge of a plateau belongs to the plateau.
+/// RailDetector does not model saturation levels that drift or differ between the two signs of an axis.
 class RailDetector {
  public:
   using Params = RailDetectorParams;
 
-  /// State of one channel. Order: gyro x, y, z, then accelerometer x, y, z.
+  /// State of one channel. The channels are gyro x, y, z, then accelerometer x, y, z.
   struct Channel {
     double rail = 0.0;  ///< level of a plateau; 0: none found
     double peak = 0.0;  ///< largest magnitude so far
@@ -120,19 +121,20 @@ class RailDetector {
 
   /// Updates the saturation levels with one finite sample. O(1).
   void observe(const ImuSample& sample, State& state) const;
-  /// Classifies one finite sample with the current levels. `state` stores the hysteresis. O(1).
+  /// Classifies one finite sample with the current saturation levels. `state` stores the hysteresis. O(1).
   Clipping classify(const ImuSample& sample, State& state) const;
-  /// Classifies a whole recording after processing all of it, including the edges on both sides of each plateau. O(N).
+  /// Classifies a whole recording after processing all samples. The edges on both sides of each plateau are included.
+  /// O(N).
   void classify_all(std::span<const ImuSample> samples, State& state, std::span<Clipping> out) const;
 
-  /// Adds the rising edge of a plateau: axes of `sample`, before a clipped `next`, within the same distance of the
-  /// level as after a plateau.
+  /// Adds the rising edge of a plateau: the axes of `sample`, before a clipped `next`, that are near the saturation
+  /// level. The maximum distance from the saturation level equals that after a plateau.
   void add_edge(const ImuSample& sample, const ImuSample& next, const Clipping& of_next, const State& state,
                 Clipping& clipping) const;
 
-  /// Returns the saturation level of channel c (0-5). The first available value counts: the plateau of the channel; the
-  /// largest plateau on another axis of the same sensor; the stated range. The plateau of another axis and the stated
-  /// range only apply while no reading exceeds them.
+  /// Returns the saturation level of channel c (0-5). The saturation level is the first available of: the plateau of
+  /// the channel, the largest plateau on another axis of its triad, and the stated range. A saturation level from
+  /// another axis or from the stated range applies only while no reading of channel c exceeds the level.
   std::optional<double> rail(const State& state, int c) const;
   /// Returns whether a plateau or a larger reading contradicts the stated range.
   bool disagrees(const State& state, int c) const;

@@ -12,28 +12,32 @@
 namespace tumble {
 
 /// Saturation of one sensing element of a gyro, seen in the compensated readings y as two planes: row . y = b - r and
-/// row . y = b + r. The element senses along `row` and clips there. The device then compensates scale and misalignment,
-/// which tilts the plane by a few percent, and subtracts its bias, so the two signs differ. The same holds for an
-/// accelerometer's element, with m/s^2 instead of rad/s.
+/// row . y = b + r. The sensing element measures the component along `row` and clips at the saturation level r. After
+/// clipping, the device compensates scale and misalignment, which tilts the planes by a few percent. The device also
+/// subtracts the element's bias, so the saturation levels of the two signs differ by 2 b. For a sensing element of an
+/// accelerometer, the unit is m/s^2 instead of rad/s.
 struct RailPlane {
-  /// m_j: 1 along the element's axis j, slopes along the other two.
+  /// m_j: 1 along the element's axis j, cross-axis sensitivities along the other two axes.
   Eigen::Vector3d row = Eigen::Vector3d::Zero();
   double distance_rad_s = 0.0;  ///< r
   double offset_rad_s = 0.0;    ///< b; close to 0 if only one sign was observed
-  /// Covariance of (slope along axis (j+1) % 3, slope along (j+2) % 3, r, b).
+  /// Covariance of (sensitivity to axis (j+1) % 3, sensitivity to axis (j+2) % 3, r, b).
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
   std::array<int, 2> samples{};   ///< samples on the negative and on the positive plane; 0: not observed
-  std::array<int, 2> segments{};  ///< number of runs of such samples
+  std::array<int, 2> segments{};  ///< number of runs of consecutive samples on each plane
   double deviation_rad_s = 0.0;   ///< root mean square distance of the samples from the plane
   double tolerance_rad_s = 0.0;   ///< readings within this distance of the plane, or beyond it, are clipped
-  double log_odds = 0.0;          ///< natural log odds of saturation against a motion that looks similar
+  double log_odds = 0.0;          ///< natural log odds of saturation against an unsaturated motion with similar
+                                  ///< readings
 
   bool seen(int sign) const { return samples[sign > 0 ? 1 : 0] > 0; }
-  /// Returns the distance of a reading below the plane of `sign` (-1 or 1); negative: beyond it [rad/s].
+  /// Returns the distance of a reading below the plane of `sign` (-1 or 1) [rad/s]. A negative distance means that the
+  /// reading is beyond the plane.
   double short_of(const Eigen::Vector3d& reading_rad_s, int sign) const {
     return distance_rad_s - sign * (row.dot(reading_rad_s) - offset_rad_s);
   }
-  /// Returns whether a reading is at or beyond the plane of `sign`; false if that sign was not observed.
+  /// Returns whether a reading is at or beyond the plane of `sign`. Returns false if saturation with this sign was not
+  /// observed.
   bool holds(const Eigen::Vector3d& reading_rad_s, int sign) const {
     return seen(sign) && short_of(reading_rad_s, sign) <= tolerance_rad_s;
   }
@@ -42,26 +46,29 @@ struct RailPlane {
   bool operator==(const RailPlane&) const = default;
 };
 
-/// Saturation planes of a gyro; empty where no saturation was observed.
+/// Saturation planes of a gyro. An entry is empty where no saturation was observed.
 struct RailPlanes {
   std::array<std::optional<RailPlane>, 3> element;
   bool any() const { return element[0] || element[1] || element[2]; }
   bool operator==(const RailPlanes&) const = default;
 };
 
-/// Sensing directions of a triad's elements, as determined from saturation planes. Free (unsaturated) elements measure
-/// the component along their rows; clipped elements bound this component.
+/// Directions along which a triad's sensing elements measure, as determined from saturation planes. Unsaturated
+/// elements measure the component along their sensing directions. Clipped elements provide a lower bound of this
+/// component.
 struct ElementRows {
   Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d slope_sigma = Eigen::Vector3d::Zero();  ///< standard deviation of each of the two slopes of a row
+  Eigen::Vector3d slope_sigma = Eigen::Vector3d::Zero();  ///< standard deviation of each of the two cross-axis
+                                                          ///< sensitivities of a row
   bool tilted() const { return rows != Eigen::Matrix3d::Identity(); }
   bool operator==(const ElementRows&) const = default;
 };
-/// Returns the rows of the elements. Elements without a plane have axis-aligned rows with a standard deviation of
-/// `unknown_sigma`.
+/// Returns the sensing directions of a triad's elements. An element without a saturation plane has an axis-aligned
+/// direction with the standard deviation `unknown_sigma`.
 ElementRows element_rows(const RailPlanes& planes, double unknown_sigma);
 
-/// State of each element in a sample: -1 or 1 if clipped at that side, 0 if free.
+/// State of each sensing element in a sample: -1 if clipped at the negative saturation level, 1 if clipped at the
+/// positive one, 0 if unsaturated.
 struct ElementClipping {
   std::array<std::int8_t, 3> sign{};
   bool any() const { return sign[0] != 0 || sign[1] != 0 || sign[2] != 0; }

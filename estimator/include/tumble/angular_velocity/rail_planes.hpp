@@ -15,44 +15,48 @@ namespace tumble {
 
 /// Finds the saturation planes of a triad's elements in a whole recording, without flags and without a stated range.
 ///
-/// A saturation plane bounds the readings, is nearly axis-aligned, and has many samples in a thin slab below it. Two
-/// kinds of motion look similar. The rounded maximum of a motion is recognised by its neighbours, which decrease as a
-/// parabola; saturation ends with a kink. A constant rate (torque-free spin, turntable) has full sensor noise, a
-/// different level each time, and starts with an impact on all axes. The evidence of all segments is summed as a log
-/// likelihood ratio against these alternatives. A penalty accounts for the free choice of slopes and level (Occam
-/// factor).
+/// A saturation plane limits the readings, is nearly axis-aligned, and has many samples in a thin slab below it. Two
+/// kinds of motion look like saturation: the rounded maximum of a motion, and a constant rate (torque-free spin,
+/// turntable). Beside a rounded maximum, the readings decrease as a parabola, whereas saturation ends with a kink. A
+/// constant rate has full sensor noise, has a different value each time, and starts with an impact on all axes.
+/// RailPlaneFinder sums the log likelihood ratio of saturation against rounded maxima and constant rates over all
+/// segments. A penalty accounts for the free choice of cross-axis sensitivities and saturation level (Occam factor).
 ///
-/// Repeated readings (sample and hold) count once. Structure below the quantisation or the noise is not resolved. A
-/// device has three elements of one kind. A level far below readings of another axis is therefore rejected, and a level
-/// equal to that of another element is more likely. Elements without a plane count as unsaturated.
+/// Repeated readings (sample and hold) count once. RailPlaneFinder does not resolve structure below the quantisation or
+/// the noise. The three sensing elements of a triad are of one kind. A saturation level far below readings of another
+/// axis is therefore rejected, and a level equal to that of another sensing element is more likely. Elements without a
+/// plane count as unsaturated.
 ///
-/// Not modelled: levels that drift or recover slowly, overflow, several levels of one element.
+/// RailPlaneFinder does not model saturation levels that drift or recover slowly, overflow, or several levels of one
+/// sensing element.
 class RailPlaneFinder {
  public:
   struct Params {
-    /// Returns the parameters for an accelerometer. Below about 1.5 g, gravity alone can be constant for long.
+    /// Returns the parameters for an accelerometer. The minimum saturation level is about 1.5 g, because gravity alone
+    /// can cause lower constant readings for long.
     static Params for_accelerometer() {
       Params out;
       out.distance_min_rad_s = 15.0;
       return out;
     }
-    /// Cross-axis sensitivity of elements before compensation: prior standard deviation of each slope.
+    /// Prior standard deviation of each cross-axis sensitivity of the sensing elements, before the device's
+    /// compensation.
     double slope_sigma = 0.03;
-    double slope_max = 0.12;  ///< largest slope in the search
-    /// Minimum saturation level. At rest and in slow motion, readings are constant, too [rad/s].
+    double slope_max = 0.12;  ///< largest cross-axis sensitivity in the search
+    /// Minimum saturation level [rad/s]. At rest and in slow motion, readings are constant without saturation.
     double distance_min_rad_s = 1.5;
-    /// Range stated in the data sheet, if any. The saturation level is not far below it [rad/s].
+    /// Range stated in the data sheet [rad/s], if any. The saturation level is not far below the stated range.
     std::optional<double> stated_rad_s = std::nullopt;
     double offset_share = 0.02;     ///< prior of the offset and of differences between elements, as a fraction of r
     int samples_min = 4;            ///< minimum number of samples on a plane of one sign
     double log_odds_before = -6.0;  ///< prior log odds for each element and sign
     double log_odds_min = 1.0;      ///< minimum log odds of an accepted plane
     double log_odds_keep = -3.0;    ///< minimum log odds of a plane that was accepted before
-    /// Saturation planes from an earlier run of the device, which are stable to a fraction of a percent. Such planes
-    /// are used from the start until readings contradict them, and make planes near them more likely.
+    /// Saturation planes from an earlier run of the device, which are stable to a fraction of a percent. Known planes
+    /// are used from the start until readings contradict them. Known planes also make new planes near them more likely.
     RailPlanes known = {};
 
-    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
+    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.slope_sigma,
@@ -72,7 +76,7 @@ class RailPlaneFinder {
     }
   };
 
-  /// Buffers of a search. With room for all readings, the search allocates nothing.
+  /// Buffers of a search. If the buffers have room for all readings, the search allocates nothing.
   struct Workspace {
     std::vector<Eigen::Vector3d> rates;
     std::vector<double> values;
@@ -83,10 +87,10 @@ class RailPlaneFinder {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit RailPlaneFinder(const Params& params);
 
-  /// Finds the saturation planes in the readings of a triad. Samples must be finite and in time order. O(N) plus a
-  /// search of some hundred slopes over the samples near the extremes.
+  /// Finds the saturation planes in the readings of a triad. Samples must be finite and in time order. Cost: O(N) plus
+  /// a search of some hundred cross-axis sensitivities over the samples near the extremes.
   RailPlanes find(std::span<const ImuSample> samples, Triad triad = Triad::gyro) const;
-  /// Same for plain readings [rad/s]. `before`: planes found in a subset of these readings.
+  /// Finds the saturation planes in plain readings [rad/s]. `before`: planes found in a subset of these readings.
   RailPlanes find(std::span<const Eigen::Vector3d> readings_rad_s, const RailPlanes& before,
                   Workspace& workspace) const;
 
@@ -97,9 +101,9 @@ class RailPlaneFinder {
   Params params_;
 };
 
-/// Returns which elements of a sample are clipped. O(1).
+/// Returns which sensing elements of a sample are clipped. O(1).
 ElementClipping classify(const ImuSample& sample, const RailPlanes& planes);
-/// Same for each sample of a recording; `out` has the same size.
+/// Classifies each sample of a recording by its clipped sensing elements; `out` has the size of `samples`.
 void classify(std::span<const ImuSample> samples, const RailPlanes& planes, std::span<ElementClipping> out);
 
 }  // namespace tumble

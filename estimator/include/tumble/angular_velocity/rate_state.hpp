@@ -13,10 +13,10 @@ enum class RateSource : std::uint8_t {
   measured,           ///< no axis of the gyro is clipped or suspected to be
   recovered_flight,   ///< clipped; recovered from the centripetal specific force in free flight
   recovered_contact,  ///< clipped; recovered during contact
-  bounded_only,       ///< clipped or suspected; only the saturation bound and the smoothness of motion are known
+  bounded_only,       ///< clipped or suspected; only the lower bound of the rate and the smoothness of motion are known
 };
 
-/// Returns the name as used in tables ("recovered_flight").
+/// Returns the name of a rate source as used in tables ("recovered_flight").
 const char* to_string(RateSource source);
 
 /// Angular velocity of an IMU in the world, in the IMU's axes, at the time of an IMU sample.

@@ -27,17 +27,18 @@ namespace tumble {
 /// samples. Samples that leave the window are marginalised into a Gaussian prior on the next sample and on
 /// RigConstants.
 ///
-/// An estimate is reported when its sample is `lag_s` old, and a provisional estimate immediately. A step costs
-/// O(window): in proportion to the sample rate above 200 Hz, to its square below. No allocation after the State is
-/// created.
+/// An estimate is reported when its sample is `lag_s` old. A provisional estimate is available immediately. A step
+/// costs O(window): above 200 Hz in proportion to the sample rate, and below 200 Hz in proportion to its square. No
+/// memory is allocated after the State is created.
 ///
-/// Saturation levels and planes are detected from the readings (RailWatch). After each detection the window is
-/// re-evaluated. A clipped sample is therefore accepted as a measurement only if it left the window before the
-/// detection. With the calibration of an earlier run, the error is 1.1 times that of RateSmoother, and 99 % are within
-/// three standard deviations. Without it, the calibration is estimated during the same tumble, and the factor is 1.6,
-/// or 1.2 with 0.5 s of lag (data: docs/maths/rate_stream.md). Errors of the samples of a flight are correlated. The
-/// covariance of the calibration and of the rates is therefore inflated while few flight samples were processed
-/// (`rig_inflation`). Not modelled: see RateSmoother.
+/// Saturation levels and planes are detected from the readings (RailWatch). After each detection of a saturation level,
+/// the window is re-evaluated. A clipped sample is therefore accepted as a measurement only if the sample left the
+/// window before the detection. With the calibration of an earlier run, the error of the rates is 1.1 times that of
+/// RateSmoother. In this case 99 % of the errors are within three standard deviations. If the calibration is estimated
+/// during the same tumble, the error is 1.6 times that of RateSmoother, or 1.2 times with 0.5 s of lag (data:
+/// docs/maths/rate_stream.md). Errors of the samples of a flight are correlated. The covariance of the calibration and
+/// of the rates is therefore inflated while few flight samples were processed (`rig_inflation`). The limitations of
+/// RateSmoother apply.
 class RateStream {
  public:
   using Params = RateStreamParams;
@@ -50,17 +51,17 @@ class RateStream {
   /// Returns the state before the first sample, with all memory that push() needs.
   State start() const;
 
-  /// Processes one sample. `out` is the estimate of the sample that is lag_s old; empty while the window fills. On
-  /// error (`non_finite`, `time_order`, `gap`) the state is unchanged and `out` is empty.
+  /// Processes one sample. `out` is the estimate of the sample that is lag_s old, and is empty while the window fills.
+  /// On error (`non_finite`, `time_order`, `gap`) the state is unchanged and `out` is empty.
   Status push(const ImuSample& sample, State& state, std::optional<RateState>& out) const {
     return push(sample, {}, state, out);
   }
-  /// Same with the readings of other IMUs on the body at that time: one per RateModelParams::auxiliary_imus, or none.
-  /// Returns `too_few` otherwise.
+  /// Processes one sample together with readings of additional IMUs on the body at the sample's time. Pass one reading
+  /// per RateModelParams::auxiliary_imus, or none; any other number returns `too_few`.
   Status push(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state,
               std::optional<RateState>& out) const;
 
-  /// Returns the provisional estimate of the newest sample; empty before the first.
+  /// Returns the provisional estimate of the newest sample. The result is empty before the first sample.
   std::optional<RateState> newest(const State& state) const;
 
   /// Appends the estimates of the samples still in the window to `out`, oldest first.
@@ -74,14 +75,14 @@ class RateStream {
   /// Returns the estimated calibration.
   RigCalibration calibration(const State& state) const { return {state.rig, inflated(state)}; }
 
-  /// Returns the sensor errors for which readings are corrected, and their covariance. A delayed accelerometer is
-  /// detected from impacts if the data sheet does not exclude it; see RateStreamDelay.
+  /// Returns the sensor errors for which readings are corrected, and the covariance of these errors. A delayed
+  /// accelerometer is detected from impacts if the data sheet does not exclude a delay; see RateStreamDelay.
   KnownSensorErrors sensor_errors(const State& state) const;
 
   /// Returns whether two states will give identical results, bit for bit. Buffers are not compared.
   static bool equal(const State& a, const State& b);
 
-  /// Checks the invariants of a state that was loaded from outside. Returns the first violation.
+  /// Checks the invariants of a state that was loaded from a file. Returns the first violated invariant.
   Status check_state(const State& state) const;
 
  private:
@@ -138,7 +139,7 @@ class RateStream {
   std::size_t capacity_;
   std::size_t samples_per_step_;  ///< number of samples between steps
   double prior_delay_s_;          ///< prior delay of the accelerometer
-  bool delay_open_;               ///< whether another delay is possible
+  bool delay_open_;               ///< whether a delay other than the prior one is possible
 };
 
 }  // namespace tumble

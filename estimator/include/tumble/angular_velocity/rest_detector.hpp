@@ -12,17 +12,18 @@
 namespace tumble {
 
 /// Detects when an IMU is stationary, for rates, attitude, rolling and mapping. At rest the rate is within a plausible
-/// bias, and the force is large enough to be gravity. Rate and force are constant up to noise for a while. The gyro
-/// then measures its bias. All parameters refer to times and to one bandwidth: readings faster than `reading_s` are
-/// averaged first. White noise of density n [unit/sqrt(Hz)] then has the standard deviation n / sqrt(reading_s),
-/// whatever the sample rate. A spread should be at least five such deviations. Not distinguished from rest: a steady
-/// rotation about the vertical, slower than `rate_max_rad_s`.
+/// bias, and the force is large enough to be gravity. Rate and force are constant up to noise for a minimum time. A
+/// gyro at rest measures its bias. All parameters refer to times and to one bandwidth: readings faster than `reading_s`
+/// are averaged first. White noise of density n [unit/sqrt(Hz)] then has the standard deviation n / sqrt(reading_s),
+/// whatever the sample rate. A spread parameter should be at least five standard deviations of the averaged noise.
+/// RestDetector does not distinguish rest from a steady rotation about the vertical that is slower than
+/// `rate_max_rad_s`.
 ///
-/// Parameters differ between uses and are set there: docs/design.md.
+/// Each user of RestDetector sets its own parameters, as docs/design.md explains.
 class RestDetector {
  public:
   struct Params {
-    double rate_max_rad_s = 0.05;     ///< of the mean of the run about the bias, each axis
+    double rate_max_rad_s = 0.05;     ///< maximum of the run's mean rate minus the bias, each axis
     double rate_spread_rad_s = 0.03;  ///< maximum distance of a reading from the mean of the run, per axis
     double force_min_m_s2 = 5.0;      ///< excludes flight
     double force_max_m_s2 = 1e3;      ///< excludes impacts
@@ -31,7 +32,7 @@ class RestDetector {
     double reading_s = 0.01;          ///< averaging time of a reading; 0: each sample
     double memory_s = 600.0;          ///< time constant of the run's mean: a drifting bias is not motion
 
-    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
+    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.rate_max_rad_s,
@@ -50,15 +51,15 @@ class RestDetector {
     }
   };
   struct State {
-    // State of the run: readings that stay close to their mean. A run that lasts long enough is rest.
+    // State of the current run of readings that stay close to their mean. A run that lasts long enough is rest.
     Eigen::Vector3d rate_sum_rad_s = Eigen::Vector3d::Zero();
     Eigen::Vector3d force_sum_m_s2 = Eigen::Vector3d::Zero();
-    double weight = 0.0;      ///< weight of the sums: number of readings, decreasing with age
-    TimeNs first_ns = 0;      ///< of the run's first sample
-    TimeNs last_mean_ns = 0;  ///< of the last reading
+    double weight = 0.0;      ///< weight of the sums: number of readings, each weighted less as it becomes older
+    TimeNs first_ns = 0;      ///< time of the run's first sample
+    TimeNs last_mean_ns = 0;  ///< time of the last reading
     TimeNs quiet_ns = 0;      ///< duration of the run with a mean within the bias bound
     bool rests = false;       ///< whether the run, up to the last reading, is rest
-    // Sums of the samples since the last reading.
+    // Sums of the samples since the last averaged reading.
     Eigen::Vector3d pending_rate_rad_s = Eigen::Vector3d::Zero();
     Eigen::Vector3d pending_force_m_s2 = Eigen::Vector3d::Zero();
     std::size_t pending_samples = 0;
@@ -66,7 +67,7 @@ class RestDetector {
     bool started = false;
     bool operator==(const State&) const = default;
 
-    /// Returns the mean of the run; zero without a run.
+    /// Returns the mean rate of the run. Returns zero without a run.
     Eigen::Vector3d mean_rate_rad_s() const;
     Eigen::Vector3d mean_force_m_s2() const;
   };
@@ -79,7 +80,7 @@ class RestDetector {
   bool observe(const ImuSample& sample, State& state,
                const Eigen::Vector3d& bias_rad_s = Eigen::Vector3d::Zero()) const;
 
-  /// Same for a mean over a time span, which counts as one reading whatever `reading_s`.
+  /// Processes a mean over a time span, which counts as one reading for every value of `reading_s`.
   bool observe_mean(const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& force_m_s2, TimeNs from_ns, TimeNs to_ns,
                     const Eigen::Vector3d& bias_rad_s, State& state) const;
 

@@ -10,7 +10,7 @@ namespace tumble {
 /// Calibration constants that are estimated with the rates of a run: 20 numbers, in this order.
 struct RigConstants {
   static constexpr int kSize = 20, kElements = 14;
-  static constexpr double kMost = 10.0;  ///< maximum magnitude of each, in its unit
+  static constexpr double kMost = 10.0;  ///< maximum magnitude of each number, in its unit
   using Vector = Eigen::Matrix<double, kSize, 1>;
   using Matrix = Eigen::Matrix<double, kSize, kSize>;
 
@@ -18,16 +18,16 @@ struct RigConstants {
   Eigen::Vector3d gyro_bias_rad_s = Eigen::Vector3d::Zero();  ///< reading minus truth
   Eigen::Vector3d accel_bias_m_s2 = Eigen::Vector3d::Zero();  ///< reading minus truth
   /// Shape of the inertia about the centre of mass in IMU axes, without scale: J = 1 + sum_i inertia_i S_i. S_i is an
-  /// orthonormal basis of the traceless symmetric matrices. Zero: all moments equal.
+  /// orthonormal basis of the traceless symmetric matrices. Zero means that all principal moments are equal.
   Eigen::Matrix<double, 5, 1> inertia = Eigen::Matrix<double, 5, 1>::Zero();
-  /// Directions of the gyro's sensing elements before the device's compensation. Element j senses along the row m_j: 1
-  /// on axis j, elements[2j] on axis (j+1) % 3 and elements[2j+1] on axis (j+2) % 3. Observable only while an element
-  /// clips.
+  /// Directions of the gyro's sensing elements before the device's compensation. Sensing element j measures the
+  /// component of the rate along the row m_j. The row m_j is 1 on axis j, elements[2j] on axis (j+1) % 3 and
+  /// elements[2j+1] on axis (j+2) % 3. The sensing directions are observable only while a sensing element clips.
   Eigen::Matrix<double, 6, 1> elements = Eigen::Matrix<double, 6, 1>::Zero();
 
-  /// Returns m_j.
+  /// Returns m_j, the sensing direction of element j.
   Eigen::Vector3d element_row(int j) const;
-  /// Returns J, with trace 3.
+  /// Returns the normalised inertia J, with trace 3.
   Eigen::Matrix3d inertia_matrix() const;
   /// Returns the coordinates `inertia` of a symmetric matrix of any positive scale.
   static Eigen::Matrix<double, 5, 1> inertia_coordinates(const Eigen::Matrix3d& inertia);
@@ -39,7 +39,7 @@ struct RigConstants {
   bool operator==(const RigConstants&) const = default;
 };
 
-/// Calibration estimated by one run, from which another run may start.
+/// Calibration estimated by one run, which can initialise another run.
 struct RigCalibration {
   RigConstants constants;
   RigConstants::Matrix covariance = RigConstants::Matrix::Identity();
@@ -47,8 +47,8 @@ struct RigCalibration {
 
 /// Returns `out_of_range` if a constant exceeds the limits of any plausible rig.
 Status check_rig(const RigConstants& rig);
-/// Same as check_rig(). In addition returns `degenerate` if the covariance is not positive definite, since a run cannot
-/// start from it.
+/// Checks a calibration by check_rig(). Also returns `degenerate` if the covariance is not positive definite, because a
+/// run cannot start from such a covariance.
 Status check_calibration(const RigCalibration& calibration);
 
 }  // namespace tumble

@@ -18,27 +18,28 @@ namespace tumble {
 /// force.
 ///
 /// Implements the published method (Deschenes et al., "Saturation-Aware Angular Velocity Estimation", ICRA 2024, eqs
-/// 5-7) in two stages. The first stage is a recursion per sample. The rotation axis e of the last accepted sample and
-/// the lever arm t give the vector from the IMU to the axis, l = (t.e)e - t. The component of the specific force along
-/// l is |l| |w|^2 in free flight. The clipped axis follows from this and the two others. In the second stage,
-/// WnojSmoother smooths all samples.
+/// 5-7) in two stages. In the recursive stage, each sample is processed in order. The rotation axis e of the last
+/// accepted sample and the lever arm t give the vector from the IMU to the axis, l = (t.e)e - t. The component of the
+/// specific force along l is |l| |w|^2 in free flight. The clipped axis of the rate w follows from this component and
+/// from the two unclipped axes. In the smoothing stage, WnojSmoother smooths all samples.
 ///
-/// Not modelled, as in the publication: a second clipped axis (the first in x, y, z order is recovered; the others keep
-/// the variance of an unclipped reading), angular acceleration across the axis, contact, clipped accelerometers, bias.
-/// Near r = |l| = 0 the estimate is unprotected (r = 0 exactly is rejected). The variance of an estimate is constant.
-/// Smoothed rates may fall below the saturation level.
+/// The publication and this class do not model a second clipped axis. The first clipped axis in the order x, y, z is
+/// recovered, and further clipped axes keep the variance of an unclipped reading. Angular acceleration across the axis,
+/// contact, clipped accelerometers and bias are not modelled either. Near |l| = 0 the estimate is unprotected (|l| = 0
+/// exactly is rejected). The variance of an estimate is constant. Smoothed rates may fall below the saturation level.
 class Saave {
  public:
   struct Params {
-    /// t: from the centre of mass to the IMU, IMU axes [m]; bound |t_j| <= 10. Required, no default; needed to about a
-    /// millimetre.
+    /// t: lever arm from the centre of mass to the IMU in IMU axes [m], with |t_j| <= 10. The lever arm is required and
+    /// has no default. An accuracy of about a millimetre is needed.
     Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
-    /// Readings strictly above this are clipped [rad/s]. Required, no default. Known error of the published method: a
-    /// device whose plateau equals this value never exceeds it, and nothing is recovered. Use a slightly lower value.
+    /// Readings strictly above this rate are clipped [rad/s]. The value is required and has no default. Known error of
+    /// the published method: a device whose plateau equals this value never exceeds it, and nothing is recovered. Use a
+    /// value slightly below the plateau.
     double saturation_point_rad_s = 0.0;
-    /// Variance of an unclipped reading [(rad/s)^2]; (0.03 deg/s/sqrt(Hz) * sqrt(100 Hz))^2.
+    /// Variance of an unclipped reading [(rad/s)^2]. The default is (0.03 deg/s/sqrt(Hz) * sqrt(100 Hz))^2.
     double variance_measured_rad2_s2 = 2.741e-5;
-    /// Variance of an accepted estimate [(rad/s)^2]: 0.2741 as in the authors' code, 3.648 as printed in the paper.
+    /// Variance of an accepted estimate [(rad/s)^2]. The authors' code uses 0.2741; the paper prints 3.648.
     double variance_estimated_rad2_s2 = 0.2741;
     /// Variance of the clipped axis without an estimate [(rad/s)^2].
     double variance_rejected_rad2_s2 = 1e6;
@@ -47,7 +48,7 @@ class Saave {
     /// A longer time between two samples is an error [s].
     double gap_max_s = 1.0;
 
-    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
+    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.lever_arm_m, {"lever_arm_m", "m", -10.0, 10.0,
@@ -82,7 +83,7 @@ class Saave {
   /// Result of the recursion for one sample, before smoothing.
   struct Recovered {
     Eigen::Vector3d rate_rad_s;
-    Eigen::Vector3d variance_rad2_s2;  ///< per axis
+    Eigen::Vector3d variance_rad2_s2;  ///< variance per axis
     std::uint8_t clipped_axes = 0;     ///< bits of the axes above the saturation point
     bool accepted = true;              ///< false: the clipped axis could not be recovered
   };
@@ -94,8 +95,8 @@ class Saave {
   /// O(1), no allocation.
   Status step(const ImuSample& sample, State& state, Recovered& out) const;
 
-  /// Performs both stages over a whole recording; one RateState per sample. O(N). Returns `empty` without samples.
-  /// On error `out` is unchanged, and the status contains the field and value of the first invalid sample.
+  /// Runs recursion and smoother over a whole recording. Writes one RateState per sample. O(N). Returns `empty` without
+  /// samples. On error `out` is unchanged, and the status contains the field and value of the first invalid sample.
   Status estimate(std::span<const ImuSample> samples, std::vector<RateState>& out) const;
 
   const Params& params() const { return params_; }

@@ -13,8 +13,8 @@
 
 namespace tumble {
 
-/// Clipped elements of each sample of a recording, as input of CarriedSmoother. Sources are flags of the device, and
-/// plateaus and tilted planes in the readings.
+/// Clipped sensing elements of each sample of a recording, as input of CarriedSmoother. Clipping is found from flags of
+/// the device, and from plateaus and tilted planes in the readings.
 struct CarriedElements {
   Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();  ///< sensing directions of the gyro; axes without planes
   std::vector<ClipSigns> signs;                        ///< one per sample
@@ -22,12 +22,12 @@ struct CarriedElements {
 
   ClippedElements clipped() const { return {rows, signs}; }
 
-  /// Treats free readings of these axes (bit j of each sample) as lower bounds because they may be at an unknown
-  /// saturation level.
+  /// Treats unclipped readings of the given axes (bit j of each sample) as lower bounds because the readings may be at
+  /// an unknown saturation level.
   void mark_suspect(std::span<const ImuSample> samples, std::span<const std::uint8_t> axes);
 
-  /// Marks rates as bounded instead of measured if the reading may have been saturated for a part of its window.
-  /// `rates`: one per sample.
+  /// Marks a rate as bounded instead of measured if its reading may have been saturated for a part of the reading's
+  /// window. `rates` has one entry per sample.
   void mark_near(std::span<RateState> rates) const;
 };
 

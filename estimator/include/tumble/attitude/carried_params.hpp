@@ -9,11 +9,11 @@ namespace tumble {
 /// Time constants of hand-held motion.
 struct CarriedHandParams {
   double hand_tau_s = 0.1;             ///< correlation time of the held point's acceleration
-  double velocity_tau_s = 0.3;         ///< correlation time of its velocity
-  double position_tau_s = 1.0;         ///< correlation time of its position
+  double velocity_tau_s = 0.3;         ///< correlation time of the held point's velocity
+  double position_tau_s = 1.0;         ///< correlation time of the held point's position
   double position_leak_s = 10.0;       ///< time constant with which a position decays
   double hand_noise_adaptation = 0.8;  ///< adaptation of the acceleration's density to its measured power, 0 to 1
-  double hand_window_s = 2.0;          ///< averaging time of this power
+  double hand_window_s = 2.0;          ///< averaging time of the measured acceleration power
   double hand_floor = 1.0;             ///< minimum density as a fraction of the assumed one
 
   template <class Self, class Visitor>
@@ -36,7 +36,8 @@ struct CarriedHandParams {
 
 /// Errors of readings other than noise, including clipped and recovered readings.
 struct CarriedReadingParams {
-  double tilt_share = 0.02;             ///< error of a free element per deficit of a clipped element
+  double tilt_share = 0.02;             ///< error of an unsaturated element, as a fraction of a clipped element's
+                                        ///< saturation deficit
   double rail_sigma_rad_s = 0.01;       ///< softness of a saturation level
   double accel_error_share = 0.02;      ///< additional force noise per m/s^2 of difference from gravity
   double rotation_error_sqrts = 1e-3;   ///< random walk of the attitude per rad/s of rotation
@@ -62,11 +63,11 @@ struct CarriedReadingParams {
   }
 };
 
-/// A stationary node.
+/// Standard deviations of the motion of a stationary node.
 struct CarriedStillParams {
-  double rest_sigma_rad_s = 0.01;  ///< of the rate at rest, one node
-  double rest_sigma_m_s = 0.02;    ///< of the velocity at rest
-  double rest_sigma_m_s2 = 0.1;    ///< of the acceleration at rest
+  double rest_sigma_rad_s = 0.01;  ///< standard deviation of the rate at rest, for one node
+  double rest_sigma_m_s = 0.02;    ///< standard deviation of the velocity at rest
+  double rest_sigma_m_s2 = 0.1;    ///< standard deviation of the acceleration at rest
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -78,13 +79,13 @@ struct CarriedStillParams {
   }
 };
 
-/// Parameters of CarriedParams that few users change, grouped by meaning. Field names equal those in tables and on
+/// Parameters of CarriedParams that few users change, grouped by meaning. Field names equal the names in tables and on
 /// command lines.
 struct CarriedExpertParams {
   double node_s = 0.01;  ///< time between two nodes
   int iterations_max = 15;
   double gap_max_s = 1.0;
-  /// Inflation of the jerk's root density in covariances. The jerk of the actual motion is not known in advance.
+  /// Factor on the jerk's root density in covariances. The jerk of the actual motion is not known in advance.
   double jerk_inflation = 4.0;
   RestDetector::Params rest = {};
   CarriedHandParams hand = {};
@@ -123,7 +124,7 @@ struct CarriedParams {
   using Expert = CarriedExpertParams;
   Expert expert = {};  ///< parameters that few users change
 
-  /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
+  /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-300, 100.0, "strength of gravity"});

@@ -12,25 +12,26 @@
 
 namespace tumble {
 
-/// Streaming form of CarriedSmoother: the same factors over a window of nodes, with one Gauss-Newton step per node.
+/// Estimates attitude and rate of hand-held motion sample by sample. CarriedStream uses the factors of CarriedSmoother
+/// over a window of nodes, with one Gauss-Newton step per node.
 ///
 /// The oldest node is marginalised into a Gaussian prior on the next node and on the constants, with its last
-/// derivatives. Estimates are reported when their sample is `lag_s` old. The window reaches further back (`window_s`),
-/// so that older nodes are relinearised in each step. `lag_s` is counted in samples of `period_s`. For sparser samples,
-/// a node may leave the window earlier; its rate is then stored. start() allocates all memory. Splitting a recording
-/// and continuing from the State gives bit-identical results.
+/// derivatives. Estimates are reported when their sample is `lag_s` old. The window is longer than the lag
+/// (`window_s`), so that older nodes are relinearised in each step. `lag_s` is counted in samples of `period_s`. If
+/// samples are further apart, a node may leave the window before its rate is reported; the rate is then stored. start()
+/// allocates all memory. Splitting a recording and continuing from the State gives bit-identical results.
 ///
 /// Differences from CarriedSmoother:
 /// - While nothing in the window clips, a step is made for each fifth node only.
-/// - The first attitude comes from one force, not from a filter.
+/// - The initial attitude comes from a single force reading, not from a filter.
 /// - The density of the hand's acceleration adapts to the nodes that left the window, with the time constant
-///   `hand_window_s` / 2, and not to later nodes.
+///   `hand_window_s` / 2. Later nodes have no influence on the density.
 /// - Other numbers of revolutions are not tested. The covariance includes the deviation of an additional revolution,
-///   and segments that may contain one are counted (C42, C43 of carried.md).
+///   and segments that may contain an additional revolution are counted (C42, C43 of carried.md).
 /// - Readings that have left the window were classified with the saturation levels known at that time.
-/// - The prior from the past uses the assumed jerk; covariances use the inflated one.
+/// - The prior from marginalised nodes uses the assumed jerk; covariances use the inflated jerk.
 ///
-/// Cost: one step per new node, O(window).
+/// Cost: each new node costs one step, O(window).
 class CarriedStream {
  public:
   struct Params {
@@ -39,7 +40,7 @@ class CarriedStream {
     double lag_s = 0.2;
     double window_s = 0.6;
 
-    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
+    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.body);
@@ -64,13 +65,14 @@ class CarriedStream {
     carried::NodeReadings readings;
   };
   struct State {
-    std::vector<Reading> readings;  ///< of the nodes in the window, oldest first
+    std::vector<Reading> readings;  ///< readings of the nodes in the window, oldest first
     std::vector<Knot> window;       ///< oldest first
     std::int64_t first_node = 0;    ///< number of the oldest node
     Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();
     carried::Constants constants;
     carried::System::BorderMatrix constants_covariance = carried::System::BorderMatrix::Zero();
-    // Prior on the oldest node and the constants from everything that left the window, about a linearisation point.
+    // Prior on the oldest node and the constants from everything that left the window. The prior is linearised at
+    // `prior_node` and `prior_constants`.
     carried::System::Block prior;
     carried::System::Corner prior_corner;
     carried::Node prior_node;
@@ -82,8 +84,8 @@ class CarriedStream {
     std::int64_t start_ns = 0;
     std::size_t samples = 0;
     std::size_t failures = 0;  ///< number of skipped steps, whose system was not positive definite
-    /// Current clipped segment of each gyro element, up to the last reported sample: its duration, and the integral of
-    /// the rate's standard deviation.
+    /// Current clipped segment of each sensing element of the gyro, up to the last reported sample: the segment's
+    /// duration, and the integral of the rate's standard deviation.
     Eigen::Vector3d hidden_s = Eigen::Vector3d::Zero(), hidden_rad = Eigen::Vector3d::Zero();
     std::size_t revolutions_open = 0;          ///< segments in which an additional revolution could not be excluded
     std::vector<carried::System::Block> work;  ///< buffer, not part of the state
@@ -94,25 +96,24 @@ class CarriedStream {
 
   /// Returns the state before the first sample, with all memory that push() needs.
   State start() const;
-  /// Resets a state to before the first sample and reuses its memory. Counters keep their values.
+  /// Resets a state to before the first sample and reuses the state's memory. Counters keep their values.
   void restart(State& state) const;
 
   /// Processes one sample. On error the state is unchanged and `out` is empty: `non_finite`, `time_order`, `gap`,
-  /// `out_of_range` (no signs), `degenerate` (rows that do not span the axes).
-  /// - `known.signs`: current signs of the newest samples; the last entry belongs to this sample. Samples in the window
-  ///   whose signs changed are processed again.
-  /// - `out`: rate of the sample that is `lag_s` old. Empty while the window fills, and if not `wanted`, which saves
-  ///   most of the computation.
+  /// `out_of_range` (no signs), `degenerate` (sensing directions that do not span the axes).
+  /// - `known.signs`: current clip signs of the newest samples; the last entry belongs to `sample`. Samples of the
+  ///   window with changed signs are processed again.
+  /// - `out`: rate of the sample that is `lag_s` old. The output is empty while the window fills, and if not `wanted`,
+  ///   which saves most of the computation.
   /// - `repeated`: repeated readings of the log. A repeated reading counts once, at the time when the sensor took it
-  /// (R95
-  ///   of rate_stream.md).
+  ///   (R95 of rate_stream.md).
   Status push(const ImuSample& sample, const ClippedElements& known, State& state, std::optional<RateState>& out,
               bool wanted = true, const RepeatDetector::State& repeated = {}) const;
 
   /// Appends the rates of the samples that are not yet reported to `out`, oldest first.
   void flush(const State& state, std::vector<RateState>& out) const;
 
-  /// Checks the invariants of a state that was loaded from outside. Returns the first violation.
+  /// Checks the invariants of a state that was loaded from a file. Returns the first violated invariant.
   Status check_state(const State& state) const;
 
  private:

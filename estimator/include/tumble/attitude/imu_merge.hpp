@@ -23,19 +23,19 @@ struct ImuMergeParams {
   static constexpr int kImus = ImuMergeState::kImus;
   std::array<Eigen::Isometry3d, kImus> T_CI{};  ///< mountings; the first `count` are used
   int count = 1;
-  double rate_noise_rad_s = 0.01;  ///< of the mean over a window
+  double rate_noise_rad_s = 0.01;  ///< standard deviation of the mean rate over a window
   double window_s = 4e-3;          ///< averaging time of readings
   double offset_sigma_s = 3e-3;    ///< prior of a unit's time offset; zero: not estimated
   double gyro_range_rad_s = 1e3;   ///< readings from this value on are saturated
   double accel_range_m_s2 = 1e5;
   double gap_max_s = 1.0;
-  /// Sensing directions of each unit's elements (RailPlaneFinder).
+  /// Directions along which the sensing elements of each unit measure (RailPlaneFinder).
   std::array<ElementRows, kImus> gyro_elements{}, accel_elements{};
 
   using Expert = ImuMergeExpertParams;
   Expert expert = {};  ///< parameters that few users change
 
-  /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
+  /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.count, {"count", "1", 1, kImus, "number of IMUs in use"});
@@ -57,30 +57,32 @@ struct ImuMergeParams {
 /// Fuses several IMUs on one rigid body into one IMU, in common axes C, at the mean of their positions.
 ///
 /// On a rigid body the specific force is linear in position. The mean of the forces is therefore exactly the force at
-/// the mean position, without the angular acceleration. If three or more units agree and one does not, this unit is
-/// excluded from the sample. The contribution of its position is replaced, using the other units' rate. A small Kalman
-/// filter estimates each unit's bias, scale, misalignment and time offset relative to the mean while the body rotates.
-/// A significant time offset is corrected; the other errors average out. Accelerometer errors do not average out in
-/// fast rotation, where large forces cancel in the mean. ForceErrors estimates and corrects them.
+/// the mean position, without the angular acceleration. If three or more units agree and one does not, the disagreeing
+/// unit is excluded from the sample. The rate of the remaining units replaces the contribution of the excluded unit's
+/// position. A small Kalman filter estimates each unit's bias, scale, misalignment and time offset relative to the mean
+/// while the body rotates. A significant time offset is corrected; the other gyro errors average out. Accelerometer
+/// errors do not average out in fast rotation, where large forces cancel in the mean. ForceErrors estimates and
+/// corrects accelerometer errors.
 ///
-/// A unit with a saturated accelerometer is excluded from the force. The same applies to a unit that may have been
-/// saturated within a sample and disagrees with the others. If most units are suspect, the merged force is flagged as
-/// clipped. If the gyros are saturated, three or more units determine the rate from the accelerometers' differences
-/// (RateRecovery). The merged clip flags show when this fails. With fewer units, a clipped unit is excluded while
-/// another is free. If none is free, the merged sample is flagged on all axes of C to which a clipped axis contributes.
-/// A reading is clipped if flagged or beyond the range. Lower saturation levels, in particular tilted ones, must be
-/// flagged beforehand (ClippingFinder).
+/// A unit with a saturated accelerometer is excluded from the force. A unit that may have been saturated within a
+/// sample and disagrees with the remaining units is also excluded. If most units are suspect, the merged force is
+/// flagged as clipped. If the gyros are saturated, three or more units determine the rate from the accelerometers'
+/// differences (RateRecovery). The merged clip flags show when this recovery fails. With fewer units, a clipped unit is
+/// excluded while another unit is unsaturated. If all units are saturated, the merged sample is flagged on all axes of
+/// C to which a clipped axis contributes. A reading is clipped if flagged or beyond the range. Lower saturation levels,
+/// in particular tilted planes, must be flagged beforehand (ClippingFinder).
 ///
-/// All decisions and estimates use means over window_s, whatever the IMUs' rate. Bandwidth and tolerances are therefore
-/// fixed. Readings as long as window_s are used unchanged. If an axis was saturated within the window, its mean is a
-/// bound.
+/// All decisions and estimates use means over window_s, whatever the IMUs' rate. Bandwidth and tolerances therefore do
+/// not depend on the IMUs' rate. Readings as long as window_s are used unchanged. If an axis was saturated within the
+/// window, its mean is a lower bound.
 ///
-/// A unit whose reading is not finite is absent. A unit is frozen if its gyro or accelerometer repeats its reading
-/// while the others change, or its accelerometer does while gravity rotates. A frozen unit is excluded until its
-/// readings have changed for a while. A unit that disagrees for long (scale, axes, unit of measurement) is excluded
-/// permanently, as long as two others remain. Equal readings at rest do not count as freezing or disagreement.
+/// A unit whose reading is not finite is absent. A unit is frozen if its gyro or accelerometer repeats a reading while
+/// the other units' readings change. A unit is also frozen if its accelerometer repeats a reading while gravity
+/// rotates. A frozen unit is excluded until its readings have changed for a while. A unit that disagrees for long
+/// (scale, axes, unit of measurement) is excluded permanently, as long as two other units remain. Equal readings at
+/// rest do not count as freezing or disagreement.
 ///
-/// Not modelled: clocks of different rates, an error common to all units.
+/// ImuMerge does not model clocks of different rates, or an error common to all units.
 class ImuMerge {
  public:
   static constexpr int kImus = ImuMergeState::kImus;
@@ -96,19 +98,21 @@ class ImuMerge {
   explicit ImuMerge(const Params& params);
 
   /// Returns the ratio of the force differences between units to those expected from rotation and positions. The ratio
-  /// is 1 if correct, -1 if the accelerometers' sign is inverted. Empty while the body has not rotated enough.
+  /// is 1 if rotation and forces agree, and -1 if the accelerometers' sign is inverted. The result is empty while the
+  /// body has not rotated enough.
   static std::optional<double> arm_share(const State& state);
 
   /// Returns `out_of_range` with the duration [s] if all recently received units are frozen. The readings of frozen
-  /// units are then merged unchanged. Otherwise returns `ok`.
+  /// units are then merged unchanged. Returns `ok` if at least one unit is not frozen.
   Status verdict(const State& state) const;
 
   /// Returns the position of the merged IMU in C.
   Eigen::Vector3d p_C_m() const { return p_C_m_; }
 
-  /// Processes simultaneous samples of all units; the time stamp is that of the first. `merged` is in C, the mean over
-  /// the window that these samples complete; otherwise empty. On error (`too_few`: not `count` samples, or none is
-  /// finite) the state is unchanged and `merged` is empty. O(count), no allocation.
+  /// Processes simultaneous samples of all units; the time stamp is that of the first unit. When the samples complete a
+  /// window, `merged` is the mean over the window, in C. While the window is incomplete, `merged` is empty. On error
+  /// (`too_few`: not `count` samples, or none is finite) the state is unchanged and `merged` is empty. O(count), no
+  /// allocation.
   Status step(std::span<const ImuSample> samples, State& state, std::optional<ImuSample>& merged) const;
 
  private:

@@ -28,7 +28,7 @@ struct ImuPlausibilityParams {
   using Expert = ImuPlausibilityExpertParams;
   Expert expert = {};  ///< parameters that few users change
 
-  /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
+  /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-12, 100.0, "strength of gravity"});
@@ -48,25 +48,27 @@ struct ImuPlausibilityParams {
 /// Checks whether an IMU's readings are plausible: units, axes, signs, and frozen sensors.
 ///
 /// If the magnitude of the force is constant over a fifth of a second, the force is nearly gravity. The magnitude of
-/// the force must then be g, and the force's direction must rotate as the gyro measures: u(t + T) = R^T u(t). A
-/// constant force of another magnitude is not gravity, but for example the centripetal force of a spin in flight. The
-/// direction of such a force is not compared. Windows with a saturated gyro are not compared either.
+/// the force must then be g, and the force's direction must rotate as the gyro measures: u(t + T) = R^T u(t). Here u is
+/// the direction of the force and R the rotation from t to t + T. A constant force of another magnitude is not gravity,
+/// but for example the centripetal force of a spin in flight. The direction of a force other than gravity is not
+/// compared. Windows with a saturated gyro are not compared either.
 ///
-/// The rotation of the force is regressed on that of the gyro. The slope is 1 for a sound IMU, 2 for a half-scale gyro,
-/// -1 for an inverted gyro, and about 0 for swapped axes. Pushes, and a force along a rod, scatter about this slope and
-/// shift it little. Rotation about one special axis is the same under wrong axis labels, for example a sphere rolling
-/// along x = y with x and y swapped. The correct labels then leave a smaller residual, so all labels are compared. A
-/// force that does not rotate although the body does is detected separately.
+/// The rotation of the force is regressed on that of the gyro. The slope of the regression is 1 for a correct IMU, 2
+/// for a half-scale gyro, -1 for an inverted gyro, and about 0 for swapped axes. Pushes, and a force along a rod,
+/// scatter the measured rotations about the true slope and shift the slope little. Rotation about certain axes does not
+/// reveal swapped axis labels. An example is a sphere rolling along x = y with x and y swapped. For swapped axes, the
+/// correct labels leave a smaller residual, so the residuals of all labels are compared. A force that does not rotate
+/// although the body does is detected separately.
 ///
 /// A gyro or an accelerometer is frozen if it repeats one reading bit for bit, for a second and for ten times its
-/// longest earlier repetition. The sensor's readings must have changed before. A sensor that repeated its readings as
-/// long before is not distinguished from this (coarse quantisation at rest, a simulation without noise). A gyro that
-/// never changed is frozen if gravity rotates, or if forces differ from gravity for long enough. An accelerometer that
-/// always reads 0 is frozen if the gyro measures motion.
+/// longest earlier repetition. The sensor's readings must have changed before. A sensor with equally long earlier
+/// repetitions is therefore not detected as frozen (coarse quantisation at rest, a simulation without noise). A gyro
+/// that never changed is frozen if gravity rotates, or if forces differ from gravity for long enough. An accelerometer
+/// that always reads 0 is frozen if the gyro measures motion.
 ///
-/// Not detected: errors of some per cent, errors of axes about which the body does not rotate, and a body that is
-/// pushed all the time. An accelerometer with all three axes flipped is not detected either; with several IMUs,
-/// ImuMerge::arm_share() detects it.
+/// ImuPlausibility does not detect errors of some per cent, errors of axes about which the body does not rotate, or a
+/// body that is pushed all the time. An accelerometer with all three axes flipped is not detected either. With several
+/// IMUs, ImuMerge::arm_share() detects flipped accelerometers.
 class ImuPlausibility {
  public:
   using Params = ImuPlausibilityParams;
@@ -85,12 +87,12 @@ class ImuPlausibility {
     Eigen::Quaterniond turned = Eigen::Quaterniond::Identity();  ///< rotation within the window, from the gyro
     double length_s = 0.0;
     bool open = false, steady = false;
-    bool in_range = true;  ///< of all samples of the window and of the current average
+    bool in_range = true;  ///< whether all samples of the window and of the current average are within the range
     double force_sum_m_s2 = 0.0, windows = 0.0;
     double pushed_s = 0.0;                               ///< time with forces that exclude rest
     std::array<double, kAxisLabels> unexplained_rad2{};  ///< residual for each labelling of the axes
     double by_force_rad2 = 0.0, by_gyro_rad2 = 0.0;      ///< sums over the windows in which the force rotated
-    double rotated_windows = 0.0;                        ///< number of these windows
+    double rotated_windows = 0.0;                        ///< number of windows in which the force rotated
     double all_force_rad2 = 0.0, all_gyro_rad2 = 0.0;    ///< sums over the windows in which force or gyro rotated
     TimeNs last_time_ns = 0;
     bool started = false;
@@ -107,27 +109,27 @@ class ImuPlausibility {
   double force_share(const State& state) const;
   /// Returns the fraction of the force's rotation that the gyro does not explain; 0 while unknown.
   double unexplained_share(const State& state) const;
-  /// Returns the slope of the force's rotation over the gyro's (I20); 1 while unknown.
+  /// Returns the regression slope of the force's rotation on the gyro's rotation (I20); 1 while unknown.
   double rotation_slope(const State& state) const;
-  /// Returns the correlation of the two rotations, -1 to 1. The correlation is 1 for a gyro of any scale, -1 for an
-  /// inverted gyro, and about 0 for swapped axes. Pushes mistaken for gravity cause values between. 1 while the
-  /// rotation is too small.
+  /// Returns the correlation of the gyro's rotation with the force's rotation, -1 to 1. The correlation is 1 for a gyro
+  /// of any scale, -1 for an inverted gyro, and about 0 for swapped axes. Pushes mistaken for gravity cause values
+  /// between 0 and 1. Returns 1 while the rotation is too small.
   double rotation_agreement(const State& state) const;
   /// Returns the force's rotation as a fraction of the gyro's, including windows in which the force did not rotate; 1
   /// while unknown.
   double force_rotated_share(const State& state) const;
-  /// Returns the axis labels under which gravity rotates with the gyro, if they clearly differ from the current ones
-  /// (I22).
+  /// Returns the axis labels under which gravity rotates with the gyro, if these labels clearly differ from the current
+  /// ones (I22).
   std::optional<AxisLabels> other_labels(const State& state) const;
   /// Returns the longest time for which the gyro or the accelerometer was frozen [s]; 0: never.
   double frozen_s(const State& state) const;
-  /// Returns `out_of_range` with the name of the quantity that is out of its bound.
+  /// Returns `out_of_range` with the name of the quantity that violates its limit.
   Status verdict(const State& state) const;
 
  private:
   /// Returns whether the force rotated far enough, in enough windows, for a decision.
   bool turned(const State& state) const;
-  /// Returns whether a gyro with the slope's scale leaves a far smaller residual than the actual one, or is inverted.
+  /// Returns whether the gyro is inverted, or rescaling it by the regression slope leaves a far smaller residual.
   bool explains_more(const State& state) const;
   void take(State& state) const;
   void compare(const Eigen::Vector3d& force_m_s2, State& state) const;

@@ -13,12 +13,13 @@ namespace tumble {
 
 /// Estimates the angular velocity of a body in flight, in contact or hand-held over a whole recording. RateSmoother
 /// assumes flight and contact. Where RegimeEvidence indicates that the body was hand-held while its gyro clipped,
-/// CarriedSmoother is used as well. `either` combines both. CarriedSmoother runs only if it can change the result.
-/// RegimeStream is the streaming form.
+/// CarriedSmoother is used as well. `either` combines the estimates of RateSmoother and CarriedSmoother.
+/// CarriedSmoother runs only if it can change the result. RegimeStream is the streaming form.
 ///
 /// Samples in and near a segment of clipped or suspect samples use the smallest hand-held probability among the
-/// segment's nearby samples. Reason: when a hand releases the body, the flight determines nearby rates, but nothing
-/// about hand-held motion a second later. Not modelled: further IMUs, which determine the rate in any regime.
+/// segment's nearby samples. The reason is a body that a hand releases: the flight determines nearby rates, but nothing
+/// about hand-held motion a second later. Additional IMUs determine the rate in any kind of motion and are not used
+/// here.
 class RegimeSmoother {
  public:
   struct Params {
@@ -28,7 +29,7 @@ class RegimeSmoother {
     double carried_min = 0.02;  ///< minimum probability of hand-held motion that justifies a run of CarriedSmoother
     double near_s = 0.1;        ///< clipped samples within this time form one segment and affect each other
 
-    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
+    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.rate);
@@ -41,7 +42,7 @@ class RegimeSmoother {
   };
   struct Report {
     RateReport rate;
-    bool judged = false;               ///< regimes were estimated; the following members are valid
+    bool judged = false;               ///< kinds of motion were estimated; the following members are valid
     RegimeShares shares{};             ///< mean over the samples
     double carried_clipped_max = 0.0;  ///< largest probability of hand-held motion in a segment of clipped samples
     bool carried_asked = false;        ///< CarriedSmoother was run successfully; its report follows
@@ -51,7 +52,7 @@ class RegimeSmoother {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit RegimeSmoother(const Params& params);
 
-  /// Computes one RateState per sample. Errors are those of RateSmoother; `rates` is then empty. If CarriedSmoother
+  /// Computes one RateState per sample. Errors are those of RateSmoother; on error `rates` is empty. If CarriedSmoother
   /// fails, the result of RateSmoother is used.
   Status estimate(std::span<const ImuSample> samples, std::vector<RateState>& rates, Report& report) const;
 

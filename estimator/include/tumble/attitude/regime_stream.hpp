@@ -13,18 +13,20 @@
 namespace tumble {
 
 /// Estimates the angular velocity of a body in flight, in contact or hand-held, sample by sample. RateStream assumes
-/// flight and contact. CarriedStream is combined with it (`either`) where RegimeEvidence indicates hand-held motion
-/// while the gyro clips. Saturation levels are those that RateStream detects.
+/// flight and contact. CarriedStream is combined with RateStream (`either`) where RegimeEvidence indicates hand-held
+/// motion while the gyro clips. RateStream detects the saturation levels.
 ///
-/// The evidence is a filter over the reported samples. Each sample is therefore judged by the past and, through its
-/// rate, by the lag ahead. The weight of CarriedStream is the smallest nearby value in the segment of clipped samples,
-/// as in RegimeSmoother, within the window. While RateStream resets its calibration repeatedly (in more than half of
-/// the steps of its lag), clipped samples are not used. CarriedStream is paused while the hand-held probability is
-/// below `carried_min`, and restarts afterwards. Unclipped estimates are those of RateStream.
+/// The probabilities of flight, contact and hand-held motion come from a filter over the reported samples. Each
+/// probability therefore depends on earlier samples and, through the smoothed rate, on later samples within the lag.
+/// The weight of CarriedStream is the smallest nearby probability in the segment of clipped samples, as in
+/// RegimeSmoother, within the window. While RateStream resets its calibration in more than half of the steps of its
+/// lag, clipped samples are not used. CarriedStream is paused while the hand-held probability is below `carried_min`,
+/// and then restarts. Unclipped estimates are those of RateStream.
 ///
-/// RateStream fits clipped rates, and all angular accelerations, to the same force by which the regime is judged. For
-/// an IMU far from the centre of mass, gravity in gentle hand-held motion is then mistaken for the lever arm's force.
-/// The evidence therefore uses the time derivative of the rates instead.
+/// RateStream fits clipped rates, and all angular accelerations, to the force from which the kind of motion is
+/// estimated. For an IMU far from the centre of mass, gravity in gentle hand-held motion would then be mistaken for the
+/// lever arm's force. RegimeEvidence therefore receives the time derivative of the rates instead of RateStream's
+/// angular acceleration.
 class RegimeStream {
  public:
   struct Params {
@@ -34,7 +36,7 @@ class RegimeStream {
     double carried_min = 0.02;      ///< minimum probability of hand-held motion for which CarriedStream runs
     double near_s = 0.1;            ///< clipped samples within this time form one segment and affect each other
 
-    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
+    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.rate);
@@ -53,19 +55,19 @@ class RegimeStream {
   struct State {
     RateStream::State rate;
     CarriedStream::State carried;
-    std::vector<ClipSigns> signs;  ///< of RateStream's window; buffer
+    std::vector<ClipSigns> signs;  ///< clip signs of RateStream's window; buffer
     RegimeShares shares{1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0};
     RegimeShares sum{};          ///< sum over all reported samples
     std::size_t reported = 0;    ///< number of reported samples
-    std::size_t joined = 0;      ///< of these, combined with CarriedStream
+    std::size_t joined = 0;      ///< number of reported samples combined with CarriedStream
     std::size_t starts = 0;      ///< number of starts of CarriedStream
     std::size_t rig_resets = 0;  ///< last value of RateStream's counter
     double resets = 0.0;         ///< resets of RateStream's calibration, decaying over its lag
     bool carrying = false;       ///< CarriedStream is running
-    /// Samples of the last clipped segment within `near_s`, without those followed by a smaller probability. The first
-    /// has the smallest.
+    /// Samples of the last clipped segment within `near_s`, without those followed by a smaller probability. The oldest
+    /// stored sample has the smallest probability.
     std::vector<ReportedShare> near;
-    TimeNs reported_ns = 0;            ///< of the last reported sample
+    TimeNs reported_ns = 0;            ///< time of the last reported sample
     std::optional<TimeNs> clipped_ns;  ///< last reported clipped sample
   };
 
@@ -75,20 +77,20 @@ class RegimeStream {
   /// Returns the state before the first sample, with all memory that push() needs.
   State start() const;
 
-  /// Same as RateStream::push.
+  /// Processes one sample as RateStream::push does, and combines the rate with that of CarriedStream.
   Status push(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state,
               std::optional<RateState>& out) const;
   Status push(const ImuSample& sample, State& state, std::optional<RateState>& out) const {
     return push(sample, {}, state, out);
   }
 
-  /// Same as RateStream::flush, combined with the current probabilities.
+  /// Appends the estimates of RateStream::flush, combined with CarriedStream by the current probabilities.
   void flush(const State& state, std::vector<RateState>& out) const;
 
   const RateStream& rate() const { return rate_; }
   const Params& params() const { return params_; }
 
-  /// Checks the invariants of a state that was loaded from outside. Returns the first violation.
+  /// Checks the invariants of a state that was loaded from a file. Returns the first violated invariant.
   Status check_state(const State& state) const;
 
  private:

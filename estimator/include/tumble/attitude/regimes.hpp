@@ -12,36 +12,38 @@
 
 namespace tumble {
 
-/// Probabilities of the regimes of one sample: free flight (zero specific force at the centre of mass), contact (any
-/// force), hand-held (bounded acceleration about gravity). Their sum is 1.
+/// Probabilities of one sample's kind of motion (regime): free flight (zero specific force at the centre of mass),
+/// contact (any force), or hand-held (bounded acceleration about gravity). The three probabilities sum to 1.
 struct RegimeShares {
   double flight = 0.0, contact = 0.0, carried = 0.0;
 };
 
-/// Estimates the regime of each sample of a recording from its specific force. The force minus the effect of rotation
-/// at the lever arm is e = f - a x r - w x (w x r). It is zero in flight. In hand-held motion its magnitude is that of
-/// gravity plus a hand's acceleration, in any direction. In contact it has any value (flat density of the logarithmic
-/// norm). A Markov chain connects the samples: flight and contact alternate several times per second, but a body is
-/// rarely thrown or caught. An impact or a quiet moment while rolling is therefore not mistaken for hand-held motion.
-/// Readings within `memory_s` are correlated and count as one. A body that does not rotate gives no evidence.
+/// Estimates the kind of motion (flight, contact or hand-held) of each sample of a recording from its specific force.
+/// The force minus the effect of rotation at the lever arm is e = f - a x r - w x (w x r). Here f is the specific
+/// force, w the rate, a the angular acceleration and r the lever arm. The remaining force e is zero in flight. In
+/// hand-held motion the magnitude of e is that of gravity plus a hand's acceleration, in any direction. In contact e
+/// has any value (flat density of the logarithmic norm). A Markov chain connects the samples: flight and contact
+/// alternate several times per second, but a body is rarely thrown or caught. An impact or a quiet moment while rolling
+/// is therefore not mistaken for hand-held motion. Readings within `memory_s` are correlated and count as one. A body
+/// that does not rotate gives no information.
 ///
-/// No attitude is needed, so the regimes are available before CarriedSmoother runs. Not modelled: a body that hangs on
-/// a rope, buoyancy, aerodynamic forces above `flight_m_s2`.
+/// No attitude is needed, so the kinds of motion are available before CarriedSmoother runs. RegimeEvidence does not
+/// model a body that hangs on a rope, buoyancy, or aerodynamic forces above `flight_m_s2`.
 class RegimeEvidence {
  public:
   struct Params {
     double gravity_m_s2 = 9.80665;
     double flight_m_s2 = 0.3;          ///< standard deviation of the remaining force in flight: drag, bandwidth
-    double flight_share = 0.05;        ///< additional, as a fraction of the lever arm's force
+    double flight_share = 0.05;        ///< additional standard deviation, as a fraction of the lever arm's force
     double hand_m_s2 = 5.0;            ///< standard deviation of a hand's acceleration
     double grip_m = 0.05;              ///< distance of the IMU from the hand
-    double contact_max_m_s2 = 1000.0;  ///< forces of contact are between 1 m/s^2 and this
+    double contact_max_m_s2 = 1000.0;  ///< largest force of contact; the smallest force is 1 m/s^2
     double memory_s = 0.05;
-    double rest_rate_rad_s = 0.5;  ///< slower rotation gives no evidence
+    double rest_rate_rad_s = 0.5;  ///< slower rotation gives no information
     double contacts_hz = 5.0;      ///< rate of changes between flight and contact
-    double throws_hz = 0.02;       ///< rate of changes between these and hand-held motion
+    double throws_hz = 0.02;       ///< rate of changes between hand-held motion and flight or contact
 
-    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
+    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-300, 100.0, "strength of gravity"});
@@ -64,14 +66,14 @@ class RegimeEvidence {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit RegimeEvidence(const Params& params);
 
-  /// Computes one RegimeShares per sample. `rates` are those of a smoother that assumes flight and contact, one per
-  /// sample. `lever_arm_m` is from the centre of mass to the IMU, in its axes, with its covariance. Errors: `empty`;
-  /// `out_of_range` if `rates` does not have one element per sample. O(N).
+  /// Computes one RegimeShares per sample. `rates` contains one rate per sample, from a smoother that assumes flight
+  /// and contact. `lever_arm_m` is from the centre of mass to the IMU, in IMU axes, with its covariance. Errors:
+  /// `empty`; `out_of_range` if `rates` does not have one element per sample. O(N).
   Status find(std::span<const ImuSample> samples, std::span<const RateState> rates, const Eigen::Vector3d& lever_arm_m,
               const Eigen::Matrix3d& lever_arm_covariance_m2, std::vector<RegimeShares>& out) const;
 
-  /// Same as a filter: returns the probabilities after a sample from those `dt_s` earlier, with the derivative of the
-  /// rate. O(1).
+  /// Filters one sample: returns the probabilities after the sample from the probabilities `dt_s` earlier. The angular
+  /// acceleration is the time derivative of the rate. O(1).
   RegimeShares next(const RegimeShares& before, double dt_s, const ImuSample& sample, const RateState& rate,
                     const Eigen::Vector3d& angular_acceleration_rad_s2, const Eigen::Vector3d& lever_arm_m,
                     const Eigen::Matrix3d& lever_arm_covariance_m2) const;
@@ -82,8 +84,9 @@ class RegimeEvidence {
   Params params_;
 };
 
-/// Combines two different estimates of a rate: the mean of the more probable one, with the covariance of the mixture.
-/// `share`: probability of `second`.
+/// Combines two different estimates of a rate. The result has the mean of the more probable estimate and the covariance
+/// of the mixture.
+/// `share` is the probability of `second`.
 RateState either(const RateState& first, const RateState& second, double share);
 
 }  // namespace tumble

@@ -10,15 +10,15 @@
 
 namespace tumble {
 
-/// Integrates the gyro to an attitude: q <- q Exp(w dt), from a start levelled by the accelerometer.
-/// Exact for a rate that is constant in body axes over each sample. No bias estimate and no correction: the attitude
-/// drifts.
+/// Integrates the gyro to an attitude: q <- q Exp(w dt), from a start levelled by the accelerometer. The integration is
+/// exact for a rate that is constant in body axes over each sample. Strapdown estimates no bias and makes no
+/// correction, so the attitude drifts.
 class Strapdown {
  public:
   struct Params {
     double gap_max_s = 1.0;  ///< a longer time between samples is a `gap`
 
-    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
+    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4,

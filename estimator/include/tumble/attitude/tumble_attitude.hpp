@@ -12,7 +12,7 @@
 
 namespace tumble {
 
-/// Parameters of TumbleAttitude: the gyro, and the extent of the motion.
+/// Parameters of TumbleAttitude: errors of the gyro, and extent of the body's motion.
 struct TumbleAttitudeParams {
   double gravity_m_s2 = 9.80665;
   double gyro_noise_rad_sqrts = 1e-3;         ///< angle random walk per sqrt(s), unmodelled errors included
@@ -28,7 +28,7 @@ struct TumbleAttitudeParams {
   using Expert = TumbleAttitudeExpertParams;
   Expert expert = {};  ///< parameters that few users change
 
-  /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
+  /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-12, 100.0, "strength of gravity"});
@@ -54,32 +54,34 @@ struct TumbleAttitudeParams {
   }
 };
 
-/// Estimates attitude from gyro and accelerometer, using bounds on the motion: the velocity is bounded, and zero at
-/// rest.
+/// Estimates attitude from gyro and accelerometer, assuming that the body's velocity is bounded, and zero at rest.
 ///
 /// The gyro is integrated exactly. The force, rotated to W, is integrated to a horizontal velocity and displacement
-/// (leaky). A tilt error would let both grow without bound. Weak pseudo-measurements of zero velocity and zero
-/// displacement therefore separate tilt and gyro bias from any acceleration that is later compensated. A Kalman filter
-/// of nine states (tilt, bias, velocity, displacement) does this every `node_s`. The filter acts like VQF's low-pass in
-/// an inertial frame, with a corner frequency that adapts to the sensor's errors. At rest, velocity and rate are zero
-/// up to noise. The bias is then measured and the attitude kept constant, so noise moves neither tilt nor heading.
+/// (leaky). A tilt error would let velocity and displacement grow without bound. Weak pseudo-measurements of zero
+/// velocity and zero displacement therefore separate tilt and gyro bias from any acceleration that is later
+/// compensated. A Kalman filter of nine states (tilt, bias, velocity, displacement) applies the pseudo-measurements
+/// every `node_s`. The filter acts like VQF's low-pass in an inertial frame, with a corner frequency that adapts to the
+/// sensor's errors. At rest, velocity and rate are zero up to noise. The bias is then measured and the attitude kept
+/// constant, so noise moves neither tilt nor heading.
 ///
 /// The extent of the motion is not known in advance: a few centimetres, or down a hill. If a velocity or displacement
-/// exceeds its assumed standard deviation and the tilt's variance does not explain it, it is real motion. The assumed
-/// standard deviation then increases for `motion_tau_s`.
+/// exceeds its assumed standard deviation and the tilt's variance does not explain the excess, the motion is real. The
+/// assumed standard deviation then increases for `motion_tau_s`.
 ///
-/// For a rolling sphere (radius_m > 0), the centre's velocity is r w x n. That of the IMU differs from it by w x (R
-/// rho). Rolling then explains the specific force except for tilt and bias, without the derivative of the rate. A
-/// velocity that does not fit indicates slip. Corrections pause until it fits again, for at most slip_timeout_s.
+/// For a rolling sphere (radius_m = r > 0), the centre's velocity is r w x n, with the rate w and the floor's normal n.
+/// The IMU's velocity differs from the centre's by w x (R rho), with the attitude R and the lever arm rho. Rolling then
+/// explains the specific force except for tilt and bias, without the derivative of the rate. A velocity that does not
+/// fit indicates slip. During slip, corrections pause until the velocity fits again, for at most slip_timeout_s.
 ///
 /// Readings of a fast IMU are averaged to reading_s before they are processed. Between two averages the attitude is
 /// extrapolated. Over a gap (longer than `gap_least_s`) the rate is interpolated and the velocity continues, with
-/// increased variances. A body at rest before and after a gap is assumed to rest during it. If the gap increases the
-/// tilt's standard deviation to gap_lost_tilt_rad, the filter is no longer linear. A coarse alignment then searches for
-/// the vertical in parallel, and the covariance remains that of the gap until it succeeds. If the two disagree, the
-/// filter restarts from the alignment.
+/// increased variances. A body at rest before and after a gap is assumed to rest during the gap. If the gap increases
+/// the tilt's standard deviation to gap_lost_tilt_rad, the linearisation of the filter is no longer valid. A coarse
+/// alignment then searches for the vertical in parallel, and the covariance remains that of the gap until the alignment
+/// succeeds. If filter and alignment disagree, the filter restarts from the alignment.
 ///
-/// Not modelled: accelerometer bias and scale (they are the remaining tilt error at rest), heading reference.
+/// TumbleAttitude does not model accelerometer bias and scale, which cause the remaining tilt error at rest, or a
+/// heading reference.
 class TumbleAttitude {
  public:
   using Params = TumbleAttitudeParams;
@@ -87,13 +89,12 @@ class TumbleAttitude {
 
   explicit TumbleAttitude(const Params& params);
 
-  /// Processes a sample. The first sample levels the attitude (yaw 0); each later one is integrated, and one per
-  /// `node_s` corrects the state.
-  /// On error the state is unchanged. O(1), no allocation.
+  /// Processes a sample. The first sample levels the attitude (yaw 0). Each later sample is integrated, and one sample
+  /// per `node_s` corrects the state. On error the state is unchanged. O(1), no allocation.
   Status step(const ImuSample& sample, State& state) const { return step(sample, Eigen::Matrix3d::Zero(), state); }
-  /// Same for a sample whose rate was recovered from saturation, with the covariance of its error in sensor axes; zero:
-  /// measured. The error has the correlation time `recovered_tau_s`. Returns `out_of_range` if the covariance is not
-  /// finite or has a negative variance.
+  /// Processes a sample whose rate was recovered from saturation, with the covariance of the rate's error in sensor
+  /// axes. A covariance of zero marks a measured rate. The error has the correlation time `recovered_tau_s`. Returns
+  /// `out_of_range` if the covariance is not finite or has a negative variance.
   Status step(const ImuSample& sample, const Eigen::Matrix3d& rate_covariance_rad2_s2, State& state) const;
 
   /// Returns the covariance of the attitude error, defined as in AttitudeState, at the last node.

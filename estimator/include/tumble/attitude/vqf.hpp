@@ -10,12 +10,12 @@
 
 namespace tumble {
 
-/// Parameters for which the authors use one value for all devices.
+/// Parameters of Vqf for which the authors of the publication use one value for all devices.
 struct VqfExpertParams {
   double bias_sigma_motion_rad_s = 1.7453e-3;  ///< 0.1 deg/s: limit of the bias uncertainty in motion
-  double bias_sigma_rest_rad_s = 5.2360e-4;    ///< 0.03 deg/s: the same at rest
+  double bias_sigma_rest_rad_s = 5.2360e-4;    ///< 0.03 deg/s: limit of the bias uncertainty at rest
   double vertical_forgetting = 1e-4;           ///< decay of the unobservable vertical bias to zero
-  double rest_tau_s = 0.5;                     ///< of the rest detector's low-pass
+  double rest_tau_s = 0.5;                     ///< time constant of the rest detector's low-pass
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -31,7 +31,7 @@ struct VqfExpertParams {
 
 /// Parameters of Vqf, named as in the publication.
 struct VqfParams {
-  double tau_s = 3.0;  ///< of the low-pass on the specific force
+  double tau_s = 3.0;  ///< time constant of the low-pass on the specific force
   bool rest_bias_estimation = true;
   bool motion_bias_estimation = true;         ///< both off: the authors' basic filter
   double bias_sigma_start_rad_s = 8.7266e-3;  ///< 0.5 deg/s
@@ -39,13 +39,13 @@ struct VqfParams {
   double bias_clip_rad_s = 3.4907e-2;         ///< 2 deg/s: largest accepted bias
   double rest_time_s = 1.5;
   double rest_rate_rad_s = 3.4907e-2;  ///< 2 deg/s from the low-passed gyro
-  double rest_force_m_s2 = 0.5;        ///< from the low-passed force
+  double rest_force_m_s2 = 0.5;        ///< maximum distance of the force from the low-passed force at rest
   double gap_max_s = 1.0;
 
   using Expert = VqfExpertParams;
   Expert expert = {};  ///< parameters that few users change
 
-  /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
+  /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.tau_s, {"tau_s", "s", 1e-3, 1e4,
@@ -71,10 +71,10 @@ struct VqfParams {
 
 /// Estimates attitude by the versatile quaternion filter with gyro and accelerometer (D. Laidig, T. Seel, Information
 /// Fusion 91, 2023, "VQF"). The gyro alone rotates the specific force into a nearly inertial frame N. A low-pass in N
-/// averages out the acceleration of bounded motion. The result levels N in W by the smallest rotation. A Kalman filter
-/// of three states estimates the gyro's bias: at rest from the low-passed gyro, in motion from the rate of the
-/// levelling. Not modelled: heading reference, bias about the vertical in motion, adaptation to the magnitude of the
-/// acceleration.
+/// averages out the acceleration of bounded motion. The averaged force levels N in W by the smallest rotation. A Kalman
+/// filter of three states estimates the gyro's bias: at rest from the low-passed gyro, in motion from the rate of the
+/// levelling. Vqf does not model a heading reference, bias about the vertical in motion, or adaptation to the magnitude
+/// of the acceleration.
 class Vqf {
  public:
   using Params = VqfParams;
@@ -98,7 +98,7 @@ class Vqf {
 
   explicit Vqf(const Params& params);
 
-  /// Processes a sample. The first sample levels the attitude (yaw 0); each later one is integrated and corrects the
+  /// Processes a sample. The first sample levels the attitude (yaw 0). Each later sample is integrated and corrects the
   /// state. With a force below 1e-6 m/s^2, only the gyro is integrated. On error the state is unchanged. O(1), no
   /// allocation.
   Status step(const ImuSample& sample, State& state) const;

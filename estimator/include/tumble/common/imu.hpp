@@ -21,8 +21,8 @@ enum ClipFlag : std::uint8_t {
 inline constexpr std::uint8_t kClipGyro = kClipGyroX | kClipGyroY | kClipGyroZ;
 inline constexpr std::uint8_t kClipAccel = kClipAccelX | kClipAccelY | kClipAccelZ;
 
-/// One reading of an inertial measurement unit, in the unit's axes I.
-/// The values are means over the sample's window, which ends at `time_ns`.
+/// One reading of an inertial measurement unit, in the unit's axes I. Rate and force are means over the sample's
+/// window, which ends at `time_ns`.
 struct ImuSample {
   TimeNs time_ns = 0;
   Eigen::Vector3d angular_velocity_rad_s = Eigen::Vector3d::Zero();  ///< measured w_WI_I
@@ -37,12 +37,12 @@ inline bool is_finite(const ImuSample& sample) {
 }
 
 /// Checks a single reading. Returns `non_finite` or `out_of_range` (magnitude above 1e6, which no sensor reports) for
-/// the first bad component, otherwise ok.
+/// the first invalid component. Returns `ok` if all components are valid.
 Status check_sample(const ImuSample& sample);
 
-/// Checks the time stamps of two consecutive samples.
-/// Returns `time_order` unless time_ns > previous_ns (value: time_ns, bound: previous_ns).
-/// Returns `gap` if more than gap_max_s lies between them (value: the gap in seconds). Otherwise returns ok.
+/// Checks the time stamps of two consecutive samples. Returns `time_order` unless time_ns > previous_ns (value:
+/// time_ns, bound: previous_ns). Returns `gap` if the stamps are more than gap_max_s apart (value: the gap in seconds).
+/// Returns `ok` for valid stamps.
 Status check_follows(TimeNs time_ns, TimeNs previous_ns, double gap_max_s);
 
 }  // namespace tumble

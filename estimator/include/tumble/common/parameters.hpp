@@ -10,17 +10,18 @@
 
 #include "tumble/common/status.hpp"
 
-/// Description of each number of a `Params`, stated in one place. Checks, tables, readers and comparisons are visitors.
+/// A `Params` describes each of its numbers in one place. Checks, tables, readers and comparisons are visitors of these
+/// descriptions.
 ///
-/// A `Params` has `template <class Self, class Visitor> static void fields(Self& p, Visitor& visit)`. This function
-/// calls `visit(p.member, Field)` for each double, int, std::size_t, bool, enumeration (by its number) and Vector3d. It
-/// calls `visit.group("prefix_", p.member)` for each nested `Params`. Self may be const.
+/// A `Params` has `template <class Self, class Visitor> static void fields(Self& p, Visitor& visit)`. The function
+/// `fields` calls `visit(p.member, Field)` for each double, int, std::size_t, bool, enumeration (by its number) and
+/// Vector3d. For each nested `Params`, `fields` calls `visit.group("prefix_", p.member)`. Self may be const.
 ///
 /// Members that are not numbers set by a user are not fields: poses, planes and earlier calibrations. A Field's bounds
 /// are plain numbers, so relations between fields are checked separately.
 namespace tumble {
 
-/// Order of fields in a listing. `first` marks the numbers that users usually set first.
+/// Order of fields in a listing. `first` marks the numbers that users usually set before any others.
 enum class Rank : std::uint8_t { first, further };
 
 /// Description of one number of a `Params`. All strings are static.
@@ -37,7 +38,7 @@ inline Field on_off(const char* name, const char* meaning, Rank rank = Rank::fur
   return {name, "1", 0.0, 1.0, meaning, rank};
 }
 
-/// Bound of fields whose values only need to be finite.
+/// Limit of fields whose values only need to be finite.
 inline constexpr double kUnbounded = std::numeric_limits<double>::max();
 
 /// Types that a visitor receives as a number, as opposed to a vector or a nested `Params`.
@@ -46,7 +47,7 @@ concept Number = std::is_arithmetic_v<std::remove_cvref_t<T>> || std::is_enum_v<
 
 namespace detail {
 
-/// The first field that is out of its bounds. `names` holds the prefixes of its groups and its own name.
+/// The first field whose value is not allowed. `names` holds the prefixes of the field's groups and the field's name.
 struct OutOfBounds {
   std::array<const char*, 8> names{};
   std::size_t depth = 0;
@@ -54,7 +55,7 @@ struct OutOfBounds {
   Status status;
 };
 
-/// Visitor that finds the first field that is out of its bounds (NaN counts as out of bounds). Does not allocate.
+/// Visitor that finds the first field whose value is not allowed (NaN is never allowed). Does not allocate.
 class FindOutOfBounds {
  public:
   explicit FindOutOfBounds(OutOfBounds& out) : out_(out) {}
@@ -80,13 +81,13 @@ class FindOutOfBounds {
   OutOfBounds& out_;
 };
 
-/// Throws InvalidParams with the field's full name, unless `found` is empty.
+/// Throws InvalidParams with the full name of the found field, unless `found` is empty.
 void throw_if(const OutOfBounds& found);
 
 }  // namespace detail
 
-/// Checks the bounds of all fields. Returns `out_of_range` with name, value and bound of the first violation, otherwise
-/// `ok`. The name of a nested field lacks its group's prefix. Does not allocate.
+/// Checks the bounds of all fields. Returns `out_of_range` with name, value and bound of the first violation, or `ok`.
+/// The name of a nested field lacks its group's prefix. Does not allocate.
 template <class Params>
 Status check_fields(const Params& params) {
   detail::OutOfBounds found;

@@ -12,7 +12,8 @@ namespace tumble {
 struct AttitudeState {
   TimeNs time_ns = 0;
   Eigen::Quaterniond q_WA = Eigen::Quaterniond::Identity();
-  /// Covariance of the error phi with q_true = Exp(phi) * q_WA, world axes, rad^2. Zero if the method reports none.
+  /// Covariance of the attitude error phi in world axes [rad^2], with q_true = Exp(phi) * q_WA. The covariance is zero
+  /// if the method reports none.
   Eigen::Matrix3d covariance_rad2 = Eigen::Matrix3d::Zero();
 };
 
@@ -22,8 +23,8 @@ struct PoseState {
   Eigen::Vector3d p_WA_m = Eigen::Vector3d::Zero();
   Eigen::Quaterniond q_WA = Eigen::Quaterniond::Identity();
   Eigen::Vector3d v_WA_m_s = Eigen::Vector3d::Zero();
-  /// Covariance of (position error in W [m], attitude error phi in W [rad]), with phi as in AttitudeState. Zero if the
-  /// method reports none.
+  /// Covariance of (position error in W [m], attitude error phi in W [rad]), with phi as in AttitudeState. The
+  /// covariance is zero if the method reports none.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 };
 

@@ -17,14 +17,14 @@ namespace tumble {
 /// The host's delay varies; the sensor's period is regular. At 300 rad/s^2, a timing error of 0.5 ms means a rate error
 /// of 0.15 rad/s.
 ///
-/// The class fits a line to the stamps as a function of the sample number, with exponentially decreasing weights for
+/// SampleClock fits a line to the stamps as a function of the sample number, with exponentially decreasing weights for
 /// older samples. The method is the fading-memory polynomial filter of first degree (N. Morrison, Introduction to
-/// Sequential Smoothing and Prediction, 1969, ch. 13). The error of its time is 1.1 sqrt(T / memory_s) times the
-/// jitter, with the sample period T. A constant delay of the host is a clock offset and is not observable. Dropped
-/// samples are counted in the numbering.
+/// Sequential Smoothing and Prediction, 1969, ch. 13). The error of an estimated time is 1.1 sqrt(T / memory_s) times
+/// the jitter, with the sample period T. A constant delay of the host is a clock offset and is not observable. The
+/// numbering of samples includes dropped samples.
 ///
-/// A stamp is kept, bit for bit, in each of these cases:
-/// - It is among the first 32.
+/// SampleClock keeps a stamp, bit for bit, in each of these cases:
+/// - The stamp is among the first 32.
 /// - The jitter is below `jitter_min` of the period: the stamps come from the sensor's clock, possibly rounded to
 ///   microseconds.
 /// - The jitter is above `jitter_max`, or successive errors are correlated: the sensor has no period, or its period
@@ -32,8 +32,8 @@ namespace tumble {
 ///
 /// The estimated time is never further than half a period from the stamp.
 ///
-/// Not modelled: a sensor that samples on request of a host that jitters but stamps exactly. The stamps of such a
-/// sensor look the same but are correct. Set `jitter_max` to 0 to keep every stamp.
+/// SampleClock does not model a sensor that samples on request of a host that jitters but stamps exactly. The stamps of
+/// a sensor sampled on request look like delayed stamps but are correct. Set `jitter_max` to 0 to keep every stamp.
 class SampleClock {
  public:
   struct Params {
@@ -41,7 +41,7 @@ class SampleClock {
     double jitter_min = 0.005;  ///< standard deviation of the stamps, in periods
     double jitter_max = 0.15;
 
-    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
+    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.memory_s, {"memory_s", "s", 0.01, 1e3, "time over which the sensor's clock is assumed to be steady"});
@@ -73,16 +73,16 @@ class SampleClock {
   explicit SampleClock(const Params& params);
 
   /// Processes a stamp and computes `time_ns`, the time at which its sample was taken. Returned times increase
-  /// strictly. Returns `time_order` and leaves the state unchanged unless the stamp is later than the previous one.
-  /// O(1), no allocation.
+  /// strictly. If the stamp is not later than the previous stamp, push() returns `time_order` and leaves the state
+  /// unchanged. O(1), no allocation.
   Status push(TimeNs stamp_ns, State& state, TimeNs& time_ns) const;
 
-  /// Returns the standard deviation of the stamps about the line [s], or nothing while no line is fitted.
+  /// Returns the standard deviation of the stamps about the fitted line [s]. Returns nothing while no line is fitted.
   static std::optional<double> jitter_s(const State& state);
   /// Returns whether push() currently corrects stamps.
   bool corrects_stamps(const State& state) const;
 
-  /// Checks the invariants of a state that was loaded from outside. Returns the first violation.
+  /// Checks the invariants of a state that was loaded from a file. Returns the first violated invariant.
   static Status check_state(const State& state);
 
  private:
@@ -93,8 +93,8 @@ class SampleClock {
 };
 
 /// Replaces stamps by the sample times that SampleClock estimates. `corrected_jitter_s` returns the largest jitter that
-/// was corrected [s]; 0 means that all stamps are unchanged. Returns `time_order` as push() does; `stamps_ns` is then
-/// unchanged. O(N).
+/// was corrected [s]; 0 means that all stamps are unchanged. Returns `time_order` if the stamps do not increase;
+/// `stamps_ns` is then unchanged. O(N).
 Status to_sample_times(const SampleClock& clock, std::span<TimeNs> stamps_ns, double& corrected_jitter_s);
 
 }  // namespace tumble

@@ -11,23 +11,23 @@ namespace tumble::so3 {
 /// Returns the skew-symmetric matrix [v]x with [v]x w = v x w.
 Eigen::Matrix3d hat(const Eigen::Vector3d& v);
 
-/// Returns the unit quaternion of the rotation by |phi| radians about phi, exact to the rounding of |phi|. 0 gives the
-/// identity.
+/// Returns the unit quaternion of the rotation by |phi| radians about phi, exact to the rounding of |phi|. phi = 0
+/// gives the identity.
 Eigen::Quaterniond exp(const Eigen::Vector3d& phi);
 
-/// Returns the shortest rotation vector (length at most pi) of a unit quaternion. q and -q give the same vector. For a
-/// half turn, which has two such vectors, the first non-zero component is positive.
+/// Returns the shortest rotation vector (length at most pi) of a unit quaternion. q and -q give equal vectors. A half
+/// turn has two shortest vectors; log() returns the vector whose first non-zero component is positive.
 Eigen::Vector3d log(const Eigen::Quaterniond& q);
 
 /// Returns the left Jacobian J_l(phi): Exp(phi + d) = Exp(J_l d) Exp(phi) to first order in d. The right Jacobian is
-/// its transpose.
+/// the transpose of the left Jacobian.
 Eigen::Matrix3d left_jacobian(const Eigen::Vector3d& phi);
 
-/// Returns the inverse of left_jacobian; finite for |phi| < 2 pi.
+/// Returns the inverse of left_jacobian, which is finite for |phi| < 2 pi.
 Eigen::Matrix3d left_jacobian_inverse(const Eigen::Vector3d& phi);
 
-/// Returns the smallest rotation that takes the unit vector `from` to the unit vector `to`. For opposite vectors, this
-/// is a half turn about an axis perpendicular to them.
+/// Returns the smallest rotation that takes the unit vector `from` to the unit vector `to`. For opposite vectors, the
+/// rotation is a half turn about an axis perpendicular to `from` and `to`.
 Eigen::Quaterniond shortest_arc(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 
 }  // namespace tumble::so3

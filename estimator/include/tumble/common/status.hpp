@@ -25,16 +25,16 @@ enum class Trouble : std::uint8_t {
 /// Returns the name of an error kind as used in tables and messages ("time_order").
 const char* to_string(Trouble trouble);
 
-/// Result of a step: the invalid field, its value and the violated bound. The library reports expected errors by value
+/// Result of a step: the invalid field, its value and the violated limit. The library reports expected errors by value
 /// and prints nothing. Only constructors throw.
 struct Status {
   Trouble trouble = Trouble::none;
   const char* field = "";  ///< static string: name of the input field
   double value = 0.0;      ///< value found, in the field's unit
-  double bound = 0.0;      ///< violated bound, in the same unit
+  double bound = 0.0;      ///< violated limit, in the field's unit
 
   bool ok() const { return trouble == Trouble::none; }
-  /// Returns a message such as "time_order: time_ns is 5, bound 7"; "ok" on success.
+  /// Returns a message such as "time_order: time_ns is 5, bound 7". Returns "ok" on success.
   std::string message() const;
 };
 

@@ -10,7 +10,7 @@ namespace tumble {
 /// Time stamp: integer nanoseconds from the start of the recording. Sample k of a stream has the stamp t0 + k * period.
 using TimeNs = std::int64_t;
 
-/// Converts a duration to seconds; exact to 2^-53 relative for durations below 104 days.
+/// Converts a duration to seconds. The result is exact to 2^-53 relative for durations below 104 days.
 constexpr double seconds(TimeNs span_ns) {
   return static_cast<double>(span_ns) * 1e-9;
 }

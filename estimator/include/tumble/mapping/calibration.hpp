@@ -9,8 +9,8 @@
 namespace tumble {
 
 /// Calibration between lidar, IMU and world. The initial values come from an external calibration and are refined
-/// during the motion. Errors are ordered (rotation of T_IL, left perturbation in IMU axes: R_true = Exp(phi) R;
-/// translation of T_IL; time offset; gravity).
+/// during the motion. The error vector contains rotation of T_IL, translation of T_IL, time offset and gravity, in this
+/// order. The rotation error phi is a left perturbation in IMU axes: R_true = Exp(phi) R.
 struct SweepCalibration {
   static constexpr int kErrors = 10;
   using Covariance = Eigen::Matrix<double, kErrors, kErrors>;
@@ -19,13 +19,14 @@ struct SweepCalibration {
   double time_offset_s = 0.0;                              ///< the IMU's clock minus the lidar's
   Eigen::Vector3d gravity_W_m_s2 = Eigen::Vector3d(0.0, 0.0, -9.80665);
 
-  /// Adds a small error in the order above.
+  /// Adds a small error vector to the calibration, in the order that SweepCalibration defines.
   void add(const Eigen::Matrix<double, kErrors, 1>& error);
-  /// Returns the error that transforms `other` to this, to first order in the difference of rotation.
+  /// Returns the error that transforms `other` to this calibration, to first order in the difference of rotation.
   Eigen::Matrix<double, kErrors, 1> minus(const SweepCalibration& other) const;
 };
 
-/// A stated calibration with the standard deviation of each part per axis; 0 for an exact part.
+/// Calibration stated by the caller, with the standard deviation of each part per axis. A standard deviation of 0 marks
+/// an exact part.
 struct StatedCalibration {
   static constexpr double kMaxDeviations = 5.0;  ///< plausible change during one run, in standard deviations
 
@@ -33,11 +34,11 @@ struct StatedCalibration {
   double mount_sigma_rad = 0.0, mount_sigma_m = 0.0, time_offset_sigma_s = 0.0;
 
   /// Returns the distance of `estimated` from the stated calibration in standard deviations: the largest of rotation,
-  /// translation and time offset. The distance is infinite if an exact part differs. mapping.md (R69). Gravity is
-  /// excluded because each run estimates it.
+  /// translation and time offset. The distance is infinite if a part that was stated as exact differs. mapping.md
+  /// (R69). Gravity is excluded because each run estimates it.
   double deviations(const SweepCalibration& estimated) const;
-  /// Returns `out_of_range` if `estimated` is more than `kMaxDeviations` standard deviations away. The stated
-  /// calibration is then wrong.
+  /// Returns `out_of_range` if `estimated` is more than `kMaxDeviations` standard deviations from the stated
+  /// calibration. A larger distance means that the stated calibration is wrong.
   Status verdict(const SweepCalibration& estimated) const;
 };
 

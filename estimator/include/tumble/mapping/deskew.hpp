@@ -14,17 +14,17 @@
 
 namespace tumble {
 
-/// A usable lidar return in the IMU's axes at its own time.
+/// A usable lidar return in the IMU's axes at the time of its firing.
 struct SweepPoint {
   Eigen::Vector3f x_I_m = Eigen::Vector3f::Zero();
-  Eigen::Vector3f x_L_m = Eigen::Vector3f::Zero();  ///< as measured, so that the mounting can be refined
+  Eigen::Vector3f x_L_m = Eigen::Vector3f::Zero();  ///< position as measured, so that the mounting can be refined
   float t_s = 0.0f;                                 ///< time after the start of the trajectory, in the IMU's clock
   float sweep_t_s = 0.0f;                           ///< time after the start of the sweep
   float range_m = 0.0f;                             ///< distance from the lidar
   std::uint16_t ring = 0;
 };
 
-/// Bounds on usable returns.
+/// Limits of range and position for usable returns.
 struct PointBounds {
   double range_min_m = 0.3;
   double range_max_m = 100.0;
@@ -45,24 +45,24 @@ PointCounts select_points(std::span<const LidarPoint> points, const PointBounds&
                           double sweep_start_s, std::vector<SweepPoint>& selected);
 
 /// Recomputes the points for another calibration, with times that are `later_s` later in the IMU's clock. `moved` must
-/// not be `points`. O(n).
+/// not be `points`. Cost: O(n).
 void apply_calibration(const SweepCalibration& calibration, double later_s, std::span<const SweepPoint> points,
                        std::vector<SweepPoint>& moved);
-/// Same, in place.
+/// Recomputes the points in place for another calibration, with times that are `later_s` later in the IMU's clock.
 void apply_calibration(const SweepCalibration& calibration, double later_s, std::span<SweepPoint> points);
 
-/// Computes the levers u_i = S(t_i) + R(t_i) x_i of SweepTrajectory. The point in the world is trajectory.base_m(t_i) +
-/// u_i. O(n).
+/// Computes the lever arm vectors u_i = S(t_i) + R(t_i) x_i of SweepTrajectory. Point i in the world is
+/// trajectory.base_m(t_i) + u_i. Cost: O(n).
 void compute_levers(const SweepTrajectory& trajectory, std::span<const SweepPoint> points,
                     std::vector<Eigen::Vector3f>& levers_W_m);
 
-/// Transforms points to the IMU's axes at `target_s` after the trajectory's start, usually its end. Each point moves
-/// from its own time, so the result is what a stationary sensor would measure there.
+/// Transforms points to the IMU's axes at `target_s` after the trajectory's start, usually its end. Each point is moved
+/// from the time of its firing, so the result is what a stationary sensor would measure at `target_s`.
 void deskew(const SweepTrajectory& trajectory, std::span<const SweepPoint> points, double target_s,
             std::vector<Eigen::Vector3f>& positions_I_m);
 
-/// Keeps one point per cube of edge `voxel_m` in the world, the first in each cube. The result has an even density and
-/// few points to register.
+/// Keeps the first point in each cube of edge `voxel_m` in the world. The kept points have an even density, and few
+/// points need to be registered.
 class SweepSampler {
  public:
   /// Writes the indices of the kept points of `positions_W_m` to `chosen`, in order.

@@ -9,7 +9,7 @@
 
 namespace tumble {
 
-/// One lidar return in the lidar's axes L at its own time, not deskewed.
+/// One lidar return in the lidar's axes L at the time of its firing, not deskewed.
 struct LidarPoint {
   Eigen::Vector3f position_L_m = Eigen::Vector3f::Zero();
   float intensity = 0.0f;       ///< 0..1

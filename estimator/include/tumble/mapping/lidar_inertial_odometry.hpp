@@ -24,27 +24,29 @@ class StateReader;
 class StateLayout;
 
 /// Estimates pose and map of a tumbling body from an IMU and a lidar. The mapper integrates the IMU between sweeps and
-/// deskews each point at its own time. The mapper registers the sweep to a voxel map by k-nearest-neighbour
+/// deskews each point at the time of its firing. The mapper registers the sweep to a voxel map by k-nearest-neighbour
 /// point-to-plane distances, and then extends the map. The registration refines position, attitude and velocity at the
 /// start of a sweep together, which also refines the deskewing.
 ///
-/// World: z up, levelled by the specific force at rest. The first sweep with `matches_min` points starts the map. If it
-/// starts within half a second of the IMU, origin and yaw are at the IMU at the first sample. Otherwise they are at the
-/// IMU at the start of that sweep, whose velocity and tilt come from dead reckoning. Pass IMU samples in time order,
-/// then each sweep once IMU samples reach its end. The class starts no threads, uses no files and prints nothing.
+/// World: z up, levelled by the specific force at rest. The earliest sweep with `matches_min` points starts the map. If
+/// the sweep that starts the map begins within half a second of the IMU's first sample, origin and yaw are those of the
+/// IMU at that sample. If the sweep begins later, origin and yaw are those of the IMU at the start of the sweep.
+/// Velocity and tilt of the later sweep come from dead reckoning. Pass IMU samples in time order, then pass each sweep
+/// when IMU samples reach the sweep's end. The class starts no threads, uses no files and prints nothing.
 ///
 /// The lidar's mounting, its time offset and gravity are estimated if their standard deviations are not 0. All unknowns
 /// form one state with one covariance. The estimator is an iterated error-state filter over sweeps. A fixed-lag
-/// smoother refines the last window_sweeps with later sweeps, including their points in the map. Map points of older
-/// sweeps are not moved. A caller that stores its recording can process it a second time, starting from calibration(),
-/// to get a consistent map.
+/// smoother refines the last window_sweeps with later sweeps, including the points of these sweeps in the map. Map
+/// points of older sweeps are not moved. A caller that stores its recording can process the recording a second time,
+/// starting from calibration(), to get a consistent map.
 ///
 /// Reported covariances follow the errors through the filter's weights. The contribution of the registration is
 /// measured from its residuals (Registration::Result::score_covariance).
 ///
 /// After rejected sweeps, tracking has failed. Inertial prediction continues, with zero velocity while the IMU is at
-/// rest. Each further sweep is also registered from several starts around the prediction, coarse to fine. Not modelled:
-/// IMU biases other than the gyro's at the start, loop closure, moving objects.
+/// rest. Until tracking is restored, each sweep is also registered from several starts around the prediction, coarse to
+/// fine. LidarInertialOdometry does not model IMU biases other than the gyro's at the start, loop closure, or moving
+/// objects.
 class LidarInertialOdometry {
  public:
   using Params = OdometryParams;
@@ -54,58 +56,60 @@ class LidarInertialOdometry {
   ~LidarInertialOdometry();
   LidarInertialOdometry(LidarInertialOdometry&&) noexcept;
   LidarInertialOdometry& operator=(LidarInertialOdometry&&) noexcept;
-  /// Copies contain the complete state: continuing from a copy gives bit-identical results.
+  /// Copies the complete state: continuing from a copy gives bit-identical results.
   LidarInertialOdometry(const LidarInertialOdometry&);
   LidarInertialOdometry& operator=(const LidarInertialOdometry&);
 
-  /// Processes a sample with the angular velocity that a rate method estimated for it. On error the state is unchanged:
-  /// `non_finite`, `time_order`, or `out_of_range` if `rate` has another time stamp. The sample after a gap bridges it,
-  /// with correspondingly larger uncertainty of the prior.
+  /// Processes a sample with the angular velocity that a rate method estimated for the sample. On error the state is
+  /// unchanged: `non_finite`, `time_order`, or `out_of_range` if `rate` has another time stamp. The first sample after
+  /// a gap bridges the gap, with correspondingly larger uncertainty of the prior.
   Status add_imu(const ImuSample& sample, const RateState& rate);
 
-  /// Sets an odometer's velocity at the start of the next sweep, which is the end of the last one. The velocity is in
-  /// IMU axes, with its standard deviation per axis. This velocity replaces the one at the end of the last sweep, for
-  /// the next sweep only. On error nothing changes: `non_finite`, or `out_of_range` if the standard deviation is not
-  /// above 0.
+  /// Sets an odometer's velocity at the start of the next sweep, which is the end of the last sweep. The velocity is in
+  /// IMU axes, with its standard deviation per axis. The odometer's velocity replaces the velocity at the end of the
+  /// last sweep, for the next sweep only. On error nothing changes: `non_finite`, or `out_of_range` if the standard
+  /// deviation is not above 0.
   Status add_velocity(const Eigen::Vector3d& v_WI_I_m_s, double sigma_m_s);
   /// Sets an odometer's reading for the next sweep. The times of the reading are between the end of the last sweep and
   /// that of the next, with a margin of 20 ms. The reading is fused with the IMU's prediction by covariance
-  /// (check_reading). A new reading replaces an earlier one and add_velocity. A reading of another time has no effect.
+  /// (check_reading). A new reading replaces an earlier one and add_velocity(). A reading that covers other times has
+  /// no effect.
   Status add_reading(const OdometerReading& reading);
   /// Marks the accelerometer as unusable within the next sweep. The velocity is predicted as over a gap; the gyro is
-  /// used. This call replaces earlier odometer readings of the sweep.
+  /// used. A call of exclude_force() replaces earlier odometer readings of the sweep.
   void exclude_force();
 
   /// Registers a sweep of points fired in [start_ns, end_ns]. Sweeps do not overlap. NaN returns are misses.
   ///
-  /// These errors leave the state unchanged: `time_order` (end before start, or start before the last sweep's end),
-  /// `too_few` (IMU samples do not cover the sweep), `out_of_range` (an offset beyond the sweep). After other errors,
-  /// the pose is the inertial prediction and the verdict is `rejected`: `empty` (no points), `non_finite` (no finite
-  /// point), `too_few` (no point in range), `degenerate` (all points have one time stamp). Before the map starts, a
-  /// sweep with such an error or with too few points (`too_few`) has no pose: its `report.trajectory` is empty.
+  /// Three errors leave the state unchanged. `time_order`: end before start, or start before the last sweep's end.
+  /// `too_few`: IMU samples do not cover the sweep. `out_of_range`: an offset beyond the sweep. For unusable points,
+  /// the pose is the inertial prediction and the verdict is `rejected`. Errors of points are `empty` (no points),
+  /// `non_finite` (no finite point), `too_few` (no point in range) and `degenerate` (all points have one time stamp).
+  /// Before the map starts, a sweep with unusable points or with too few points (`too_few`) has no pose: its
+  /// `report.trajectory` is empty.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points, SweepReport& report);
 
-  /// Predicts pose and velocity with covariance at the last of further samples, by inertial integration from the last
-  /// sweep's end. The samples are not added to the state. Without samples after the last sweep, returns the pose at its
-  /// end. Useful before a sweep or its rates are available. Errors: `empty` before the first sweep, and those of
-  /// add_imu. O(samples since the last sweep).
+  /// Predicts pose and velocity with covariance at the last of `samples`, by inertial integration from the last sweep's
+  /// end. The samples are not added to the state. Without samples after the last sweep, returns the pose at the sweep's
+  /// end. The prediction is useful before a sweep or its rates are available. Errors: `empty` before the first sweep,
+  /// and those of add_imu(). Cost: O(samples since the last sweep).
   Status predict(std::span<const ImuSample> samples, std::span<const RateState> rates, PoseState& pose) const;
 
   /// Returns the current calibration and the covariance of its errors. Parts that are not estimated have their stated
   /// values and covariance 0.
   SweepCalibration calibration() const;
   SweepCalibration::Covariance calibration_covariance() const;
-  /// Returns the covariance by which the calibration is weighted against the next sweep. This covariance is larger than
-  /// that of the errors because points are correlated and count less. A second run over the same data starts from this
-  /// covariance.
+  /// Returns the covariance by which the calibration is weighted against the next sweep. The weighting covariance is
+  /// larger than the covariance of the errors because points are correlated and count less. A second run over the
+  /// recording starts from the weighting covariance.
   SweepCalibration::Covariance calibration_weight() const;
 
-  /// Returns the pose at any time within the window of sweeps, from all data so far. Returns `out_of_range` outside of
-  /// the window.
+  /// Returns the pose at any time within the window of sweeps, from all data so far. Returns `out_of_range` for a time
+  /// outside of the window.
   Status pose_at(TimeNs time_ns, PoseState& pose) const;
 
-  /// Returns the current poses of the sweeps in the window, oldest first. The final poses of these sweeps are still
-  /// pending. Together with SweepReport::smoothed they form the whole trajectory.
+  /// Returns the current poses of the sweeps in the window, oldest first. Sweeps in the window have no final pose yet.
+  /// Together with SweepReport::smoothed, the poses in the window form the whole trajectory.
   std::vector<std::vector<PoseState>> window_trajectories() const;
 
   /// Returns the memory of the map [bytes].
@@ -116,10 +120,10 @@ class LidarInertialOdometry {
   /// moved on. O(number of points).
   std::vector<MapPoint> map() const;
 
-  /// Saves or loads the complete state, except `parallel_for`. The loading object must have the same parameters; the
-  /// caller is responsible for that. The loading object then continues with bit-identical results. Parameters that an
+  /// Saves or loads the complete state, except `parallel_for`. The caller must ensure that the loading object has the
+  /// parameters of the saving object. The loading object then continues with bit-identical results. Parameters that an
   /// earlier run may have estimated are part of the state (mounting, time offset and their deviations). On error, which
-  /// the reader reports, this object is unchanged.
+  /// the reader reports, the loading object is unchanged.
   void save(StateWriter& out) const;
   void load(StateReader& in);
   void describe(StateLayout& out) const;

@@ -13,14 +13,14 @@
 
 namespace tumble {
 
-/// Parameters of OdometryParams that few users change, grouped by meaning. Field names equal those in tables and on
+/// Parameters of OdometryParams that few users change, grouped by meaning. Field names equal the names in tables and on
 /// command lines.
 struct OdometryExpertParams {
   double gravity_m_s2 = 9.80665;
-  /// Standard deviation of gravity's horizontal part; 0: exact, not estimated.
+  /// Standard deviation of gravity's horizontal part. With 0, gravity's direction is exact and not estimated.
   double gravity_sigma_m_s2 = 0.0;
-  /// Number of sweeps that are refined together: the newest one and the window_sweeps - 1 before it (see
-  /// SweepReport::smoothed). 1: no sweep is refined later.
+  /// Number of sweeps that are refined together: the newest sweep and the window_sweeps - 1 sweeps before it (see
+  /// SweepReport::smoothed). With 1, no sweep is refined later.
   int window_sweeps = 2;
   RestBoundsParams rest = {};
   OdometryStartParams start = {};
@@ -62,7 +62,8 @@ struct OdometryExpertParams {
 struct OdometryParams {
   Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< lidar in IMU axes
   double time_offset_s = 0.0;                              ///< the IMU's clock minus the lidar's
-  /// Standard deviations of T_IL and of the time offset; 0: exact, not estimated.
+  /// Standard deviations of T_IL and of the time offset. A standard deviation of 0 marks an exact value, which is not
+  /// estimated.
   double mount_sigma_rad = 0.0;
   double mount_sigma_m = 0.0;
   double time_offset_sigma_s = 0.0;
@@ -70,13 +71,13 @@ struct OdometryParams {
   double range_max_m = 100.0;      ///< farther returns are dropped
   Eigen::AlignedBox3d own_body_L;  ///< returns inside hit the robot itself; an empty box, the default, keeps all
   double sweep_voxel_m = 0.25;     ///< one point per voxel of a sweep is registered
-  /// Threads that the registration may use, if any. Results do not depend on it.
+  /// Threads that the registration may use, if any. Results do not depend on the number of threads.
   ParallelFor parallel_for;
 
   using Expert = OdometryExpertParams;
   Expert expert;  ///< parameters that few users change
 
-  /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
+  /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.time_offset_s, {"time_offset_s", "s", -1.0, 1.0, "clock of the IMU minus clock of the lidar"});
@@ -95,8 +96,8 @@ struct OdometryParams {
   }
 };
 
-/// Checks all parameters. Returns `out_of_range` with the first one that LidarInertialOdometry would reject, including
-/// those that are not fields.
+/// Checks all parameters. Returns `out_of_range` with the first parameter that LidarInertialOdometry would reject,
+/// including parameters that are not fields.
 Status check_odometry_params(const OdometryParams& params);
 
 }  // namespace tumble

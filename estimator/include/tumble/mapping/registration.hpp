@@ -21,12 +21,12 @@ class OuterProducts;
 
 /// Registers a sweep to a map by point-to-plane distances, together with the motion inside the sweep.
 ///
-/// Unknowns: position, attitude (left perturbation in W) and velocity of the IMU at the start of the trajectory. The
-/// saturation deficit of clipped axes and the calibration are added if their prior is uncertain. A point in the world
-/// is X = p + v t + g t^2/2 + Exp(phi) u with the lever u of SweepTrajectory, so each iteration deskews again.
-/// Cost function: robustly weighted squared distances to planes through the k nearest map points, plus the prior's
-/// Mahalanobis distance. The solver is Gauss-Newton with a normal matrix of at most 28x28. The prior determines
-/// directions that no surface constrains.
+/// Unknowns are position p, attitude (left perturbation phi in W) and velocity v of the IMU at the start of the
+/// trajectory. The saturation deficit of clipped axes and the calibration are added if their prior is uncertain. A
+/// point in the world is X = p + v t + g t^2/2 + Exp(phi) u, with gravity g and the lever arm vector u of
+/// SweepTrajectory. Each iteration therefore deskews again. The cost function contains robustly weighted squared
+/// distances to planes through the k nearest map points, plus the prior's Mahalanobis distance. The solver is
+/// Gauss-Newton with a normal matrix of at most 28x28. The prior determines directions that no surface constrains.
 class Registration {
   static constexpr std::size_t kBlock = 128;  // points per partial sum; independent of the number of threads
 
@@ -45,15 +45,16 @@ class Registration {
   explicit Registration(const Params& params);
 
   /// Aligns `points` (computed with the prior's calibration) with `map`. `trajectory` is rebuilt from `prior` and
-  /// `samples` up to `end_ns`; on return it contains the result. Errors of the trajectory are returned.
+  /// `samples` up to `end_ns`. On return, `trajectory` contains the aligned motion. Errors of the trajectory are
+  /// returned.
   Status align(const Prior& prior, std::span<const MotionSample> samples, TimeNs end_ns,
                std::span<const SweepPoint> points, const VoxelMap& map, SweepTrajectory& trajectory, Result& result);
 
-  /// Returns the variance of a return along its ray, including the skew left after deskewing.
+  /// Returns the variance of a return along its ray. The variance includes the skew left after deskewing.
   double point_variance_m2(const SweepPoint& point) const;
 
-  /// Computes the distance of a point to a plane and its derivative by all unknowns. Public so that tests can check it
-  /// against finite differences.
+  /// Computes the distance of a point to a plane and the distance's derivative by all unknowns. The function is public
+  /// so that tests can check the derivative against finite differences.
   static double residual(const SweepTrajectory& trajectory, const SweepCalibration& calibration,
                          const SweepPoint& point, const PlaneFit& plane, std::size_t& hint, Vector& derivative);
 

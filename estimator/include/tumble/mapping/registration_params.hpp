@@ -9,21 +9,22 @@
 
 namespace tumble {
 
-/// Parameters of RegistrationParams that few users change. Field names equal those in tables and on command lines.
+/// Parameters of RegistrationParams that few users change. Field names equal the names in tables and on command lines.
 struct RegistrationExpertParams {
   double step_m = 5e-4;  ///< the iteration has converged if a step is below this and below step_rad
   double step_rad = 1e-4;
-  double step_s = 1e-5;       ///< same for the time offset
+  double step_s = 1e-5;       ///< convergence limit of a step of the time offset
   double rematch_m = 0.05;    ///< motion of a point after which its plane is searched again
   double kernel_min_m = 0.1;  ///< minimum width of the robust kernel (Geman-McClure)
   /// Weight of each point's information. Neighbouring returns share the map's errors and are therefore correlated.
   double correlation_discount = 0.1;
   double cluster_m = 1.0;          ///< points within one cube of this edge are correlated
-  double matched_share_min = 0.1;  ///< fraction of the points
-  /// A registration with fewer matches than matches_min and matched_share_min is accepted if it has this many matches
-  /// and agrees with the prior. The default disables this rule.
+  double matched_share_min = 0.1;  ///< minimum number of matches as a fraction of the points
+  /// A registration with fewer matches than matches_min and matched_share_min is accepted if it has at least
+  /// agreeing_min matches and agrees with the prior. The default disables this rule.
   std::size_t agreeing_min = 1'000'000'000;
-  /// Minimum fraction of matches within three standard deviations; below it the result is rejected.
+  /// Minimum fraction of matches whose residual is within three standard deviations. A result with a smaller fraction
+  /// is rejected.
   double fitting_share_min = 0.6;
   PlaneBounds plane;
 
@@ -64,7 +65,7 @@ struct RegistrationParams {
   using Expert = RegistrationExpertParams;
   Expert expert = {};  ///< parameters that few users change
 
-  /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
+  /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.neighbours, {"neighbours", "1", 3, 32, "number of map points per plane fit", Rank::first});

@@ -10,7 +10,7 @@
 
 namespace tumble {
 
-/// How a registration ended.
+/// Result category of a registration.
 enum class RegistrationVerdict : std::uint8_t {
   converged,
   too_few,   ///< too few matches: the prior is returned
@@ -21,24 +21,25 @@ enum class RegistrationVerdict : std::uint8_t {
 struct RegistrationResult {
   RegistrationVerdict verdict = RegistrationVerdict::too_few;
   SweepUnknowns::Estimate mean;
-  SweepUnknowns::Matrix covariance =
-      SweepUnknowns::Matrix::Zero();  ///< of all unknowns, in order; the prior's covariance if nothing was registered
+  SweepUnknowns::Matrix covariance = SweepUnknowns::Matrix::Zero();  ///< covariance of all unknowns, in order; the
+                                                                     ///< prior's covariance if nothing was registered
   /// Covariance of the gradient of the surfaces' cost by the unknowns, measured from the residuals. Points within
   /// RegistrationExpertParams::cluster_m of each other share the map's errors; points farther apart are independent
-  /// (cluster-robust covariance, K. Liang, S. Zeger, 1986). Scale: for independent points it equals
-  /// correlation_discount times their contribution to the normal matrix.
+  /// (cluster-robust covariance, K. Liang, S. Zeger, 1986). For independent points, the covariance equals
+  /// correlation_discount times the points' contribution to the normal matrix.
   SweepUnknowns::Matrix score_covariance = SweepUnknowns::Matrix::Zero();
-  /// Share of the normal matrix that is caused by noise, for all free unknowns. Normals are fitted to few points, and
-  /// their errors add information in every direction of a plane. Source: errors in variables, W. Fuller, Measurement
-  /// Error Models, 1987, section 2.2. This share stabilises the iterations but contains no information about the
-  /// motion.
+  /// Part of the normal matrix that is caused by noise, for all free unknowns. Normals are fitted to few points, and
+  /// errors of the normals add information in every direction of a plane. Source: errors in variables, W. Fuller,
+  /// Measurement Error Models, 1987, section 2.2. The part caused by noise stabilises the iterations but contains no
+  /// information about the motion.
   SweepUnknowns::Matrix errors_in_variables_information = SweepUnknowns::Matrix::Zero();
   std::size_t points = 0, matches = 0, inliers = 0;
-  double correction_m = 0.0;  ///< of the position at the start; also if it exceeded its bound
+  double correction_m = 0.0;  ///< correction of the position at the start, also if it exceeded its limit
   double correction_rad = 0.0;
   int iterations = 0;
-  /// Normal matrix of (position, attitude scaled to metres by the root-mean-square lever) per unit of weight, without
-  /// the prior: ascending eigenvalues and their directions. The translation part has trace 1.
+  /// Ascending eigenvalues of the normal matrix of (position, attitude scaled to metres by the root-mean-square lever
+  /// arm) per unit of weight, without the prior. The columns of `directions` are the eigenvectors. The
+  /// translation part of the matrix has trace 1.
   Eigen::Matrix<double, 6, 1> eigenvalues = Eigen::Matrix<double, 6, 1>::Zero();
   Eigen::Matrix<double, 6, 6> directions = Eigen::Matrix<double, 6, 6>::Identity();
   /// Standard deviation of the pose in its least constrained direction, from the surfaces alone and without the

@@ -17,7 +17,7 @@ namespace tumble {
 
 struct SweepPoint;
 
-/// One window of an IMU with the angular velocity of a rate method. Both are means over (from_ns, time_ns].
+/// One window of an IMU with the angular velocity of a rate method. Force and rate are means over (from_ns, time_ns].
 struct MotionSample {
   TimeNs from_ns = 0;
   TimeNs time_ns = 0;
@@ -32,7 +32,8 @@ struct MotionSample {
   bool bridges_gap = false;              ///< longer than a sample: the force inside is unknown; velocity continues
 };
 
-/// Motion of the IMU at one time. Errors are (position, attitude, velocity), all in W; attitude as in AttitudeState.
+/// Motion of the IMU at one time. Errors are (position, attitude, velocity), all in W; the attitude error is that of
+/// AttitudeState.
 struct MotionState {
   TimeNs time_ns = 0;
   Eigen::Vector3d p_WI_m = Eigen::Vector3d::Zero();
@@ -43,17 +44,21 @@ struct MotionState {
   PoseState pose() const;
 };
 
-/// Computes the motion of the IMU over a segment from a known start by strapdown integration. Evaluates it at any time.
+/// Computes the motion of the IMU over a segment from a known start by strapdown integration. SweepTrajectory evaluates
+/// the motion at any time of the segment.
 ///
-/// Attitude: R(t) = R_k Exp(w_k (t - t_k)), exact for a rate that is constant in body axes over each sample. Position:
-/// p(t) = p_0 + v_0 t + g t^2 / 2 + S(t), with the double integral S of the specific force. The mean force over each
-/// sample is R_k J_l(w_k dt) f_k, exact for a force constant in body axes, as the centripetal force of a spin is.
+/// Attitude: R(t) = R_k Exp(w_k (t - t_k)) with the rate w_k of sample k, exact for a rate that is constant in body
+/// axes over each sample. Position: p(t) = p_0 + v_0 t + g t^2 / 2 + S(t), with start position p_0, start velocity v_0,
+/// gravity g and the double integral S of the specific force. The mean force over a sample of length dt is R_k J_l(w_k
+/// dt) f_k, with the measured force f_k and the left Jacobian J_l. The mean force is exact for a force constant in body
+/// axes, for example the centripetal force of a spin.
 ///
-/// The saturation deficit e corrects the clipped axes. The deficit is linear in time between kKnots knots at equal
-/// steps from the start to the end of the segment. The rate is w_j + s_j e_j(t) where axis j was clipped. The factor
-/// s_j has the sign of w_j and the magnitude sigma_j / (largest sigma_j of the segment's clipped samples). Well known
-/// rates thus change little. The magnitude is 1 if all sigma_j are 0. Over a sample, e has the value of the sample's
-/// middle. Not modelled: sculling within a sample, the earth's rotation.
+/// The saturation deficit e is the part of the rate hidden by saturation and corrects the clipped axes. The deficit is
+/// linear in time between kKnots knots at equal steps from the start to the end of the segment. The corrected rate is
+/// w_j + s_j e_j(t) where axis j was clipped. The factor s_j has the sign of w_j and the magnitude sigma_j / (largest
+/// sigma_j of the segment's clipped samples), with the rate's standard deviation sigma_j. The saturation deficit thus
+/// changes a well known rate only a little. The magnitude is 1 if all sigma_j are 0. Over a sample, e has the value of
+/// the sample's middle. SweepTrajectory does not model sculling within a sample or the earth's rotation.
 class SweepTrajectory {
  public:
   static constexpr int kKnots = 3;
@@ -61,23 +66,24 @@ class SweepTrajectory {
   using Deficit = Eigen::Matrix<double, 3, kKnots>;
   using ByDeficit = Eigen::Matrix<double, 3, kDeficit>;
 
-  /// Motion at the time of a lidar point: attitude, and S(t) as defined above.
+  /// Motion at the time of a lidar point: attitude R(t) and double integral S(t) of the specific force.
   struct Instant {
     Eigen::Quaterniond q_WI;
     Eigen::Vector3d preintegrated_position_m;
   };
-  /// Derivatives of an instant with respect to the saturation deficit: phi = attitude e, dS = thrust e (first order).
+  /// Derivatives of attitude and S(t) by the saturation deficit e, to first order: attitude error = attitude e, error
+  /// of S = thrust e.
   struct DeficitDerivative {
     ByDeficit attitude_s;
     ByDeficit preintegrated_position_m_s;
   };
 
-  /// Integrates from `start` to `end_ns`. Samples must be contiguous and in time order, from the start on. Errors:
-  /// `too_few` (no sample, or they end before end_ns), `time_order` (end before start), `gap` (the first window begins
-  /// after the start; value in seconds). Reuses its memory.
+  /// Integrates from `start` to `end_ns`. Samples must be contiguous and in time order, from the start on. Errors are
+  /// `too_few` (no sample, or the samples end before end_ns), `time_order` (end before start) and `gap` (the first
+  /// window begins after the start; value in seconds). The trajectory's memory is reused.
   Status build(const MotionState& start, std::span<const MotionSample> samples, TimeNs end_ns,
                const Eigen::Vector3d& gravity_W_m_s2, const Deficit& deficit_rad_s = Deficit::Zero());
-  /// Same, with gravity of this magnitude along -z.
+  /// Integrates from `start` to `end_ns`, with gravity of the stated magnitude along -z.
   Status build(const MotionState& start, std::span<const MotionSample> samples, TimeNs end_ns, double gravity_m_s2,
                const Deficit& deficit_rad_s = Deficit::Zero()) {
     return build(start, samples, end_ns, Eigen::Vector3d(0.0, 0.0, -gravity_m_s2), deficit_rad_s);
@@ -88,29 +94,32 @@ class SweepTrajectory {
 
   /// Evaluates the motion at `t_s` seconds after the start. Outside of the segment, the motion of the first or last
   /// sample is extrapolated by up to kBeyond_s, which covers errors of the time offset. `hint` is the interval of the
-  /// previous call and speeds up calls in time order. Any value in [0, intervals()) is valid.
+  /// previous call and speeds up calls in time order. Any hint in [0, intervals()) is valid.
   static constexpr double kBeyond_s = 0.02;
   Instant at(double t_s, std::size_t& hint) const;
-  /// Computes S(t) + R(t) x of each point: the result of at(), bit for bit, faster for several points.
+  /// Computes the lever arm vector S(t) + R(t) x of each point. The result equals that of at(), bit for bit. For
+  /// several points, levers() is faster than at().
   void levers(std::span<const SweepPoint> points, std::span<Eigen::Vector3f> levers_W_m) const;
   DeficitDerivative deficit_derivative(double t_s, std::size_t& hint) const;
   std::size_t intervals() const { return intervals_.size(); }
   /// Returns the end of interval i in seconds after the start.
   double interval_end_s(std::size_t i) const { return intervals_[i].start_s + intervals_[i].length_s; }
 
-  /// Returns p_0 + v_0 t + g t^2 / 2. The position of a point is this plus its lever u(t) = S(t) + R(t) x.
+  /// Returns p_0 + v_0 t + g t^2 / 2. The position of a point x is the returned vector plus the lever arm vector u(t) =
+  /// S(t) + R(t) x.
   Eigen::Vector3d base_m(double t_s) const {
     return start_.p_WI_m + t_s * start_.v_WI_m_s + (0.5 * t_s * t_s) * gravity_W_m_s2_;
   }
 
-  /// Same as at(), and also computes the velocity in W of a point that is fixed at x_I in the IMU's axes.
+  /// Evaluates the motion at `t_s` seconds after the start, and the velocity in W of a point that is fixed at x_I in
+  /// the IMU's axes.
   Instant at(double t_s, const Eigen::Vector3d& x_I_m, std::size_t& hint, Eigen::Vector3d& velocity_m_s) const;
 
   /// Returns the full state at t_s within the segment, with the covariance propagated without process noise.
   MotionState state(double t_s) const;
 
-  /// First-order derivatives of the state (position, attitude, velocity) at t_s by start state, deficit rate and
-  /// gravity.
+  /// First-order derivatives of the state (position, attitude, velocity) at t_s by start state, rate of the saturation
+  /// deficit, and gravity.
   struct Transition {
     Eigen::Matrix<double, 9, 9> by_start;
     Eigen::Matrix<double, 9, kDeficit> by_deficit_s;
@@ -118,11 +127,12 @@ class SweepTrajectory {
   };
   Transition transition(double t_s) const;
 
-  /// Return |s_j| of the saturation deficit in the first and the last interval; 0 for axes not clipped there.
+  /// Return the magnitude |s_j| of the deficit's factor in the first and the last interval. The magnitude is 0 for axes
+  /// not clipped in the interval.
   Eigen::Vector3d deficit_share_at_start() const { return intervals_.front().deficit_share.cwiseAbs(); }
   Eigen::Vector3d deficit_share_at_end() const { return intervals_.back().deficit_share.cwiseAbs(); }
 
-  /// Bit j is set if axis j was clipped anywhere in the segment.
+  /// Returns the axes that were clipped anywhere in the segment: bit j for axis j.
   std::uint8_t clipped_axes() const { return clipped_axes_; }
 
  private:

@@ -24,11 +24,12 @@ struct Neighbours {
   std::array<std::uint32_t, kMax> index;  ///< index of the point in its VoxelMap
 };
 
-/// Stores points in the world, extended sweep by sweep, with nearest-neighbour search.
+/// Stores points in the world and finds nearest neighbours. Sweeps extend the map one by one.
 ///
 /// Cells of a cubic grid store their points in chunks of sixteen, one array per coordinate, so that distances are
 /// computed over contiguous floats. One hash look-up finds a group of 8x8x8 cells. At most one point is kept per cube
-/// of the spacing. Copies are independent and equal. Coordinates are floats: a map is a few kilometres wide.
+/// of the spacing. A copy equals the original and is independent of it. Coordinates are single-precision floats, which
+/// limits the width of a map to a few kilometres.
 class VoxelMap {
  public:
   /// Mark of a point without a known scan line.
@@ -38,9 +39,9 @@ class VoxelMap {
 
   struct Params {
     double voxel_m = 0.5;    ///< edge of a cell; a few times the spacing searches fastest
-    double spacing_m = 0.1;  ///< at most one point is kept per cube of this edge; 0 keeps all
+    double spacing_m = 0.1;  ///< edge of the cubes in which at most one point is kept; 0 keeps all points
 
-    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
+    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.voxel_m, {"voxel_m", "m", 0.01, 100.0, "edge of a cell; search is fastest at a few times the spacing"});
@@ -51,31 +52,34 @@ class VoxelMap {
 
   explicit VoxelMap(const Params& params);
 
-  /// Adds a point unless its cube is occupied. `sigma_m` is the uncertainty of its position. `sweep` and `line` are
-  /// labels that sweep() and line() return. Returns whether the point was added. Points that are not finite or beyond
-  /// 2^20 cells are not added.
+  /// Adds a point unless its cube is occupied. `sigma_m` is the uncertainty of the point's position. `sweep` and `line`
+  /// are labels that sweep() and line() return. Returns whether the point was added. Points that are not finite or
+  /// beyond 2^20 cells are not added.
   bool insert(const Eigen::Vector3f& position_W_m, float sigma_m, std::uint32_t sweep, std::uint32_t line = kNoLine) {
     return add(position_W_m, sigma_m, sweep, line) != kNoPoint;
   }
 
-  /// Same, but returns the point's index, or kNoPoint if it was not added.
+  /// Adds a point unless its cube is occupied. Returns the point's index, or kNoPoint if the point was not added.
   std::uint32_t add(const Eigen::Vector3f& position_W_m, float sigma_m, std::uint32_t sweep, std::uint32_t line);
-  /// Returns whether add() would reject a point: its cube is occupied or it is out of the map's range. Lets callers
-  /// skip computing a point's properties.
+  /// Returns whether add() would reject a point, because its cube is occupied or the point is out of the map's range. A
+  /// caller can thus skip computing a point's properties.
   bool is_taken(const Eigen::Vector3f& position_W_m) const;
 
-  /// Moves a point to a refined position. Returns false and leaves the point unchanged if it would leave its cell.
+  /// Moves a point to a refined position. If the point would leave its cell, move() returns false and leaves the point
+  /// unchanged.
   bool move(std::uint32_t index, const Eigen::Vector3f& position_W_m);
 
-  /// Counts a sweep that saw through a point's position or observed the point again. The two kinds cancel each other.
+  /// Counts a sweep that saw through a point's position or observed the point again. Observations through the point and
+  /// of the point cancel each other.
   void count_sight(std::uint32_t index, bool through);
 
   /// Finds the k <= Neighbours::kMax nearest points within `radius_m`. Equal distances within a cell are in order of
-  /// insertion. Exact. Does not allocate. The cost grows with the number of cells that the final radius touches.
+  /// insertion. The search is exact and does not allocate. The cost grows with the number of cells that the final
+  /// radius touches.
   void nearest(const Eigen::Vector3f& query_W_m, int k, float radius_m, Neighbours& found) const;
 
-  /// Deletes the points farther than `radius_m` from `centre` and frees their memory. Indices change. The remaining
-  /// sweeps are renumbered in order; returns the old number of each. O(number of points).
+  /// Deletes the points farther than `radius_m` from `centre_W_m` and frees their memory. Indices change. The remaining
+  /// sweeps are renumbered in order. Returns the old number of each remaining sweep. Cost: O(number of points).
   std::vector<std::uint32_t> keep_within(const Eigen::Vector3f& centre_W_m, float radius_m);
 
   /// Deletes the points of `first_sweep` and later sweeps. Indices change; sweeps keep their numbers. O(number of
@@ -88,13 +92,13 @@ class VoxelMap {
   /// Saves the points and the occupied cubes: 25 bytes per point and 8 per cube. The search structure is rebuilt on
   /// loading.
   void save(StateWriter& out) const;
-  /// Replaces the contents of a map of the same parameters. The reader reports `out_of_range` for positions that are
-  /// not possible.
+  /// Replaces the contents of the map by a saved map of equal parameters. The reader reports `out_of_range` for
+  /// positions that are not possible.
   void load(StateReader& in);
   static void describe(StateLayout& out);
 
   std::size_t size() const { return sigma_m_.size() - vacant_; }
-  /// Upper bound of the indices in use. Indices for which exists() is false are free slots of chunks.
+  /// Returns the upper limit of the indices in use. Indices for which exists() is false are free slots of chunks.
   std::uint32_t index_end() const { return static_cast<std::uint32_t>(sigma_m_.size()); }
   bool exists(std::uint32_t index) const { return sigma_m_[index] >= 0.0f; }
   Eigen::Vector3f position_W_m(std::uint32_t index) const;
@@ -102,7 +106,8 @@ class VoxelMap {
   std::uint32_t sweep(std::uint32_t index) const { return sweep_[index]; }
   /// Returns the scan line of a point. Returns of one ring share a number while the sensor's attitude is constant.
   std::uint32_t line(std::uint32_t index) const { return line_[index]; }
-  /// Returns the number of sweeps that saw through the point minus those that observed it, within 0 and 255.
+  /// Returns the number of sweeps that saw through the point minus the number that observed the point, within 0 and
+  /// 255.
   std::uint8_t seen_through(std::uint32_t index) const { return seen_through_[index]; }
 
  private:

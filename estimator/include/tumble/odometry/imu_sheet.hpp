@@ -5,10 +5,9 @@
 
 namespace tumble {
 
-/// Data sheet of an IMU. A range of 0 means not stated. Saturation levels are detected from the readings in either
-/// case.
-/// Data sheets state a gyro's range in degrees per second, 250 to 4000. A value above 100 rad/s (5730 deg/s) is
-/// rejected because it was probably not converted.
+/// Data sheet of an IMU. A range of 0 means that no range is stated. Saturation levels are detected from the readings,
+/// with or without a stated range. Data sheets state a gyro's range in degrees per second, 250 to 4000. A value above
+/// 100 rad/s (5730 deg/s) is rejected because the value was probably not converted.
 struct ImuSheet {
   double rate_hz = 100.0;
   double gyro_range_rad_s = 0.0;
@@ -16,7 +15,7 @@ struct ImuSheet {
   double gyro_noise_rad_s_sqrt_hz = 5.236e-4;
   double accel_noise_m_s2_sqrt_hz = 5.9e-4;
 
-  /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
+  /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.rate_hz, {"rate_hz", "Hz", 1.0, 1e5, "samples per second", Rank::first});
@@ -31,12 +30,12 @@ struct ImuSheet {
   }
 };
 
-/// Returns the largest reading that is certainly unsaturated, for the range that the device states. Returns infinity if
-/// no range is stated (0). The margin of 2 % covers the scale correction that a device's calibration applies to its
-/// saturation level.
+/// Returns the largest reading that is certainly unsaturated, for the range that the device states. If no range is
+/// stated (0), the result is infinity. The margin of 2 % covers the scale correction that a device's calibration
+/// applies to its saturation level.
 double unsaturated_range(double stated_range);
 
-/// Data sheets of devices that the harness models. Each number's source: models/sensors/NAME.yaml.
+/// Data sheets of devices that the harness models. models/sensors/NAME.yaml states the source of each number.
 namespace sheets {
 
 /// Xsens MTi-30, fifth generation (20 g); stated gyro range 450 deg/s.

@@ -5,12 +5,12 @@
 
 namespace tumble {
 
-/// Data sheet of a lidar. Returns out of its range are dropped.
+/// Data sheet of a lidar. Returns outside of the lidar's range are dropped.
 struct LidarSheet {
   double range_min_m = 0.3;
   double range_max_m = 100.0;
 
-  /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
+  /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.range_min_m, {"range_min_m", "m", 0.0, 10.0, "returns nearer than this are dropped", Rank::first});
@@ -18,7 +18,7 @@ struct LidarSheet {
   }
 };
 
-/// Data sheets of devices that the harness models. Each number's source: models/sensors/NAME.yaml.
+/// Data sheets of devices that the harness models. models/sensors/NAME.yaml states the source of each number.
 namespace sheets {
 
 /// RoboSense RS-16.

@@ -21,16 +21,18 @@
 
 namespace tumble {
 
-/// Estimates the pose of a rolling sphere from one to four IMUs, through grip, slip, bumps and slopes: live, and
-/// smoothed with the data of the following `lag_s`. UnitRails flags readings that a device clips without reporting it,
-/// ImuMerge fuses the IMUs, and RollingSmoother (with its RollingFilter) estimates the motion.
+/// Estimates the pose of a rolling sphere from one to four IMUs, through grip, slip, bumps and slopes. The poses are
+/// live, or smoothed with the data of the following `lag_s`. UnitRails flags readings that a device clips without
+/// reporting saturation, ImuMerge fuses the IMUs, and RollingSmoother (with its RollingFilter) estimates the motion.
 ///
-/// World: z up, origin at the sphere's centre at the first sample, yaw 0 there. Start with one second at rest.
+/// World: z up, origin at the sphere's centre at the first sample, yaw 0 at the first sample. Start with one second at
+/// rest.
 ///
-/// Cost: the state takes half a megabyte, plus 0.1 MB per IMU and 11 KiB per 0.02 s of lag. A sample that ends no block
-/// (RollingSmoother::Params::block_s) allocates nothing after start-up, except for poses not yet fetched by take(). A
-/// call needs at most 64 KiB of stack. No threads, no files, no printing. Copies contain the complete state. Not
-/// modelled: see the classes named above.
+/// Cost: the state takes half a megabyte, plus 0.1 MB per IMU and 11 KiB per 0.02 s of lag. Poses are computed in
+/// blocks (RollingSmoother::Params::block_s). A sample inside a block allocates nothing after start-up, except for
+/// poses not yet fetched by take(). A call needs at most 64 KiB of stack. The class uses no threads and no files and
+/// prints nothing. Copies contain the complete state. The limitations of ImuMerge, RollingFilter and RollingSmoother
+/// apply.
 class RollingOdometry {
  public:
   /// One IMU of the sphere.
@@ -47,14 +49,15 @@ class RollingOdometry {
     double gravity_m_s2 = 9.80665;
     double lag_s = 0.0;  ///< lag of the smoothed poses of take(); 0: live poses
 
-    /// Parameters that few users change. Where both structs contain a number, the outer struct has priority.
+    /// Parameters that few users change. If Params and Expert contain the same number, the value in Params has
+    /// priority.
     struct Expert {
       ImuMerge::Params merge;
       RollingSmoother::Params rolling;
       SampleClock::Params stamps;  ///< correction of stamps that a host assigned
     } expert;
 
-    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
+    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.radius_m, {"radius_m", "m", 1e-3, 100.0, "radius of the sphere", Rank::first});
@@ -84,31 +87,33 @@ class RollingOdometry {
   RollingOdometry& operator=(RollingOdometry&&) noexcept = default;
   ~RollingOdometry() = default;
 
-  /// Processes simultaneous readings of all units. The stamp of the first counts, corrected by SampleClock if a host's
-  /// stamps jitter. A unit without a reading is passed as NaN. OutlierFilter rejects single wild readings of each unit.
-  /// It may delay the samples of all units by one; newest() is then one sample older. On error the state is unchanged:
-  /// `too_few` (wrong number of units, or no reading), `time_order`, `degenerate` (no gravity in the first sample),
-  /// `gap` (more than a second: the run ends until reset()), `out_of_range` (after finish(), or the only unit with
-  /// readings has a frozen axis).
+  /// Processes simultaneous readings of all units. The stamp of the first unit counts, corrected by SampleClock if a
+  /// host's stamps jitter. A unit without a reading is passed as NaN. OutlierFilter rejects single wild readings of
+  /// each unit. OutlierFilter may delay the samples of all units by one; newest() is then one sample older. On error
+  /// the state is unchanged. Errors are `too_few` (wrong number of units, or no reading), `time_order`, `degenerate`
+  /// (no gravity in the first sample), `gap` and `out_of_range`. `gap`: after more than a second without samples, the
+  /// run ends until reset(). `out_of_range`: finish() was called, or the only unit with readings has a frozen axis.
   Status add_imus(std::span<const ImuSample> samples);
-  /// Same for a sphere with one IMU.
+  /// Adds the sample of a sphere with one IMU. Errors are those of add_imus().
   Status add_imu(const ImuSample& sample) { return add_imus({&sample, 1}); }
 
-  /// Returns the pose at the newest sample from all data so far; nothing before the first sample.
+  /// Returns the pose at the newest sample from all data so far. Returns nothing before the first sample.
   std::optional<Pose> newest() const;
 
-  /// Returns the next pose in time order, each pose once. Poses are smoothed and lag_s old, or live if the lag is 0.
+  /// Returns the next pose in time order. No pose is returned twice. Poses are smoothed and lag_s old, or live if the
+  /// lag is 0.
   std::optional<Pose> take();
 
-  /// Ends the run and smooths the poses still within the lag. add_imus() is rejected until reset().
+  /// Ends the run and smooths the poses still within the lag. add_imus() then rejects samples until reset().
   void finish();
 
   /// Starts a new run at the origin and at rest. Poses not yet fetched by take() remain available.
   void reset();
 
-  /// Reports whether the readings are plausible now. Returns `ok`, or `out_of_range` with a finding: the unit and axis
-  /// that is frozen (FrozenAxes) and the duration, or a force at rest that differs from gravity (RestGravity). The
-  /// readings of a frozen unit are ignored. If no other unit has readings, add_imus() rejects the sample.
+  /// Reports whether the readings are plausible now. Returns `ok`, or `out_of_range` with a finding. A finding is the
+  /// unit and axis that is frozen (FrozenAxes) and the duration, or a force at rest that differs from gravity
+  /// (RestGravity). The readings of a frozen unit are ignored. If no unfrozen unit has readings, add_imus() rejects the
+  /// sample.
   Status health() const;
 
   /// Returns the state of the IMU fusion: frozen, disagreeing and delayed units.
@@ -119,13 +124,13 @@ class RollingOdometry {
   /// Returns the jitter of the stamps [s]; see TumblingOdometry::estimated_jitter_s.
   std::optional<double> estimated_jitter_s() const;
 
-  /// Save, load, saved parameters: see TumblingOdometry. The size is up to a megabyte, less at rest, plus the lag's
-  /// data.
+  /// Save the state, load a saved state, and read saved parameters, as TumblingOdometry does. The size is up to a
+  /// megabyte, less at rest, plus the lag's data.
   std::vector<std::byte> save() const;
   Status load(std::span<const std::byte> bytes);
   static Status saved_params(std::span<const std::byte> bytes, Params& params);
 
-  /// Visits every member of the state. Defined in the library's sources: state_visitor.hpp.
+  /// Passes every member of the state to the visitor. The definition is in the library's sources (state_visitor.hpp).
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
 
@@ -143,7 +148,7 @@ class RollingOdometry {
 
   Params params_;
   SampleClock clock_;
-  SampleClock::State stamps_;  ///< of accepted samples
+  SampleClock::State stamps_;  ///< state of the clock from accepted samples
   ImuMerge merge_;
   RollingSmoother smoother_;
   UnitRails rails_;

@@ -23,8 +23,8 @@ concept SavedStream =
     std::same_as<Stream, RateStream> || std::same_as<Stream, RegimeStream> || std::same_as<Stream, CarriedStream> ||
     std::same_as<Stream, CarriedLive> || std::same_as<Stream, RollingFilter> || std::same_as<Stream, RollingSmoother>;
 
-/// Serialises a state and the parameters of its stream, with a checksum. The bytes are the same on every machine. A
-/// stream of the same parameters that loads them continues with bit-identical results.
+/// Serialises a state and the parameters of its stream, with a checksum. The bytes are equal on every machine. A stream
+/// with equal parameters that loads the bytes continues with bit-identical results.
 template <SavedStream Stream>
 std::vector<std::byte> save_state(const typename Stream::Params& params, const typename Stream::State& state);
 
@@ -32,7 +32,7 @@ std::vector<std::byte> save_state(const typename Stream::Params& params, const t
 /// stored value and the bound:
 /// - `too_few`: truncated bytes.
 /// - `non_finite`, `time_order`, `gap`, `out_of_range`: the stored state is invalid.
-/// - The first parameter that differs: the stored value and the value of this stream.
+/// - The first parameter that differs: the stored value and the value of `stream`.
 /// - Bytes of another stream or library version, and damaged bytes, are rejected.
 ///
 /// Throws InvalidParams as the stream's constructor does.

@@ -21,31 +21,32 @@ namespace tumble {
 /// sweeps. The estimation is causal. SampleClock corrects stamps that a host assigned. RegimeStream estimates each
 /// sample's angular velocity with a delay of `lag_s`. LidarInertialOdometry then processes samples and sweeps.
 ///
-/// Three poses of increasing accuracy are reported. newest() predicts the IMU's pose at the newest sample by inertial
-/// integration from the last registered sweep. take() returns a sweep registered to the map (`report.pose`), at most
-/// lag_s after its end. The next sweep brings its final pose (`report.smoothed`): at most 0.3 s after its end, at ten
-/// sweeps per second. Stamps of poses are in the IMU's clock. World: see LidarInertialOdometry; the first sweep with
-/// enough points starts the map and has no pose error, and there are no poses before it. Start with at least half a
-/// second at rest, which levels the attitude.
+/// TumblingOdometry reports three poses of increasing accuracy. The function newest() predicts the IMU's pose at the
+/// newest sample by inertial integration from the last registered sweep. The function take() returns a sweep registered
+/// to the map (`report.pose`), at most lag_s after the sweep's end. The report of the following sweep contains the
+/// final pose (`report.smoothed`), at most 0.3 s after the sweep's end at ten sweeps per second. Stamps of poses are in
+/// the IMU's clock. World: see LidarInertialOdometry. The earliest sweep with enough points starts the map and has no
+/// pose error. Before the map starts, there are no poses. Start with at least half a second at rest, which levels the
+/// attitude.
 ///
-/// Some seconds after motion starts, SecondPass processes those seconds again with the calibration estimated so far.
-/// Map and pose then switch once to its result; earlier poses are not changed. If the lidar is silent for a second,
-/// inertial integration continues and reports a sweep without points.
+/// Some seconds after motion starts, SecondPass processes the first seconds of motion again with the calibration
+/// estimated so far. Map and pose then switch to the result of SecondPass; earlier poses are not changed. If the lidar
+/// is silent for a second, inertial integration continues and reports a sweep without points.
 ///
 /// Cost: an IMU sample costs one step of the stream, and sometimes the registration of a sweep. A sample that ends no
-/// sweep allocates nothing after start-up. While the second pass runs, a sweep costs up to four registrations, and once
-/// five more at its end. Memory is bounded by the lag, the map radius, `sweeps_max` and the buffer of the second pass,
-/// plus 12 bytes per sweep within ten metres. A call needs at most 64 KiB of stack.
+/// sweep allocates nothing after start-up. While the second pass runs, a sweep costs up to four registrations. The end
+/// of the second pass costs five more registrations. Memory is bounded by the lag, the map radius, `sweeps_max` and the
+/// buffer of the second pass, plus 12 bytes per sweep within ten metres. A call needs at most 64 KiB of stack.
 ///
 /// The class uses no threads and no files and prints nothing. Copies contain the complete state, so a run may be split.
-/// Not modelled: see RegimeStream and LidarInertialOdometry.
+/// The limitations of RegimeStream and LidarInertialOdometry apply.
 class TumblingOdometry {
  public:
   using Params = TumblingParams;
 
   /// Result of one sweep.
   struct Sweep {
-    Status status;  ///< as LidarInertialOdometry::add_sweep; without a pose, `report.trajectory` is empty
+    Status status;  ///< status of LidarInertialOdometry::add_sweep; without a pose, `report.trajectory` is empty
     LidarInertialOdometry::SweepReport report;
   };
 
@@ -53,38 +54,43 @@ class TumblingOdometry {
   explicit TumblingOdometry(const Params& params);
 
   /// Processes an IMU sample; stamps must increase. Registers the sweeps whose rates become available. On `non_finite`,
-  /// `time_order` or `gap` the state is unchanged, with one exception. The sample after a gap of more than a second
-  /// waits for confirmation by the next one. The rates then restart with the current calibration (gaps() counts them),
-  /// and the mapper bridges the gap by inertial integration. A single wrong stamp thus costs one sample.
-  /// OutlierFilter rejects single wild readings. It may delay a sample by one; newest() is then one sample older.
+  /// `time_order` or `gap` the state is unchanged, with one exception. The first sample after a gap of more than a
+  /// second waits for confirmation by the next sample. The rates then restart with the current calibration (gaps()
+  /// counts the restarts), and the mapper bridges the gap by inertial integration. A single wrong stamp thus costs one
+  /// sample. OutlierFilter rejects single wild readings. OutlierFilter may delay a sample by one; newest() is then one
+  /// sample older.
   Status add_imu(const ImuSample& sample);
-  /// Processes a sweep of points fired in [start_ns, end_ns], at any time after its last point. The points are copied.
-  /// Points from before the end of the last sweep are dropped because stamps jitter. On error the state is unchanged.
-  /// `time_order`: the end is before the start, or half of the sweep is before the end of the last sweep.
+  /// Processes a sweep of points fired in [start_ns, end_ns], at any time after the sweep's last point. The points are
+  /// copied. Points from before the end of the last sweep are dropped because stamps jitter. On error the state is
+  /// unchanged. `time_order`: the end is before the start, or half of the sweep is before the end of the last sweep.
   /// `out_of_range`: a point is beyond the sweep, the end is a second after the newest sample, a stamp is beyond 109
   /// years, or too many sweeps wait.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points);
   /// Processes an odometer reading (detail/odometer_reading.hpp). The reading must arrive before its sweep is
-  /// registered, which is lag_s after the sweep's end. The last reading of a sweep counts. On error the state is
-  /// unchanged: `empty` (no IMU sample yet), `non_finite`, `time_order` (the sweep is already registered),
-  /// `out_of_range` (standard deviation not above 0, stamp a second ahead of the newest sample, or 1024 readings wait).
+  /// registered, which is lag_s after the sweep's end. If a sweep has several readings, only the last reading is used.
+  /// On error the state is unchanged. Errors are `empty` (no IMU sample yet), `non_finite`, `time_order` (the sweep is
+  /// already registered) and `out_of_range`. `out_of_range`: standard deviation not above 0, stamp a second ahead of
+  /// the newest sample, or 1024 readings wait.
   Status add_velocity(const VelocityReading& velocity);
   Status add_motion(const MotionReading& motion);
-  /// Returns the next registered sweep, in order, or nothing.
+  /// Returns the next registered sweep, in order. Returns nothing if no registered sweep waits.
   std::optional<Sweep> take();
-  /// Registers all sweeps that the IMU covers, at the end of a run or during a halt. take() then returns them, and
-  /// mapper().window_trajectories() the final poses of sweeps in the window. Later rates restart with the current
-  /// calibration.
+  /// Registers all sweeps that the IMU covers, at the end of a run or during a halt. Then, take() returns the
+  /// registered sweeps. The function mapper().window_trajectories() returns the final poses of sweeps in the window.
+  /// The rates of later samples restart with the current calibration.
   void finish();
 
   /// Predicts pose and velocity of the IMU at its newest sample, with covariance, by inertial integration from the last
-  /// registered sweep. Returns `empty` before the first sweep. Allocates; O(samples since the last sweep).
+  /// registered sweep. Returns `empty` before the first sweep. Allocates memory. Cost: O(samples since the last sweep).
   Status newest(PoseState& pose) const;
-  /// Reports whether the inputs and the pose are plausible now. Estimation continues in either case. Returns `ok`, or
-  /// `out_of_range` with a finding: a frozen IMU axis and its duration, an inverted accelerometer (FlightSense), a
-  /// wrong unit of the accelerometer after a second of rest (RestGravity), a wrong scale of the lidar's ranges
-  /// (SweepScale), tracking failure (Localisation, permanent), or too large a change of the lidar's calibration
-  /// (StatedCalibration).
+  /// Reports whether the inputs and the pose are plausible now. Estimation continues after any finding. Returns `ok`,
+  /// or `out_of_range` with a finding:
+  /// - a frozen IMU axis and the duration of the freeze,
+  /// - an inverted accelerometer (FlightSense),
+  /// - a wrong unit of the accelerometer after a second of rest (RestGravity),
+  /// - a wrong scale of the lidar's ranges (SweepScale),
+  /// - tracking failure (Localisation, permanent),
+  /// - too large a change of the lidar's calibration (StatedCalibration).
   Status health() const;
   /// Returns the estimated range scale of the lidar relative to the IMU, as far as the motion determines it.
   const SweepScale& sweep_scale() const { return pass_.sweep_scale(); }
@@ -92,7 +98,7 @@ class TumblingOdometry {
   std::optional<TimeNs> newest_ns() const { return newest_ns_; }
   /// Returns the rate of the newest sample, if any. While the gyro is saturated, the rate is provisional.
   std::optional<RateState> newest_rate() const { return pass_.rates().rate().newest(pass_.rate_state().rate); }
-  /// Returns the latest smoothed rate, about lag_s old. Empty while the lag fills.
+  /// Returns the latest smoothed rate, about lag_s old. The result is empty while the lag fills.
   const std::optional<RateState>& smoothed_rate() const { return pass_.smoothed_rate(); }
   /// Returns the estimated calibration of the IMU on the body: lever arm, biases and sensing elements.
   RigCalibration rig() const { return pass_.rates().rate().calibration(pass_.rate_state().rate); }
@@ -103,8 +109,8 @@ class TumblingOdometry {
   std::size_t rejected_readings() const { return outliers_.rejected; }
   /// Returns whether map and pose are those of the second pass (SecondPass).
   bool second_pass_applied() const { return second_pass_.taken(); }
-  /// Return the numbers of samples that the mapper rejected, of sweeps not fetched in time, of sweeps that ended before
-  /// the IMU's first sample, and of odometer readings that span two sweeps. All are 0 in normal operation.
+  /// Return counts, which are all 0 in normal operation. The counts are samples that the mapper rejected, sweeps not
+  /// fetched in time, sweeps that ended before the IMU's first sample, and odometer readings that span two sweeps.
   std::size_t rejected_samples() const { return pass_.rejected_samples(); }
   std::size_t dropped_sweeps() const { return dropped_sweeps_; }
   std::size_t early_sweeps() const { return early_sweeps_; }
@@ -114,17 +120,18 @@ class TumblingOdometry {
   /// Returns the mapper: the map and further results.
   const LidarInertialOdometry& mapper() const { return pass_.mapper(); }
 
-  /// Saves the complete state: map, calibration, second pass and sweeps not yet fetched by take(). The bytes are the
-  /// same on every machine and include a checksum. An object of the same parameters that loads them continues with
-  /// bit-identical results. Two states are equal if their bytes are. Size of a saved map: docs/tutorials/your_robot.md.
+  /// Saves the complete state: map, calibration, second pass and sweeps not yet fetched by take(). The bytes are equal
+  /// on every machine and include a checksum. An object with equal parameters that loads the bytes continues with
+  /// bit-identical results. Two states are equal if their bytes are equal. docs/tutorials/your_robot.md states the size
+  /// of a saved map.
   std::vector<std::byte> save() const;
-  /// Replaces this state by a saved one. On error this state is unchanged. Errors name the field, the stored value and
-  /// the bound: `too_few` (truncated bytes), `non_finite`, `time_order`, `gap`, `out_of_range`. Other parameters,
-  /// another library version and damaged bytes are errors, too.
+  /// Replaces the state by a saved one. On error the state is unchanged. Errors name the field, the stored value and
+  /// the bound: `too_few` (truncated bytes), `non_finite`, `time_order`, `gap`, `out_of_range`. Different parameters, a
+  /// different library version and damaged bytes are also errors.
   Status load(std::span<const std::byte> bytes);
   /// Reads the parameters stored in a saved state. On error `params` is unchanged.
   static Status saved_params(std::span<const std::byte> bytes, Params& params);
-  /// Visits every member of the state. Defined in the library's sources: state_visitor.hpp.
+  /// Passes every member of the state to the visitor. The definition is in the library's sources (state_visitor.hpp).
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
 
@@ -144,17 +151,18 @@ class TumblingOdometry {
   OutlierFilter filter_;
   OutlierFilter::State outliers_;
   SampleClock clock_;
-  SampleClock::State stamps_;  ///< of accepted samples
+  SampleClock::State stamps_;  ///< state of the clock from accepted samples
   OdometryPass pass_;
   SecondPass second_pass_;
-  std::optional<TimeNs> newest_ns_;      ///< of accepted samples
+  std::optional<TimeNs> newest_ns_;      ///< time of the newest accepted sample
   std::optional<ImuSample> after_gap_;   ///< first sample after a gap, not yet confirmed
-  std::optional<TimeNs> registered_ns_;  ///< end of the last registered sweep; before that, the first sample
+  std::optional<TimeNs> registered_ns_;  ///< end of the last registered sweep; until a sweep is registered, time of the
+                                         ///< first sample
   std::size_t gaps_ = 0, dropped_sweeps_ = 0, early_sweeps_ = 0;
   std::deque<WaitingSweep> waiting_;
   WaitingReadings readings_;
   std::deque<Sweep> done_;
-  std::optional<TimeNs> sweep_end_ns_;  ///< of the last accepted sweep
+  std::optional<TimeNs> sweep_end_ns_;  ///< end of the last accepted sweep
 };
 
 }  // namespace tumble

@@ -17,17 +17,18 @@
 
 namespace tumble {
 
-/// Parameters of TumblingOdometry that few users change. Where TumblingParams contains the same number, TumblingParams
-/// has priority. gravity_m_s2 applies to all parts.
+/// Parameters of TumblingOdometry that few users change. If a number is also in TumblingParams, the value in
+/// TumblingParams has priority. gravity_m_s2 applies to all parts.
 struct TumblingExpertParams {
   double gravity_m_s2 = 9.80665;
-  /// Maximum number of sweeps that wait for IMU samples, in addition to those within the lag. Also the maximum number
-  /// that wait for take(); the oldest is dropped.
+  /// Maximum number of sweeps that wait for IMU samples, in addition to the sweeps within the lag. The maximum number
+  /// of sweeps that wait for take() is also sweeps_max; the oldest sweep is dropped.
   std::size_t sweeps_max = 16;
-  /// Rate estimation. `uncalibrated` 0.003 assumes the device's data sheet until readings show otherwise. The
-  /// uncertainty of the calibration widens each rate, since sweeps use the rates before the calibration is estimated.
+  /// Parameters of the rate estimation. `uncalibrated` = 0.003 assumes the device's data sheet until readings
+  /// contradict the data sheet. The uncertainty of the calibration widens each rate, since sweeps use the rates before
+  /// the calibration is estimated.
   RegimeStream::Params rate = rate_defaults();
-  /// Mapping. Gravity's direction and the saturation deficit are among the unknowns.
+  /// Parameters of the mapping. Gravity's direction and the saturation deficit are among the unknowns.
   OdometryParams mapping = mapping_defaults();
   /// Correction of stamps that a host assigned to the IMU's samples.
   SampleClock::Params stamps;
@@ -55,7 +56,8 @@ struct TumblingParams {
   Eigen::Vector3d lever_arm_I_m = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
   double lever_arm_sigma_m = 0.01;
   Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< lidar in IMU axes
-  /// Standard deviations of T_IL and of the lidar's time offset. Both are estimated; 0: exact.
+  /// Standard deviations of T_IL and of the lidar's time offset. Mounting and time offset are estimated; a standard
+  /// deviation of 0 marks an exact value.
   double mount_sigma_rad = 0.01;
   double mount_sigma_m = 0.006;
   double time_offset_sigma_s = 0.003;
@@ -75,7 +77,7 @@ struct TumblingParams {
     return out;
   }
 
-  /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
+  /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit.group("imu_", p.imu);

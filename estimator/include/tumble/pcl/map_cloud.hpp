@@ -11,8 +11,9 @@
 
 namespace tumble {
 
-/// Converts map points to a PCL cloud: positions, normals, and sigma_m in the field `intensity` (PCL has no field for
-/// it). The curvature is 0. Users of this header find PCL themselves or get it from find_package(tumble). O(n).
+/// Converts map points to a PCL cloud of positions and normals. The field `intensity` contains sigma_m, because PCL has
+/// no field for a standard deviation. The curvature is 0. Users of this header find PCL themselves or get PCL from
+/// find_package(tumble). Cost: O(n).
 pcl::PointCloud<pcl::PointXYZINormal> to_pcl(std::span<const MapPoint> points);
 
 /// Converts a PCL cloud to map points, the inverse of to_pcl. O(n).

@@ -16,24 +16,25 @@ namespace tumble {
 /// Estimates the pose of a rolling sphere from one IMU, live, through slip, slide and bumps, on a floor that is level
 /// or sloped.
 ///
-/// While the sphere grips, the rolling constraint is a velocity measurement. This measurement calibrates tilt, biases,
-/// scale, misalignment, delay and lever arm of the IMU, so that the seconds without grip can be integrated. The mode of
-/// contact is estimated: each hypothesis about the past modes has its own error-state Kalman filter until later data
-/// decide between them. Each filter contains the position. Grip after an event therefore also corrects the displacement
-/// during the event. Earlier estimates are not revised (RollingSmoother does this).
+/// While the sphere grips, the rolling constraint is a velocity measurement. The velocity from rolling calibrates tilt,
+/// biases, scale, misalignment, delay and lever arm of the IMU, so that the seconds without grip can be integrated. The
+/// mode of contact is estimated. Each hypothesis about the past modes has its own error-state Kalman filter until later
+/// data decide between the hypotheses. Each filter contains the position. Grip after an event therefore also corrects
+/// the displacement during the event. RollingFilter does not revise earlier estimates; RollingSmoother does.
 ///
 /// While the sphere is at rest, the reported position is constant. Corrections of the earlier path from measurements at
-/// rest are applied when motion resumes. Corrections are applied immediately if another hypothesis becomes the most
+/// rest are applied when motion resumes. Corrections are applied immediately if a different hypothesis becomes the most
 /// probable.
 ///
 /// Readings of a fast IMU are averaged to RollingExpertParams::reading_s before they are processed. Between two
-/// averages the estimate is extrapolated. Over a gap of up to gap_max_s the rate is interpolated and the force is
-/// unknown; the covariance accounts for both. A start in motion is detected and has a larger initial uncertainty.
+/// averages the estimate is extrapolated. Over a gap of up to gap_max_s, the filter interpolates the rate and assumes
+/// an unknown force. The covariance accounts for the interpolated rate and the unknown force. A start in motion is
+/// detected and has a larger initial uncertainty.
 ///
-/// While the gyro is saturated, the attitude is uncertain and the rolling constraint is not usable. Only the covariance
-/// then describes the position's error. The state needs 430 KiB.
+/// While the gyro is saturated, the attitude is uncertain and the rolling constraint is not usable. During saturation,
+/// only the covariance describes the position's error. The state needs 430 KiB.
 ///
-/// Not modelled: a floor that moves or yields, moving platforms. The heading drifts.
+/// RollingFilter does not model a floor that moves or yields, or moving platforms. The heading drifts.
 class RollingFilter {
  public:
   static constexpr int kStates = 40;
@@ -42,38 +43,40 @@ class RollingFilter {
   using Vector = Eigen::Matrix<double, kStates, 1>;
   using Covariance = Eigen::Matrix<double, kStates, kStates>;
 
-  /// One assumption about the sequence of modes, with its estimate.
+  /// One assumption about the sequence of contact modes, with the estimate that follows from it.
   struct Hypothesis {
     Vector x = Vector::Zero();  ///< errors: attitude (W), velocity and position of the IMU, constants
     Covariance P = Covariance::Zero();
     Eigen::Vector3d u_W_m_s = Eigen::Vector3d::Zero();  ///< contact velocity at the last node
     double log_weight = 0.0;                            ///< log probability; the most probable one has zero
     std::int64_t switched_node = 0;                     ///< node at which its current mode began
-    std::int32_t parent = 0;                            ///< index of its parent at the previous node
+    std::int32_t parent = 0;                            ///< index of the hypothesis' parent at the previous node
     RollingMode mode = RollingMode::grip;
     bool operator==(const Hypothesis&) const = default;
   };
 
   struct State {
-    // The estimate at the last sample, by the most probable hypothesis.
+    // Estimate at the last sample, by the most probable hypothesis.
     Eigen::Vector3d p_WG_m = Eigen::Vector3d::Zero();
     Eigen::Vector3d v_WG_m_s = Eigen::Vector3d::Zero();
     Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
-    Eigen::Matrix3d position_covariance_m2 = Eigen::Matrix3d::Zero();  ///< at the last node, over all hypotheses
-    Eigen::Vector3d contact_velocity_m_s = Eigen::Vector3d::Zero();    ///< at the last node, W
+    Eigen::Matrix3d position_covariance_m2 = Eigen::Matrix3d::Zero();  ///< covariance of the position at the last node,
+                                                                       ///< over all hypotheses
+    Eigen::Vector3d contact_velocity_m_s = Eigen::Vector3d::Zero();    ///< contact velocity at the last node, W
     RollingMode mode = RollingMode::grip;
     double slip_probability = 0.0;  ///< probability that the contact moves, over all hypotheses, at the last node
     double bump_probability = 0.0;  ///< part of slip_probability in which the sphere hops
     bool at_rest = false;
     bool spins_in_place = false;  ///< slow rotation about the contact at rest, which does not allow a gyro bias update
-    bool uncertain = false;  ///< in an event that increased the position's standard deviation by more than uncertain_m
+    bool uncertain = false;       ///< an event increased the position's standard deviation by more than uncertain_m
     bool started_in_motion = false;
     std::int64_t gaps = 0;  ///< bridged gaps
     double gap_longest_s = 0.0;
     // Common linearisation point of all hypotheses.
     RollingNominal nominal;
     RollingSums sums;
-    ImuAverage average;                                          ///< of the readings since the last processed average
+    ImuAverage average;                                          ///< average of the readings since the last processed
+                                                                 ///< average
     Eigen::Matrix3d pruned_spread_m2 = Eigen::Matrix3d::Zero();  ///< spread of the hypotheses pruned at the last node
     RestDetector::State rest;
     Eigen::Vector3d slow_rate_rad_s = Eigen::Vector3d::Zero();
@@ -97,17 +100,19 @@ class RollingFilter {
     return step(sample, state, [](const State&) {});
   }
 
-  /// Same, and calls `closed(state)` after each completed node. A sample that ends a gap completes several nodes.
+  /// Processes a sample and calls `closed(state)` after each completed node. A sample that ends a gap completes several
+  /// nodes.
   template <typename Closed>
   Status step(const ImuSample& sample, State& state, Closed closed) const {
     return step_with(sample, state,
                      Listener{&closed, [](void* to, const State& at) { (*static_cast<Closed*>(to))(at); }});
   }
 
-  /// Returns the estimate at the last sample. Only the covariance of the position is available; the rest is zero.
+  /// Returns the filter's estimate at the last processed sample. Only the position block of the covariance is
+  /// available; all other entries are zero.
   static RollingEstimate estimate(const State& state);
 
-  /// Checks the invariants of a state that was loaded from outside. Returns the first violation.
+  /// Checks the invariants of a state that was loaded from a file. Returns the first violated invariant.
   static Status check_state(const State& state);
 
  private:

@@ -33,7 +33,7 @@ struct RollingEstimate {
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
   RollingMode mode = RollingMode::grip;
   bool at_rest = false;
-  bool uncertain = false;  ///< in an event that made the position uncertain, see RollingModeParams::uncertain_m
+  bool uncertain = false;  ///< an event made the position uncertain, see RollingModeParams::uncertain_m
 };
 
 /// Trajectory and constants that serve as linearisation point of the errors.
@@ -53,7 +53,8 @@ struct RollingNominal {
   bool operator==(const RollingNominal&) const = default;
 };
 
-/// Integrals since the last node of R, R f, R (x) f^T, R (x) w^T, R (w x f), w, f, |w|^2.
+/// Integrals since the last node of R, R f, R (x) f^T, R (x) w^T, R (w x f), w, f, |w|^2, with attitude R, specific
+/// force f and rate w.
 struct RollingSums {
   Eigen::Matrix3d R_s = Eigen::Matrix3d::Zero();
   Eigen::Vector3d f_W_m_s = Eigen::Vector3d::Zero();
@@ -64,10 +65,10 @@ struct RollingSums {
   double rate_clipped_s = 0.0, force_clipped_s = 0.0;  ///< duration of saturated readings
   double recovered_s = 0.0;                            ///< duration of recovered rates
   double impact_m_s = 0.0;                             ///< integral of | |f| - g | above the usual level
-  double unexplained_impact_m_s = 0.0;                 ///< same, without the part that rotation may explain
+  double unexplained_impact_m_s = 0.0;                 ///< part of impact_m_s that rotation cannot explain
   Eigen::Vector3d subsample_saturation_W_m_s =
       Eigen::Vector3d::Zero();  ///< standard deviation of the force lost to subsample saturation, along the force
-  // Of a gap: its length, and the variances of the angle, of rate times time, and of the velocity.
+  // Length of a gap, and the variances that the gap adds: of the angle, of rate times time, and of the velocity.
   double gap_s = 0.0, gap_rad2 = 0.0, gap_rate_rad2_s = 0.0, gap_speed_m2_s2 = 0.0;
   double node_s = 0.0;
   bool operator==(const RollingSums&) const = default;

@@ -11,16 +11,16 @@
 
 namespace tumble {
 
-/// Parameters of RollingParams that few users change, grouped by meaning. Field names equal those in tables and on
+/// Parameters of RollingParams that few users change, grouped by meaning. Field names equal the names in tables and on
 /// command lines.
 struct RollingExpertParams {
   double node_s = 0.02;  ///< time between two measurement updates
-  /// Readings are averaged to this duration, for which all thresholds here are set. Zero: no averaging. Readings of a
-  /// slower IMU are used unchanged.
+  /// Averaging time of readings, for which all thresholds of RollingExpertParams are set. A time of zero disables
+  /// averaging. Readings of a slower IMU are used unchanged.
   double reading_s = 4e-3;
-  /// Rest detection on the means of nodes. The total rate bound of 0.02 rad/s, shared by the axes, is 3 mm/s of the
-  /// sphere. The bounds are measured: with 0.02 rad/s per axis, the drift of a sphere that comes to rest is half as
-  /// large again. The difference from bounds on the norm is at most 40 um of drift, of either sign.
+  /// Parameters of rest detection on the means of nodes. The total rate limit of 0.02 rad/s, shared by the axes, is 3
+  /// mm/s of the sphere. A limit of 0.02 rad/s per axis increases the drift of a sphere that comes to rest by half.
+  /// Limits per axis instead of limits on the norm change the drift by at most 40 um, in either direction.
   RestDetector::Params rest = {
       .rate_max_rad_s = 0.0115, .rate_spread_rad_s = 0.016, .force_spread_m_s2 = 0.15, .rest_s = 0.4, .memory_s = 0.1};
   RollingPriorParams prior = {};
@@ -52,7 +52,7 @@ struct RollingParams {
   double lever_arm_sigma_m = 2e-3;
   std::optional<Eigen::Quaterniond> q_WI_start = {};  ///< attitude at the first sample; empty: levelled by gravity
   double gravity_m_s2 = 9.80665;
-  /// Readings from this value on are clipped, in addition to those that the device flags.
+  /// Readings from this rate on are clipped, in addition to readings that the device flags.
   double gyro_range_rad_s = 1e3;
   double accel_range_m_s2 = 1e5;
   double speed_max_m_s = 2.5;  ///< maximum speed of the sphere; grip at a higher speed is rejected
@@ -60,7 +60,7 @@ struct RollingParams {
   using Expert = RollingExpertParams;
   Expert expert = {};  ///< parameters that few users change
 
-  /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
+  /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.radius_m, {"radius_m", "m", 1e-12, 10.0, "radius of the sphere"});

@@ -17,34 +17,36 @@ namespace tumble {
 
 /// Smooths the estimates of RollingFilter with later data: with a fixed lag, or over the whole run.
 ///
-/// The modes are those of the live filter's most probable hypothesis at the time of smoothing. With these modes fixed,
+/// The modes are those of the live filter's most probable hypothesis at the time of smoothing. With the modes fixed,
 /// one Kalman filter runs forward over the stored samples. The modified Bryson-Fraser smoother (Bierman 1977) then runs
-/// backward. This smoother needs no inverse and only the filter's gains. A sample between two nodes receives the
-/// interpolated errors of both.
+/// backward. The Bryson-Fraser smoother needs no inverse and only the filter's gains. The errors of a sample between
+/// two nodes are interpolated from the errors of the two nodes.
 ///
 /// With a fixed lag, the position is constant while the sphere is at rest. Corrections of the earlier path are applied
-/// when motion resumes because the estimates of this path are already reported. Over the whole run, the path itself is
-/// corrected.
+/// when motion resumes because the estimates of the earlier path are already reported. When a whole run is smoothed,
+/// the path itself is corrected.
 ///
-/// Source: the reference study of this project on slip; the smoother as G. J. Bierman, Factorization Methods for
-/// Discrete Sequential Estimation, 1977. Not modelled: uncertainty of the modes, other than the spread of positions
-/// that the live filter prunes at rest.
+/// The method follows the reference study of this project on slip. The smoother is that of G. J. Bierman, Factorization
+/// Methods for Discrete Sequential Estimation, 1977. RollingSmoother does not model uncertainty of the modes, other
+/// than the spread of positions that the live filter prunes at rest.
 class RollingSmoother {
  public:
   static constexpr double kWholeRun = 1e9;
 
   struct Params {
     RollingParams filter = {};
-    /// Process noise of the final pass as a fraction of the filter's; the reported covariance uses the filter's.
+    /// Process noise of the final pass as a fraction of the filter's process noise. The reported covariance uses the
+    /// filter's process noise.
     double path_noise = 0.65;
     double lag_s = kWholeRun;    ///< delay of an estimate behind the newest sample
     double block_s = 0.2;        ///< estimates are reported in blocks of this length
     double rate_max_hz = 500.0;  ///< rate of the samples, for the preallocated memory of the lag
     /// Horizontal distance of the centre from the start to the end of the run, from an external measurement, and its
-    /// standard deviation. Together with a prior on the radius, it determines the radius. 0: unknown.
+    /// standard deviation. The measured distance determines the radius, together with a prior on the radius. A distance
+    /// of 0 means unknown.
     double known_distance_m = 0.0, known_distance_sigma_m = 5e-3;
 
-    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
+    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.filter);
@@ -61,7 +63,7 @@ class RollingSmoother {
     }
   };
 
-  /// The modes of all hypotheses at a node, and the parent of each at the previous node.
+  /// Modes of all hypotheses at a node, and each hypothesis' parent at the previous node.
   struct Step {
     std::array<std::uint8_t, RollingFilter::kHypotheses> parent{};
     std::array<RollingMode, RollingFilter::kHypotheses> mode{};
@@ -76,9 +78,10 @@ class RollingSmoother {
     RollingNominal nominal;
     RollingFilter::Covariance P = RollingFilter::Covariance::Zero();
     RollingMode mode = RollingMode::grip;
-    double event_variance_m2 = 0.0;                                ///< of the position, when the event began
-    Eigen::Vector3d constrained_p_WG_m = Eigen::Vector3d::Zero();  ///< while `position_constrained`
-    bool position_constrained = false;                             ///< at rest, with constant reported position
+    double event_variance_m2 = 0.0;                                ///< variance of the position when the event began
+    Eigen::Vector3d constrained_p_WG_m = Eigen::Vector3d::Zero();  ///< constant position while `position_constrained`
+    bool position_constrained = false;                             ///< the sphere is at rest, with constant reported
+                                                                   ///< position
     TimeNs last_time_ns = 0;
     Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero();
     // Rate of the gap that contains the node, if any.
@@ -104,23 +107,23 @@ class RollingSmoother {
   const RollingFilter& filter() const { return filter_; }
 
   /// Processes a sample and appends estimates that are older than the lag to `out`. On error the state is unchanged.
-  /// The first sample allocates the memory of the lag. Later, only `out` and the processing of a block allocate. In
-  /// addition the run's memory grows (64 bytes per sample, 152 per node) beyond rate_max_hz, beyond a million samples,
-  /// or with kWholeRun. The sample that ends a block does the block's computations. Such a sample needs 14 KiB per node
-  /// of lag and block, or 4 MiB plus 0.3 KiB per node if there are many nodes.
+  /// The first sample allocates the memory of the lag. After the first sample, only `out` and the processing of a block
+  /// allocate memory. Beyond rate_max_hz, beyond a million samples, or with kWholeRun, the run's memory also grows (64
+  /// bytes per sample, 152 per node). The sample that ends a block does the block's computations. A sample that ends a
+  /// block needs 14 KiB per node of lag and block, or 4 MiB plus 0.3 KiB per node if there are many nodes.
   Status step(const ImuSample& sample, State& state, std::vector<RollingEstimate>& out) const;
 
   /// Ends the run and passes the remaining estimates to `take`, in time order, smoothed with all data. For a whole run
-  /// of N nodes it temporarily needs 4 MiB + N * 0.3 KiB in addition to the state.
+  /// of N nodes, finish() temporarily needs 4 MiB + N * 0.3 KiB in addition to the state.
   using Take = std::function<void(const RollingEstimate&)>;
   void finish(State& state, const Take& take) const;
   void finish(State& state, std::vector<RollingEstimate>& out) const;
 
-  /// Same, with externally known modes, one per sample of a whole run that `state` processed with kWholeRun.
+  /// Ends the run with externally known modes, one per sample of a whole run that `state` processed with kWholeRun.
   void finish(std::span<const RollingMode> known, State& state, const Take& take) const;
 
-  /// Checks the invariants of a state that was loaded from outside. Returns the first violation. Rejects a state with a
-  /// lag whose samples exceed four times rate_max_hz.
+  /// Checks the invariants of a state that was loaded from a file. Returns the first violated invariant. Rejects a
+  /// state with a lag whose samples exceed four times rate_max_hz.
   Status check_state(const State& state) const;
 
  private:

@@ -26,12 +26,12 @@ using Marginal = System::Marginal;
 
 inline constexpr int kErrors = 29;  ///< sensor errors, common to all blocks: see SensorErrors
 
-/// Derivative of a block's or the border's gradient by each of the kErrors common errors. After solving, derivative of
-/// the steps.
+/// Derivative of the gradient of a block or of the border by each of the kErrors common errors. After solving, the
+/// matrix contains the derivative of the steps.
 using ErrorMatrix = Eigen::Matrix<double, kState, kErrors>;
 using BorderErrors = Eigen::Matrix<double, kBorder, kErrors>;
 
-/// Same as in ArrowSystem.
+/// Eliminates a block as ArrowSystem::eliminate does.
 bool eliminate(Block& block, Block* next, Corner& corner);
 bool solve_corner(const Corner& corner, BorderVector& step, BorderMatrix& covariance);
 StateVector back_substitute(const Block& block, const StateVector* next_step, const BorderVector& border_step);
@@ -42,8 +42,8 @@ Marginal marginal(const Conditional& conditional, const BorderMatrix& border_cov
 /// border.
 void eliminate_errors(const Block& block, ErrorMatrix& errors, ErrorMatrix* next, BorderErrors& border);
 
-/// Returns the derivative of an eliminated block by each error, after eliminate_errors(). Needs the same derivatives of
-/// the next block (null for the last) and of the border.
+/// Returns the derivative of an eliminated block by each error, after eliminate_errors(). Needs the derivatives of the
+/// next block (null for the last) and of the border by each error.
 ErrorMatrix back_substitute_errors(const Block& block, const ErrorMatrix& errors, const ErrorMatrix* next_moved,
                                    const BorderErrors& border_moved);
 

@@ -13,22 +13,23 @@
 namespace tumble {
 
 /// Detects wrong signs or swapped axes of the accelerometer, and wrong sign or scale of the gyro. Mirrored forces (all
-/// three axes flipped, one flipped, two swapped) show neither in gravity at rest nor in its rotation.
+/// three axes flipped, one flipped, two swapped) change neither gravity at rest nor its rotation.
 ///
-/// In free flight the force at the lever arm t from the centre of mass is only a x t + w x (w x t). The readings are
-/// compared with this force for the true sensor and for each alternative in `kSenses`. Agreement within `share` for
-/// `run_s` counts as flight measured by that sensor. No such agreement lasts on the ground. If one axis of the gyro is
-/// saturated, the force along the lever arm, -|w x t|^2 for any angular acceleration, determines its rate. The other
-/// two components of the force verify flight.
+/// In free flight the force at the lever arm t from the centre of mass is only a x t + w x (w x t), with the rate w and
+/// the angular acceleration a. FlightSense compares the readings with this force for the true sensor and for each
+/// alternative in `kSenses`. If an alternative agrees within `share` for `run_s`, the flight counts as measured by that
+/// alternative. On the ground, no agreement lasts that long. If one axis of the gyro is saturated, the force along the
+/// lever arm determines the rate of the saturated axis. The force along the lever arm is -|w x t|^2 for any angular
+/// acceleration. The remaining two components of the force verify flight.
 ///
 /// A person who swings a body can produce the forces of a flight with a different lever arm. For a body that may be
-/// hand-held, the class therefore reports only inverted accelerometers and a half-scale gyro, from unsaturated rates.
-/// Not detected: a body that never flies while spinning, an IMU at the centre of mass, or two clipped gyro axes in all
-/// flights. An inverted lever arm looks the same.
+/// hand-held, FlightSense therefore reports only inverted accelerometers and a half-scale gyro, from unsaturated rates.
+/// FlightSense does not detect a body that never flies while spinning, an IMU at the centre of mass, or two clipped
+/// gyro axes in all flights. An inverted lever arm looks like an inverted accelerometer.
 class FlightSense {
  public:
-  /// True sensor; accelerometer, then gyro: all axes flipped, x, y or z flipped, x and y, y and z or z and x swapped; a
-  /// gyro with half scale.
+  /// Number of alternatives, and index of the gyro with half scale. Alternative 0 is the true sensor. Errors of the
+  /// accelerometer follow, then errors of the gyro: all axes flipped, one axis flipped, two axes swapped.
   static constexpr std::size_t kSenses = 17, kHalfScaleGyro = 16;
 
   enum class Body { may_be_hand_held, thrown };
@@ -41,13 +42,15 @@ class FlightSense {
     double force_min_m_s2 = 2.5;                            ///< minimum force due to rotation
     double share = 0.25;                                    ///< tolerance as a fraction of this force
     double run_s = 0.02;                                    ///< minimum duration of agreement
-    double alternative_flight_s = 0.1;                      ///< minimum total flight time of an alternative sensor,
-    double half_scale_flight_s = 0.3;         ///< same for a half-scale gyro (hand-held motion may give 0.15 s)
-    double alternative_evidence_ratio = 4.0;  ///< as a multiple of the true sensor's flight time,
-    double thrown_evidence_ratio = 2.0;       ///< same for a body that is certainly not hand-held
+    double alternative_flight_s = 0.1;                      ///< minimum total flight time of an alternative sensor
+    double half_scale_flight_s = 0.3;         ///< minimum total flight time of a half-scale gyro (hand-held motion may
+                                              ///< give 0.15 s)
+    double alternative_evidence_ratio = 4.0;  ///< minimum flight time of an alternative, as a multiple of the true
+                                              ///< sensor's flight time
+    double thrown_evidence_ratio = 2.0;       ///< minimum ratio for a body that is certainly not hand-held
     double gap_max_s = 0.1;                   ///< a longer gap resets the current run
 
-    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
+    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.lever_arm_m,
@@ -77,7 +80,7 @@ class FlightSense {
   struct Reading {
     TimeNs time_ns = 0;
     Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero(), force_m_s2 = Eigen::Vector3d::Zero();
-    /// Sign of each saturated gyro axis, otherwise 0.
+    /// Sign of each saturated gyro axis; 0 for an unsaturated axis.
     Eigen::Vector3d at_rail = Eigen::Vector3d::Zero();
     bool known = false;  ///< no axis was saturated for a part of the window only
     bool operator==(const Reading&) const = default;
@@ -99,7 +102,7 @@ class FlightSense {
   /// Processes a reading. Ignores readings that are not finite or out of order. O(1), no allocation.
   void step(const ImuSample& sample, State& state) const;
 
-  /// Returns `out_of_range` if the flights match another sensor.
+  /// Returns `out_of_range` if the flights match a sensor with wrong signs, axes or scale.
   Status verdict(const State& state) const;
 
  private:

@@ -14,16 +14,17 @@ namespace tumble {
 /// Detects single axes of an IMU that have stopped updating, sample by sample.
 ///
 /// An axis is frozen if it repeats one reading bit for bit for `frozen_s`, and for ten times its longest earlier
-/// repetition. The axis must have changed for as long before. Another axis of its triad must change from sample to
-/// sample, by far more than the quantisation of this axis. Not detected: an axis that never changed or repeated its
-/// reading as long before (coarse quantisation at rest, simulation without noise).
+/// repetition. The axis must first have changed for an equal time. Another axis of the triad must change from sample to
+/// sample, by far more than the quantisation of the tested axis. FrozenAxes does not detect an axis that never changed.
+/// An axis with equally long earlier repetitions is not detected either (coarse quantisation at rest, simulation
+/// without noise).
 ///
 /// A saturated reading may repeat. A reading counts as saturated from 0.9 of the stated range on, or if the device
 /// flags it. The extreme reading of an axis counts from 0.5 of the range on. A saturated axis is frozen if all other
-/// axes of both triads indicate rest for `rail_stationary_s`. Reason: a body with such a rate or force is not at rest.
-/// On a body that is never at rest, the axis is frozen after `rail_repeated_s` if another axis of its triad changes.
-/// Either it is frozen or the range is too small for the spin; in both cases its rate is unknown. Not distinguished: a
-/// body that spins so evenly about this axis that no other axis changes.
+/// axes of both triads indicate rest for `rail_stationary_s`, because a body with a saturating rate or force is not at
+/// rest. On a body that is never at rest, the axis is frozen after `rail_repeated_s` if another axis of its triad
+/// changes. Either the axis is frozen or the range is too small for the spin. The rate of the axis is then unknown. A
+/// frozen axis is not distinguished from a body that spins so evenly about this axis that no other axis changes.
 class FrozenAxes {
  public:
   struct Params {
@@ -32,7 +33,7 @@ class FrozenAxes {
     double rail_stationary_s = 1.5;                         ///< rest on all other axes while one is saturated
     double rail_repeated_s = 5.0;  ///< saturated repetition while the body moves: flights last a third of this
 
-    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
+    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.gyro_range_rad_s,
@@ -60,7 +61,7 @@ class FrozenAxes {
     double moved_s = 0.0;      ///< total time with changing readings
     double quantum = 0.0;      ///< smallest observed change; 0: none yet
     double min_reading = 0.0, max_reading = 0.0;
-    /// Of the two other axes of the triad, in turn, during the repetition.
+    /// Minimum, maximum and number of changes of the two other axes of the triad, in turn, during the repetition.
     std::array<double, 2> other_low{}, other_high{}, other_changes{};
     double samples = 0.0;       ///< number of repeated samples
     double stationary_s = 0.0;  ///< time during the repetition in which the other axes indicate rest
@@ -84,11 +85,12 @@ class FrozenAxes {
 
   static const Axis& axis(Triad triad, int axis, const State& state);
 
-  /// Returns `out_of_range` with the name of the axis that is frozen now, the duration and the bound; `ok` otherwise.
+  /// Returns `out_of_range` with the name of the axis that is frozen now, the duration and the limit. Returns `ok` if
+  /// no axis is frozen.
   Status verdict(const State& state) const;
 
   /// Returns the variance of a rate at `time_ns` due to axes that are frozen now. The rate on a frozen gyro axis is
-  /// unknown up to the largest rate read so far. Zero for other axes.
+  /// unknown up to the largest rate read so far. The variance of axes that are not frozen is zero.
   Eigen::Vector3d rate_variance_rad2_s2(TimeNs time_ns, const State& state) const;
 
  private:

@@ -12,21 +12,22 @@
 
 namespace tumble {
 
-/// Causal version of ClippingFinder: detects saturation levels and planes of gyro and accelerometer from the readings
-/// so far.
+/// Detects saturation levels and planes of gyro and accelerometer from the readings so far. RailWatch is the causal
+/// form of ClippingFinder.
 ///
-/// For each triad it stores up to `readings_max` distinct readings, preferring the latest and those near the extremes.
-/// The search is that of ClippingFinder. A search follows each segment near an extreme, and within a segment each
-/// further eighth of readings near the extremes. A run of n such readings is therefore searched O(log n) times, not n
-/// times. A plane remains valid after its readings were dropped, until readings contradict it. Saturation is detected
-/// some samples after it first occurs, so users must re-evaluate those samples. Not modelled: see RailPlaneFinder.
+/// For each triad, RailWatch stores up to `readings_max` distinct readings, preferring the latest readings and readings
+/// near the extremes. The search is that of ClippingFinder. A search follows each segment near an extreme. Within a
+/// segment, a search follows whenever the readings near the extremes have grown by an eighth. A run of n readings at
+/// the extreme is therefore searched O(log n) times, not n times. A plane remains valid after its readings were
+/// dropped, until readings contradict the plane. Saturation is detected some samples after it first occurs, so users
+/// must re-evaluate the samples before the detection. The limitations of RailPlaneFinder apply.
 class RailWatch {
  public:
   struct Params {
     ClippingFinder::Params clipping;
     int readings_max = 1024;
 
-    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
+    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.clipping);
@@ -58,8 +59,8 @@ class RailWatch {
   /// search.
   bool observe(const ImuSample& sample, State& state) const;
 
-  /// Classifies a finite sample by the levels found so far and the flags of the device. `before` and `after` are its
-  /// neighbours, null at the ends. The neighbours reveal saturation during a part of the window. O(1).
+  /// Classifies a finite sample by the levels found so far and the flags of the device. `before` and `after` are the
+  /// sample's neighbours, null at the ends. The neighbours reveal saturation during a part of the window. O(1).
   Clipping judge(const ImuSample* before, const ImuSample& sample, const State& state,
                  const ImuSample* after = nullptr) const;
 
@@ -68,7 +69,7 @@ class RailWatch {
   /// Returns whether two states will give identical results, bit for bit.
   static bool equal(const State& a, const State& b);
 
-  /// Returns whether a state that was loaded from outside fits into the preallocated memory.
+  /// Returns whether a state that was loaded from a file fits into the preallocated memory.
   bool has_room_for(const State& state) const;
 
  private:
@@ -78,7 +79,7 @@ class RailWatch {
   RailPlanes search(Triad triad, State& state) const;
 
   RailDetector upright_rails_;
-  std::array<std::array<RailPlaneFinder, 2>, 2> planes_;  // same as in ClippingFinder
+  std::array<std::array<RailPlaneFinder, 2>, 2> planes_;  // gyro and accelerometer, as in ClippingFinder
   std::size_t readings_max_;
 };
 

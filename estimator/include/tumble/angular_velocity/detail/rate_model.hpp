@@ -14,18 +14,18 @@
 
 namespace tumble {
 
-/// Adds the factors of one sample, and of one step between samples, to an arrow matrix. Contains only derived
+/// Adds the factors of one sample, and of one step between samples, to an arrow matrix. RateModel contains only derived
 /// coefficients.
 class RateModel {
  public:
-  /// `period_s`: nominal time between samples. This time determines the noise per sample and the scale of the
-  /// acceleration. Throws InvalidParams if a parameter is out of bounds.
+  /// `period_s` is the nominal time between samples. The period determines the noise per sample and the scale of the
+  /// solver's unit of angular acceleration.
   RateModel(const RateModelParams& params, double period_s);
 
   /// Computes the weight of a sample between flight and contact at the current estimate. `rig_covariance` prevents
   /// errors of the calibration from being mistaken for contact. `widen` >= 1 multiplies the threshold while the rates
-  /// are still inaccurate. `jump` is the smaller of the jumps to the neighbours, from jump(); flight has at least one
-  /// smooth side.
+  /// are still inaccurate. `jump` is the smaller of the jumps to the neighbours, from jump(), because flight has at
+  /// least one smooth side.
   void weigh(const RateObservation& observation, const RigConstants& rig, const RigConstants::Matrix& rig_covariance,
              double widen, double jump, RateEstimate& estimate) const;
 
@@ -34,27 +34,30 @@ class RateModel {
   double jump(const RateKnot& from, const RateKnot& to, double dt_s) const;
 
   /// Moves the unmeasured rates of a sample in contact to the minimum of its force, if this minimum is far below the
-  /// force at the current estimate. Reason: between two impacts a body may fly for a single sample, which local steps
-  /// do not find.
+  /// force at the current estimate. Between two impacts a body may fly for a single sample, which local steps do not
+  /// find.
   void seek_flight(const RateObservation& observation, const RigConstants& rig, RateEstimate& estimate) const;
 
-  /// Initialises the bounds of a sample near the current estimate or the reading, whichever is beyond.
+  /// Initialises the lower bounds of a sample's clipped rates near the current estimate or the reading, whichever is
+  /// beyond.
   void start_bounds(const RateObservation& observation, const RigConstants& rig, RateEstimate& estimate) const;
 
-  /// Refines the bounds of a sample by expectation propagation (Minka 2001). The Gaussian site gives the marginal the
-  /// mean and variance of a truncation at the reading. `damping` in (0, 1] is the weight of the new site.
+  /// Refines the lower bounds of a sample's clipped rates by expectation propagation (Minka 2001). A Gaussian factor
+  /// (site) gives the marginal the mean and variance of a truncation at the reading. `damping` in (0, 1] is the weight
+  /// of the new site.
   void update_bounds(const RateObservation& observation, const RigConstants& rig, const arrow::Conditional& conditional,
                      const RigConstants::Matrix& rig_covariance, double damping, RateEstimate& estimate) const;
 
-  /// Adds gyro, bound, flight and Euler factors of one sample. `rig_spread` is null or the covariance of the
-  /// calibration. If set, the sample does not update the calibration and has a correspondingly reduced weight. Used for
-  /// flights that are too short to be distinguished from contact with another calibration.
+  /// Adds the factors of gyro, lower bounds, flight and Euler's equation of one sample. `rig_spread` is null or the
+  /// covariance of the calibration. With a covariance, the sample does not update the calibration and has a
+  /// correspondingly reduced weight. A covariance is passed for flights that are too short to be distinguished from
+  /// contact with another calibration.
   void add_sample(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
                   arrow::Block& block, arrow::Corner& corner, const RigConstants::Matrix* rig_spread = nullptr) const;
 
-  /// Adds the effect of SensorErrors on the gradient of a sample, and the sample's evidence about them. A clipped
-  /// element provides only its bound, and contact provides nothing; neither contributes evidence. `rig_spread`: as in
-  /// add_sample(); the force of such a sample is left out.
+  /// Adds the effect of SensorErrors on the gradient of a sample, and the sample's information about SensorErrors. A
+  /// clipped element provides only a lower bound, and contact provides nothing; neither contributes information.
+  /// `rig_spread` is that of add_sample(); with a covariance, the force of the sample is left out.
   void add_errors(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
                   arrow::ErrorMatrix& block, arrow::BorderErrors& border, SensorErrorEvidence& evidence,
                   bool rig_spread = false) const;
@@ -67,7 +70,8 @@ class RateModel {
   void add_rig_prior(const RigConstants& rig, arrow::Corner& corner) const;
 
   /// Returns the distance of `rig` from its prior. The distance is the Mahalanobis distance divided by the root of the
-  /// number of components, and the largest over lever arm, both biases and inertia. About 1 is expected.
+  /// number of components. The function returns the largest distance among lever arm, gyro bias, accelerometer bias and
+  /// inertia. A value of about 1 is expected.
   double calibration_mahalanobis(const RigConstants& rig) const;
 
   RigConstants prior_constants() const { return prior_constants_; }
@@ -77,8 +81,8 @@ class RateModel {
   Eigen::Matrix<double, 6, 1> unscaled(const arrow::StateVector& step) const;
   /// Converts a difference in physical units to the solver's units.
   arrow::StateVector scaled(const Eigen::Matrix<double, 6, 1>& difference) const;
-  /// Returns the reported covariance of a rate: that of the fit, widened in contact, plus the effect of the reading's
-  /// time uncertainty.
+  /// Returns the reported covariance of a rate. The covariance of the fit is widened in contact and by the effect of
+  /// the reading's time uncertainty.
   Eigen::Matrix3d reported(const Eigen::Matrix3d& covariance_rad2_s2, const RateObservation& observation,
                            const RateEstimate& estimate) const;
   double gyro_sigma_rad_s() const { return gyro_sigma_rad_s_; }
@@ -88,10 +92,10 @@ class RateModel {
  private:
   struct ForceFactor {
     RateFactor factor;
-    Eigen::Vector3d information;  ///< of each axis, or element
+    Eigen::Vector3d information;  ///< information of each axis or element
   };
-  /// Converts the flight residual to element directions if an accelerometer element clips, and drops satisfied bounds.
-  /// Returns additional variances due to the uncertain rows of the hidden force.
+  /// Converts the flight residual to element directions if an accelerometer element clips, and drops satisfied lower
+  /// bounds. Returns additional variances due to the uncertain sensing directions and the hidden force.
   static Eigen::Vector3d read_accel_elements(const RateObservation& observation, RateFactor& flight);
   ForceFactor force_factor(const RateObservation& observation, const RateEstimate& estimate,
                            const RigConstants& rig) const;
@@ -99,10 +103,11 @@ class RateModel {
   RateKnot at_reading(const RateObservation& observation, const RateEstimate& estimate) const;
   /// Returns the gyro's reading corrected for known sensor errors.
   Eigen::Vector3d corrected_rate(const RateObservation& observation, const RateEstimate& estimate) const;
-  /// Returns flight_factor() with the known accelerometer errors; `by_delay`: as in late_flight_factor().
+  /// Returns flight_factor() with the known accelerometer errors. `by_delay` is that of late_flight_factor().
   RateFactor flight(const RateObservation& observation, const RateKnot& knot, const RigConstants& rig,
                     Eigen::Vector3d* by_delay = nullptr) const;
-  /// Same with only the derivatives by the calibration, which weigh() needs. Costs less than half.
+  /// Returns flight() with only the derivatives by the calibration, which weigh() needs. The cost is less than half of
+  /// that of flight().
   RateFactor flight_by_rig(const RateObservation& observation, const RateKnot& knot, const RigConstants& rig) const;
   double gyro_information(const RateObservation& observation, const RateEstimate& estimate, int axis) const;
   void add_gyro(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,

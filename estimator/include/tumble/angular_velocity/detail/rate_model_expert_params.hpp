@@ -9,12 +9,12 @@ namespace tumble {
 
 /// Errors of readings other than noise.
 struct RateReadingParams {
-  /// Scale and misalignment of the accelerometer, as a fraction of the force.
+  /// Scale and misalignment error of the accelerometer, as a fraction of the force.
   double accel_scale_error = 1e-3;
   /// Uncertainty of a reading's time due to the gyro's bandwidth and clock (a first-order low-pass at 415 Hz delays by
-  /// 0.38 ms). Included in the covariance, multiplied by the angular acceleration.
+  /// 0.38 ms). The covariance of the rate includes this uncertainty times the angular acceleration.
   double gyro_time_sigma_s = 2.5e-4;
-  double rail_sigma_rad_s = 0.05;  ///< softness of the bound given by a clipped reading
+  double rail_sigma_rad_s = 0.05;  ///< softness of the lower bound from a clipped reading
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -27,7 +27,7 @@ struct RateReadingParams {
   }
 };
 
-/// Flight: no force at the centre of mass and no torque.
+/// Parameters of flight, in which no force acts at the centre of mass and no torque on the body.
 struct RateFlightParams {
   double sigma_m_s2 = 0.02;         ///< error of the specific force besides noise (drag, bias in motion)
   double euler_sigma_rad_s2 = 0.3;  ///< error of the angular acceleration from Euler's equation without torque
@@ -48,21 +48,21 @@ struct RateFlightParams {
   }
 };
 
-/// Contact: an unknown force acts on the body.
+/// Parameters of contact, in which an unknown force acts on the body.
 struct RateContactParams {
   /// Growth of the jerk per contact force: rad/s^2 of angular acceleration per m/s^2 of specific force that the flight
   /// model does not explain.
   double gain_rad_m = 4.0;
-  /// Inflation of the standard deviation during impacts, because impacts are not Gaussian.
+  /// Factor on the standard deviation during impacts, because impacts are not Gaussian.
   double sigma_factor = 1.3;
-  /// Euler's equation: a force F causes an angular acceleration across its direction of up to about this times |F|. The
-  /// value is mass times the distance of the contact, over a third of the trace of the inertia.
+  /// Largest angular acceleration across the direction of a contact force F, per |F|, in Euler's equation. The value is
+  /// mass times the distance of the contact from the centre of mass, over a third of the trace of the inertia.
   double lever_rad_m = 5.0;
-  /// Angular acceleration about the force's direction, as a fraction of that (several contacts, or a contact that moves
-  /// within a window).
+  /// Angular acceleration about the force's direction, as a fraction of the angular acceleration across it. Several
+  /// contacts, or a contact that moves within a window, cause the torque about the force.
   double twist_share = 0.3;
-  /// The unknown force has mean zero and a standard deviation of this times itself. A prior that is flat in the
-  /// logarithm has 0.58. 0: no prior.
+  /// Standard deviation of the unknown contact force, as a fraction of the force; its mean is zero. A prior that is
+  /// flat in the logarithm of the force has 0.58. 0: no prior.
   double force_share = 1.0;
 
   template <class Self, class Visitor>
@@ -81,11 +81,11 @@ struct RateContactParams {
   }
 };
 
-/// Parameters of RateModelParams that few users change, grouped by meaning. Field names equal those in tables and on
-/// command lines.
+/// Parameters of RateModelParams that few users change, grouped by meaning. Field names equal the names in tables and
+/// on command lines.
 struct RateModelExpertParams {
-  /// Duration of model errors of a force, a torque or a rate. Faster samples share one such error; only their noise
-  /// averages out.
+  /// Duration of model errors of a force, a torque or a rate. All samples within this duration share one model error,
+  /// and only their noise averages out.
   double model_error_s = 0.01;
   /// Standard deviation of the rate from zero at rest, independent for each sample. The value covers vibration at rest
   /// and false detections of rest.

@@ -20,19 +20,20 @@ struct RateObservation {
   ImuSample sample;
   Clipping clipping;
   bool at_rest = false;  ///< the rate is zero, see RestDetector
-  // Axes whose readings have a separate standard deviation, bit j of each for axis j. An axis is in at most one of the
-  // three.
+  // Masks of axes whose readings have a separate standard deviation, bit j for axis j. Each axis is in at most one of
+  // the three masks.
   std::uint8_t subsample_saturated = 0;  ///< saturated for a part of the window, see SubsampleSaturation
   std::uint8_t lone = 0;     ///< few readings as high as other elements' levels, on a side without a known level
   std::uint8_t suspect = 0;  ///< run of readings that may be at an unknown saturation level: lower bounds
-  Eigen::Vector3d lost_rad_s = Eigen::Vector3d::Zero();        ///< expected deficit, with the reading's sign
-  Eigen::Vector3d lost_sigma_rad_s = Eigen::Vector3d::Zero();  ///< of all three kinds
-  /// Age of the triads' readings at the sample's stamp, and whether the gyro repeats the previous reading.
+  Eigen::Vector3d lost_rad_s = Eigen::Vector3d::Zero();        ///< expected saturation deficit, with the reading's sign
+  Eigen::Vector3d lost_sigma_rad_s = Eigen::Vector3d::Zero();  ///< standard deviation for axes in one of the three
+                                                               ///< masks
+  /// Age of each triad's reading at the sample's stamp, and whether the gyro repeats the previous reading.
   double gyro_age_s = 0.0, accel_age_s = 0.0;
   bool gyro_repeats = false;
-  ElementRows accel_rows = {};  ///< of the accelerometer's elements; needed if one of them clips
+  ElementRows accel_rows = {};  ///< sensing directions of the accelerometer; needed if an element clips
   std::array<AuxiliaryReading, kAuxiliaryImusMax> auxiliary_imus =
-      {};  ///< in the order of RateModelParams::auxiliary_imus
+      {};  ///< readings in the order of RateModelParams::auxiliary_imus
 
   /// Returns whether an element clips. All axes are then corrupted, and the gyro is used element by element.
   bool by_elements() const { return (clipping.gyro | clipping.missing_gyro) != 0; }
@@ -42,7 +43,7 @@ struct RateObservation {
   /// Returns the axes whose reading may be below the rate although no saturation level was found.
   std::uint8_t may_hide() const { return static_cast<std::uint8_t>(lone | suspect); }
 
-  /// Returns the axes whose rate is not measured, only bounded at most.
+  /// Returns the axes whose rate is not measured, or has only a lower bound.
   std::uint8_t unseen() const {
     for (const AuxiliaryReading& auxiliary_imu : auxiliary_imus) {
       if (auxiliary_imu.sees_all_rates()) return 0;
@@ -52,8 +53,8 @@ struct RateObservation {
   }
 };
 
-/// Finds the axes of `now` that are saturated for a part of the window, from the neighbouring samples (null if there is
-/// none).
+/// Finds the axes of `now` that are saturated for a part of the window, from the neighbouring samples. A neighbour is
+/// null if it does not exist.
 void mark_subsample_saturation(const RailDetector& rails, const RailDetector::State& state, double noise_rad_s,
                                const ImuSample* before, RateObservation& now, const ImuSample* after);
 
@@ -63,8 +64,8 @@ struct RateEstimate {
   double flight_weight = 0.0;  ///< 0: contact, 1: free flight
   /// Specific force of contact at the centre of mass: the part that the flight model does not explain.
   Eigen::Vector3d contact_m_s2 = Eigen::Vector3d::Zero();
-  /// Gaussian sites of the bounds of clipped elements, on the deficit m_j . (rate + bias - reading): precision and
-  /// precision * mean.
+  /// Gaussian factors (sites) of the lower bounds of clipped elements, on the saturation deficit m_j . (rate + bias -
+  /// reading). A factor is stored as precision and precision * mean.
   Eigen::Vector3d bound_precision = Eigen::Vector3d::Zero();
   Eigen::Vector3d bound_shift = Eigen::Vector3d::Zero();
   bool soft_bounds = false;  ///< false: bounds are hard and act only if violated (first iterations)

@@ -8,14 +8,14 @@
 /// Groups of RateSmoother::Params::Expert.
 namespace tumble {
 
-/// Gauss-Newton descent to the most likely rates.
+/// Parameters of the Gauss-Newton optimisation that finds the most likely rates.
 struct RateDescentParams {
   int iterations_max = 15;
   double tolerance_rad_s = 2e-3;  ///< converged if no rate changes by more
   double step_max_rad_s = 10.0;   ///< longest step of a rate in one iteration
   double widen_first = 8.0;       ///< multiplier of the contact threshold in the first iteration, halved in each
-  /// Iterations after convergence with truncated distributions instead of hard bounds for samples in contact. These
-  /// iterations make the covariance of such samples consistent.
+  /// Iterations after convergence with truncated distributions instead of hard lower bounds for samples in contact. The
+  /// additional iterations make the covariance of samples in contact consistent.
   int bound_iterations = 3;
   double bound_damping = 0.5;  ///< weight of a new bound in each of them
 
@@ -35,15 +35,16 @@ struct RateDescentParams {
   }
 };
 
-/// Parameters of RateSmootherParams that few users change, grouped by meaning. Field names equal those in tables and on
-/// command lines.
+/// Parameters of RateSmootherParams that few users change, grouped by meaning. Field names equal the names in tables
+/// and on command lines.
 struct RateSmootherExpertParams {
-  RailPlaneFinder::Params planes = {};  ///< without a stated range, that of RateSmootherParams::rails applies
-  RailPlaneFinder::Params accel_planes = RailPlaneFinder::Params::for_accelerometer();  ///< same for the accelerometer
+  RailPlaneFinder::Params planes = {};  ///< without a stated range, the range of RateSmootherParams::rails applies
+  /// parameters of the accelerometer's planes
+  RailPlaneFinder::Params accel_planes = RailPlaneFinder::Params::for_accelerometer();
   RestDetector::Params rests = {};
   RateDescentParams descent = {};
-  /// Maximum number of descents. Each uses readings corrected by the sensor errors of the previous one. 1: sensor
-  /// errors are included in the covariance but not estimated.
+  /// Maximum number of optimisations. Each optimisation uses readings corrected by the sensor errors of the previous
+  /// optimisation. With 1, sensor errors are included in the covariance but not estimated.
   int error_rounds_max = 3;
 
   template <class Self, class Visitor>

@@ -8,18 +8,19 @@
 /// Groups of RateStream::Params::Expert.
 namespace tumble {
 
-/// Inflation of the calibration's uncertainty while it is estimated from few samples of flight, n. A sample shorter
-/// than `model_error_s` counts as a fraction.
+/// Inflation of the calibration's uncertainty while only few samples of flight, n, have updated it. A sample shorter
+/// than `model_error_s` counts as a fraction of a sample.
 struct RigInflationParams {
-  /// Inflation of the covariance by 1 + covariance / (1 + n / samples), except for the gyro's bias, and never beyond
-  /// the prior.
+  /// Inflation of the calibration's covariance: the factor is 1 + covariance / (1 + n / samples). The gyro's bias is
+  /// not inflated, and the inflated covariance never exceeds the prior.
   double covariance = 60.0;
   double samples = 30.0;
-  /// Rates beyond saturation that are recovered during contact depend on the calibration. The standard deviation of
-  /// such rates is at least this fraction of the deficit, divided by 1 + n / samples.
+  /// Rates beyond saturation that are recovered during contact depend on the calibration. The standard deviation of a
+  /// recovered rate is at least this fraction of the saturation deficit, divided by 1 + n / samples.
   double contact = 0.5;
-  /// Rule for a run of clipped samples in contact. A parabola with the slopes at the run's ends predicts a deficit. The
-  /// standard deviation is at least this fraction of the predicted deficit, minus the estimated deficit.
+  /// Rule for a run of clipped samples in contact. A parabola with the slopes of the rate at the run's ends predicts a
+  /// saturation deficit. The standard deviation is at least this fraction of the predicted deficit, minus the estimated
+  /// deficit.
   double slopes = 1.0;
 
   template <class Self, class Visitor>
@@ -37,11 +38,12 @@ struct RigInflationParams {
   }
 };
 
-/// Parameters of RateStreamParams that few users change, grouped by meaning. Field names equal those in tables and on
-/// command lines.
+/// Parameters of RateStreamParams that few users change, grouped by meaning. Field names equal the names in tables and
+/// on command lines.
 struct RateStreamExpertParams {
-  RailPlaneFinder::Params planes = {};  ///< without a stated range, that of RateStreamParams::rails applies
-  RailPlaneFinder::Params accel_planes = RailPlaneFinder::Params::for_accelerometer();  ///< same for the accelerometer
+  RailPlaneFinder::Params planes = {};  ///< without a stated range, the range of RateStreamParams::rails applies
+  /// parameters of the accelerometer's planes
+  RailPlaneFinder::Params accel_planes = RailPlaneFinder::Params::for_accelerometer();
   RestDetector::Params rests = {};
   double widen_first = 8.0;      ///< contact threshold's factor for a new clipped sample, halved in each step
   double step_max_rad_s = 10.0;  ///< longest step of a rate at one sample
@@ -49,7 +51,7 @@ struct RateStreamExpertParams {
   double bound_damping = 0.5;    ///< weight of a new bound in each step
   int flight_run_min = 6;        ///< minimum consecutive flight samples that update the calibration
   RigInflationParams inflation = {};
-  /// Prior probability of an uncalibrated device; 0: the device matches its data sheet.
+  /// Prior probability of an uncalibrated device. With 0, the device matches its data sheet.
   double uncalibrated = 0.3;
 
   template <class Self, class Visitor>

@@ -38,10 +38,11 @@ struct RateStreamForce {
 struct RateStreamKnot {
   RateObservation observation;  ///< with the force at its own time if the accelerometer is delayed: `read`
   RateStreamForce read;
-  Clipping by_upright_rails;  ///< by flags and equal readings; the observation also uses planes
+  Clipping by_upright_rails;  ///< clipping by flags and equal readings; the observation also uses planes
   RateEstimate estimate;
   Eigen::Matrix3d covariance_rad2_s2 = Eigen::Matrix3d::Zero();
-  /// Growth of each axis's magnitude in the two steps up to this sample; the smaller of the two, at least 0.
+  /// Growth of each axis's magnitude in the two steps up to the sample. The smaller growth of the two steps is stored,
+  /// and at least 0.
   Eigen::Vector3d approach_rad_s = Eigen::Vector3d::Zero();
   int age = 0;
   bool repeats = false;      ///< the gyro repeats the previous reading: RepeatDetector
@@ -60,7 +61,7 @@ struct RateStreamDelay {
   bool operator==(const RateStreamDelay&) const = default;
 };
 
-/// Evidence about sensor errors from all samples that left the window, and its derivatives: rate_stream.md (R100).
+/// Information about sensor errors from all samples that left the window, and its derivatives: rate_stream.md (R100).
 struct RateStreamDevice {
   struct Work {
     arrow::BorderErrors border, of_rig;
@@ -91,12 +92,14 @@ struct RateStreamState {
   // point.
   arrow::Block prior;
   arrow::Corner prior_corner;
-  /// One element. On the heap because the state passes through threads with a small stack.
+  /// State of the device's errors: always one element. The element is on the heap because the state passes through
+  /// threads with a small stack.
   std::vector<RateStreamDevice> device = std::vector<RateStreamDevice>(1);
-  std::array<Eigen::Vector3d, 2> extremes{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};  ///< of readings so far
+  /// largest and smallest readings so far
+  std::array<Eigen::Vector3d, 2> extremes{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   LeastRails least;  ///< lower bounds from the readings so far
-  /// For a run of readings at a possible saturation level that has partly left the window:
-  /// RateStreamKnot::approach_rad_s before it, and the number of samples that left.
+  /// Data of a run of readings at a possible saturation level that has partly left the window:
+  /// RateStreamKnot::approach_rad_s before the run, and the number of samples that left.
   Eigen::Vector3d entry_rad_s = Eigen::Vector3d::Zero(), entry_samples = Eigen::Vector3d::Zero();
   std::optional<RateKnot> left;  ///< the sample that left last, and its time
   TimeNs left_ns = 0;

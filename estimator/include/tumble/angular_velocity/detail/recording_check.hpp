@@ -12,7 +12,7 @@ namespace tumble {
 /// the errors of check_samples(), or ok. O(N).
 Status check_recording(std::span<const ImuSample> samples, std::size_t count_min, double gap_max_s);
 
-/// Returns the median time between samples, limited to 1 us and 10 s; needs two samples. O(N).
+/// Returns the median time between samples, limited to 1 us and 10 s. At least two samples are needed. O(N).
 double median_period_s(std::span<const ImuSample> samples);
 
 }  // namespace tumble

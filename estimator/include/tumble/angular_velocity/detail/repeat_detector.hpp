@@ -10,7 +10,7 @@
 namespace tumble {
 
 /// State of one triad's sample at arrival. If the sensor is slower than the log (sample and hold), the sample repeats
-/// an earlier reading, or contains one that arrived since the last sample.
+/// an earlier reading, or contains a reading that arrived since the last sample.
 struct RepeatedReading {
   bool repeats = false;                              ///< repeats the reading of the previous sample
   double age_samples = 0.0;                          ///< mean age of the reading
@@ -21,7 +21,7 @@ struct RepeatedReading {
   /// Returns how far the middle of the reading's window lies before the middle of the sample's window. The reading's
   /// window has the length of the period and ends when the reading is taken.
   double behind_samples() const { return is_slower_than_log() ? age_samples + 0.5 * (period_samples - 1.0) : 0.0; }
-  /// Returns the change of the triad during that time, extrapolated with the slope of the last change.
+  /// Returns the change of the triad during behind_samples(), extrapolated with the slope of the last change.
   Eigen::Vector3d stale() const;
   bool operator==(const RepeatedReading&) const = default;
 };
@@ -40,13 +40,13 @@ class RepeatDetector {
     bool operator==(const Memory&) const = default;
   };
   struct State {
-    std::array<Memory, 2> memory;  ///< by Triad
+    std::array<Memory, 2> memory;  ///< state of each triad, indexed by Triad
     const RepeatedReading& of(Triad triad) const { return memory[static_cast<std::size_t>(triad)].now; }
     bool operator==(const State&) const = default;
   };
 
-  /// Processes the next finite sample. O(1), no allocation. A `clipped` gyro repeats whatever its update rate, so such
-  /// samples are not counted.
+  /// Processes the next finite sample. O(1), no allocation. A `clipped` gyro repeats its reading at any update rate, so
+  /// clipped samples are not counted.
   void observe(const ImuSample& sample, bool clipped, State& state) const;
 };
 

@@ -18,14 +18,15 @@ struct StrokeSums {
   static constexpr int kMostSamples = 4, kPerSample = 8, kMost = kMostSamples * kPerSample, kTried = 2 * kMost + 1;
   using Tried = Eigen::Matrix<double, kTried, 1>;
 
-  /// Intervals between adjacent free readings of the gyro: number, sum and sum of squares of x.
+  /// Number, sum and sum of squares of the angular acceleration x over intervals between adjacent unsaturated gyro
+  /// readings.
   double intervals = 0.0, turn = 0.0, turn_squared = 0.0;
-  /// Per delay: sum and sum of squares of z, sum of products with x, intervals with an impact, intervals with almost no
-  /// force.
+  /// Sums per tried delay: sum and sum of squares of the force z, sum of products x z, number of intervals with an
+  /// impact, number of intervals with almost no force.
   Tried force = Tried::Zero(), force_squared = Tried::Zero(), product = Tried::Zero(), strokes = Tried::Zero(),
         flying = Tried::Zero();
 
-  /// Returns whether an interval between two rates counts, i.e. the body moves.
+  /// Returns whether the body moves in an interval between two rates, so that the interval counts.
   static bool counts(const Eigen::Vector3d& before_rad_s, const Eigen::Vector3d& after_rad_s);
   /// Adds an interval: mean angular acceleration [rad/s^2], and the mean norm of the force per delay [m/s^2].
   /// O(kTried).
@@ -35,7 +36,7 @@ struct StrokeSums {
   /// Returns the delay with the best correlation, for samples `period_s` apart and a slower triad that updates every
   /// `slower_s`. sigma_s is 0 if the delay is not accepted. O(kTried).
   TriadDelay estimate_delay(double period_s, double slower_s) const;
-  /// Returns the correlation at the tried delay nearest to `delay_s`, whatever the number of impacts. O(1).
+  /// Returns the correlation at the tried delay nearest to `delay_s`, for any number of impacts. O(1).
   double correlation_at(double delay_s, double period_s) const;
 
   bool operator==(const StrokeSums&) const = default;

@@ -6,14 +6,14 @@
 
 namespace tumble {
 
-/// A labelling of an accelerometer's axes relative to the axes of the gyro in the same IMU.
+/// A labelling of an accelerometer's axes relative to the axes of the IMU's gyro.
 ///
-/// A file from another source may use other axis names, or z down. The rotation of gravity determines the 24
-/// labellings, except for a flip of all three axes, which rotate alike. An inverted gyro doubles their number.
-/// Rotations of less than a right angle are not included.
+/// A file from another source may use other axis names, or z down. The rotation of gravity distinguishes 24 labellings.
+/// A flip of all three axes is not distinguished because flipped axes rotate like the unflipped ones. An inverted gyro
+/// doubles the number of labellings. Rotations of less than a right angle are not included.
 struct AxisLabels {
   std::array<int, 3> axis = {0, 1, 2};        ///< index of the reading that is the x, y, z of the gyro's axes
-  std::array<double, 3> sign = {1., 1., 1.};  ///< its sign; the first is 1
+  std::array<double, 3> sign = {1., 1., 1.};  ///< sign of each axis; the first sign is 1
   bool gyro_flipped = false;                  ///< all three rates are inverted
 
   /// Returns the force in the gyro's axes.
@@ -24,7 +24,7 @@ struct AxisLabels {
 
 inline constexpr int kAxisLabels = 48;
 
-/// Returns all labellings; the first is the identity.
+/// Returns all labellings. The entry at index 0 is the identity.
 const std::array<AxisLabels, kAxisLabels>& axis_labels();
 
 }  // namespace tumble

@@ -12,16 +12,16 @@
 
 namespace tumble {
 
-/// Estimates the angular velocity of a body that is known to be hand-held, from a single IMU. The class detects
-/// saturation levels for CarriedStream, which does not. After each detection the window is processed again. Not
-/// modelled: flight and contact, which RegimeStream distinguishes.
+/// Estimates the angular velocity of a body that is known to be hand-held, from a single IMU. CarriedLive detects
+/// saturation levels, which CarriedStream needs as input. After each detection the window is processed again.
+/// CarriedLive does not model flight and contact, which RegimeStream distinguishes from hand-held motion.
 class CarriedLive {
  public:
   struct Params {
     CarriedStream::Params stream;
     RailWatch::Params rails;
 
-    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
+    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.stream);
@@ -42,14 +42,14 @@ class CarriedLive {
   /// Returns the state before the first sample.
   State start() const;
 
-  /// Processes one sample. `out`: rate of the sample that is `lag_s` old; empty while the window fills. On error
-  /// (`non_finite`, `time_order`, `gap`) the saturation levels are not updated and `out` is empty.
+  /// Processes one sample. `out` is the rate of the sample that is `lag_s` old, and is empty while the window fills. On
+  /// error (`non_finite`, `time_order`, `gap`) the saturation levels are not updated and `out` is empty.
   Status push(const ImuSample& sample, State& state, std::optional<RateState>& out) const;
 
   /// Appends the rates of the samples that are not yet reported to `out`, oldest first.
   void flush(const State& state, std::vector<RateState>& out) const { stream_.flush(state.stream, out); }
 
-  /// Checks the invariants of a state that was loaded from outside. Returns the first violation.
+  /// Checks the invariants of a state that was loaded from a file. Returns the first violated invariant.
   Status check_state(const State& state) const;
 
  private:

@@ -9,23 +9,25 @@
 namespace tumble {
 
 /// Hand-held motion as a least-squares problem: a chain of nodes at equal time steps, and constants of the device. Each
-/// function adds one factor to the normal equations H d = g and returns its cost (minus two times its log).
+/// function adds one factor to the normal equations H d = g and returns the factor's cost (minus two times its
+/// logarithm).
 namespace carried {
 
-inline constexpr int kState = 18;  ///< of a node: see Index
-inline constexpr int kBorder = 9;  ///< of the constants: see ConstantIndex
+inline constexpr int kState = 18;  ///< size of a node's error: see Index
+inline constexpr int kBorder = 9;  ///< number of constants: see ConstantIndex
 using System = ArrowSystem<kState, kBorder>;
 
 /// First indices of the parts of a node's error. The attitude error is phi with q_true = q_WI Exp(phi).
 enum Index { kPhi = 0, kRate = 3, kAngular = 6, kHand = 9, kVelocity = 12, kPosition = 15 };
 enum ConstantIndex { kGyroBias = 0, kAccelBias = 3, kLever = 6 };
 
-/// One node. The held point is the point of the body at the hand; its acceleration, velocity and position are bounded.
+/// One node. The held point is the point of the body at the hand, whose acceleration, velocity and position are
+/// bounded.
 struct Node {
   Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
   Eigen::Vector3d w_WI_I_rad_s = Eigen::Vector3d::Zero();
   Eigen::Vector3d angular_acceleration_rad_s2 = Eigen::Vector3d::Zero();  ///< derivative of the rate, sensor axes
-  Eigen::Vector3d a_W_m_s2 = Eigen::Vector3d::Zero();                     ///< of the held point
+  Eigen::Vector3d a_W_m_s2 = Eigen::Vector3d::Zero();                     ///< acceleration of the held point
   Eigen::Vector3d v_W_m_s = Eigen::Vector3d::Zero();
   Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();
   void move(const System::StateVector& step);
@@ -39,10 +41,10 @@ struct Constants {
   void move(const System::BorderVector& step);
 };
 
-/// Sums over the readings of one sensing element near a node, at times t from it. With sums, the cost of a solver step
-/// does not depend on the IMU's rate.
+/// Sums over the readings of one sensing element near a node, at times t from the node. With sums, the cost of a solver
+/// step does not depend on the IMU's rate.
 struct ElementSums {
-  double n = 0.0, t_s = 0.0, tt_s2 = 0.0, z = 0.0, zt = 0.0;  ///< count and sums of the free readings z
+  double n = 0.0, t_s = 0.0, tt_s2 = 0.0, z = 0.0, zt = 0.0;  ///< count and sums of the unsaturated readings z
   double clipped = 0.0, clipped_t_s = 0.0, rail = 0.0;        ///< count, mean time and mean level of clipped readings
   double sign = 0.0;                                          ///< sign of the level: the true value is beyond it
   double unread = 0.0, unread_z = 0.0;                        ///< count and mean of unusable readings
@@ -56,32 +58,35 @@ struct NodeReadings {
   Eigen::Vector3d force_bound = Eigen::Vector3d::Zero();  ///< sign of the level where an axis clips, otherwise 0
   double force_n = 0.0;                                   ///< number of force readings
   double force_t_s = 0.0;                                 ///< mean time of the force readings
-  double force_timing_m_s2 = 0.0;                         ///< force error due to the time uncertainty of their windows
+  double force_timing_m_s2 = 0.0;                         ///< force error due to the time uncertainty of the readings'
+                                                          ///< windows
   bool rest = false;
 };
 
 /// Standard deviations for the weights of the factors.
 struct ReadingNoise {
-  double gyro_rad_s = 0.0;    ///< of one reading
+  double gyro_rad_s = 0.0;    ///< standard deviation of one gyro reading
   double window_rad_s = 0.0;  ///< difference between the mean over a window and the rate at its centre, one reading
-  double tilt_share = 0.0;    ///< of a free element while another clips, per rad/s of deficit
-  double rail_rad_s = 0.0;    ///< of a saturation level
-  double bound = 1.0;         ///< fraction of a gyro's bounds that counts as information
-  double force_bound = 1.0;   ///< same for an accelerometer's bounds
-  double accel_m_s2 = 0.0;    ///< of one reading
-  double accel_share = 0.0;   ///< additional, per m/s^2 of difference from gravity
-  double rest_rad_s = 0.0;    ///< of the rate at rest, one node
-  double rest_m_s = 0.0;      ///< of the velocity at rest
-  double rest_m_s2 = 0.0;     ///< of the acceleration at rest
+  double tilt_share = 0.0;    ///< of an unsaturated element while another element clips, per rad/s of saturation
+                              ///< deficit
+  double rail_rad_s = 0.0;    ///< standard deviation of a saturation level
+  double bound = 1.0;         ///< fraction of a gyro's lower bounds that counts as information
+  double force_bound = 1.0;   ///< fraction of an accelerometer's lower bounds that counts as information
+  double accel_m_s2 = 0.0;    ///< standard deviation of one force reading
+  double accel_share = 0.0;   ///< additional force noise per m/s^2 of difference from gravity
+  double rest_rad_s = 0.0;    ///< standard deviation of the rate at rest, one node
+  double rest_m_s = 0.0;      ///< standard deviation of the velocity at rest
+  double rest_m_s2 = 0.0;     ///< standard deviation of the acceleration at rest
 };
 
-/// Adds the gyro of one node, element by element. Row i of `rows` is the axis m_i of element i. Free readings measure
-/// m_i' (rate + bias); clipped ones bound it from one side.
+/// Adds the gyro of one node, element by element. Row i of `rows` is the axis m_i of element i. Unsaturated readings
+/// measure m_i' (rate + bias). Clipped readings bound m_i' (rate + bias) from one side.
 double add_gyro(const NodeReadings& readings, const Eigen::Matrix3d& rows, const ReadingNoise& noise, const Node& node,
                 const Constants& constants, System::Block& block, System::Corner& corner);
 
-/// Adds the specific force of one node: f = R'(a - g) + alpha x r + w x (w x r) + bias at the mean time of the
-/// readings.
+/// Adds the specific force of one node at the mean time of the readings: f = R'(a - g) + alpha x r + w x (w x r) +
+/// bias. Here R is the attitude, a the held point's acceleration, g gravity, w the rate, alpha its derivative and r the
+/// lever arm.
 double add_force(const NodeReadings& readings, const Eigen::Vector3d& g_W_m_s2, const ReadingNoise& noise,
                  const Node& node, const Constants& constants, System::Block& block, System::Corner& corner);
 
@@ -89,7 +94,7 @@ double add_force(const NodeReadings& readings, const Eigen::Vector3d& g_W_m_s2, 
 double add_rest(const ReadingNoise& noise, const Node& node, System::Block& block);
 
 /// Motion model from one node to the next, per step of `h` seconds. The angular jerk is white. The held point's
-/// acceleration is a first-order process, and its velocity and position return to zero, each with its own time
+/// acceleration is a first-order process. The held point's velocity and position return to zero, each with its own time
 /// constant.
 class Motion {
  public:
@@ -107,9 +112,10 @@ class Motion {
   /// of the angular jerk.
   double add_step(const Node& from, const Node& to, double hand, System::Block& block, System::Block& next,
                   double jerk = 1.0) const;
-  /// Adds one node's share of velocity and position about zero.
+  /// Adds the prior of one node that velocity and position of the held point are about zero.
   double add_bounds(const Node& node, System::Block& block) const;
-  /// Adds the prior of the first node: its heading is fixed, everything else has the width of the process.
+  /// Adds the prior of the initial node. The prior fixes the heading; every other unknown has the stationary variance
+  /// of its process.
   double add_first(const Node& node, System::Block& block) const;
 
  private:

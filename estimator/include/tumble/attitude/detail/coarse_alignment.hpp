@@ -13,15 +13,15 @@ namespace tumble {
 /// Finds the vertical after it was lost, for a body that continues to move. The method is the coarse alignment of
 /// inertial navigation. In axes propagated by the gyro, the integral of the specific force is the sum of gravity's
 /// integral and the change of velocity. Gravity's integral grows with time, the change of velocity does not.
-/// attitude.md (A19), (A20). Not linear: works from any initial attitude, including upside down. Not modelled: the
-/// gyro's error (the caller adds it).
+/// attitude.md (A19), (A20). The method is not linear and works from any initial attitude, including upside down. The
+/// gyro's error is not modelled here; the caller adds it.
 struct CoarseAlignment {
   bool running = false;
   double time_s = 0.0;
   double velocity_m2_s2 = 0.0;                            ///< variance of the velocity at the start, one axis
   double lost_rad2 = 0.0;                                 ///< variance of the tilt at the start, one axis
-  double grown_rad2 = 0.0;                                ///< growth of this variance since
-  Eigen::Vector3d force_W_m_s = Eigen::Vector3d::Zero();  ///< integral since the start
+  double grown_rad2 = 0.0;                                ///< growth of the tilt's variance since the start
+  Eigen::Vector3d force_W_m_s = Eigen::Vector3d::Zero();  ///< integral of the specific force since the start
   bool operator==(const CoarseAlignment&) const = default;
 
   void begin(double velocity_variance_m2_s2, double tilt_variance_rad2) {
@@ -40,15 +40,17 @@ struct CoarseAlignment {
   /// Returns the variance of the tilt without the alignment, one axis.
   double tilt_rad2() const { return lost_rad2 + grown_rad2; }
 
-  /// Returns the variance of the tilt from `levelling()`. The variance depends on the velocities at both ends and on
-  /// the gyro meanwhile. The magnitude of the mean force reveals a part of the velocities.
+  /// Returns the variance of the tilt from `levelling()`. The variance depends on the velocities at start and end of
+  /// the alignment, and on the gyro's errors between start and end. The magnitude of the mean force reveals a part of
+  /// the velocities.
   double variance_rad2(double velocity_variance_m2_s2, double gravity_m_s2) const {
     const double gravity_m_s = gravity_m_s2 * std::max(time_s, 1e-9);
     const double seen = squared(force_W_m_s.norm() - gravity_m_s);
     return std::max(velocity_m2_s2 + velocity_variance_m2_s2, seen) / squared(gravity_m_s) + grown_rad2;
   }
 
-  /// Returns the rotation of W that makes the mean force point up without changing the heading; and its angle.
+  /// Return the rotation of W that makes the mean force point up without changing the heading, and the angle of this
+  /// rotation.
   Eigen::Quaterniond levelling() const { return tumble::levelling(force_W_m_s.normalized()); }
   double off_rad() const { return std::atan2(force_W_m_s.head<2>().norm(), force_W_m_s.z()); }
 };

@@ -11,12 +11,13 @@ namespace tumble {
 /// Estimates the errors of several accelerometers on one rigid body from their differences.
 ///
 /// In fast rotation, units at different positions measure large forces that cancel in their mean. The effects of scale
-/// and misalignment do not cancel. For each unit, a Kalman filter estimates bias, scale and misalignment, and position
-/// error: f_k = c + A p_k + b_k + M_k f_k + A dp_k, A = [a]x + [w]x[w]x. The measurement is each unit's difference from
-/// the mean of all, averaged over kSpan_s. The model is linear, so averaging only loses rotation within the span.
-/// Errors common to all units do not show in the differences and remain about zero.
+/// and misalignment do not cancel. For each unit k, a Kalman filter estimates bias b_k, scale and misalignment M_k, and
+/// position error dp_k. The model is f_k = c + A p_k + b_k + M_k f_k + A dp_k with A = [a]x + [w]x[w]x. Here c is the
+/// common force, p_k the position, w the rate and a the angular acceleration. The measurement is each unit's difference
+/// from the mean of all units, averaged over kSpan_s. The model is linear, so averaging only loses rotation within the
+/// span. Errors common to all units do not appear in the differences and remain about zero.
 ///
-/// Not modelled: errors that change, a body that bends.
+/// ForceErrors does not model errors that change, or a body that bends.
 class ForceErrors {
  public:
   static constexpr int kUnits = 4;
@@ -29,17 +30,18 @@ class ForceErrors {
   struct Params {
     std::array<Eigen::Vector3d, kUnits> p_C_m{};  ///< positions of the units
     int count = 1;                                ///< bound [1, kUnits]
-    double bias_sigma_m_s2 = 0.05;                ///< prior; bound [0, 1e3]
+    double bias_sigma_m_s2 = 0.05;                ///< prior of the bias; bound [0, 1e3]
     double scale_sigma = 4e-3;                    ///< prior of each entry of M; bound [0, 1]
-    double position_sigma_m = 1.5e-3;             ///< prior; bound [0, 10]
-    double noise_m_s2 = 0.06;                     ///< of one difference, over a span; bound (0, 1e3]
-    double acceleration_share = 0.02;  ///< additional, per lever-arm force of the angular acceleration; bound [0, 1]
+    double position_sigma_m = 1.5e-3;             ///< prior of the position error; bound [0, 10]
+    double noise_m_s2 = 0.06;                     ///< noise of one force difference, over a span; bound (0, 1e3]
+    double acceleration_share = 0.02;  ///< additional noise, as a fraction of the lever-arm force of the angular
+                                       ///< acceleration; bound [0, 1]
     double gate_deviations = 5.0;      ///< differences beyond this many sigmas have another cause; bound (0, 1e3]
   };
   struct State {
     Vector x = Vector::Zero();
     Covariance P = Covariance::Zero();
-    // sums over the span
+    // Sums over the current averaging span.
     Eigen::Matrix<double, 3, kUnits> difference_m_s2 = Eigen::Matrix<double, 3, kUnits>::Zero();
     Eigen::Matrix<double, 3, kUnits> force_m_s2 = Eigen::Matrix<double, 3, kUnits>::Zero();
     Eigen::Matrix3d by_position = Eigen::Matrix3d::Zero();
@@ -54,7 +56,7 @@ class ForceErrors {
   explicit ForceErrors(const Params& params);
 
   /// Processes `forces_m_s2` of all units in common axes C, measured over `dt_s`, with rate and angular acceleration at
-  /// their time. Updates the filter once per kSpan_s; O((kPerUnit count)^2), no allocation.
+  /// their time. Updates the filter one time per kSpan_s; O((kPerUnit count)^2), no allocation.
   void calibrate(std::span<const Eigen::Vector3d> forces_m_s2, const Eigen::Vector3d& rate_rad_s,
                  const Eigen::Vector3d& acceleration_rad_s2, double dt_s, State& state) const;
 

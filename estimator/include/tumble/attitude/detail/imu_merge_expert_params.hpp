@@ -6,14 +6,14 @@
 /// Groups of ImuMerge::Params::Expert.
 namespace tumble {
 
-/// Outliers: a reading far from those of the others is excluded from its sample.
+/// Parameters of outliers: a reading far from the readings of the other units is excluded from its sample.
 struct ImuOutlierParams {
   double rate_rad_s = 0.15;  ///< difference from the median
-  double rate_share = 0.03;  ///< additional, as a fraction of the rate
+  double rate_share = 0.03;  ///< additional difference, as a fraction of the rate
   double force_m_s2 = 3.0;   ///< difference from the median
   /// A reading above this fraction of the range may have been saturated within its sample.
   double subsample_saturation_share = 0.15;
-  double hidden_force_m_s2 = 3.0;  ///< such a reading may differ from another by this much
+  double hidden_force_m_s2 = 3.0;  ///< difference between two forces up to which subsample saturation explains it
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -31,11 +31,11 @@ struct ImuOutlierParams {
   }
 };
 
-/// Frozen units: a reading that repeats while the others change, or a force that repeats while gravity rotates.
-/// Repetition by sample and hold is shorter.
+/// Parameters of frozen units. A frozen unit repeats its reading while the other units' readings change, or repeats its
+/// force while gravity rotates. Repetition by sample and hold is shorter.
 struct FrozenImuParams {
   double after_s = 0.1;
-  double rate_rad_s = 0.03;  ///< minimum change of the others
+  double rate_rad_s = 0.03;  ///< minimum change of the other units' rates
   double force_m_s2 = 0.3;
   double turned_rad = 1.0;      ///< minimum rotation of gravity, also if all units repeat their readings
   double thawed_after_s = 0.5;  ///< duration of changing readings after which a unit is used again
@@ -55,10 +55,11 @@ struct FrozenImuParams {
   }
 };
 
-/// A unit whose mean over half a second differs from the median for long enough is excluded permanently.
+/// Parameters of permanent exclusion. A unit whose mean over half a second differs from the median for long enough is
+/// excluded permanently.
 struct DisagreeingImuParams {
   double rate_rad_s = 0.1;
-  double rate_share = 0.06;  ///< additional, as a fraction of the rate
+  double rate_share = 0.06;  ///< additional difference, as a fraction of the rate
   double force_m_s2 = 1.0;
   double after_s = 0.3;
 
@@ -74,7 +75,7 @@ struct DisagreeingImuParams {
   }
 };
 
-/// Parameters of ImuMergeParams that few users change, grouped by meaning. Field names equal those in tables and on
+/// Parameters of ImuMergeParams that few users change, grouped by meaning. Field names equal the names in tables and on
 /// command lines.
 struct ImuMergeExpertParams {
   ImuOutlierParams outliers = {};

@@ -14,7 +14,8 @@
 /// State of ImuMerge.
 namespace tumble {
 
-/// Repetition of a triad's reading: its duration, the others' readings at its start, and the rotation since.
+/// Repetition of a triad's reading: its duration, the other units' readings at its start, and the rotation since its
+/// start.
 struct ImuRepeat {
   Eigen::Vector3d reading = Eigen::Vector3d::Zero(), others = Eigen::Vector3d::Zero();
   Eigen::Vector3d turned_rad = Eigen::Vector3d::Zero();
@@ -23,14 +24,14 @@ struct ImuRepeat {
   bool operator==(const ImuRepeat&) const = default;
 };
 
-/// Errors of one unit's rate relative to the mean of all.
+/// Errors of one unit's rate relative to the mean of all units.
 struct ImuMergeUnit {
   static constexpr int kErrors = 13;  ///< bias, scale and misalignment, time offset
 
   Eigen::Matrix<double, kErrors, 1> x = Eigen::Matrix<double, kErrors, 1>::Zero();
   Eigen::Matrix<double, kErrors, kErrors> P = Eigen::Matrix<double, kErrors, kErrors>::Zero();
-  ImuAverage window;  ///< of its readings since the last window
-  /// Means over the last window; for an absent unit, the values predicted from the others.
+  ImuAverage window;  ///< average of the unit's readings since the last window
+  /// Means over the last window. For an absent unit, the values predicted from the other units.
   Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero(), last_force_m_s2 = Eigen::Vector3d::Zero();
   double suspect_s = 0.0;     ///< remaining time for which it is excluded from the force
   std::int64_t left_out = 0;  ///< number of windows
@@ -58,7 +59,7 @@ struct ImuMergeState {
   Eigen::Vector3d rate_before_rad_s = Eigen::Vector3d::Zero();  ///< merged mean over the window before
   double rotation_rate_rad_s = 0.0;                             ///< mean of the rate over half a second
   double window_s = 0.0;                                        ///< length of the current window
-  double length_s = 0.0, length_before_s = 0.0;                 ///< of the last two windows
+  double length_s = 0.0, length_before_s = 0.0;                 ///< lengths of the last two windows
   double lever_arm_correlation = 0.0, arm_square_m2_s3 = 0.0;   ///< sums for arm_share()
   UnitSenses senses;
   std::int64_t samples = 0, windows = 0;

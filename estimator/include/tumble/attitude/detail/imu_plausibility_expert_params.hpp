@@ -23,15 +23,16 @@ struct SteadyForceParams {
 
 /// Rotation of gravity's direction compared with the gyro.
 struct GravityRotationParams {
-  /// Slope of gravity's rotation over the gyro's. Pendulums and hand-held wands give 0.75 to 1.21.
+  /// Range of plausible slopes of gravity's rotation over the gyro's rotation. Pendulums and hand-held wands give 0.75
+  /// to 1.21.
   double slope_min = 0.65, slope_max = 1.5;
   double rotation_min_rad2 = 0.5;    ///< minimum sum of squares for a decision
   double rotation_least_rad = 0.15;  ///< minimum rotation of a window
   /// Minimum number of rotating windows. In one or two windows, a push may be mistaken for gravity, or the centripetal
   /// force of a spin in flight.
   double rotated_windows_min = 5.0;
-  /// Maximum residual of a gyro with the slope's scale, as a fraction of the actual gyro's residual, for slopes outside
-  /// of 0 to 1.
+  /// Maximum residual of a gyro rescaled by the slope, as a fraction of the actual gyro's residual. The rule applies to
+  /// slopes outside of 0 to 1.
   double unexplained_share_max = 0.75;
   double still_share = 1e-6;  ///< fraction of the gyro's rotation; a spin in flight gives up to 0.006
 
@@ -73,7 +74,8 @@ struct AxisNamingParams {
 struct FrozenTriadParams {
   double repeats_s = 1.0;          ///< minimum duration, after as long with changing readings
   double longest_share = 10.0;     ///< minimum ratio to the longest earlier repetition
-  double unexplained_least = 0.5;  ///< of gravity's rotation, for a gyro that never changed
+  double unexplained_least = 0.5;  ///< minimum unexplained fraction of gravity's rotation, for a gyro that never
+                                   ///< changed
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {

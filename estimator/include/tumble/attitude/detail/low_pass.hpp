@@ -8,10 +8,10 @@
 
 namespace tumble {
 
-/// Filters a vector by a second-order Butterworth low-pass (bilinear, corner frequency sqrt(2) / (2 pi tau)).
-/// Until tau has passed, the output is the mean of all inputs, so that no single sample determines the start.
-/// The state is the output and its slope, not the taps of a biquad. At a constant period the transfer function is the
-/// same, and a changing period causes no transient.
+/// Filters a vector by a second-order Butterworth low-pass (bilinear, corner frequency sqrt(2) / (2 pi tau)). Until tau
+/// has passed, the output is the mean of all inputs, so that no single sample determines the start. The state is the
+/// output and its slope, not the taps of a biquad. At a constant period, the transfer function equals that of a biquad.
+/// A changing period causes no transient.
 template <int Rows>
 struct LowPass {
   using Vector = Eigen::Matrix<double, Rows, 1>;

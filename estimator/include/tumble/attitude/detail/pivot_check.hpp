@@ -22,8 +22,8 @@ struct PivotCheckParams {
   double rotation_least_rad = 1.0;  ///< minimum rotation within a segment
   double explains_m_s = 0.3;        ///< rms velocity below which the rates explain a segment
   double noise_m_s = 0.03;          ///< rms velocity below which segments explain equally well
-  double evidence_least = 5.0;      ///< minimum sum over the segments of the log ratio of squares,
-  double evidence_of_each = 0.6;    ///< and minimum mean per segment
+  double evidence_least = 5.0;      ///< minimum sum over the segments of the log ratio of squares
+  double evidence_of_each = 0.6;    ///< minimum mean of the log ratio per segment
   double segments_least = 6.0;      ///< minimum number of better explained segments; each moment is in two
   double better_over_worse = 4.0;   ///< minimum ratio of better to worse explained segments
   double arm_most_m = 0.25;         ///< maximum pivot distance of segments that determine the scale
@@ -33,7 +33,7 @@ struct PivotCheckParams {
   double scale_share_least = 0.5;
   double gap_max_s = 0.1;  ///< a longer gap ends a segment
 
-  /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
+  /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-12, 100.0, "strength of gravity"});
@@ -66,15 +66,16 @@ struct PivotCheckParams {
 };
 
 /// Checks the plausibility of rates for a body that never rests but is held: by a hand, a hinge, or the ground on which
-/// it rocks. Over a second or two, such a body rotates about one of its points, which hardly moves. The forces, rotated
-/// by the rates, then integrate to gravity times the duration plus the effect of rotation about this pivot. If they do
-/// not, but would with relabelled or inverted gyro axes or with half or twice the rate, in many segments, the rates are
-/// wrong. If the pivot is near the sensor, as in hand-held motion, the gyro's scale is determined to a per cent.
+/// the body rocks. Over a second or two, a held body rotates about one of its points, which hardly moves. The forces,
+/// rotated by the rates, then integrate to gravity times the duration plus the effect of rotation about this pivot.
+/// PivotCheck compares this sum for the actual rates, for relabelled or inverted gyro axes, and for half or twice the
+/// rate. The rates are wrong if only an alternative fits, in many segments. If the pivot is near the sensor, as in
+/// hand-held motion, the gyro's scale is determined to a per cent.
 ///
 /// The equations are imu_merge.md (I27), (I28), (I29), (I30). Only measured rates count: a segment ends where the gyro
-/// saturates. Not detected: a body that flies or rolls, which no alternative explains; rotation about one axis only,
-/// which several labels explain equally; an accelerometer with all three axes flipped, whose pivot is on the opposite
-/// side.
+/// saturates. PivotCheck does not detect wrong rates in three cases. A body that flies or rolls is explained by no
+/// alternative. Rotation about one axis only is explained equally well by several labels. An accelerometer with all
+/// three axes flipped has its pivot on the opposite side.
 class PivotCheck {
  public:
   using Params = PivotCheckParams;
@@ -83,8 +84,9 @@ class PivotCheck {
   struct Found {
     int reading = 0;                    ///< number of the gyro alternative that explains most; 0: as it is
     double evidence = 0.0;              ///< evidence against the unchanged rates: sum of logarithms
-    std::size_t counted = 0;            ///< segments that it or the unchanged rates explain
-    std::size_t better = 0, worse = 0;  ///< of those, by more than a fifth of the residual
+    std::size_t counted = 0;            ///< segments that the alternative or the unchanged rates explain
+    std::size_t better = 0, worse = 0;  ///< number of segments that the alternative explains better or worse by more
+                                        ///< than a fifth of the residual
     double scale = 1.0;                 ///< best scale of the rates, from segments with a near pivot
     double scale_sigma = std::numeric_limits<double>::infinity();
     std::size_t scale_segments = 0, explained = 0;  ///< number of these segments; all that the unchanged rates explain
@@ -93,10 +95,10 @@ class PivotCheck {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit PivotCheck(const Params& params);
 
-  /// `rates`: estimated rate of each sample. O(samples).
+  /// Compares all alternatives over a recording. `rates` contains the estimated rate of each sample. Cost: O(samples).
   Found find(std::span<const ImuSample> samples, std::span<const RateState> rates) const;
 
-  /// Returns `out_of_range` if another alternative of the gyro explains clearly more, or its scale is wrong.
+  /// Returns `out_of_range` if an alternative of the gyro explains clearly more segments, or the gyro's scale is wrong.
   Status verdict(const Found& found) const;
 
  private:

@@ -13,20 +13,21 @@ namespace tumble {
 
 /// Estimates the rate of a body beyond its gyros' range from the differences of several accelerometers.
 ///
-/// An extended Kalman filter estimates rate, angular acceleration, specific force at the units' mean position, and each
-/// unit's lever arm error: f_k = c + a x r_k + w x (w x r_k). The force rotates in the body as gravity does. The filter
-/// runs while a gyro is clipped or reads more than kFast of its range. The lever arms are thus calibrated before the
-/// gyro saturates. A reading is clipped if flagged or beyond the range. ClippingFinder sets flags for devices that clip
-/// below their range without reporting it. Clipped readings of gyro and accelerometer are bounds, not measurements.
+/// An extended Kalman filter estimates rate w, angular acceleration a, specific force c at the units' mean position,
+/// and the error of each unit's lever arm r_k. The model is f_k = c + a x r_k + w x (w x r_k). The force rotates in the
+/// body as gravity does. The filter runs while a gyro is clipped or reads more than kFast of its range. The lever arms
+/// are thus calibrated before the gyro saturates. A reading is clipped if flagged or beyond the range. ClippingFinder
+/// sets flags for devices that clip below their range without reporting it. Clipped readings of gyro and accelerometer
+/// are lower bounds, not measurements.
 ///
-/// Not modelled: scale errors (the gyro's scale calibrates the lever arms), units at the same position, which provide
+/// RateRecovery does not model scale errors (the gyro's scale calibrates the lever arms). Units at one position provide
 /// no information. An impact increases the uncertainty and does not appear as a rate.
 class RateRecovery {
  public:
   static constexpr int kUnits = 4;
   static constexpr int kStates = 9 + 3 * kUnits;
-  /// Reference length of readings. The noise of shorter readings grows with the inverse root of their length, so their
-  /// number adds no information.
+  /// Reference length of readings. The noise of shorter readings grows with the inverse root of their length, so a
+  /// larger number of short readings adds no information.
   static constexpr double kReading_s = 4e-3;
   static constexpr double kFast = 0.5;  ///< fraction of the gyro's range above which the filter runs
   using Vector = Eigen::Matrix<double, kStates, 1>;
@@ -35,22 +36,22 @@ class RateRecovery {
   /// Standard deviations of readings over kReading_s.
   struct ReadingNoise {
     double rate_rad_s = 0.03;    ///< bound (0, 10]
-    double rate_share = 0.003;   ///< additional, as a fraction of the reading; bound [0, 1]
+    double rate_share = 0.003;   ///< additional noise, as a fraction of the reading; bound [0, 1]
     double force_m_s2 = 0.3;     ///< bound (0, 1e3]
-    double force_share = 0.004;  ///< additional, as a fraction of the reading; bound [0, 1]
+    double force_share = 0.004;  ///< additional noise, as a fraction of the reading; bound [0, 1]
   };
   struct Params {
     std::array<Eigen::Isometry3d, kUnits> T_CI{};   ///< mountings of the units relative to their mean position
     int count = 1;                                  ///< bound [1, kUnits]
     double gyro_range_rad_s = 1e3;                  ///< readings from this value on are saturated; bound (0, 1e3]
     double accel_range_m_s2 = 1e5;                  ///< bound (0, 1e5]
-    double lever_arm_sigma_m = 1.5e-3;              ///< prior; bound (0, 10]
-    double acceleration_walk_rad_s2_sqrts = 200.0;  ///< of the angular acceleration; bound (0, 1e6]
-    double force_walk_m_s2_sqrts = 25.0;            ///< of the common force; bound (0, 1e6]
+    double lever_arm_sigma_m = 1.5e-3;              ///< prior of the lever arm error; bound (0, 10]
+    double acceleration_walk_rad_s2_sqrts = 200.0;  ///< random walk of the angular acceleration; bound (0, 1e6]
+    double force_walk_m_s2_sqrts = 25.0;            ///< random walk of the common force; bound (0, 1e6]
     double recovered_sigma_rad_s = 1.0;             ///< rates with larger sigma remain clipped; bound (0, 1e3]
     ReadingNoise noise;
-    /// Sensing directions of the units' elements. While one clips, the other axes are corrupted by its deficit, and
-    /// free elements are used along their rows.
+    /// Sensing directions of the units' elements. While a sensing element clips, its saturation deficit corrupts the
+    /// readings of the other axes. Unsaturated elements are then used along their sensing directions.
     std::array<ElementRows, kUnits> gyro_elements{}, accel_elements{};
   };
   struct State {
@@ -64,10 +65,10 @@ class RateRecovery {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit RateRecovery(const Params& params);
 
-  /// Processes the units' readings, each in its own axes, `dt_s` after the previous ones. Units that are not finite are
-  /// ignored. `merged` (C) contains the mean of the used units, and receives rate and force of the filter where
-  /// saturation corrupted them. The gyro flags of `merged` are set if the rate could not be recovered. The
-  /// accelerometer flags are set if most units were saturated, or one unit and a gyro. Otherwise the flags are cleared,
+  /// Processes the units' readings, each in its own axes, `dt_s` after the previous readings. Units that are not finite
+  /// are ignored. `merged` (C) contains the mean of the used units, and receives rate and force of the filter where
+  /// saturation corrupted the mean. The gyro flags of `merged` are set if the rate could not be recovered. The
+  /// accelerometer flags are set if most units were saturated, or one unit and a gyro. All remaining flags are cleared,
   /// because a recovered rate is not clipped. O(count), no allocation; almost no computation while the body rotates
   /// slowly and no gyro is clipped.
   void step(std::span<const ImuSample> units, double dt_s, State& state, ImuSample& merged) const;

@@ -7,12 +7,13 @@
 /// Groups of TumbleAttitude::Params::Expert.
 namespace tumble {
 
-/// A body at rest: standard deviations of its velocity and rate from zero.
+/// Parameters of a body at rest: standard deviations of its velocity and rate from zero.
 struct AttitudeRestParams {
-  double velocity_sigma_m_s = 0.005;   ///< per node at rest
-  double rate_sigma_rad_sqrts = 2e-3;  ///< of the rate measured at rest, mean over 1 s
-  /// At rest, the mean rate differs from the bias by at most this many standard deviations of both. With a known bias,
-  /// a rotation of 0.5 deg/s therefore counts as motion. With an unknown bias, a bias above 1.5 deg/s does, too.
+  double velocity_sigma_m_s = 0.005;   ///< standard deviation of the velocity per node at rest
+  double rate_sigma_rad_sqrts = 2e-3;  ///< standard deviation of the rate measured at rest, mean over 1 s
+  /// Maximum difference of the mean rate from the bias at rest, in standard deviations of rate and bias. With a known
+  /// bias, a rotation of 0.5 deg/s therefore counts as motion. With an unknown bias, a bias above 1.5 deg/s also counts
+  /// as motion.
   double rate_sigmas = 3.0;
 
   template <class Self, class Visitor>
@@ -26,11 +27,11 @@ struct AttitudeRestParams {
   }
 };
 
-/// A rolling sphere: accuracy of grip, and detection of slip.
+/// Parameters of a rolling sphere: accuracy of grip, and detection of slip.
 struct AttitudeRollingParams {
-  double velocity_sigma_m_s = 0.03;  ///< per node while gripping
+  double velocity_sigma_m_s = 0.03;  ///< standard deviation of the rolling velocity per node while gripping
   double slip_velocity_m_s = 0.12;   ///< misfit at which slip starts; half of it ends slip
-  double slip_quiet_s = 0.2;         ///< and for this long
+  double slip_quiet_s = 0.2;         ///< minimum duration of a small misfit that ends slip
   double slip_timeout_s = 3.0;       ///< maximum duration of a slip
 
   template <class Self, class Visitor>
@@ -48,11 +49,11 @@ struct AttitudeRollingParams {
 /// Motion during a gap of the readings.
 struct AttitudeGapParams {
   double least_s = 0.05;  ///< a longer time between two samples is a gap, whose motion neither sample describes
-  /// Random walks of the true rate and velocity of tumbling bodies. On hills, stairs and cliffs over 0.05 to 0.5 s they
-  /// are 3.0 to 11.4 rad/s and 2.4 to 4.1 m/s per sqrt(s) (docs/figures.md, "Gaps of the IMU").
+  /// Random walks of the true rate and velocity of tumbling bodies. On hills, stairs and cliffs over 0.05 to 0.5 s, the
+  /// true walks are 3.0 to 11.4 rad/s and 2.4 to 4.1 m/s per sqrt(s) (docs/figures.md, "Gaps of the IMU").
   double rate_walk_rad_s_sqrts = 7.0, velocity_walk_m_s_sqrts = 3.3;
-  /// Standard deviations of the tilt, one axis. Above the first, the filter is no longer linear and coarse alignment
-  /// starts. Below the second, the alignment is complete.
+  /// Standard deviations of the tilt, one axis. Above lost_tilt_rad, the linearisation of the filter is not valid and
+  /// coarse alignment starts. Below aligned_tilt_rad, the alignment is complete.
   double lost_tilt_rad = 0.3, aligned_tilt_rad = 0.4;
 
   template <class Self, class Visitor>
@@ -69,19 +70,20 @@ struct AttitudeGapParams {
   }
 };
 
-/// Parameters of TumbleAttitudeParams that few users change, grouped by meaning. Field names equal those in tables and
-/// on command lines.
+/// Parameters of TumbleAttitudeParams that few users change, grouped by meaning. Field names equal the names in tables
+/// and on command lines.
 struct TumbleAttitudeExpertParams {
-  double bias_walk_rad_s_sqrts = 2e-6;         ///< per sqrt(s)
+  double bias_walk_rad_s_sqrts = 2e-6;         ///< random walk of the bias per sqrt(s)
   double acceleration_noise_m_s_sqrts = 0.01;  ///< velocity random walk
   double recovered_tau_s = 0.05;               ///< correlation time of the error of a recovered rate
   double node_s = 0.04;                        ///< time between two corrections
-  /// Readings are averaged to this duration, for which all thresholds here are set; zero: no averaging.
+  /// Averaging time of readings, for which all thresholds of TumbleAttitude are set. An averaging time of zero disables
+  /// averaging.
   double reading_s = 4e-3;
   double gap_max_s = 1.0;
-  /// 2 deg/s about the mean, and the same for the mean about the bias. These bounds are wide enough for cheap sensors
-  /// and only affect the bias estimate. The mean has a time constant of half a second, so rest is detected after twice
-  /// that.
+  /// Parameters of rest detection. The limit is 2 deg/s about the mean, and 2 deg/s for the mean about the bias. The
+  /// limits of 2 deg/s are wide enough for cheap sensors and only affect the bias estimate. The mean has a time
+  /// constant of half a second, so rest is detected after one second.
   RestDetector::Params rest = {.rate_max_rad_s = 3.4907e-2,
                                .rate_spread_rad_s = 3.4907e-2,
                                .force_spread_m_s2 = 0.5,

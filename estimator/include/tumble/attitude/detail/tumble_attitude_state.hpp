@@ -22,10 +22,12 @@ struct TumbleAttitudeState {
   /// Covariance of (tilt error phi_x, phi_y in W with q_true = Exp(phi) q_WI; bias in I; velocity; displacement;
   /// heading error phi_z, which is not corrected).
   Covariance covariance = Covariance::Zero();
-  ImuAverage average;                                              ///< of the readings since the last processed average
-  Eigen::Matrix3d recovered_rad2_s2 = Eigen::Matrix3d::Zero();     ///< mean covariance of their rates, from the caller
+  ImuAverage average;                                              ///< average of the readings since the last processed
+                                                                   ///< average
+  Eigen::Matrix3d recovered_rad2_s2 = Eigen::Matrix3d::Zero();     ///< mean covariance of the averaged rates, from the
+                                                                   ///< caller
   Eigen::Quaterniond q_taken_WI = Eigen::Quaterniond::Identity();  ///< attitude at the last processed average
-  // integrals since the last node
+  // Integrals since the last node.
   Eigen::Matrix3d R_WI_s = Eigen::Matrix3d::Zero();
   Eigen::Vector3d f_W_m_s = Eigen::Vector3d::Zero();
   double rotated_rad2_s = 0.0;
@@ -37,8 +39,8 @@ struct TumbleAttitudeState {
   CoarseAlignment alignment;
   RestDetector::State rest;
   bool at_rest = false;
-  // rolling
-  Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();  ///< of the last sample, without bias
+  // State of a rolling sphere.
+  Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();  ///< rate of the last sample, without bias
   double slip_s = 0.0, fits_s = 0.0;
   bool slipping = false;
   TimeNs last_time_ns = 0;

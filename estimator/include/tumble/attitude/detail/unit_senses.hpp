@@ -9,8 +9,8 @@
 namespace tumble {
 
 /// Detects wrong axes common to all units: an axis of the gyros or of the accelerometers flipped, or two axes swapped.
-/// Uses force differences between units at different positions of one rigid body. Sums over a whole run. imu_merge.md
-/// (I9).
+/// UnitSenses compares force differences between units at different positions of one rigid body, summed over a whole
+/// run. imu_merge.md (I9).
 struct UnitSenses {
   static constexpr std::size_t kSenses = 12;  ///< x, y, z flipped; x y, y z, z x swapped; of gyros, then accelerometers
   static constexpr double kSizeMin_m2_s3 = 0.3;  ///< minimum effect of an alternative, above biases
@@ -18,8 +18,8 @@ struct UnitSenses {
 
   std::array<double, kSenses> gain_m2_s3{}, size_m2_s3{};
 
-  /// Adds one unit over `length_s`: its force minus the mean of all, its position relative to theirs, rate and angular
-  /// acceleration; common axes. O(1), no allocation.
+  /// Adds one unit over `length_s`, in common axes. The arguments are the unit's force minus the mean of all units, its
+  /// position relative to the units' mean position, the rate and the angular acceleration. O(1), no allocation.
   void add(const Eigen::Vector3d& force_m_s2, const Eigen::Vector3d& position_m, const Eigen::Vector3d& rate_rad_s,
            const Eigen::Vector3d& acceleration_rad_s2, double length_s);
 

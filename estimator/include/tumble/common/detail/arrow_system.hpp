@@ -8,8 +8,8 @@
 namespace tumble {
 
 /// Normal equations H d = g of a chain of blocks of `State` unknowns. Each block is coupled to the next one and to a
-/// common border of `Border` unknowns (an arrow matrix). Factorised in place: one block Cholesky sweep, then the border
-/// by its Schur complement. O(N) for N blocks.
+/// common border of `Border` unknowns (an arrow matrix). The factorisation is in place: one block Cholesky sweep, then
+/// the border by its Schur complement. O(N) for N blocks.
 ///
 ///     | D0  E0          B0 |
 ///     | E0' D1  E1      B1 |
@@ -51,8 +51,8 @@ struct ArrowSystem {
     }
   };
 
-  /// Conditional distribution of a block for a known border: its covariance, and the derivative of its mean by the
-  /// border.
+  /// Conditional distribution of a block for a known border: covariance of the block, and derivative of the block's
+  /// mean by the border.
   struct Conditional {
     StateMatrix state;
     CrossMatrix by_border;
@@ -64,15 +64,15 @@ struct ArrowSystem {
     CrossMatrix cross;
   };
 
-  /// Eliminates `block` and adds its Schur complement to `next` (null for the last block) and to the corner. Also
-  /// marginalises the oldest block of a window. Returns false if the block is not positive definite.
+  /// Eliminates `block` and adds its Schur complement to `next` (null for the last block) and to the corner. The
+  /// function also marginalises the oldest block of a window. Returns false if the block is not positive definite.
   static bool eliminate(Block& block, Block* next, Corner& corner);
 
   /// Computes the step of the border after all blocks are eliminated, and its covariance. Returns false if the corner
   /// is not positive definite.
   static bool solve_corner(const Corner& corner, BorderVector& step, BorderMatrix& covariance);
 
-  /// Returns the step of an eliminated block from those of the next block (null for the last) and of the border.
+  /// Returns the step of an eliminated block from the steps of the next block (null for the last) and of the border.
   static StateVector back_substitute(const Block& block, const StateVector* next_step, const BorderVector& border_step);
 
   /// Returns the conditional of an eliminated block from that of the next block (null for the last).
@@ -86,8 +86,8 @@ struct ArrowSystem {
   static void subtract_square(const CrossMatrix& border, BorderMatrix& corner);
 };
 
-// Replaces `a` by L^-1, where a = L L' and L is lower. Plain loops over columns, because Eigen's general triangular
-// solvers are several times slower at these sizes. One division per column.
+// Replaces `a` by L^-1, where a = L L' and L is lower. The function uses plain loops over columns, because Eigen's
+// general triangular solvers are several times slower at the sizes of the blocks. One division per column.
 template <int State, int Border>
 bool ArrowSystem<State, Border>::invert_factor(StateMatrix& a) {
   StateMatrix L = a;

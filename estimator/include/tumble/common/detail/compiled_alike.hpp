@@ -4,10 +4,11 @@
 #include <Eigen/Core>
 #include <cstddef>
 
-/// A program must lay out Eigen's matrices and the standard library's containers as the library was compiled to do,
-/// else both read each other's memory wrongly. CMake's targets see to this. A program that changes it after all, by
-/// EIGEN_MAX_STATIC_ALIGN_BYTES, EIGEN_DONT_VECTORIZE, _GLIBCXX_DEBUG or the like, does not link: the linker misses
-/// CompiledAlike<...>::linked, whose arguments are what the program was compiled with.
+/// A program must lay out Eigen's matrices and the standard library's containers as the compiled library does. With
+/// different layouts, program and library read each other's memory wrongly. CMake's targets ensure equal layouts. A
+/// program that changes the layout, for example by EIGEN_MAX_STATIC_ALIGN_BYTES, EIGEN_DONT_VECTORIZE or
+/// _GLIBCXX_DEBUG, does not link. The linker then reports CompiledAlike<...>::linked as missing, whose arguments are
+/// the settings of the program.
 namespace tumble::detail {
 
 #ifdef _GLIBCXX_DEBUG
@@ -31,7 +32,7 @@ struct CompiledAlike {
 using CompiledHere = CompiledAlike<EIGEN_MAX_STATIC_ALIGN_BYTES, EIGEN_MALLOC_ALREADY_ALIGNED != 0, kRowMajor,
                                    sizeof(Eigen::Index), kCheckedContainers>;
 
-/// Once per source of the program, so that each of them is checked.
+/// Each source file of the program has its own reference, so that the linker checks each source file.
 [[gnu::used]] static const char* const kCompiledAlike = &CompiledHere::linked;
 
 }  // namespace tumble::detail

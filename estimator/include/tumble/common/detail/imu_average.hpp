@@ -11,7 +11,7 @@ namespace tumble {
 /// Averages IMU readings over windows of one length. The bandwidth and the thresholds of a filter then do not depend on
 /// the IMU's rate. A single reading as long as the window is returned bit for bit.
 ///
-/// Not modelled: coning and sculling within the window.
+/// ImuAverage does not model coning and sculling within the window.
 struct ImuAverage {
   ImuSample mean;                ///< time stamp of the last reading, clip flags of all readings
   double length_s = 0.0;         ///< total duration of the readings

@@ -17,18 +17,18 @@ struct ImuNeighbours {
 };
 
 /// Interpolates the readings of one IMU at the stamps of another. Stamps are the ends of sample windows. The linear
-/// interpolation of two readings approximates the mean over a window that ends there. Different window lengths and
-/// rotation within a window are not modelled.
+/// interpolation of two readings approximates the mean over a window that ends at the stamp. ImuInterpolation does not
+/// model different window lengths, or rotation within a window.
 class ImuInterpolation {
  public:
-  /// Needs at least two samples with increasing stamps, which must outlive this object.
+  /// Constructs from at least two samples with increasing stamps, which must outlive the ImuInterpolation.
   explicit ImuInterpolation(std::span<const ImuSample> samples) : samples_(samples) {}
 
   /// Returns the neighbours of `time_ns`, which must not decrease from call to call. Amortised O(1).
   ImuNeighbours around(TimeNs time_ns);
 
-  /// Returns the interpolated reading with the flags of both neighbours. At the time of a sample, returns it bit for
-  /// bit.
+  /// Returns the interpolated reading with the flags of both neighbours. At the time of a sample, returns the sample
+  /// bit for bit.
   ImuSample at(TimeNs time_ns, const ImuNeighbours& neighbours) const;
 
  private:

@@ -11,28 +11,30 @@
 
 namespace tumble {
 
-/// Rejects single wild readings of an IMU, as bus faults make them. A rejected reading counts as missing.
+/// Rejects single wild readings of an IMU, as bus faults cause them. A rejected reading counts as missing.
 ///
-/// A reading is an outlier if it leaves both of its neighbours in the same direction while they agree with each other,
-/// and while the other triad shows no cause. A gyro needs a change of the force, an accelerometer a change of the rate.
-/// A stamp that lies ahead of the next stamp is an outlier too. Equations: outliers.md (O1) to (O6).
+/// A reading is an outlier if it leaves both of its neighbours in the same direction while the neighbours agree with
+/// each other, and if the readings of the other triad show no cause. The cause of a jump of the gyro is a change of the
+/// force, and the cause of a jump of the accelerometer is a change of the rate. A stamp that lies ahead of the next
+/// stamp is also an outlier. Equations: outliers.md (O1) to (O6).
 ///
-/// The filter is causal. It holds a reading that jumps further than the other triad explains until the next reading
-/// confirms or refutes it. All other readings pass at once, unchanged. Readings beyond kRateMax_rad_s or kForceMax_m_s2
-/// never pass. Cost: O(1) per reading, no allocation. Not modelled: two wild readings in a row, a wild first reading,
-/// and a wild reading during an impact that is hard enough to cause it.
+/// The filter is causal. OutlierFilter delays a reading that jumps further than the other triad explains until the next
+/// reading confirms or refutes it. All other readings pass at once, unchanged. Readings beyond kRateMax_rad_s or
+/// kForceMax_m_s2 never pass. Cost: O(1) per reading, no allocation. OutlierFilter does not model two wild readings in
+/// a row, a wild first reading, or a wild reading during an impact that is hard enough to explain it.
 class OutlierFilter {
  public:
-  /// No gyro measures faster rates (57 000 deg/s), and no accelerometer of a robot larger forces (10 000 g).
+  /// Limits of plausible readings. No gyro measures faster rates (57 000 deg/s), and no accelerometer of a robot
+  /// measures larger forces (10 000 g).
   static constexpr double kRateMax_rad_s = 1000.0, kForceMax_m_s2 = 1e5;
   /// Devices read up to this multiple of the range in their data sheet.
   static constexpr double kRangesMax = 2.0;
 
-  /// Facts of the device, from its data sheet; 0: not stated.
+  /// Properties of the device, from its data sheet; 0: not stated.
   struct Device {
     double gyro_range_rad_s = 0.0;
     double accel_range_m_s2 = 0.0;
-    double period_s = 0.0;   ///< from sample to sample: stamps that step by much more are held
+    double period_s = 0.0;   ///< nominal time between samples: a sample whose stamp steps by much more is delayed
     double gap_max_s = 1.0;  ///< a step longer than this is not held: the caller handles gaps
   };
 
@@ -45,18 +47,19 @@ class OutlierFilter {
 
   explicit OutlierFilter(const Device& device) : device_(device) {}
 
-  /// Judges the held sample by `next`, which must be later than those that passed. Returns the held sample if `next`
-  /// confirms it, and nothing if it is rejected or none was held. Afterwards none is held.
+  /// Judges the delayed sample by `next`, which must be later than the samples that passed. Returns the delayed sample
+  /// if `next` confirms it. Returns nothing if the delayed sample is rejected or no sample was delayed. After the call,
+  /// no sample is delayed.
   std::optional<ImuSample> settle(const ImuSample& next, State& state) const;
 
-  /// Returns true if a finite sample must not be used now: it is held, or rejected because no sensor reads so much.
-  /// Call settle() first.
+  /// Returns true if a finite sample must not be used now, because it is delayed, or rejected as larger than any sensor
+  /// reads. Call settle() before keeps_back().
   bool keeps_back(const ImuSample& sample, State& state) const;
 
-  /// Records that a sample was used: one that settle() returned, or one that keeps_back() did not keep.
+  /// Records that a sample was used: a sample that settle() returned, or a sample that keeps_back() did not keep.
   static void pass(const ImuSample& sample, State& state);
 
-  /// Rejects the held sample, if any: no reading follows that could confirm it.
+  /// Rejects the delayed sample, if any, because no further reading can confirm it.
   static void finish(State& state);
 
  private:

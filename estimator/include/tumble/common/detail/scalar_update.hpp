@@ -6,13 +6,15 @@
 
 namespace tumble {
 
-// Measurement update of a Kalman filter, shared by the whole library. One function processes a scalar; several scalars
-// with independent noise are processed in sequence, which needs no inverse. Another processes a few numbers together,
-// as published filters do. All return the correction of the state of N numbers and update its covariance P (N x N, kept
-// symmetric to rounding). O(N^2) per number, no allocation for fixed N. P must be positive semidefinite and the noise
-// variance positive (R. E. Kalman, J. Basic Eng. 82, 1960). Joseph's form is not used because P is well conditioned.
+// Measurement update of a Kalman filter, shared by the whole library. One function processes a scalar. Several scalars
+// with independent noise are processed in sequence, which needs no inverse. Another function processes a few numbers
+// together, as published filters do. All functions return the correction of the state of N numbers and update its
+// covariance P (N x N, kept symmetric to rounding). O(N^2) per number, no allocation for fixed N. P must be positive
+// semidefinite and the noise variance positive (R. E. Kalman, J. Basic Eng. 82, 1960). Joseph's form is not used
+// because P is well conditioned.
 
-/// Updates with a scalar measurement. `row` (N) is its derivative, `innovation` the measurement minus its prediction.
+/// Updates with a scalar measurement. `row` (N) is the measurement's derivative, `innovation` the measurement minus its
+/// prediction.
 template <typename Row, int N>
 Eigen::Matrix<double, N, 1> scalar_update(const Eigen::MatrixBase<Row>& row, double innovation, double variance,
                                           Eigen::Matrix<double, N, N>& P) {

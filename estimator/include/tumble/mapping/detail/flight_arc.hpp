@@ -20,16 +20,16 @@ struct FlyingBody {
 Eigen::Vector3d torque_free_acceleration(const FlyingBody& body, const Eigen::Vector3d& w_WI_I_rad_s);
 
 /// Returns the reading of an accelerometer off the centre of mass while only gravity acts on the body. The reading is
-/// -(a x r + w x (w x r)), with r from the IMU to the centre of mass and the angular acceleration a.
+/// -(a x r + w x (w x r)), with r from the IMU to the centre of mass, the rate w and the angular acceleration a.
 Eigen::Vector3d flight_force(const FlyingBody& body, const Eigen::Vector3d& w_WI_I_rad_s,
                              const Eigen::Vector3d& angular_acceleration_I_rad_s2);
 
 /// Predicts the motion over a segment of flight without readings, as a ballistic arc. Appends samples over (from_ns,
-/// to_ns], each at most step_ns long. Integrated by SweepTrajectory, they move the centre of mass along a parabola and
-/// rotate the body free of torque, starting from the given rate. On error `samples` is unchanged: `time_order` (empty
-/// time interval or no step), `non_finite`, `degenerate` (invalid inertia). Euler's equation is integrated by a
-/// Runge-Kutta method of fourth order. The rotation over a step is exact to third order of the step. Not modelled:
-/// drag.
+/// to_ns], each at most step_ns long. When SweepTrajectory integrates the samples, the centre of mass moves along a
+/// parabola and the body rotates free of torque, starting from the initial rate. On error `samples` is unchanged:
+/// `time_order` (empty time interval or no step), `non_finite`, `degenerate` (invalid inertia). Euler's equation is
+/// integrated by a Runge-Kutta method of fourth order. The rotation over a step is exact to third order of the step.
+/// Drag is not modelled.
 Status flight_arc(const FlyingBody& body, const Eigen::Vector3d& w_WI_I_rad_s, TimeNs from_ns, TimeNs to_ns,
                   TimeNs step_ns, std::vector<MotionSample>& samples);
 

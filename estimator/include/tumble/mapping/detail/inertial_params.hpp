@@ -17,13 +17,14 @@ struct InertialNoiseParams {
   double sigma_m = 0.003;
   double sigma_rad = 0.002;
   double sigma_m_s = 0.01;
-  /// As a fraction of the angle turned: errors of scale and misalignment, and rate changes within a sample.
+  /// Rotation error as a fraction of the angle turned: errors of scale and misalignment, and rate changes within a
+  /// sample.
   double rotation_share = 0.001;
-  /// As a fraction of the specific force: the velocity's uncertainty is this times the integral of the force. It
-  /// matters at impacts.
+  /// Velocity error as a fraction of the integral of the specific force. The velocity error matters at impacts.
   double force_share = 0.03;
   /// Velocity and rate are random walks over a gap of the IMU, mapping.md (R43), (R44). For tumbling rigs and gaps of
-  /// 0.05 to 0.5 s, the true values are 2.4 to 4.1. For a rate that is known at both ends they are 3 to 11.
+  /// 0.05 to 0.5 s, the true velocity walks are 2.4 to 4.1. For a rate that is known at both ends, the rate walks are 3
+  /// to 11.
   double gap_velocity_walk_m_s_sqrt_s = 3.0;
   double gap_rate_walk_rad_s_sqrt_s = 9.0;
   double rate_sigma_max_rad_s = 5.0;  ///< upper bound of the standard deviation in RateState
@@ -50,17 +51,20 @@ struct InertialNoiseParams {
   }
 };
 
-/// Saturated IMU. Accelerometer readings from accel_m_s2 on, and readings flagged by the device, are saturated. The
-/// true force may then be larger by force_sigma_m_s2 (standard deviation) for as long as the saturation lasts.
+/// Parameters of a saturated IMU. Accelerometer readings from accel_m_s2 on, and readings flagged by the device, are
+/// saturated. The true force may then be larger by force_sigma_m_s2 (standard deviation) for as long as the saturation
+/// lasts.
 ///
 /// With estimate_deficit, the registration estimates the saturation deficit of the rate on clipped axes, at
 /// SweepTrajectory::kKnots knots per sweep. The deficit acts on clipped samples only, in proportion to the reported
 /// uncertainty of the rate. The prior of the deficit is the reported uncertainty, at least deficit_sigma_min_rad_s,
-/// correlated over deficit_time_s. If saturation lasts across the boundary of two sweeps, the deficit continues there.
+/// correlated over deficit_time_s. If saturation lasts across the boundary of two sweeps, the deficit is continuous at
+/// the boundary.
 struct RailedImuParams {
   double accel_m_s2 = 1e5;
   double force_sigma_m_s2 = 50.0;
-  double rate_sigma_rad_s = 3.0;  ///< assumed for a rate on a clipped axis that the rate method did not recover
+  double rate_sigma_rad_s = 3.0;  ///< assumed standard deviation of a rate on a clipped axis that the rate method did
+                                  ///< not recover
   bool estimate_deficit = false;
   double deficit_sigma_min_rad_s = 1.0;
   double deficit_time_s = 0.3;
@@ -91,8 +95,9 @@ struct RailedImuParams {
   }
 };
 
-/// Use of the ballistic arc. Where the specific force at the centre of mass is below force_m_s2, the force predicted by
-/// free flight replaces the accelerometer's reading. A gap of the IMU that begins in flight is bridged by the arc.
+/// Parameters of the ballistic arc. Where the specific force at the centre of mass is below force_m_s2, the force
+/// predicted by free flight replaces the accelerometer's reading. The arc bridges a gap of the IMU that begins in
+/// flight.
 struct FlightParams {
   std::optional<FlyingBody> body;  ///< empty: always use the accelerometer
   double force_m_s2 = 4.0;

@@ -14,23 +14,23 @@ namespace tumble {
 ///    rates underestimated. An IMU or a lidar that does not meet its data sheet causes more.
 ///
 /// Before the first sweep with surfaces there is no map, so tracking cannot fail. The number of well constrained sweeps
-/// is not used because the standard deviation accounts for it. Not detected: a map of another scale (see SweepScale),
-/// and errors of clocks or mounting that the calibration explains.
+/// is not used because the standard deviation accounts for it. Localisation does not detect a map of another scale (see
+/// SweepScale), or errors of clocks or mounting that the calibration explains.
 class Localisation {
  public:
   /// `matched_m`: MatchingParams::distance_m of the mapper.
   explicit Localisation(double matched_m) : matched_m_(matched_m) {}
 
-  /// Processes a sweep that has a pose, in order. O(1).
+  /// Processes a sweep that has a pose. Sweeps must be in order. O(1).
   void add(const SweepReport& sweep);
 
   double largest_sigma_m() const { return largest_sigma_m_; }
   /// Returns the second largest SweepReport::innovation.
   double second_innovation() const { return second_innovation_; }
-  /// Returns `out_of_range` with the finding and the violated bound, otherwise `ok`.
+  /// Returns `out_of_range` with the finding and the violated limit. Returns `ok` without a finding.
   Status verdict() const;
 
-  /// Visits every member of the state. Defined in the library's sources: state_visitor.hpp.
+  /// Passes every member of the state to the visitor. The definition is in the library's sources (state_visitor.hpp).
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
 

@@ -11,8 +11,8 @@
 
 namespace tumble::mapping {
 
-/// Numbers the scan lines of a map. Sweeps at the same attitude scan the same lines and share numbers; after a rotation
-/// the lines have new numbers.
+/// Numbers the scan lines of a map. Sweeps at a constant attitude scan the same lines of the world and share line
+/// numbers. After a rotation the lines have new numbers.
 class ScanLines {
  public:
   /// Returns the number of ring 0 of a sweep with this spin axis, or VoxelMap::kNoLine if rings are not distinguished.

@@ -14,15 +14,15 @@ struct MatchingParams {
   double distance_m = 1.0;          ///< farther map points are not matched
   std::size_t least = 100;          ///< minimum number of matched points; fewer reject the sweep
   std::size_t agreeing_least = 30;  ///< minimum number if the result agrees with the prior
-  /// Maximum iterations of a registration. With all points there are at most eight; then it continues with a thousand
-  /// points until convergence.
+  /// Maximum iterations of a registration. At most eight iterations use all points. After eight iterations, the
+  /// registration continues with a thousand points until convergence.
   int iterations_max = 30;
   double correction_max_m = 15.0;   ///< a larger correction of the prior is rejected
   double correction_max_rad = 1.1;  ///< a larger correction of the prior is rejected
   /// Growth of a point's uncertainty over the sweep, which reduces its weight (the published time weighting).
   double skew_sigma_m_s = 0.25;
   /// A sweep is `degenerate` if its surfaces alone leave a larger standard deviation in some direction. Attitude counts
-  /// at the rms lever.
+  /// as displacement at the root-mean-square lever arm.
   double degenerate_sigma_m = 0.15;
 
   template <class Self, class Visitor>
@@ -45,11 +45,13 @@ struct MatchingParams {
   }
 };
 
-/// Stages of a registration: with all points and few iterations; with a subsample until convergence; coarse.
+/// Stages of a registration: few iterations with all points, further iterations with a subsample until convergence, and
+/// a coarse stage for starts far from the prior.
 struct RegistrationStagesParams {
-  int full_iterations = 8;              ///< with all points; without convergence, a subsample continues at lower cost
+  int full_iterations = 8;              ///< iterations with all points; without convergence, a subsample continues at
+                                        ///< lower cost
   std::size_t subsample_points = 1000;  ///< sufficient to decide whether a start converges
-  int coarse_iterations = 15;           ///< for a start that may be far off
+  int coarse_iterations = 15;           ///< iterations for a start that may be far off
   std::size_t coarse_points = 300;      ///< points of a coarse start
   std::size_t coarse_matches_min = 50;  ///< minimum number of matches of a coarse start
   double coarse_kernel_min_m = 0.5;     ///< minimum width of its robust kernel
@@ -81,15 +83,16 @@ struct RegistrationStagesParams {
 /// Handling of sweeps without a registration and of tracking failure.
 struct TrackingParams {
   /// A sweep with too few matches still extends the map, as `degenerate`, while the inertial prior has smaller standard
-  /// deviations than these. Reason: a lidar at rest scans only rings, which give no planes until it rotates.
-  /// LocalMapParams::sigma_max_m excludes points that are too uncertain at their range due to the attitude.
+  /// deviations than extend_sigma_max_m and its counterpart for attitude. A lidar at rest scans only rings, which give
+  /// no planes until the lidar rotates. LocalMapParams::sigma_max_m excludes points that are too uncertain at their
+  /// range due to the attitude.
   double extend_sigma_max_m = 0.1;
   double extend_sigma_max_rad = 0.1;
-  /// Maximum number of consecutive sweeps with points but without registration. Then the mapper continues `degenerate`
-  /// by inertial prediction.
+  /// Maximum number of consecutive sweeps with points but without registration. After this number, the mapper continues
+  /// by inertial prediction and reports `degenerate`.
   int lost_sweeps_max = 30;
   /// Minimum fraction of a sweep's matches within three standard deviations (0.997 for normal errors) that confirms a
-  /// relocalisation. A smaller fraction contradicts it.
+  /// relocalisation. A smaller fraction contradicts the relocalisation.
   double confirm_inlier_ratio = 0.9;
 
   template <class Self, class Visitor>
@@ -113,8 +116,8 @@ struct RelocalizationParams {
   int deficit_tries_max = 5;       ///< number of larger saturation deficits tried per sweep, on all axes together
   double deficit_try_rad_s = 3.0;  ///< the first of them; two, three and five times this value follow
   int starts_per_sweep = 3;        ///< starts after tracking failure, including the prior
-  double shift_m = 1.0;            ///< initial distance of these starts from the prior
-  double rotation_rad = 0.3;       ///< initial rotation of these starts from the prior
+  double shift_m = 1.0;            ///< initial distance of the further starts from the prior
+  double rotation_rad = 0.3;       ///< initial rotation of the further starts from the prior
   int rounds = 3;                  ///< number of rounds; each extends the distances by the initial value
 
   template <class Self, class Visitor>

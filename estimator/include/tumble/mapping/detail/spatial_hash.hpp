@@ -33,7 +33,7 @@ class SpatialHash {
   /// Inserts a key with a value unless it exists. Returns the stored value. Amortised O(1).
   std::uint32_t insert(std::uint64_t key, std::uint32_t value);
 
-  /// Inserts a key without a value. Returns whether it was new. Amortised O(1).
+  /// Inserts a key without a value. Returns whether the key was new. Amortised O(1).
   bool add(std::uint64_t key);
 
   /// Removes all keys and keeps the memory.
@@ -50,7 +50,7 @@ class SpatialHash {
   static constexpr std::uint64_t kFree = ~std::uint64_t{0};
 
   std::size_t slot_of(std::uint64_t key) const {
-    // The eight cubes of a 2 x 2 x 2 block are adjacent and thus in one cache line. Reason: successive queries are
+    // The eight cubes of a 2 x 2 x 2 block are adjacent and thus in one cache line, because successive queries are
     // usually close together. Fibonacci hashing distributes the blocks.
     constexpr std::uint64_t kInside = 1 | (std::uint64_t{1} << 21) | (std::uint64_t{1} << 42);
     const std::uint64_t block = key & ~kInside;

@@ -15,7 +15,7 @@ Status check_offsets(TimeNs span_ns, std::span<const LidarPoint> points);
 
 /// Checks whether a sweep is usable. Returns `empty` (no points), `non_finite` (no finite point), `too_few` (no point
 /// in range) or `degenerate`. `degenerate` means that all points have one time stamp although the sweep has a duration.
-/// The driver then lost its time stamps, and deskewing would fail unnoticed.
+/// In this case the driver lost its time stamps, and deskewing would fail unnoticed.
 Status check_selection(TimeNs span_ns, std::span<const LidarPoint> points, const PointCounts& counts);
 
 }  // namespace tumble::mapping

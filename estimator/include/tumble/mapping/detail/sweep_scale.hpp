@@ -16,7 +16,7 @@
 /// Comparison of the lidar's range scale with the IMU.
 namespace tumble {
 
-/// Ratio of displacements between sweeps to those that the IMU measured.
+/// Ratio of displacements between sweeps to the displacements that the IMU measured.
 struct SweepScale {
   double scale = 1.0;
   double sigma = std::numeric_limits<double>::infinity();
@@ -24,22 +24,24 @@ struct SweepScale {
 
   /// Returns whether the scale differs from 1 by more than 2 % and by more than five standard deviations.
   bool is_off() const;
-  /// Returns `out_of_range` with the scale and the violated bound if is_off(), otherwise `ok`.
+  /// Returns `out_of_range` with the scale and the violated limit if is_off(). Returns `ok` for a correct scale.
   Status verdict() const;
 };
 
 /// Estimates the lidar's range scale over the sweeps of a run. The function compares the mean velocities of two
 /// consecutive spans of 0.4 s. The difference of the two velocities equals the integrated acceleration, from gravity in
-/// flight and impacts, whatever the velocity. A robust regression (Huber, 1964) of the lidar's differences on the IMU's
-/// has slope 1. Ranges 10 % too long give 1.1, reduced by the mapper's confidence in the IMU. Attitudes are those of
-/// the run. Intervals with a saturated accelerometer or with unconstrained sweeps are skipped. The standard deviation
-/// is heteroscedasticity-consistent (White, 1980). `gravity_m_s2`: magnitude of gravity. Not observable: without
-/// acceleration. An accelerometer's scale error is detected by gravity at rest instead. O(N).
+/// flight and from impacts, for any velocity. A robust regression (Huber, 1964) of the lidar's differences on the IMU's
+/// differences has slope 1. Ranges 10 % too long give a slope of 1.1, reduced by the mapper's confidence in the IMU.
+/// The attitudes come from the run's estimate. Intervals with a saturated accelerometer or with unconstrained sweeps
+/// are skipped. The standard deviation is heteroscedasticity-consistent (White, 1980). `gravity_m_s2` is the magnitude
+/// of gravity. Without acceleration, the scale is not observable. Gravity at rest detects an accelerometer's scale
+/// error instead. O(N).
 SweepScale find_sweep_scale(std::span<const ImuSample> samples, std::span<const SweepReport> sweeps,
                             double gravity_m_s2);
 
-/// Estimates the same scale while samples and sweeps arrive, from the newest 1000 changes of velocity. The estimate
-/// uses the first pose of each sweep and is therefore less accurate than one from the final poses of a whole run.
+/// Estimates the lidar's range scale while samples and sweeps arrive, from the newest 1000 changes of velocity. The
+/// estimate uses the first pose of each sweep and is therefore less accurate than an estimate from the final poses of a
+/// whole run.
 class SweepScaleWatch {
  public:
   /// Change of velocity from one span to the next.
@@ -58,7 +60,7 @@ class SweepScaleWatch {
 
   const SweepScale& scale() const { return scale_; }
 
-  /// Visits every member of the state. Defined in the library's sources: state_visitor.hpp.
+  /// Passes every member of the state to the visitor. The definition is in the library's sources (state_visitor.hpp).
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
 

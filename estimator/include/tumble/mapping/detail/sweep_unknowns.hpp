@@ -9,8 +9,8 @@
 
 namespace tumble {
 
-/// Unknowns of a sweep, in the order of vectors and matrices. First position, attitude (left perturbation in W) and
-/// velocity at the start of the trajectory; then saturation deficit of clipped axes; then calibration.
+/// Unknowns of a sweep, in the order of vectors and matrices. The order is position, attitude (left perturbation in W)
+/// and velocity at the start of the trajectory, saturation deficit of clipped axes, calibration.
 struct SweepUnknowns {
   static constexpr int kMotion = 9;         ///< position, attitude, velocity
   static constexpr int kDeficit = kMotion;  ///< first unknown of the saturation deficit, knot after knot
@@ -22,13 +22,13 @@ struct SweepUnknowns {
 
   /// Current values of the unknowns.
   struct Estimate {
-    MotionState state;  ///< its covariance is not used
+    MotionState state;  ///< motion state, whose covariance is not used
     SweepCalibration calibration;
     Deficit deficit_rad_s = Deficit::Zero();
 
     /// Adds small errors in the order of the unknowns.
     void add(const Vector& error);
-    /// Returns the errors that transform `other` to this.
+    /// Returns the errors that transform `other` to this estimate.
     Vector minus(const Estimate& other) const;
   };
 
@@ -41,7 +41,7 @@ struct SweepUnknowns {
     std::optional<MotionState> start;               ///< initial value of the motion; empty: the mean
 
     Prior() = default;
-    /// Prior of the motion state with its covariance; all other unknowns are fixed.
+    /// Constructs the prior of the motion state with its covariance; all other unknowns are fixed.
     explicit Prior(const MotionState& state) : mean{state, {}, Deficit::Zero()} {
       covariance.topLeftCorner<kMotion, kMotion>() = state.covariance;
     }

@@ -14,9 +14,9 @@
 
 namespace tumble {
 
-/// Processes IMU samples and lidar sweeps once, in time order. RegimeStream estimates the rates; LidarInertialOdometry
-/// processes the samples and the sweeps that they cover. TumblingOdometry uses it live, and SecondPass again with the
-/// estimated calibration. Copies contain the complete state.
+/// Processes IMU samples and lidar sweeps one time, in time order. RegimeStream estimates the rates;
+/// LidarInertialOdometry processes the samples and the sweeps that the rates cover. TumblingOdometry runs an
+/// OdometryPass live, and SecondPass runs another with the estimated calibration. Copies contain the complete state.
 class OdometryPass {
  public:
   /// First-in, first-out queue of samples that reuses its memory.
@@ -33,7 +33,7 @@ class OdometryPass {
   /// Throws InvalidParams if a parameter is out of bounds.
   OdometryPass(const RegimeStream::Params& rate, const LidarInertialOdometry::Params& mapping);
 
-  /// Same as RegimeStream::push; also passes the rate that becomes available to the mapper.
+  /// Processes a sample as RegimeStream::push does, and passes the rate that becomes available to the mapper.
   Status add_imu(const ImuSample& sample);
   /// Returns whether rates are available up to this time of the lidar's clock.
   bool covers(TimeNs end_ns) const;
@@ -44,7 +44,7 @@ class OdometryPass {
   /// Registers a sweep. `reading` is the odometer reading within the sweep, if any.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points,
                    const std::optional<OdometerReading>& reading, LidarInertialOdometry::SweepReport& report);
-  /// Same as TumblingOdometry::newest.
+  /// Predicts the newest pose as TumblingOdometry::newest does.
   Status newest(PoseState& pose) const;
 
   /// Converts a time of the lidar's clock to the IMU's clock.
@@ -54,23 +54,23 @@ class OdometryPass {
   /// Restarts the rates with other parameters; the mapper continues.
   void begin_rates(const RegimeStream::Params& rate);
   /// Replaces the map and all dependent state by that of another pass, including its sample buffers. The rates of this
-  /// pass continue after the other pass's last sample. `other` must not be used afterwards.
+  /// OdometryPass continue after the last sample of `other`. `other` must not be used afterwards.
   void take_map(OdometryPass&& other);
 
   const RegimeStream& rates() const { return rates_; }
   const RegimeStream::State& rate_state() const { return rate_state_; }
   const LidarInertialOdometry& mapper() const { return mapper_; }
-  /// `out_of_range` where gravity contradicts the force at rest.
+  /// Returns `out_of_range` if the magnitude of the force at rest contradicts gravity.
   Status force_at_rest() const { return gravity_.size_verdict(gravity_state_); }
   const SweepScale& sweep_scale() const { return scale_.scale(); }
   const Localisation& localisation() const { return localisation_; }
   const std::optional<RateState>& smoothed_rate() const { return smoothed_; }
   std::size_t rejected_samples() const { return rejected_samples_; }
 
-  /// Visits every member of the state. Defined in the library's sources: state_visitor.hpp.
+  /// Passes every member of the state to the visitor. The definition is in the library's sources (state_visitor.hpp).
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
-  /// Checks the invariants between the members. Returns the first violation.
+  /// Checks the invariants between the members. Returns the first violated invariant.
   Status check_state() const;
 
  private:

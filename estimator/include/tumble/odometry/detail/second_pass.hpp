@@ -17,31 +17,32 @@ namespace tumble {
 /// Re-processes the first seconds of motion with the calibration estimated meanwhile, while the first pass continues.
 ///
 /// The first pass maps the start of a tumble with a lever arm, a mounting and a time offset that are still uncertain.
-/// This class therefore buffers samples and sweeps from the end of the initial rest. After `after_s` of motion it
-/// processes the buffer with the current calibration and with rates that are smoothed with a lag of `lag_s`. The second
-/// pass processes `sweeps` buffered sweeps per new sweep. When it has caught up, its map and pose replace those of the
-/// first pass, and the buffer is freed. The result is discarded if the second pass has lost tracking or has rejected
-/// clearly more sweeps.
+/// SecondPass therefore buffers samples and sweeps from the end of the initial rest. After `after_s` of motion,
+/// SecondPass processes the buffer with the current calibration and with rates that are smoothed with a lag of `lag_s`.
+/// The second pass processes `sweeps` buffered sweeps per new sweep. When the second pass has caught up, its map and
+/// pose replace those of the first pass, and the buffer is freed. The result is discarded if the second pass has lost
+/// tracking or has rejected clearly more sweeps.
 ///
-/// If the first pass has failed for `lost_s`, the whole buffer is processed immediately, once. The regular second pass
-/// still follows after `after_s`. Earlier poses are not changed: the pose jumps by the error of the first pass.
+/// If the first pass has failed for `lost_s`, the whole buffer is processed immediately, one time. The regular second
+/// pass still follows after `after_s`. Earlier poses are not changed: the pose jumps by the error of the first pass.
 ///
-/// Memory: samples and sweeps of `rest_s` and of at most `abandon_after_s` of motion, and a second map for the same
-/// time. Not modelled: a third pass with the calibration of the second; a jolt that ends the rest long before the
-/// tumble.
+/// Memory is needed for samples and sweeps of `rest_s` and of at most `abandon_after_s` of motion, and for a second map
+/// of this duration. SecondPass does not model a third pass with the calibration of the second, or a jolt that ends the
+/// rest long before the tumble.
 class SecondPass {
  public:
   struct Params {
     double after_s = 3.0;           ///< motion before the second pass starts; 0: no second pass
     double lost_s = 0.4;            ///< duration of tracking failure that starts it immediately; 0: never
     double lag_s = 0.5;             ///< lag of its rates
-    std::size_t sweeps = 3;         ///< buffered sweeps per new sweep; at least two, otherwise it never catches up
+    std::size_t sweeps = 3;         ///< buffered sweeps per new sweep; with less than two, the second pass never
+                                    ///< catches up
     double abandon_after_s = 10.0;  ///< motion after which the second pass is abandoned if it has not caught up
-    /// Inflation factor of the calibration's variance, because the same readings are used twice.
+    /// Factor on the calibration's variance, because the readings are used twice.
     double inflation = 4.0;
     double rest_s = 1.0;  ///< duration of the initial rest that is buffered
 
-    /// Visits every parameter: its value, name, unit, bounds and meaning (common/parameters.hpp).
+    /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.after_s, {"after_s", "s", 0.0, 100.0,
@@ -78,10 +79,10 @@ class SecondPass {
   /// Returns whether the first pass received the map of the second.
   bool taken() const { return taken_; }
 
-  /// Visits every member of the state. Defined in the library's sources: state_visitor.hpp.
+  /// Passes every member of the state to the visitor. The definition is in the library's sources (state_visitor.hpp).
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
-  /// Checks the invariants between the members and the first pass. Returns the first violation.
+  /// Checks the invariants between the members and the first pass. Returns the first violated invariant.
   Status check_state(const OdometryPass& first) const;
 
  private:
@@ -89,12 +90,13 @@ class SecondPass {
     TimeNs start_ns = 0, end_ns = 0;
     std::vector<LidarPoint> points;
     std::optional<OdometerReading> reading;
-    SweepVerdict verdict = SweepVerdict::first;  ///< of the first pass
+    SweepVerdict verdict = SweepVerdict::first;  ///< verdict of the first pass
     template <class Self, class Visitor>
     static void members(Self& s, Visitor& visit);
   };
 
-  /// Begin of the motion, or of the sweeps where the lidar starts after that. Needs the motion to have begun.
+  /// Returns the start of the motion, or of the sweeps if the lidar starts after the motion. The motion must have
+  /// started.
   TimeNs counts_from_ns() const;
   bool is_due() const;
   bool first_is_lost() const;
@@ -109,7 +111,7 @@ class SecondPass {
   RegimeStream::Params rate_;
   LidarInertialOdometry::Params mapping_;
   bool wanted_, taken_ = false;
-  RestDetector rests_;  ///< with the mapper's parameters
+  RestDetector rests_;  ///< rest detection with the mapper's parameters
   RestDetector::State rest_;
   std::optional<TimeNs> moves_ns_;  ///< end of the initial rest
   OdometryPass::Queue samples_;

@@ -15,11 +15,11 @@
 namespace tumble {
 
 /// Detects the saturation levels of several IMUs on one body from their readings, causally. Readings that a device
-/// clips without reporting it are flagged before ImuMerge processes them. Each unit has a RailWatch with the rule of
-/// CertainRails. ClippingFinder applies the same rule to whole recordings.
+/// clips without reporting saturation are flagged before ImuMerge processes them. Each unit has a RailWatch with the
+/// rule of CertainRails. ClippingFinder applies this rule to whole recordings.
 ///
-/// A sample is judged by the samples before it. Not modelled: the first two to ten samples at a saturation level, which
-/// are accepted as they are. ImuMerge also receives no saturation levels along the axes of a unit's sensing elements.
+/// A sample is judged by the samples before it. The first two to ten samples at a saturation level are therefore
+/// accepted unchanged. ImuMerge receives no saturation levels along the axes of a unit's sensing elements.
 class UnitRails {
  public:
   /// State of one unit.
@@ -30,7 +30,8 @@ class UnitRails {
   using State = std::array<Unit, ImuMerge::kImus>;
   using Samples = std::array<ImuSample, ImuMerge::kImus>;
 
-  /// Units with these data sheets, at most ImuMerge::kImus. Throws InvalidParams if a stated range is out of bounds.
+  /// Constructs from the units' data sheets, at most ImuMerge::kImus. Throws InvalidParams if a stated range is out of
+  /// bounds.
   explicit UnitRails(std::span<const ImuSheet> sheets);
 
   /// Returns the state before the first samples, with all memory that observe() needs: 110 KiB per unit.
@@ -43,7 +44,7 @@ class UnitRails {
   /// Updates the state with raw samples. O(1), sometimes a search; no allocation.
   void observe(std::span<const ImuSample> samples, State& state) const;
 
-  /// Checks the invariants of a state that was loaded from outside. Returns the first violation.
+  /// Checks the invariants of a state that was loaded from a file. Returns the first violated invariant.
   Status check_state(const State& state) const;
 
  private:

@@ -27,23 +27,23 @@ class WaitingReadings {
   static constexpr auto kBeyond_ns = static_cast<TimeNs>(1e9 * SweepTrajectory::kBeyond_s);
 
   /// Stores a reading; the order is arbitrary. The reading's time must be after `done_ns`, the end of the last
-  /// registered sweep, and at most `latest_ns`. Errors: those of check_reading, `time_order` (its sweep is already
-  /// registered), `out_of_range` (too late, or too many waiting readings).
+  /// registered sweep, and at most `latest_ns`. Errors are those of check_reading, `time_order` (the reading's sweep is
+  /// already registered) and `out_of_range` (too late, or too many waiting readings).
   Status add(const OdometerReading& reading, TimeNs done_ns, TimeNs latest_ns);
 
-  /// Returns the reading of the sweep from `from_ns` to `end_ns`. If there are several, returns only the last one,
+  /// Returns the reading of the sweep from `from_ns` to `end_ns`. From several readings, only the last one is returned,
   /// because their errors are correlated. Deletes all readings up to `end_ns`.
   std::optional<OdometerReading> take(TimeNs from_ns, TimeNs end_ns);
 
   /// Returns the number of readings that were dropped because they span two sweeps.
   std::size_t straddling() const { return straddling_; }
 
-  /// Visits every member of the state. Defined in the library's sources: state_visitor.hpp.
+  /// Passes every member of the state to the visitor. The definition is in the library's sources (state_visitor.hpp).
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
 
  private:
-  std::deque<OdometerReading> waiting_;  ///< in order of their middle times
+  std::deque<OdometerReading> waiting_;  ///< waiting readings in the order of their middle times
   std::size_t straddling_ = 0;
 };
 

@@ -9,19 +9,21 @@ namespace tumble {
 /// Contact of sphere and floor: accuracy of the rolling constraint and properties of floors.
 struct RollingContactParams {
   double grip_sigma_m_s = 3e-3;      ///< standard deviation of the contact velocity while gripping
-  double grip_sigma_share = 1.5e-3;  ///< additional, as a fraction of the rolling speed
+  double grip_sigma_share = 1.5e-3;  ///< additional standard deviation, as a fraction of the rolling speed
   double vertical_sigma_m_s = 8e-3;
-  double rough_share = 0.055;               ///< additional on a rough floor, as a fraction of the rolling speed
+  double rough_share = 0.055;               ///< additional standard deviation on a rough floor, as a fraction of the
+                                            ///< rolling speed
   double rough_radius_walk_m_sqrts = 1e-4;  ///< random walk of the rolling radius on a rough floor
-  double slope_sigma = 0.15;                ///< of the sines of a slope when a slope begins
+  double slope_sigma = 0.15;                ///< standard deviation of the sines of a slope when the slope begins
   double slope_walk_sqrts = 0.02;
   double impact_share = 0.06;  ///< error of the timing and direction of an impact, as a fraction of its velocity change
-  /// Mean velocity change of an impact per node while rolling: a sphere that stays on the floor meets no strong
+  /// Mean velocity change of an impact per node while rolling. A sphere that stays on the floor meets no strong
   /// impacts.
   double unexplained_impact_m_s = 0.03;
   double rest_velocity_sigma_m_s = 2e-3;
-  double rest_rate_sigma_rad_s = 3e-3;  ///< of a node's mean rate at rest
-  double speed_sigma_m_s = 1.0;  ///< of the mean velocity over a second about zero, while the velocity is unknown
+  double rest_rate_sigma_rad_s = 3e-3;  ///< standard deviation of a node's mean rate at rest
+  double speed_sigma_m_s = 1.0;  ///< standard deviation of the mean velocity over a second, while the velocity is
+                                 ///< unknown
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -60,10 +62,10 @@ struct RollingModeParams {
   double slip_begins_per_s = 0.5, slip_ends_per_s = 2.0;
   double bump_begins_per_s = 0.3, bump_ends_per_s = 5.0;
   double slip_bump_per_s = 0.2;                                   ///< slip to bump and back
-  double incline_begins_per_s = 0.001, incline_ends_per_s = 0.1;  ///< from and to the level floor
+  double incline_begins_per_s = 0.001, incline_ends_per_s = 0.1;  ///< rates of change from and to the level floor
   double rough_begins_per_s = 0.02, rough_ends_per_s = 0.1;
   double event_shortest_s = 0.06;  ///< minimum duration of slip or bump
-  /// An event is uncertain if it increases the horizontal standard deviation by more than this.
+  /// An event is uncertain if it increases the horizontal standard deviation by more than this distance.
   double uncertain_m = 0.03;
 
   template <class Self, class Visitor>

@@ -6,7 +6,7 @@
 /// Groups of RollingParams::Expert: the IMU in the sphere. Fields have unique names, so groups add no prefix.
 namespace tumble {
 
-/// Prior standard deviations. Zero: exactly known.
+/// Prior standard deviations of the IMU's errors. Zero means exactly known.
 struct RollingPriorParams {
   double tilt_sigma_rad = 6e-3;
   double velocity_sigma_m_s = 2e-3;
@@ -44,7 +44,7 @@ struct RollingPriorParams {
 /// Noise of the IMU.
 struct RollingImuNoiseParams {
   double attitude_walk_rad_sqrts = 1e-4;  ///< 0.006 deg/sqrt(s)
-  double rate_error_sqrts = 6e-4;         ///< per rad/s of rotation
+  double rate_error_sqrts = 6e-4;         ///< angle random walk per rad/s of rotation
   double velocity_walk_m_s_sqrts = 6e-3;
   double spin_force_sqrts = 4e-5;  ///< additional velocity random walk per (rad/s)^2: errors of large forces
   double gyro_bias_walk_rad_s_sqrts = 1.7e-5;
@@ -65,15 +65,16 @@ struct RollingImuNoiseParams {
   }
 };
 
-/// Saturated readings: standard deviation of the saturation deficit.
+/// Parameters of saturated readings: standard deviation of the saturation deficit.
 struct RollingRailParams {
   double clipped_rate_sigma_rad_s = 5.0;
-  /// Standard deviation of unflagged rates beyond the range, which ImuMerge recovered. 0: rates are not recovered.
+  /// Standard deviation of unflagged rates beyond the range, which ImuMerge recovered. Zero means that rates are not
+  /// recovered.
   double recovered_rate_sigma_rad_s = 0.0;
   double clipped_force_sigma_m_s2 = 4.0;
   /// Standard deviation of the force that subsample saturation removes, as a fraction of the force. A short impact may
   /// saturate the accelerometer within a sample although the mean stays below the range. The full value applies from
-  /// 0.6 of the range on, and none below 0.3.
+  /// 0.6 of the range on, and no deviation below 0.3.
   double subsample_saturation_share = 0.25;
 
   template <class Self, class Visitor>
@@ -91,8 +92,8 @@ struct RollingRailParams {
   }
 };
 
-/// Gaps. If two readings are further apart than gap_from_s, the force between them is unknown. The rate is interpolated
-/// linearly, with the uncertainty of an angular acceleration of gap_acceleration_rad_s2.
+/// Parameters of gaps. If two readings are further apart than gap_from_s, the force between the readings is unknown.
+/// The rate is interpolated linearly, with the uncertainty of an angular acceleration of gap_acceleration_rad_s2.
 struct RollingGapParams {
   double gap_from_s = 0.06;
   double gap_max_s = 1.0;  ///< a longer gap ends the run
