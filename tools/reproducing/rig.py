@@ -84,16 +84,16 @@ def page(runs: Runs, recordings: dict[int, Recording], errors: dict, exact: dict
     headline = table()
     motion_rows(headline, recordings)
     rate_rows(headline, "clipped samples", errors, ANY, "−83.4 %",
-              f"{clipped} samples. The reference is exact here, and a second IMU in the paper. The centre of mass is up to 20 mm off here.")
+              f"The medians are over {clipped} clipped samples. The reference rate is exact here and comes from a second IMU in the paper. The stated centre of mass has an error of up to 20 mm here.")
     map_rows(headline, maps, everywhere)
 
     rates = table()
     for source, where in ((errors, "stated centre of mass"), (exact, "exact centre of mass")):
-        for elements, name, differs in ((ONE, f"{ONE} clipped", "The paper met one saturated axis at a time."),
-                                        (MORE, f"{MORE} clipped", "The published method repairs one axis alone.")):
+        for elements, name, differs in ((ONE, f"{ONE} clipped", "One element is clipped in {} of the clipped samples. The paper reports one saturated axis at a time."),
+                                        (MORE, f"{MORE} clipped", "Two or three elements are clipped in {} of the clipped samples. The published method corrects only one axis.")):
             part = share(len(errors[RAW, elements]) / max(1, clipped))
             rate_rows(rates, f"{name}, {where}", source, elements, "−83.4 %" if elements == ONE else "-",
-                      f"{part} of the clipped samples. {differs}")
+                      differs.format(part))
 
     alike = table()
     if one_at_a_time:
@@ -117,11 +117,11 @@ def motion_rows(out: Table, recordings: dict[int, Recording]) -> None:
     speeds = [float(np.linalg.norm(r.true_rate_rad_s, axis=1).max()) for r in recordings.values()]
     forces = [float(np.linalg.norm(r.true_force_m_s2, axis=1).max()) for r in recordings.values()]
     clipping = sum(bool(r.clipped.any()) for r in recordings.values())
-    out.add("runs", "32", *[str(len(recordings))] * len(RATES), f"{clipping} of the draws clip. The paper pushed a real rig.")
+    out.add("runs", "32", *[str(len(recordings))] * len(RATES), f"The gyro clips in {clipping} of the simulated runs. The paper uses a real rig.")
     out.add("highest angular speed", "18.6 rad/s", *[number(max(speeds)) + " rad/s"] * len(RATES),
-            f"The median of the draws is {number(statistics.median(speeds))} rad/s.")
+            f"The median over the simulated runs is {number(statistics.median(speeds))} rad/s.")
     out.add("highest acceleration", "157.8 m/s²", *[number(max(forces)) + " m/s²"] * len(RATES),
-            f"The median of the draws is {number(statistics.median(forces))} m/s². The paper's IMU clips at 156.9 m/s² on each axis.")
+            f"The median over the simulated runs is {number(statistics.median(forces))} m/s². The paper's IMU clips at 156.9 m/s² on each axis.")
 
 
 def rate_rows(out: Table, quantity: str, errors: dict, elements: str, printed: str, differs: str) -> None:
@@ -130,25 +130,25 @@ def rate_rows(out: Table, quantity: str, errors: dict, elements: str, printed: s
     out.add("change against raw", printed, "-", *(change(m, medians[0]) for m in medians[1:]), "")
 
 
-PRINTED = {TRANSLATION: "−71.5 %", ROTATION: "−65.5 %", OVERLAP: "77.2 % raw, 92.1 % published",
-           FAILED: "12 of 32 raw, 0 of 32 published"}
+PRINTED = {TRANSLATION: "−71.5 %", ROTATION: "−65.5 %", OVERLAP: "map overlap 77.2 % (raw gyro), 92.1 % (published)",
+           FAILED: "failed maps: 12 of 32 (raw gyro), 0 of 32 (published)"}
 
 
 def map_rows(out: Table, maps: Scores, seeds: list[int]) -> None:
     """Rows of localisation and map for some draws."""
-    for metric, quantity, scale, unit in ((TRANSLATION, "translation error at the end, median", 1, " m"),
-                                          (ROTATION, "rotation error at the end, median", 180 / math.pi, "°")):
+    for metric, quantity, scale, unit in ((TRANSLATION, "median translation error at the end", 1, " m"),
+                                          (ROTATION, "median rotation error at the end", 180 / math.pi, "°")):
         medians = [scale * statistics.median(maps.values(MAPS[m], metric, seeds, failed=math.inf)) for m in RATES]
         out.add(quantity, "-", *(number(m) + unit if math.isfinite(m) else "lost" for m in medians),
-                "from the sixth registered sweep to the last, as in the paper")
+                "error accumulated from the sixth registered sweep to the last sweep, as in the paper")
         out.add("change against raw", PRINTED[metric], "-", *(change(m, medians[0]) for m in medians[1:]),
-                "The truth is exact. The paper registers its true poses with the same chain.")
+                "The reference poses are exact here. The paper registers static scans with the published chain to obtain its reference poses.")
     overlaps = [maps.values(MAPS[m], OVERLAP, seeds, failed=0.0) for m in RATES]
-    out.add("map overlap within 0.25 m, mean", PRINTED[OVERLAP], *(share(statistics.fmean(o)) for o in overlaps),
-            "Against the true surface, without registration. The paper registers each map to a slow scan first.")
+    out.add("mean map overlap within 0.25 m", PRINTED[OVERLAP], *(share(statistics.fmean(o)) for o in overlaps),
+            "The reference is the true surface, and maps are compared without registration. The paper first registers each map to a slow scan.")
     failures = [maps.values(MAPS[m], FAILED, seeds, failed=1.0) for m in RATES]
     out.add("mapping failures", PRINTED[FAILED], *(f"{sum(f):.0f} of {len(f)}" for f in failures),
-            "more than 15 % of the map beyond 0.25 m, as in the paper")
+            "A map fails if more than 15 % of its points are farther than 0.25 m from the reference, as in the paper.")
 
 
 def draws_with_one(recordings: dict[int, Recording]) -> list[int]:
@@ -307,52 +307,53 @@ The paper is S.-P. Deschênes et al., *Saturation-Aware Angular Velocity Estimat
 Aggressive Motions*, ICRA 2024. A lidar rig is pushed down a hill and its gyro saturates. The published method recovers the
 saturated axis from the accelerometer.
 
-`tools/reproduce papers` writes this page. It simulates {draws} draws of the scenario `hill` (seeds {first} to {last}) and runs
-the published method and ours on the same recordings. The published methods run with the constants of the authors' launch files.
+`tools/reproduce papers` writes this page. The script simulates {draws} runs of the scenario `hill` (seeds {first} to {last}) and runs
+the published methods and our methods on the same recordings. The published methods run with the constants of the authors' launch files.
 
 {headline}
-- *raw gyro*: the published chain with the readings of the gyro (`rate/raw`, `slam/icp_raw`).
-- *published*: `rate/saave` and `slam/published`. *ours*: `rate/tumble`, `slam/tumble` on the whole recording, and
-  `rate/tumble_lag`, `slam/tumble_lag` with a fixed lag.
-- *published, threshold 10.0 rad/s*: the same methods with `{threshold}`. The default of 10.45 rad/s fits a device
-  whose rails are at 10.5 rad/s, as in the paper. Each of our draws has its own device, whose rails differ by about 1 %.
-  {unseen} of the clipped samples do not exceed 10.45 rad/s on any axis, and the published method leaves them as they are.
-- A draw on which a method failed counts as the largest error, with overlap 0 and a failed map.
+- *raw gyro* is the published chain with the unchanged readings of the gyro (`rate/raw`, `slam/icp_raw`).
+- *published* stands for `rate/saave` and `slam/published`. *ours* stands for `rate/tumble` and `slam/tumble` on the
+  whole recording, and for `rate/tumble_lag` and `slam/tumble_lag` with a fixed lag.
+- *published, threshold 10.0 rad/s* stands for the published methods with `{threshold}`.
+  The default threshold of 10.45 rad/s fits a gyro that saturates at 10.5 rad/s, as in the paper. Each simulated run has its
+  own gyro, and the saturation limits of the gyros differ by about 1 %.
+  {unseen} of the clipped samples do not exceed 10.45 rad/s on any axis, and the published method does not change these samples.
+- If a method fails on a simulated run, the run counts with the largest error, an overlap of 0 and a failed map.
 
 ## What is reproduced
 
-- The published rate method reduces the error nearly as much as in the paper under the conditions of the paper. These are one
-  clipped element, the exact centre of mass and a threshold below every rail.
-- Over all draws, the published mapping chain reduces the median errors of localisation at least as much as in the paper.
-- On the draws that are nearest to the paper, the overlap of the maps rises as in the paper.
-- Mapping failures do not vanish. Our motions are faster than the paper's on some draws, and the map is not registered to the
-  reference before the overlap is measured.
+- The published rate method reduces the error nearly as much as in the paper under the conditions of the paper. The
+  conditions are one clipped sensing element, the exact centre of mass and a threshold below every saturation limit.
+- Over all simulated runs, the published mapping chain reduces the median errors of localisation at least as much as in the paper.
+- On the simulated runs whose conditions are most similar to the paper, the recovery raises the map overlap as in the paper.
+- The published recovery does not remove all mapping failures here. Some simulated motions are faster than those of the paper.
+  Our maps are not registered to the reference before the overlap is measured.
 
 ## What differs from the paper
 
 | | paper | our simulation |
 | --- | --- | --- |
-| motion | 32 real runs of 5 to 10 m on one hill | slope of 20 to 45°, 5 to 10 m, rocks and trunks, drawn for each run |
-| rails of the gyro | one device, 10.5 rad/s | a device per draw, 10.5 rad/s with a spread of about 1 % and tilted sensing elements |
-| saturated axes | one at a time | two or three in part of the clipped samples (table below) |
-| rate reference | second IMU (VN-100), which has noise and clips too | exact rate of the simulation |
-| centre of mass | found by balancing the rig | up to 20 mm off, exact in the rows that say so |
-| lidar calibration, clock | as measured | up to 1 cm and 1° off, clock up to 5 ms off |
-| pose reference | registration of static scans with the published chain | exact pose |
-| map reference | slow scan, each map registered to it | true surface, aligned by position and yaw at the start alone |
+| motion | 32 real runs of 5 to 10 m on one hill | random slope of 20 to 45°, 5 to 10 m long, with rocks and trunks |
+| saturation limit of the gyro | one device, 10.5 rad/s | one device per run, 10.5 rad/s with a spread of about 1 % and tilted sensing elements |
+| saturated axes | one at a time | two or three axes at a time in some clipped samples |
+| rate reference | second IMU (VN-100), which has noise and also clips | exact rate of the simulation |
+| centre of mass | found by balancing the rig | error of up to 20 mm, except in rows named "exact centre of mass" |
+| lidar calibration, clock | as measured | mounting errors of up to 1 cm and 1°, clock errors of up to 5 ms |
+| pose reference | static scans, registered with the published chain | exact pose |
+| map reference | slow scan, to which each map is registered | true surface, aligned with the map by position and yaw at the start |
 | rotation errors | above 90° reported as 90° | up to 180° |
-| registration that aborts | ends the mapper | the odometry continues alone for that sweep |
+| registration that aborts | ends the mapper | IMU odometry replaces the registration of the sweep |
 
 ## Rate through a tumble
 
 ![rate through a tumble](rig_rate.png)
 
-Of all draws, this draw has the most collisions while its gyro clips. Grey marks contact with the ground.
+Of all simulated runs, the figure shows the run with the most collisions during clipping. Grey marks contact with the ground.
 
 ## Rate error with and without recovery
 
 {rates}
-The gyro has three sensing elements, one near each axis. A clipped element stands at its rail.
+The gyro has three sensing elements, one near each axis. A clipped element reports its saturation limit.
 
 ![distribution of the rate error](rig_rate_errors.png)
 
@@ -360,33 +361,34 @@ The gyro has three sensing elements, one near each axis. A clipped element stand
 
 ![percentiles of the localisation error](rig_localisation.png)
 
-Draws on which a method failed are drawn at 10 m and 180°.
+If a method failed, the figure shows an error of 10 m and 180°.
 
-{alike_draws} of the {draws} draws are nearest to the paper: at most 2 % of their clipped samples have two or three elements at the
-rail. Localisation and maps on these draws alone:
+{alike_draws} of the {draws} simulated runs are most similar to the paper: two or three elements are clipped in at most 2 % of the
+clipped samples. The table shows localisation and maps of the similar runs:
 
 {alike}
 ## Map outliers
 
 ![maps coloured by error](rig_maps.png)
 
-Draw {worst}: raw gyro, published, ours (whole recording). The colour is the distance to the true surface.
+Seed {worst}: maps with the raw gyro, with the published method, and with ours (whole recording). The colour is the distance to the true surface.
 
 ## Angular speed against acceleration
 
 ![density of angular speed against acceleration](rig_density.png)
 
-The paper prints that its rig reaches 13.9 rad/s and 127.1 m/s² beyond the other data sets that it compares with. The rectangle
-is that limit: 4.7 rad/s and 30.7 m/s². The paper's outlines are not public as numbers. Two public data sets stand in for them:
-BROAD (Laidig et al., Data 2021, CC BY 4.0) and the model rockets of AirbrakesV2 (MIT). Each outline is the highest angular
-speed in steps of 5 m/s². These two data sets have no lidar, and they reach higher angular speeds than the data sets of the paper.
+The paper states that its rig exceeds all other data sets in the paper by 13.9 rad/s and 127.1 m/s². The rectangle shows the
+highest values of the other data sets: 4.7 rad/s and 30.7 m/s². The outlines of the paper's figure are not public as numbers.
+Two public data sets replace the outlines: BROAD (Laidig et al., Data 2021, CC BY 4.0) and the model rockets of AirbrakesV2 (MIT).
+Each outline is the highest angular speed in steps of 5 m/s². BROAD and AirbrakesV2 have no lidar, and reach higher angular
+speeds than the data sets of the paper.
 
 ## Commands
 
-The numbers come from these sweeps, run in the work folder `build/reproduce/papers`:
+The following sweeps, run in the work folder `build/reproduce/papers`, give the numbers of this page:
 
 {commands}
 
-The rate errors come from the recordings and estimates that the first sweep keeps. For the rows with the exact centre of mass,
-the script writes the true mounting into a copy of each recording and runs `tumble estimate` on the copy.
+The script computes the rate errors from the recordings and estimates that the first sweep stores. For the rows with the exact
+centre of mass, the script writes the true mounting into a copy of each recording and runs `tumble estimate` on the copy.
 """

@@ -181,10 +181,10 @@ def page(runs: Runs, turns: dict[str, list[Turning]], legs: dict[str, list[Leg]]
 
 def jitter_table(steps: dict[str, np.ndarray]) -> Table:
     table = Table(["quantity", "printed in the paper", *(LABELS[m] for m in ATTITUDES), "conditions that differ"])
-    table.add("step from sample to sample at standstill, rms", "Madgwick 0.229°, complementary 0.0084°",
+    table.add("step from sample to sample at standstill, rms", "step 0.229° (Madgwick), 0.0084° (complementary)",
               *(number(np.degrees(rms(np.linalg.norm(steps[m], axis=1)))) + "°" for m in ATTITUDES),
-              "250 Hz here. Madgwick's step is at most twice the gain times the sample time: 0.092° at 4 ms, 0.229° at 10 ms. "
-              "Only the noise of the data sheet disturbs the filters here.")
+              "The sample rate is 250 Hz here. Madgwick's step is at most twice the gain times the sample time: 0.092° at 4 ms, 0.229° at 10 ms. "
+              "The simulated IMU at rest has only the noise of its data sheet.")
     return table
 
 
@@ -197,14 +197,14 @@ def distance_table(draws: list[Turning], scenario: str, rate: str) -> Table:
     table = Table([f"scenario `{scenario}`, mean rate {rate} rad/s", "paper, Madgwick", "paper, Autogain",
                    *(LABELS[m] for m in (MADGWICK, AUTOGAIN, OURS)), "conditions that differ"])
     at = {m: [t.at_tracker(m)[1] for t in draws] for m in (MADGWICK, AUTOGAIN, OURS)}
-    pace = "the pace of the paper, whose log has a mean of 0.56 rad/s" if scenario == SLOW else "faster than the paper"
+    pace = "The pace is that of the paper, whose log has a mean rate of 0.56 rad/s" if scenario == SLOW else "The motion is faster than in the paper"
     for name, madgwick, autogain, measure, unit, differs in (
             ("distance to the reference, mean", "1.35", "1.29", lambda d: float(d.mean()), "°",
-             f"{pace}. The truth is exact. The paper fits the frames of its tracker on the Autogain stream."),
+             f"{pace}. The reference is exact here. The paper fits the frames of its optical tracker to the Autogain attitudes."),
             ("distance to the reference, rms", "1.545", "1.548", rms, "°", ""),
             ("distance to the reference, highest", "4.68", "4.48", lambda d: float(d.max()), "°", ""),
             ("total variation per second", "4.06", "2.94", lambda d: float(np.abs(np.diff(d)).sum() * TRACKER_HZ / len(d)), "°/s",
-             "The paper's data have 82.1° and 59.3° in 20.2 s. Noise of the tracker is part of these numbers."),
+             "The paper's data have a total variation of 82.1° (Madgwick) and 59.3° (Autogain) in 20.2 s. The paper's values include noise of the tracker."),
             ("step at 120 Hz, median size", "0.0226", "0.0084", lambda d: float(np.median(np.abs(np.diff(d)))), "°", ""),
             ("second difference at 120 Hz, median size", "0.0102", "0.0036", lambda d: float(np.median(np.abs(np.diff(d, 2)))), "°", "")):
         cells = [number(statistics.median(measure(d) for d in at[m])) + unit for m in at]
@@ -214,22 +214,22 @@ def distance_table(draws: list[Turning], scenario: str, rate: str) -> Table:
 
 def leg_table(legs: dict[str, list[Leg]]) -> Table:
     table = Table(["quantity", "printed in the paper", *(LABELS[m] for m in POSITIONS), "conditions that differ"])
-    printed_slip = ("rotation 1.52 m, fused 1.13 m", "rotation 1.47 m, fused 0.93 m", "fused −10 to +10 %", "all")
+    printed_slip = ("leg 1.52 m (rotation alone), 1.13 m (fusion)", "leg 1.47 m (rotation alone), 0.93 m (fusion)", "−10 to +10 % (fusion)", "all")
     for scenario, name, printed, differs in (
-            (SLIP, "slip", printed_slip, "1 m in 5 to 9 s as in the paper. The sphere spins 1.5 to 2.8 times too fast on patches."),
-            (FAST_SLIP, "slip, scenario `slip`", printed_slip, "1 m in 2 to 5 s, faster than the paper."),
-            (SLIDE, "slide", ("rotation 0.81 m, fused 1.02 m", "rotation 0.48 m, fused 0.46 m", "-", "1 of 2 fused"),
-             "1 m in 5 to 9 s as in the paper. The turning is braked to at most 0.7 of rolling on patches.")):
+            (SLIP, "slip", printed_slip, "The sphere rolls 1 m in 5 to 9 s, as in the paper. On slippery patches it spins 1.5 to 2.8 times faster than rolling."),
+            (FAST_SLIP, "slip, scenario `slip`", printed_slip, "The sphere rolls 1 m in 2 to 5 s, faster than in the paper."),
+            (SLIDE, "slide", ("leg 0.81 m (rotation alone), 1.02 m (fusion)", "leg 0.48 m (rotation alone), 0.46 m (fusion)", "-", "1 of 2 (fusion)"),
+             "The sphere rolls 1 m in 5 to 9 s, as in the paper. On slippery patches a hand brakes its rotation to at most 0.7 of rolling.")):
         draws = legs[scenario]
         for k, which in enumerate(("first", "second")):
             truth = number(statistics.median(d.true_legs_m[k] for d in draws))
             table.add(f"{name}: {which} leg, median", printed[k],
                       *(number(statistics.median(d.legs_m[m][k] for d in draws)) + " m" for m in POSITIONS),
-                      (f"{differs} " if k == 0 else "") + f"True leg {truth} m.")
+                      (f"{differs} " if k == 0 else "") + f"The true leg is {truth} m.")
         errors = {m: leg_errors(draws, m) for m in POSITIONS}
         table.add(f"{name}: error of a leg, lowest to highest", printed[2],
                   *(f"{100 * min(errors[m]):+.1f} to {100 * max(errors[m]):+.1f} %".replace("-", "−") for m in POSITIONS),
-                  f"{len(errors[ROTATION])} legs. The paper shows one L.")
+                  f"{len(errors[ROTATION])} simulated legs. The paper shows one L-shaped path.")
         table.add(f"{name}: legs within −10 to +10 %", printed[3],
                   *(share(statistics.fmean(abs(e) <= 0.1 for e in errors[m])) for m in POSITIONS), "")
     return table
@@ -246,7 +246,7 @@ def room_table(maps: dict[int, dict[str, np.ndarray]]) -> Table:
     total = {m: sum(len(points[m]) for points in maps.values()) for m in MAPS}
     table.add(f"map points more than {BELOW_M} m below the floor", "shown, not counted",
               *(f"{below[m]} of {total[m]} ({share(below[m] / max(1, total[m]))})" for m in MAPS),
-              f"{len(maps)} draws of `roll` in a furnished room. The paper rolls 4 m in 5 s in one room.")
+              f"{len(maps)} runs of `roll` in a furnished room. In the paper, the sphere rolls 4 m in 5 s in one room.")
     return table
 
 
@@ -331,67 +331,71 @@ def draw_map(maps: dict[int, dict[str, np.ndarray]], path: pathlib.Path) -> None
 PAGE = """# The rolling sphere: the paper next to our simulation
 
 The paper is J. Zevering et al., *IMU-Based Pose-Estimation for Spherical Robots with Limited Resources*, IEEE MFI 2021. A sphere
-of 29 cm is rolled by hand. The published filter (Autogain) switches between Madgwick's filter and a complementary filter, and
-fuses rolling with the integrated accelerometer.
+of 29 cm is rolled by hand. The published filter (Autogain) switches between Madgwick's filter and a complementary filter. The
+position is a fusion of the rolling velocity with the integrated acceleration.
 
-`tools/reproduce papers` writes this page. It simulates {draws} draws of each scenario (seeds {first} to {last}) and runs the
-published methods and ours on the same recordings. The printed numbers of the figures come from the data files that the authors
+`tools/reproduce papers` writes this page. The script simulates {draws} runs of each scenario (seeds {first} to {last}) and runs the
+published methods and our methods on the same recordings. The printed numbers of the figures come from the data files that the authors
 published with the paper's source.
 
 ## What is reproduced
 
-- Madgwick's filter jumps at standstill in the paper and here, and the complementary filter is more than ten times smoother.
-- At the pace of the paper, Autogain is about as near to the truth as Madgwick's filter, and its distance changes more slowly.
-- At the higher rate of `roll`, Autogain works as Madgwick's filter does, because its factor is 1 above 2.1 rad/s.
-- The fusion does not reach the printed legs with the radius of the sphere. With the diameter in its place it comes nearer.
+- Madgwick's filter jumps at standstill in the paper and here. The steps of the complementary filter are more than ten times
+  smaller.
+- At the pace of the paper, the errors of Autogain and of Madgwick's filter are similar, and the error of Autogain changes more slowly.
+- At the higher rate of `roll`, Autogain gives nearly the errors of Madgwick's filter, because the weight of Madgwick's step is 1 above
+  2.1 rad/s.
+- With the radius of the sphere, the fusion does not give the printed lengths of the legs. With the diameter in place of the
+  radius, the fused legs are nearer to the printed lengths.
 
 ## What differs from the paper
 
 | | paper | our simulation |
 | --- | --- | --- |
-| IMU | three gyros averaged, 125 Hz | the first of three IMUs at 250 Hz for the published methods, all three for ours |
-| weights of the fusion | differ between the paper's two figures, limiter 1.1 | as printed in the text: equal weights, limiter 1.2 |
-| integration of the acceleration | body frame, direction of the force alone in the code | as printed: body frame, force in m/s² |
+| IMU | three gyros averaged, 125 Hz | the published methods use the first of three IMUs at 250 Hz, our methods use all three IMUs |
+| weights of the fusion | weights differ between the paper's two figures, limiter 1.1 | as printed in the text: equal weights, limiter 1.2 |
+| integration of the acceleration | body frame; the code uses only the direction of the force | as printed: body frame, force in m/s² |
 | roll correction | never made in the authors' code | made, as printed |
-| attitude reference | optical tracker, frames fitted on the Autogain stream | exact, aligned in yaw at the start |
+| attitude reference | optical tracker, whose frames were fitted to the Autogain attitudes | exact, aligned in yaw at the start |
 | position reference | tape measure at way points | exact |
-| pace | 1 m in 5 to 9 s, mean rate of a log of that day 0.56 rad/s | `slow_roll`, `slip_l`, `slide_l`: the same; `roll`, `slip`: faster |
-| slip and slide | provoked by hand | slippery patches and a hand that spins or brakes the sphere |
+| pace | 1 m in 5 to 9 s; a log of the same campaign has a mean rate of 0.56 rad/s | `slow_roll`, `slip_l` and `slide_l` have the paper's pace; `roll` and `slip` are faster |
+| slip and slide | provoked by hand | slippery patches, on which a hand spins or brakes the sphere |
 
 ## Jitter at standstill: Madgwick against complementary
 
 {jitter}
 Successive steps of Madgwick's filter have a correlation of {lag1} here, and −0.83 in the paper's data. A correlation near −1
-means that the filter jumps to and fro with a step of fixed size.
+means that the filter alternates between two values with steps of fixed size.
 
 ![steps at standstill](sphere_jitter.png)
 
-Steps below 0.00001° are drawn at 0.00001°.
+The figure shows steps below 0.00001° as 0.00001°.
 
 ## Autogain against Madgwick: distance to the reference and its derivative
 
-Each number is the median of the draws. The first table has the pace of the paper, the second one the scenario of the catalogue.
+Each number is the median over the simulated runs. The first table has the pace of the paper. The second table has the faster
+scenario `roll` of the catalogue.
 
 {distance}
 ![distance to the truth and its derivative](sphere_distance.png)
 
-The figure shows the first draw of `slow_roll`.
+The figure shows the first simulated run of `slow_roll`.
 
 ## The L of 1 m × 1 m with slip and with slide
 
 {ways}
-- *published fusion* has the radius of the sphere, 0.145 m. It halves the rolling velocity whenever the accelerometer branch is
-  near zero, because both have the weight 0.5.
-- *published fusion, radius 0.29 m* has the diameter in place of the radius, as the authors' code. The two errors then cancel in
-  part. With slip, its medians come nearest to the printed numbers.
+- *published fusion* uses the radius of the sphere, 0.145 m. The fusion halves the rolling velocity whenever the velocity from
+  the accelerometer is near zero, because both velocities have the weight 0.5.
+- *published fusion, radius 0.29 m* uses the diameter in place of the radius, as the authors' code does. The doubled radius
+  partly cancels the halving of the rolling velocity. With slip, the medians of this column are nearest to the printed numbers.
 
 ![paths with slip](sphere_slip.png)
 
-Three draws of `slip_l`, seen from above.
+The figure shows three simulated runs of `slip_l`, seen from above.
 
 ![paths with slide](sphere_slide.png)
 
-Three draws of `slide_l`.
+The figure shows three simulated runs of `slide_l`, seen from above.
 
 ![errors of the legs](sphere_legs.png)
 
@@ -400,12 +404,12 @@ Three draws of `slide_l`.
 {rooms}
 ![the map from the side](sphere_map.png)
 
-The figure shows draw {map_seed}. The floor is at z = 0.
+The figure shows the run with seed {map_seed}. The floor is at z = 0.
 
 ## Commands
 
-The numbers come from these commands, run in the work folder `build/reproduce/papers`. SCENARIO is `slow_roll`, `slip_l` or
-`slide_l`.
+The following commands, run in the work folder `build/reproduce/papers`, give the numbers of this page. SCENARIO is `slow_roll`,
+`slip_l` or `slide_l`.
 
 {commands}
 """
