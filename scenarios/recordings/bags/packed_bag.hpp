@@ -8,7 +8,7 @@
 
 #include "scenarios/recordings/bags/bag_storage.hpp"
 
-/// ROS 2 bags with Zstandard compression. Private to scenarios/recordings/bags.
+/// ROS 2 bags with Zstandard compression. Used only within scenarios/recordings/bags.
 namespace tumble::scenarios {
 
 /// Decompresses files of Zstandard frames ("bag_0.db3.zstd") to a temporary folder, which is removed with the reader,
