@@ -30,7 +30,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Range of the planes over the recordings of a device.
+/// Range of the saturation planes over the recordings of a device.
 struct MeasuredRange {
   double low, high;
   double middle() const { return 0.5 * (low + high); }
@@ -54,8 +54,8 @@ const char* axis_name(int axis) {
   return kNames[static_cast<std::size_t>(axis % 3)];
 }
 
-/// Returns elements with the mean of the measured planes. Other elements and the own scale, which a plane does not
-/// determine, are ideal.
+/// Returns sensing elements with the mean of the measured planes. A plane does not determine the other elements and the
+/// element's own scale, so these are ideal.
 sim::Elements elements_of(const MeasuredPlane& plane, const RealRailsSetup& setup) {
   const int j = plane.element;
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
@@ -99,7 +99,7 @@ void show_plane(const DataSheet& sheet, const MeasuredPlane& plane, const RealRa
       "rad/s", fitted.offset, plane.offset_rad_s);
 }
 
-/// Standard deviations of the planes that follow from a data sheet's distribution of elements.
+/// Standard deviations of the saturation planes that follow from the distribution of elements in a data sheet.
 struct DrawnPlanes {
   double slope = 0.0, offset_rad_s = 0.0;
 };

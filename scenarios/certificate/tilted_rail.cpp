@@ -29,7 +29,7 @@ sim::SensorSpec tilted(const DataSheet& sheet, const TiltedRailSetup& setup) {
   return sensor;
 }
 
-/// Difference between fitted and drawn planes.
+/// Difference between fitted and simulated saturation planes.
 struct PlaneErrors {
   double slope = 0.0, distance_share = 0.0;
   int samples = 0;  ///< for the element and sign with the fewest
