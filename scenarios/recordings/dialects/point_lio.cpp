@@ -11,8 +11,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns the saturation threshold for the peer. The data sheet may state less than the device reaches; then the
-/// largest reading is used.
+/// Returns the saturation threshold for the published estimator. The data sheet may state less than the device reaches;
+/// in this case the largest reading is used.
 double rail(double stated, double largest) {
   return std::max(stated, largest);
 }
