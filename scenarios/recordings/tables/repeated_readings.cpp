@@ -24,8 +24,8 @@ std::vector<std::size_t> fresh_rows(const std::vector<Eigen::Vector3d>& readings
   return rows;
 }
 
-/// Returns the sampling period; each reading was taken between the time of the previous row and the time of its own
-/// row.
+/// Returns the regularised times of the readings in `rows`. Each reading was taken between the time of the previous row
+/// and the time of its own row.
 std::vector<std::int64_t> beat_of(const std::vector<std::int64_t>& time_ns, const std::vector<std::size_t>& rows) {
   std::vector<std::int64_t> stamps;
   std::vector<StampBounds> bounds;
