@@ -10,7 +10,7 @@
 namespace tumble::sim {
 
 /// Thrown if a simulated run is rejected. The message states the reason and the simulated time; sweeps count rejected
-/// runs separately. Reasons are: Reasons:
+/// runs separately. A run is rejected for any of these reasons:
 /// - a warning of the engine, or a state that is not finite;
 /// - a speed above 5 mm/s after the second of settling before the start;
 /// - a position beyond the half extent of the world, or 60 m below the world's origin;

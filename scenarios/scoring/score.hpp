@@ -38,9 +38,11 @@ std::span<const Metric> metrics();
 std::vector<Score> score(Kind kind, const ScoredEstimate& scored);
 std::vector<Score> score(Kind kind, const Estimate& estimate, const ScoringInput& input);
 
-/// Returns `ok` or `diverged`. An estimate diverged in any of these cases. The estimate is not finite. It has a gap
-/// longer than a fifth of the recording (rates: more than a tenth of the samples missing). Its end error exceeds the
-/// path length (at least 1 m). It reports sweeps but registered fewer than six.
+/// Returns `ok` or `diverged`. An estimate diverged in any of these cases:
+/// - the estimate is not finite;
+/// - the estimate has a gap longer than a fifth of the recording (rates: more than a tenth of the samples are missing);
+/// - the end error exceeds the path length (at least 1 m);
+/// - the estimate reports sweeps but registered fewer than six.
 OutcomeStatus verdict(Kind kind, const ScoredEstimate& scored);
 OutcomeStatus verdict(Kind kind, const Estimate& estimate, const ScoringInput& input);
 
