@@ -5,12 +5,12 @@
 //
 // The planes were measured on RepoIMU (Szczesna et al., ICCVG 2016) by the least squares of clipped_plane.hpp, from
 // readings inside saturated intervals, without repeated readings. Command: tests/bench/rail_measures x 7.3, y 7.2 or
-// z 10.29 FILE.csv, for Test05 and Test10 trial 1, Test06, and the pendulum's Test02a and Test07 trial 3. Each interval
-// includes the values of all recordings and their errors. Residuals are in rad/s; a residual in brackets is that of a
-// plane without cross-axis sensitivity:
+// z 10.29 FILE.csv, for Test05 and Test10 trial 1, Test06, and the pendulum's Test02a and Test07 trial 3. The
+// interval of a plane includes the values of all recordings and their errors. Residuals are in rad/s; a residual in
+// brackets is that of a plane without cross-axis sensitivity:
 //   wand, x      Test05 trials 1 to 3, Test10 trials 1 to 3: 100 to 1700 readings each, residual 0.003 to 0.009 (0.005
 //                to 0.010). The offset changes with the bias from day to day.
-//   wand, y      Test06 trial 1: 39 and 42 readings, residual 0.004 (0.014). There is only one recording, so the
+//   wand, y      Test06 trial 1: 39 and 42 readings, residual 0.004 (0.014). One recording exists, so the
 //                interval is three standard errors, and includes planes from more readings at the ends of the
 //                saturated intervals.
 //   pendulum, z  Third segment; Test02a, 02b, 07 trials 1 to 3 and 08. Test02a (37 readings) and Test07 trial 3 (10):

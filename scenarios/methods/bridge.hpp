@@ -14,8 +14,8 @@
 #include "tumble/common/status.hpp"
 #include "tumble/mapping/lidar.hpp"
 
-/// Converts the records of `sim` to the messages of the estimator. All such conversions are in this file. Each library
-/// states its conventions separately; the table compares the conventions:
+/// Converts the records of `sim` to the messages of the estimator. Every conversion between the two libraries is in
+/// this file. Each library states its conventions separately; the table compares the conventions:
 ///
 /// | quantity       | sim                                        | estimator                                      |
 /// | -------------- | ------------------------------------------ | ---------------------------------------------- |

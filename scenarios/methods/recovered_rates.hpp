@@ -28,9 +28,9 @@ struct RecoveredRates {
 RecoveredRates recover_clipped(const sim::Sensors& sensors, std::vector<ImuSample>& samples,
                                std::map<std::string, double>& health);
 
-/// Also replaces readings that rate/tumble marks as suspect. If the gyro is slower than its output rate, replaces all
-/// readings, because rate/tumble removes the gyro's delay. Smoothers with their own motion limits should not use this
-/// function, because they perform better with the original suspect readings.
+/// In addition to clipped readings, replaces readings that rate/tumble marks as suspect. If the gyro is slower than its
+/// output rate, replaces all readings, because rate/tumble removes the gyro's delay. Smoothers with their own motion
+/// limits should not use this function, because they perform better with the original suspect readings.
 RecoveredRates recover_in_time(const sim::Sensors& sensors, std::vector<ImuSample>& samples,
                                std::map<std::string, double>& health);
 

@@ -24,14 +24,14 @@ using nlohmann::json;
 constexpr double kMost = 1e6;
 constexpr const char* kKeys[] = {"lever_arm_m", "gyro_bias_rad_s", "accel_bias_m_s2", "inertia",
                                  "covariance",  "gyro_rail_rad_s", "accel_rail_m_s2"};
-// The key is missing in early files, whose covariance has fewer rows.
+// Early calibration files lack the key and have fewer covariance rows.
 constexpr const char* kElementsKey = "gyro_elements";
-// The key is missing in early files.
+// Early calibration files lack this key.
 constexpr const char* kPlanesKey = "gyro_planes_rad_s";
-// The key is missing in early files.
+// Early calibration files lack this key.
 constexpr const char* kAccelPlanesKey = "accelerometer_planes_m_s2";
 constexpr const char* kAccelElementsKey = "accelerometer_elements";
-// The keys are missing in early files.
+// Early calibration files lack these keys.
 constexpr const char *kErrorsKey = "device_errors", *kErrorsCovarianceKey = "device_errors_covariance";
 // Change of the cross-axis sensitivities of the accelerometer elements between runs, as for the gyro.
 constexpr double kSlopeDrift = 2e-3;

@@ -19,7 +19,8 @@
 /// weak and short events, each widened by kMargin_ns. A true event is detected if correct estimated events cover at
 /// least half of the true event. Slip and slide are not distinguished. The position is lost in a true event if the
 /// horizontal error grows by more than kLost_m from the start to the end of the event. The event is flagged if the
-/// reported horizontal sigma grows by more than kFlagged_m. Both criteria use kMargin_ns on either side of the event.
+/// reported horizontal sigma grows by more than kFlagged_m. The two criteria for position loss use kMargin_ns on either
+/// side of the event.
 namespace tumble::scenarios {
 
 namespace {

@@ -85,8 +85,8 @@ std::vector<MotionPoint> thinned(const std::vector<MotionPoint>& points) {
   return out;
 }
 
-/// Both publications are by Deschênes and others; the earlier publication reports rates and forces. The later
-/// publication reports forces in its abstract; the other reported number is an angular acceleration.
+/// The two publications of the rig are by Deschênes and others; the earlier publication reports rates and forces. The
+/// later publication reports forces in its abstract; the other reported number is an angular acceleration.
 std::vector<PublishedExtreme> published() {
   return {{"rig down a hill, 32 tumbles", "Deschênes and others, ICRA 2024: 18.6 rad/s, 157.8 m/s² (a device of 16 g)",
            18.6, 157.8},

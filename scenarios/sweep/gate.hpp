@@ -55,7 +55,7 @@ struct GatePolicy {
 };
 
 /// The accepted results of a suite: scenarios/gates/SUITE.yaml states the policy, and SUITE.csv contains the results.
-/// Both files are kept in git.
+/// The two files are kept in git.
 struct Gate {
   std::string suite;
   GatePolicy policy;

@@ -10,7 +10,8 @@
 
 namespace tumble::scenarios {
 
-/// One input of a method, and a function that replaces the input by its truth. Each input is registered in one line.
+/// One input of a method, and a function that replaces the input by its truth. An input is registered in one line of
+/// true_inputs.cpp.
 struct TrueInput {
   std::string name;
   std::string doc;

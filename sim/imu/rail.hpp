@@ -15,8 +15,9 @@ namespace tumble::sim {
 ///   after the signal fell below 90 % of the level.
 /// - `wrap`: a reading beyond the level appears with the opposite sign, as when a 16-bit word overflows.
 /// - `slow_recovery`: a clipped axis accumulates an offset with the sign of the signal, up to `recovery_share` of the
-///   level, with time constant `recovery_s`. After clipping, the offset decays with the time constant `recovery_s`. Not
-///   modelled: a level that depends on temperature, and a device that stops permanently.
+///   level, with time constant `recovery_s`. After clipping, the offset decays with the time constant `recovery_s`.
+///
+/// Not modelled: a level that depends on temperature, and a device that stops permanently.
 class Rail {
  public:
   struct Params {

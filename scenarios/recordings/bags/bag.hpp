@@ -69,7 +69,7 @@ std::int64_t bag_origin_ns(const BagWriting& writing);
 ///   name (export_names). The topic of the primary IMU is the first topic of its type;
 /// - "/NAME/points" (sensor_msgs/PointCloud2, stamped at the sweep's start), with the fields of Velodyne drivers: x y z
 ///   intensity ring time. The time is in float32 seconds after the stamp (4 ns resolution within 0.1 s). The field
-///   offset_ns states the time in whole nanoseconds. Both time fields are omitted for points without times. `sweeps`
+///   offset_ns states the time in whole nanoseconds. The two time fields are omitted for points without times. `sweeps`
 ///   can choose another point layout;
 /// - "/truth" (nav_msgs/Odometry of "body" in "world", at most every 5 ms), "/TRACK" and "/TRACK/points";
 /// - "/tf_static": each sensor in "body", from the calibration that the estimator uses;
