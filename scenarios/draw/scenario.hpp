@@ -55,7 +55,7 @@ Scenario load_scenario(const DataRoot& data, const std::string& name);
 sim::ResolvedSituation draw(const DataRoot& data, const Scenario& scenario, std::uint64_t seed);
 
 /// Convert a resolved situation to and from YAML without loss (doubles round-trip). Reading rejects unknown keys;
-/// sim::resolve checks that this build has the named types and numbers. Both functions throw BadInput with a message
+/// sim::resolve checks that this build has the named types and numbers. The two functions throw BadInput with a message
 /// that starts with `place`.
 std::string to_yaml(const sim::Situation& situation);
 sim::Situation situation_from_yaml(const std::string& text, const std::string& place);

@@ -44,8 +44,8 @@ inline constexpr std::array kAllDoubts = {
     Doubt::About::lidar_scale, Doubt::About::beyond_range,   Doubt::About::digest,     Doubt::About::learnt_rig,
     Doubt::About::unit_frozen, Doubt::About::unit_disagrees, Doubt::About::unit_silent};
 
-/// Returns the key of a failed check in the health, for example `imu_implausible` or `imu_2_frozen_since_s`. All other
-/// code obtains these health keys from this function.
+/// Returns the key of a failed check in the health, for example `imu_implausible` or `imu_2_frozen_since_s`. The
+/// function is the only place that defines the keys of failed checks.
 std::string row_of(const Doubt& doubt);
 
 /// Adds a failed check to the estimate, sorted by key, and adds the check's entry to the health. A failed check with an

@@ -39,8 +39,8 @@ class Autogain {
     double lower_rad_s = 0.1;  ///< unused by code2021
     double upper_rad_s = 2.1;  ///< above lower_rad_s; unused by code2021
     /// Computes the complementary step as the authors' code does, where the check for gimbal lock is always true. As a
-    /// consequence, the target attitude keeps the current roll, and roll is never corrected. This variant reproduces
-    /// the authors' recordings.
+    /// consequence, the target attitude keeps the current roll, and roll is never corrected. The variant serves to
+    /// reproduce the authors' recordings.
     bool roll_error_2021 = false;
     /// Computes the complementary step as the smallest rotation instead of a target in roll, pitch and yaw; the smooth
     /// profile uses this form.

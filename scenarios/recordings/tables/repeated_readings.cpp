@@ -25,7 +25,7 @@ std::vector<std::size_t> fresh_rows(const std::vector<Eigen::Vector3d>& readings
 }
 
 /// Returns the regularised times of the readings in `rows`. Each reading was taken between the time of the previous row
-/// and the time of its own row.
+/// and the time of the row that contains the reading.
 std::vector<std::int64_t> beat_of(const std::vector<std::int64_t>& time_ns, const std::vector<std::size_t>& rows) {
   std::vector<std::int64_t> stamps;
   std::vector<StampBounds> bounds;
