@@ -5,8 +5,8 @@
 
 namespace tumble::scenarios {
 
-/// Folders of the files that are read at run time. The caller supplies the root: the program searches for it, a test
-/// names it.
+/// Folders of the data files that are read at run time. The caller supplies the root folder: the program searches for
+/// it, and a test states it.
 struct DataRoot {
   std::filesystem::path root;
   std::filesystem::path models() const { return root / "models"; }

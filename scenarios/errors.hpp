@@ -7,14 +7,14 @@
 
 namespace tumble::scenarios {
 
-/// Wrong use or bad input: an unknown name, a missing or truncated file, a value out of bounds. The message is one line
-/// with the fault, its location and the allowed range. The program exits with status 2.
+/// Error for wrong use or bad input: an unknown name, a missing or truncated file, a value outside its limits. The
+/// message is one line with the fault, its location and the allowed range. The program exits with status 2.
 class BadInput : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Throws BadInput if the array `place.field` differs in length from the arrays that belong to it.
+/// Throws BadInput if the length of the array `place.field` differs from the length of the record's other arrays.
 inline void require_length(const std::string& place, const char* field, std::size_t found, std::size_t expected) {
   if (found == expected) return;
   throw BadInput(place + "." + field + " has " + std::to_string(found) + " entries, must have " +

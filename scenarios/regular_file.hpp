@@ -13,19 +13,20 @@
 namespace tumble::scenarios {
 
 /// Throws BadInput if `path` is missing or a folder. Follows symbolic links. Pipes are accepted, because the caller
-/// reads the input once, from beginning to end.
+/// reads the input only once, from beginning to end.
 inline std::filesystem::file_status require_file(const std::filesystem::path& path) {
   std::error_code error;
   const std::filesystem::file_status found = std::filesystem::status(path, error);
-  // A path that leads through a file, and a dangling link, also count as missing.
+  // A path that leads through a file and a dangling link also count as missing.
   if (found.type() == std::filesystem::file_type::not_found) throw BadInput(path.string() + ": no such file");
   if (error) throw BadInput(path.string() + ": cannot be read: " + error.message());
   if (std::filesystem::is_directory(found)) throw BadInput(path.string() + ": is a folder, must be a file");
   return found;
 }
 
-/// Throws BadInput if `path` is not a regular file. Follows symbolic links; the message states what was found. Call it
-/// before opening a file: opening a pipe without a writer blocks for ever, and devices have no end.
+/// Throws BadInput if `path` is not a regular file. Symbolic links are followed; the error message states what was
+/// found. Callers check a path before they open it, because opening a pipe without a writer blocks for ever, and
+/// devices have no end.
 inline void require_regular_file(const std::filesystem::path& path) {
   switch (require_file(path).type()) {
     case std::filesystem::file_type::regular:
@@ -39,7 +40,7 @@ inline void require_regular_file(const std::filesystem::path& path) {
   }
 }
 
-/// Opens a regular file for binary reading. Throws BadInput if it is not a regular file or cannot be read.
+/// Opens a regular file for binary reading. Throws BadInput if the path is not a regular file or cannot be read.
 inline std::ifstream open_regular_file(const std::filesystem::path& path) {
   require_regular_file(path);
   errno = 0;

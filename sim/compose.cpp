@@ -23,13 +23,13 @@ using SpecPtr = std::unique_ptr<mjSpec, SpecDeleter>;
 constexpr double kStep_s = 0.0005;
 constexpr int kFewPairs = 100;
 
-/// Running out of memory is not an error of the situation, which may simulate on a larger machine.
+/// A lack of memory is not an error of the situation, which may simulate on a larger machine.
 void refuse_for_memory(std::string_view message) {
   if (message.find("ould not allocate") != std::string_view::npos) throw std::bad_alloc();
 }
 
-/// Without handlers, the engine writes a log file and ends the process on an error. Its warnings are counted in mjData
-/// and checked after every step.
+/// Without handlers, the engine would write a log file and end the process on an error. Warnings of the engine are
+/// counted in mjData and checked after every step.
 void install_handlers() {
   static const bool kInstalled = [] {
     mju_user_warning = [](const char*) {};
@@ -56,8 +56,8 @@ int count_pairs(const mjModel& model) {
   return moving * (all - moving);
 }
 
-/// True if the engine's tree returns the contacts of a robot with one geom in the same order as a test of every pair.
-/// The tree sorts by the first geom of a pair, which is the one whose type comes first.
+/// Returns true if the engine's tree returns the contacts of a robot with one geom in the order in which a test of
+/// every pair returns them. The tree sorts by the first geom of a pair, which is the geom whose type comes first.
 bool sorts_as_asked(const mjModel& model) {
   int robot = -1;
   for (int i = 0; i < model.ngeom; ++i) {
@@ -76,7 +76,7 @@ bool sorts_as_asked(const mjModel& model) {
   return true;
 }
 
-/// True if only gravity, contacts and the wrench of the motion act on the moving bodies.
+/// Returns true if only gravity, contacts and the wrench of the motion act on the moving bodies.
 bool moves_freely(const mjModel& model) {
   const auto none = [](const mjtNum* numbers, int count) {
     return std::all_of(numbers, numbers + count, [](mjtNum number) { return number == 0.0; });
@@ -93,12 +93,12 @@ void spare_work(mjModel& model) {
   model.opt.enableflags |= mjENBL_SLEEP;
   std::fill(model.tree_sleep_policy, model.tree_sleep_policy + model.ntree, static_cast<int>(mjSLEEP_NEVER));
   model.opt.disableflags |= mjDSBL_ISLAND;  // the robot is a single island
-  // a height field is below every strut, so its bounding box is not tested, as for a plane
+  // a height field is below every strut, so its bounding box is not tested; planes have no bounding box either
   for (int i = 0; i < model.ngeom; ++i) {
     if (model.geom_type[i] == mjGEOM_HFIELD)
       std::fill(model.geom_aabb + 6 * i + 3, model.geom_aabb + 6 * i + 6, mjMAXVAL);
   }
-  // for few pairs, a tree over the world's geoms costs more than it saves, unless it contains only near geoms
+  // for few pairs, a tree over the world's geoms costs more than it saves, unless the tree contains only near geoms
   if (count_pairs(model) <= kFewPairs && !(NearGeoms::serves(model) && sorts_as_asked(model))) {
     model.opt.disableflags |= mjDSBL_MIDPHASE;
   }

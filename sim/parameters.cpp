@@ -26,7 +26,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
-/// Parameters with these names are counts or list numbers, so they must be whole.
+/// Parameters with these names are counts or list numbers, so their values must be whole.
 bool is_whole(std::string_view name) {
   return name.ends_with("_count") || name == "shape";
 }

@@ -11,7 +11,7 @@
 
 namespace tumble::sim {
 
-/// A number that a component of a situation takes, with default, bounds, unit and meaning. Switches are numbers: 0 off,
+/// A number that a component of a situation takes, with default, limits, unit and meaning. Switches are numbers: 0 off,
 /// 1 on.
 struct Parameter {
   std::string_view name;  ///< ends in its unit if it has one: slope_rad, mass_kg
@@ -33,13 +33,13 @@ constexpr std::array<Parameter, M + N> joined(const std::array<Parameter, M>& fi
 }
 
 /// Thrown for a value out of bounds, an unknown name or an unknown component. The message states place, value and
-/// bound.
+/// limit.
 class InvalidSituation : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Numbers by name; complete and within bounds if returned by `resolve`.
+/// Numbers by name; `resolve` returns a set that is complete and within limits.
 class Values {
  public:
   void set(const std::string& name, double value) { numbers_[name] = value; }
@@ -53,8 +53,8 @@ class Values {
   std::map<std::string, double> numbers_;
 };
 
-/// Fills in defaults. Refuses unknown names (suggesting the nearest known one), NaN and values out of bounds. Messages
-/// start with `place`, for example "world.hill".
+/// Fills in defaults. Rejects unknown names (suggesting the nearest known name), NaN and values outside their limits.
+/// Error messages start with `place`, for example "world.hill".
 Values resolve(const std::string& place, const Values& given, std::span<const Parameter> known);
 
 /// Returns the known name nearest to `name` by edit distance; empty if none is similar.

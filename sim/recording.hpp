@@ -9,12 +9,12 @@
 
 #include "sim/sensors.hpp"
 
-/// Results of a simulation, with the truth separate from the sensors: data types only. Frames and units are as in
+/// Data types of a simulation's results, with the truth separate from the sensors. Frames and units are as in
 /// docs/design.md: W world (z up), B body at the centre of mass, I an IMU, L the lidar, X any other sensor, G the
-/// sphere's geometric centre; SI; int64 nanoseconds from the start.
+/// sphere's geometric centre; SI units; int64 nanoseconds from the start.
 namespace tumble::sim {
 
-/// State of contact, over a window that bridges chatter.
+/// State of contact, over a window that bridges short interruptions of contact.
 enum class ContactLabel : std::uint8_t { air, grip, slip, slide };
 
 /// One contact at one instant of the truth.
@@ -27,7 +27,7 @@ struct ContactTruth {
   std::int32_t surface_id = -1;
 };
 
-/// True quantities at one IMU, for the same windows and time stamps as its readings.
+/// True quantities at one IMU, for the averaging windows and time stamps of the readings.
 struct ImuTruth {
   std::string name;
   Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();  ///< true mounting
@@ -37,8 +37,8 @@ struct ImuTruth {
   std::vector<Eigen::Vector3d> accel_unclipped_m_s2;
   std::vector<Eigen::Vector3d> gyro_bias_rad_s;  ///< bias at each sample
   std::vector<Eigen::Vector3d> accel_bias_m_s2;
-  /// Sensing elements (sim/imu/elements.hpp): the three rows of the matrix M, behind which saturation acts; empty if
-  /// upright.
+  /// Sensing elements (sim/imu/elements.hpp): the three rows of the misalignment matrix M, in whose axes saturation
+  /// acts; empty if the elements are aligned.
   std::vector<Eigen::Vector3d> gyro_elements, accel_elements;
   Eigen::Vector3d gyro_element_offset_rad_s = Eigen::Vector3d::Zero();
   Eigen::Vector3d accel_element_offset_m_s2 = Eigen::Vector3d::Zero();

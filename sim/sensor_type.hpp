@@ -23,15 +23,16 @@ struct SensorContext {
   int threads;
 };
 
-/// A kind of sensor: its parameters, and the function that adds its readings and truth to a recording with the body's
-/// truth. An optional check refuses resolved numbers that contradict each other; its message starts with `place`.
+/// A kind of sensor: its parameters, and the function that adds the sensor's readings and truth to a recording with the
+/// body's truth. An optional check rejects resolved numbers that contradict each other, with a message that starts with
+/// `place`.
 struct SensorType {
   ComponentType component;
   void (*simulate)(const SensorContext& context, Recording& recording);
   void (*check)(const Values& values, const std::string& place) = nullptr;
 };
 
-/// All kinds in the order of registration.
+/// Returns all kinds of sensor in the order of registration.
 std::span<const SensorType* const> all_sensor_types();
 /// Throws InvalidSituation for an unknown name, with the nearest known kind.
 const SensorType& find_sensor_type(std::string_view kind);

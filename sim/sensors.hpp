@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-/// Sensor data, which is all that an estimator may see: data types only. Frames and units are as in docs/design.md: B
-/// body at the centre of mass, I an IMU, L the lidar, X any other sensor; SI; int64 nanoseconds from the start.
+/// Data types of sensor data, which is all that an estimator receives. Frames and units are as in docs/design.md: B
+/// body at the centre of mass, I an IMU, L the lidar, X any other sensor; SI units; int64 nanoseconds from the start.
 namespace tumble::sim {
 
-/// Readings of one IMU, as the device delivers them.
+/// Readings of one IMU, as the device delivers the readings.
 struct ImuRecord {
   std::string name;    ///< name of the sensor in the situation: "imu"
   std::string device;  ///< for example "mti30"
@@ -30,7 +30,7 @@ struct ImuRecord {
                                                               ///< unknown
 };
 
-/// Knowledge of the instants of points within a sweep.
+/// Knowledge about the time of points within a sweep.
 enum class PointTimes : std::uint8_t {
   measured,    ///< each point has its own time in offset_ns
   not_skewed,  ///< all points belong to the start of the sweep, because the lidar is a flash or the sweep is deskewed;
@@ -38,7 +38,7 @@ enum class PointTimes : std::uint8_t {
   unknown      ///< the sweep is skewed in an unknown way; offset_ns is 0
 };
 
-/// Returns of one lidar, sweep after sweep; firings without a hit leave no point.
+/// Returns of one lidar, sweep after sweep; firings without a hit have no point.
 struct LidarRecord {
   std::string name;
   std::string device;
@@ -80,7 +80,7 @@ struct SeriesRecord {
   std::vector<Constant> constants;  ///< needed to interpret the readings
 };
 
-/// All data that an estimator may see.
+/// All data that an estimator receives.
 struct Sensors {
   std::string robot;           ///< "rig", "sphere", "pendulum"; empty if the robot is unknown
   double sphere_radius_m = 0;  ///< 0 if the robot is not a sphere

@@ -9,12 +9,12 @@
 
 namespace tumble::sim {
 
-/// Thrown if a draw is rejected. The message states the reason and the simulated time; sweeps count such draws
-/// separately. Reasons:
+/// Thrown if a simulated run is rejected. The message states the reason and the simulated time; sweeps count rejected
+/// runs separately. A run is rejected for any of these reasons:
 /// - a warning of the engine, or a state that is not finite;
-/// - faster than 5 mm/s after the second of settling before the start;
-/// - beyond the half extent of its world, or 60 m below its origin;
-/// - never 5 cm away from the start;
+/// - a speed above 5 mm/s after the second of settling before the start;
+/// - a position beyond the half extent of the world, or 60 m below the world's origin;
+/// - a robot that never moves 5 cm away from the start;
 /// - a sensor more than 1 cm below a height field for longer than 0.05 s (sim/truth/above_ground.hpp).
 class SimulationFailure : public std::runtime_error {
  public:
@@ -22,12 +22,13 @@ class SimulationFailure : public std::runtime_error {
 };
 
 /// Simulates one situation: rigid bodies and contact (MuJoCo, RK4, 0.5 ms), IMU readings, lidar sweeps, truth.
-/// `threads` is for the lidar; the result does not depend on it. Throws InvalidSituation if the robot lacks a sensor's
-/// site or the motion is impossible in this world; throws SimulationFailure for a rejected draw.
+/// `threads` is the number of threads for the lidar; the result does not depend on this number. Throws InvalidSituation
+/// if the robot lacks a sensor's site or the motion is impossible in this world; throws SimulationFailure for a
+/// rejected run.
 Recording simulate(const BuiltSituation& built, int threads = 1);
 
-/// Returns the pose of the robot's body frame at the start of a situation, before it settles into its contacts; nothing
-/// is simulated. Throws InvalidSituation if the motion is impossible in this world.
+/// Returns the pose of the robot's body frame at the start of a situation, before the body settles into its contacts;
+/// nothing is simulated. Throws InvalidSituation if the motion is impossible in this world.
 Eigen::Isometry3d start_pose(const BuiltSituation& built);
 
 }  // namespace tumble::sim

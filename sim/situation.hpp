@@ -20,13 +20,13 @@ struct SensorSpec {
   std::string site;    ///< site of the robot's MJCF at which the sensor is mounted
   Values values;       ///< numbers of the device (data sheet with the scenario's changes)
   /// Calibration minus design: x_m y_m z_m (B axes), roll_rad pitch_rad yaw_rad (small angles, I axes). An offset of
-  /// the centre of mass adds to this error.
+  /// the centre of mass adds to the error of the calibration.
   Values mount_error;
   bool operator==(const SensorSpec&) const = default;
 };
 
-/// A draw: one situation with every number fixed. Equal situations give bit-identical recordings. Defaults may be
-/// omitted; `resolve` completes and checks the situation.
+/// One situation with every number fixed. Equal situations give bit-identical recordings. Defaults may be omitted;
+/// `resolve` completes and checks the situation.
 struct Situation {
   std::string scenario;  ///< name of the scenario from which it was drawn
   std::uint64_t seed = 0;
@@ -38,7 +38,7 @@ struct Situation {
   bool operator==(const Situation&) const = default;
 };
 
-/// Registries, in the order of registration.
+/// Return the registries, in the order of registration.
 std::span<const ComponentType> world_types();
 std::span<const ComponentType> robot_types();
 std::span<const ComponentType> motion_types();
@@ -46,15 +46,15 @@ std::span<const ComponentType> sensor_types();
 /// Parameters of SensorSpec::mount_error.
 std::span<const Parameter> mount_error_parameters();
 
-/// A complete and checked situation. Only `resolve` creates one, so receivers need no further checks. It can be read as
-/// a Situation. To change a number, copy the Situation, change the copy and resolve it.
+/// A complete and checked situation. Only `resolve` creates this type, so receivers need no further checks. The object
+/// can be read as a Situation. To change a number, copy the Situation, change the copy and resolve the copy.
 class ResolvedSituation {
  public:
   const Situation* operator->() const { return &situation_; }
   operator const Situation&() const& { return situation_; }
   operator Situation() && { return std::move(situation_); }
 
-  /// Returns the same situation without the sensors for which `left_out` is true.
+  /// Returns the situation without the sensors for which `left_out` is true.
   ResolvedSituation without_sensors(const std::function<bool(const SensorSpec&)>& left_out) const;
 
   bool operator==(const ResolvedSituation&) const = default;
@@ -66,7 +66,8 @@ class ResolvedSituation {
   Situation situation_;
 };
 
-/// Completes every component with its defaults and checks it. Throws InvalidSituation with the place of the error.
+/// Completes every component with its defaults and checks the component. Throws InvalidSituation with the location of
+/// the error.
 ResolvedSituation resolve(const Situation& situation);
 
 }  // namespace tumble::sim

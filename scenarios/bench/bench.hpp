@@ -9,39 +9,41 @@
 #include "scenarios/sweep/results.hpp"
 #include "scenarios/sweep/sweep.hpp"
 
-/// Compares methods with stored results on fixed suites, one per kind of method.
+/// Compares the stored results of methods on fixed suites; each kind of method has one suite.
 namespace tumble::scenarios {
 
-/// Returns the name of the bench suite of a kind: "bench_rate_v1". A change of draws, limits or classes gets a new
-/// version.
+/// Returns the name of the bench suite of a kind of method, for example "bench_rate_v1". The version in the name
+/// increases if the suite's simulated runs, limits or classes change.
 std::string bench_suite_name(Kind kind);
 
-/// Returns the digest of the suite's draws with classes and its time limit. Only results with equal digests are
+/// Returns the digest of the suite's scenarios, seeds, classes and time limit. Only results with equal digests are
 /// comparable.
 std::string bench_suite_digest(const Suite& suite);
 
-/// Collects the results of one method from a sweep of the suite, except command and date. Throws BadInput if a draw has
-/// no outcome.
+/// Collects the results of one method from a sweep of the suite; the caller fills in command and date. Throws BadInput
+/// if a simulated run of the suite has no outcome.
 BenchResult collect_bench_result(const Results& results, const Suite& suite, const MethodInfo& method);
 
-/// Throws BadInput unless the result belongs to this suite and has all its draws.
+/// Throws BadInput unless the result belongs to this suite and has an outcome for every simulated run.
 void require_of_suite(const BenchResult& result, const Suite& suite);
 
-/// Returns the first draw with different recordings in both results, which are then not comparable; empty if none.
+/// Returns the first simulated run whose recordings differ between the two results, or an empty text. Two results are
+/// only comparable if all recordings agree.
 std::string other_recording(const BenchResult& a, const BenchResult& b);
 
-/// One metric of one method over one class. Draws that are not `ok` or have no value rank worst. A draw does not count
-/// if another result is `ok` without a value (nothing clipped).
+/// Median and rank of one metric of one method over one class of simulated runs. Simulated runs whose status is not
+/// `ok`, or that have no value, rank worst. A simulated run is skipped if another method ended with `ok` but has no
+/// value, for example because no reading was clipped.
 struct BenchCell {
   std::size_t draws = 0, lost = 0;
   double median = 0.0;  ///< infinite if half of the draws failed; NaN without draws
 };
 
-/// `group` empty: all classes. `beside`: the compared results, with or without this one.
+/// An empty `group` selects all classes. `beside` contains the results to compare with, which may include `result`.
 BenchCell bench_cell(const BenchResult& result, const std::string& metric, const std::string& group,
                      std::span<const BenchResult> beside);
 
-/// Draws on which `result` is better than `baseline`, among those that count for both.
+/// Number of simulated runs on which `result` is better than `baseline`, among the runs that count for both methods.
 struct BenchWins {
   std::size_t better = 0, draws = 0;
 };

@@ -13,7 +13,7 @@
 
 namespace tumble::scenarios {
 
-/// Result of one method on one draw of a bench suite.
+/// Result of one method on one simulated run of a bench suite.
 struct BenchDraw {
   std::string scenario;
   std::uint64_t seed = 0;
@@ -24,7 +24,7 @@ struct BenchDraw {
   bool is(const BenchDraw& other) const { return scenario == other.scenario && seed == other.seed; }
 };
 
-/// Result of one method on a bench suite, published as one line of JSON. Schema: README.md.
+/// Result of one method on a bench suite, published as one line of JSON. README.md describes the JSON schema.
 struct BenchResult {
   std::string suite, suite_digest;  ///< see bench.hpp
   Kind kind = Kind::rate;
@@ -37,20 +37,21 @@ struct BenchResult {
   const BenchDraw* find(const BenchDraw& draw) const;
 };
 
-/// Returns one line of JSON without newline.
+/// Returns the result as one line of JSON without a newline.
 std::string to_line(const BenchResult& result);
 
-/// Parses such a line. Throws BadInput, with a message that starts with `place`: not JSON, another format or version, a
-/// missing key or wrong type, an unknown kind or status, a repeated draw.
+/// Parses one line of JSON that `to_line` wrote. Throws BadInput, with a message that starts with `place`, for text
+/// that is not JSON, another format or version, a missing key or wrong type, an unknown kind or status, or a repeated
+/// simulated run.
 BenchResult parse_bench_result(const std::string& line, const std::string& place);
 
 /// Returns the path of a suite's stored results: SUITE.jsonl.
 std::filesystem::path bench_results_file(const DataRoot& data, const std::string& suite);
 
-/// Returns the results in a file, one per line, ignoring empty lines; none if the file does not exist.
+/// Returns the results in a file, one per line; empty lines are ignored, and a missing file gives an empty list.
 std::vector<BenchResult> read_bench_results(const std::filesystem::path& file);
 
-/// Stores results in the file; each replaces the one of its method.
+/// Stores results in the file; each new result replaces the stored result of the same method.
 void store_bench_results(const std::filesystem::path& file, const std::vector<BenchResult>& results);
 
 }  // namespace tumble::scenarios

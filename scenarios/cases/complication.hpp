@@ -10,8 +10,8 @@
 
 namespace tumble::scenarios {
 
-/// Something that a draw could omit: a sensor error, stones, a spin. Contains numbers of the scenario and their ideal
-/// values.
+/// Removable detail of a simulated run: a sensor error, stones, a spin. A complication consists of numbers of the
+/// scenario and their ideal values.
 struct Complication {
   std::string name;                                     ///< "sensors.imu: white noise", "world: rocks"
   std::vector<std::pair<std::string, double>> without;  ///< place (fixed_number.hpp) and ideal value of the numbers
@@ -21,11 +21,11 @@ struct Complication {
 };
 
 /// Returns what can be simplified in a scenario with fixed numbers (fixed_scenario.hpp), ordered by part: world, robot,
-/// motion, then each sensor's errors. Related complications are adjacent. Registered in one line each
-/// (complication.cpp). Omits what is already ideal.
+/// motion, then each sensor's errors. Related complications are adjacent in the list. Each complication is registered
+/// by one line of complication.cpp. Numbers that are already ideal are omitted.
 std::vector<Complication> complications(const Scenario& scenario);
 
-/// Removes this complication from the scenario.
+/// Sets the numbers of this complication to their ideal values in the scenario.
 void take_away(const Complication& complication, Scenario& scenario);
 
 }  // namespace tumble::scenarios

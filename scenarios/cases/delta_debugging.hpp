@@ -6,11 +6,11 @@
 #include <optional>
 #include <vector>
 
-/// Searches for the smallest failing configuration. The caller runs the trials; an empty answer means that the budget
-/// is used up, and the search ends with its best result.
+/// Searches for the smallest failing configuration. The caller runs the trials; if the caller returns an empty value,
+/// the budget is used up and the search ends with its best result.
 namespace tumble::scenarios {
 
-/// Returns true if the kept items (ascending indices) still fail.
+/// Returns true if a run with only the kept items (ascending indices) still fails.
 using FailsWith = std::function<std::optional<bool>(const std::vector<std::size_t>& kept)>;
 
 struct LeastSet {
@@ -19,14 +19,15 @@ struct LeastSet {
   bool complete = false;            ///< all of `kept` are needed: the set is 1-minimal
 };
 
-/// Returns a 1-minimal failing subset of the items 0 to `count` - 1, which fail together, by delta debugging (Zeller
-/// and Hildebrandt, IEEE Trans. Software Eng. 28:183, 2002, algorithm ddmin) with complements only. First removes all,
-/// then halves of the rest, quarters, down to single items, and repeats these until none can be removed. Related items
-/// should be adjacent. If failing is not monotone, smaller sets may exist. About 2 log2(count) trials for one needed
-/// item, at most O(count^2), each once.
+/// Returns a 1-minimal subset of the items 0 to `count` - 1 that still fails, where all items together fail. The search
+/// is delta debugging (Zeller and Hildebrandt, IEEE TSE 28:183, 2002, algorithm ddmin) with complements only. The
+/// search first removes all items, then halves of the rest, quarters, down to single items, and repeats until no item
+/// can be removed. The caller should order the items so that related items are adjacent. If adding items can repair a
+/// failure, smaller failing sets may exist. The search needs about 2 log2(count) trials for one needed item and at most
+/// O(count^2); no trial is repeated.
 LeastSet least_failing_set(std::size_t count, const FailsWith& fails);
 
-/// Returns true if the run with this value still fails.
+/// Returns true if a run with this value still fails.
 using FailsAt = std::function<std::optional<bool>(double value)>;
 
 struct LeastNumber {
@@ -35,8 +36,8 @@ struct LeastNumber {
   bool complete = false;  ///< the two are within `resolution`
 };
 
-/// Bisects between `failing`, which fails, and `ideal`, which is assumed not to fail. Finds the failing value closest
-/// to `ideal` within `resolution` (above 0). `whole`: tries integers only.
+/// Bisects between `failing`, which fails, and `ideal`, which is assumed to succeed. Returns the failing value closest
+/// to `ideal`, within `resolution` (above 0). If `whole` is true, the search tries integers only.
 LeastNumber least_failing_number(double failing, double ideal, double resolution, bool whole, const FailsAt& fails);
 
 }  // namespace tumble::scenarios

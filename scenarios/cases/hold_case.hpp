@@ -6,21 +6,21 @@
 
 #include "scenarios/cases/shrink.hpp"
 
-/// Named cases: stored failing draws with the expected results of methods.
+/// A named case stores a failing simulated run with the expected result of each method.
 namespace tumble::scenarios {
 
-/// Returns the case of a shrunk draw, with `name` as its scenario name. It expects that `method` (a name for
-/// find_methods) still fails. `command` is the command that created it.
+/// Returns the named case of a shrunk run, with `name` as its scenario name. The case states that `method` (a name for
+/// find_methods) is expected to fail. `command` is the command that created the case.
 Scenario named_case_of(const Shrunk& shrunk, const std::string& name, const std::string& method, const Failure& failure,
                        const std::string& version, const std::string& command);
 
-/// Returns the failure criteria of an expectation.
+/// Returns the failure criteria that an expectation states.
 Failure failure_of(const Expectation& expected);
 
-/// Allowed factor between the metric of a case that still fails and its accepted value.
+/// Allowed factor between the measured and the accepted value of a failing case's metric.
 inline constexpr double kCaseFactor = 2.0;
 
-/// Result of one expectation on an outcome.
+/// Result of the comparison of one expectation with an outcome.
 struct CaseResult {
   std::string name, method;
   Expectation expected;
@@ -31,12 +31,12 @@ struct CaseResult {
   std::string fault;    ///< description of the fault; empty if none
 };
 
-/// Checks an outcome in both directions. A case that should pass must not fail. A failing case must fail with the same
-/// status and its metric within `kCaseFactor` of the accepted value. An improvement thus also fails the gate, so that
-/// it is accepted and then kept.
+/// Checks that an outcome is neither worse nor better than expected. A case that is expected to pass must not fail. A
+/// case that is expected to fail must have the accepted status and a metric within `kCaseFactor` of the accepted value.
+/// An improvement also fails the check, so that the developer updates the accepted value.
 CaseResult hold_case(const std::string& name, const Expectation& expected, const Outcome& outcome);
 
-/// Returns the expectation with this outcome as the accepted result.
+/// Returns the expectation with the status and value of this outcome as the accepted result.
 Expectation accepted(const Expectation& expected, const Outcome& outcome);
 
 /// Throws BadInput if a case names an unknown method, metric or status.

@@ -7,18 +7,18 @@
 
 namespace tumble::scenarios {
 
-/// How an outcome failed: by status, else by the requested metric, else by a verdict (`map_failed`). Distinguishes
-/// simpler draws that fail for another reason. Unlike with Failure, a run without the metric does not fail by it: a
-/// draw without clipping has no error at clipped samples.
+/// Describes how an outcome failed: by status, else by the requested metric, else by a verdict (`map_failed`). The
+/// description excludes simpler runs that fail for another reason. Unlike with Failure, a run without the metric counts
+/// as passed: a run without clipping has no error at clipped samples.
 class SameFailure {
  public:
   /// Throws BadInput if `outcome` does not fail, or was `killed`.
   SameFailure(const Failure& failure, const Outcome& outcome);
 
   bool holds(const Outcome& outcome) const;
-  /// Returns "diverged", "map_failed", "translation_error_end_m beyond 0.5".
+  /// Returns a description such as "diverged", "map_failed" or "translation_error_end_m beyond 0.5".
   std::string describe() const;
-  /// Returns the metric of the failure; empty if it is the status.
+  /// Returns the metric of the failure, or an empty text if the status is the failure.
   const std::string& metric() const { return metric_; }
 
  private:

@@ -34,7 +34,7 @@ std::string text_of(double value) {
   return text.str();
 }
 
-/// A simulated draw, its surface for map scores, and a method to run on it.
+/// A simulated run, its true surface for map scores, and a method to run on it.
 class Run {
  public:
   Run(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, Kind kind)
@@ -52,7 +52,7 @@ class Run {
 
 using Indices = std::vector<std::size_t>;
 
-/// Returns the scenario with only these complications.
+/// Returns the scenario with only the complications in `kept`.
 Scenario with_only(const std::vector<Complication>& all, const Indices& kept, Scenario scenario) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (!std::binary_search(kept.begin(), kept.end(), i)) take_away(all[i], scenario);
@@ -60,7 +60,7 @@ Scenario with_only(const std::vector<Complication>& all, const Indices& kept, Sc
   return scenario;
 }
 
-/// Describes what `kept` lacks: one name, or a count.
+/// Describes which complications `kept` lacks: the name of a single complication, or a count.
 std::string difference(const std::vector<Complication>& all, const Indices& left, const Indices& kept) {
   Indices gone;
   std::set_difference(left.begin(), left.end(), kept.begin(), kept.end(), std::back_inserter(gone));
@@ -97,7 +97,8 @@ class Shrinking {
   }
 
  private:
-  /// Returns true if a simpler draw fails like the first, and then continues from it. Empty if the budget is used up.
+  /// Returns true if a simpler scenario fails like the original; the search then continues from the simpler scenario.
+  /// Returns empty if the budget is used up.
   std::optional<bool> try_out(const Scenario& simpler, const std::string& what, Outcome* outcome_out = nullptr) {
     if (shrunk_.runs >= options_.budget) return std::nullopt;
     bool fails = false;
@@ -135,11 +136,11 @@ class Shrinking {
       return try_out(shorter, text_of(length_s) + " s");
     };
     const double now_s = shrunk_.scenario.duration_s.numbers.front();
-    // Search again from the current duration, because other complications are removed now.
+    // The search starts again from the current duration, because other complications are removed by now.
     return least_failing_number(now_s, 0.0, kLengthResolution * drawn_s, false, fails).complete;
   }
 
-  /// Removes complications; the needed ones remain in `needed_`.
+  /// Removes complications; complications that cannot be removed are stored in `needed_`.
   bool simplify() {
     const std::vector<Complication> all = complications(shrunk_.scenario);
     const Scenario whole = shrunk_.scenario;

@@ -8,10 +8,10 @@
 
 #include "scenarios/sweep/triage.hpp"
 
-/// Makes a failing draw shorter and simpler, to show the cause of the failure.
+/// Makes a failing simulated run shorter and simpler, to show the cause of the failure.
 namespace tumble::scenarios {
 
-/// One trial of the search: a simpler draw, simulated and estimated.
+/// One trial of the search: a simpler scenario, simulated and estimated.
 struct ShrinkTrial {
   int run = 0;        ///< from 1, the original draw
   std::string what;   ///< "4.5 s", "without world: rocks", "without 12 of 26"
@@ -21,8 +21,9 @@ struct ShrinkTrial {
 
 struct ShrinkOptions {
   Failure failure;
-  /// A method of the same kind that must not fail where the tested one does, so that impossible draws are excluded.
-  /// Null: none. Not used if it fails on the original draw.
+  /// Method of the same kind that must not fail where the tested method fails. A failure of this control excludes
+  /// scenarios that no method can solve. Null disables the control. The control is not used if it fails on the original
+  /// run.
   MethodPointer control;
   int budget = 60;           ///< number of simulated draws, at least 1
   double timeout_s = 300.0;  ///< limit of one method run
@@ -50,14 +51,15 @@ struct Shrunk {
   bool controlled = false;  ///< the control method failed on none of the kept draws
 };
 
-/// Shrinks a draw on which `method` fails. First reduces the duration, which makes further trials cheap. Then removes
-/// complications (complication.hpp) by delta debugging (delta_debugging.hpp), reduces sizes and counts of the rest, and
-/// reduces the duration again. Each trial is simulated and estimated, and counts if it fails like the original
-/// (same_failure.hpp). Deterministic; other random effects keep the seed. Simpler draws that can only be reached via a
-/// passing draw are not found.
+/// Simplifies a simulated run on which `method` fails, as far as the method still fails. The search first reduces the
+/// duration, which makes further trials cheap. Then the search removes complications (complication.hpp) by delta
+/// debugging (delta_debugging.hpp), reduces the remaining sizes and counts, and reduces the duration again. Each trial
+/// is simulated and estimated, and is accepted if it fails like the original run (same_failure.hpp). The search is
+/// deterministic; all trials use the seed of the original run. The search misses simpler runs that can only be reached
+/// through a passing run.
 ///
-/// Throws what simulate_draw throws for the original draw; BadInput if it does not fail, or if method or control do not
-/// apply.
+/// Throws the exceptions of simulate_draw for the original run; throws BadInput if the original run does not fail, or
+/// if method or control do not apply.
 Shrunk shrink(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, const Method& method,
               const ShrinkOptions& options);
 

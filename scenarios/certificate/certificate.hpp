@@ -12,7 +12,7 @@
 
 namespace tumble::scenarios {
 
-/// One measured number of the certificate, with its bounds.
+/// One measured number of the certificate with its accepted range.
 struct CertificateEntry {
   std::string row;      ///< quantity: "free_flight_energy"
   std::string subject;  ///< object: "rig", "hill", "mti30 gyro"
@@ -26,11 +26,11 @@ struct CertificateEntry {
   bool operator==(const CertificateEntry&) const = default;
 };
 
-/// Measured deviation of this build from physics and from its data sheets.
+/// Measured deviations of this build's simulation from physics and from the data sheets.
 struct Certificate {
   std::string build;  ///< build_id()
   std::vector<CertificateEntry> entries;
-  bool passes() const;  ///< True if there is at least one entry and all pass.
+  bool passes() const;  ///< Returns true if there is at least one entry and all entries pass.
   bool operator==(const Certificate&) const = default;
 };
 
@@ -40,15 +40,15 @@ struct CertificateInput {
   std::filesystem::path program;  ///< the program `tumble`, started to check the digest in a new process
 };
 
-/// A row of the certificate, one file and one line of registration each. `measure` uses the certificate's default
-/// setup; rows.hpp has versions with a custom setup.
+/// Registered measurement of the certificate; each has a file and a line of registration. `measure` uses the default
+/// setup; rows.hpp declares versions with a custom setup.
 struct CertificateRow {
   std::string name;
   std::string doc;
   std::vector<CertificateEntry> (*measure)(const CertificateInput& input);
 };
 
-/// Returns all rows, in order.
+/// Returns all registered measurements, in order.
 std::span<const CertificateRow> certificate_rows();
 
 struct CertifyOptions {
@@ -57,9 +57,9 @@ struct CertifyOptions {
   std::function<void(const CertificateRow&, double elapsed_s)> on_row;  ///< called before each row
 };
 
-/// Measures all rows in this process, in about a minute on one core. A failed measurement gives an entry with NaN,
-/// which does not pass, and the reason. Throws BadInput (unknown row, suggests the nearest; missing models) and
-/// sim::InvalidSituation.
+/// Runs all measurements in this process, in about a minute on one core. A failed measurement gives an entry with value
+/// NaN, which does not pass, and the reason. Throws BadInput for an unknown name (suggests the nearest name) or missing
+/// models, and sim::InvalidSituation.
 Certificate measure_certificate(const CertificateInput& input, const CertifyOptions& options);
 
 }  // namespace tumble::scenarios

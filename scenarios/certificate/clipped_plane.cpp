@@ -85,7 +85,7 @@ ClippedPlane fit_clipped_plane(const SensedTriad& triad, int j, int& samples) {
   }
   samples = std::min(count[0], count[1]);
   if (samples < kFewestClipped) return {std::nan(""), std::nan(""), std::nan(""), std::nan("")};
-  // one row per sample: the readings of the other two axes, the sign, and 1
+  // each sample has one matrix row: the readings of the two other axes, the sign, and 1
   Eigen::MatrixX4d known(clipped.size(), 4);
   Eigen::VectorXd read(clipped.size());
   for (std::size_t i = 0; i < clipped.size(); ++i) {

@@ -21,7 +21,8 @@ struct RestReadings {
   std::vector<Eigen::Vector3d> gyro, accel;
 };
 
-/// Returns the device with noise and bias only: filters need a higher rate, and other errors are constant at rest.
+/// Returns the device with noise and bias only, because filters need a higher rate and other errors are constant at
+/// rest.
 sim::SensorSpec resting(const DataSheet& sheet) {
   sim::SensorSpec sensor = imu_of_sheet(sheet);
   for (const char* off :
@@ -81,7 +82,8 @@ struct Stated {
   }
 };
 
-/// Returns measured over stated deviation at an averaging time; bounded by the statistical interval of three axes.
+/// Returns the ratio of measured to stated deviation at an averaging time; the accepted range is the statistical
+/// interval of three axes.
 CertificateEntry entry(const std::string& row, const std::string& subject, const std::string& law,
                        const sim::AllanPoint& measured, double stated, sim::AllanNoise noise) {
   constexpr double kSigmas = 4.0;  // none of about twenty entries fails by chance

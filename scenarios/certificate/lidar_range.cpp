@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kRoomHalf_m = 6.0;
 
-/// Returns a robot that moves through a bare room with a lidar without range error.
+/// Returns a robot that moves through an empty room with a lidar without range error.
 sim::Situation moving_lidar(const CertificateInput& input, const std::string& robot, const std::string& device) {
   sim::Situation situation = bare_room(robot);
   situation.duration_s = 2.0;
@@ -35,7 +35,7 @@ sim::Situation moving_lidar(const CertificateInput& input, const std::string& ro
   return situation;
 }
 
-/// Returns the distance of a point from its surface's plane; negative if the surface is not a plane of the room.
+/// Returns the distance of a point from the plane of its surface; negative if the surface is not a plane of the room.
 double off_plane_m(const std::string& surface, const Eigen::Vector3d& p_W_m) {
   if (surface == "floor") return std::abs(p_W_m.z());
   if (surface == "wall_front") return std::abs(p_W_m.x() - kRoomHalf_m);

@@ -10,7 +10,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns a scenario for each type of world: the one with the same name, or the first.
+/// Returns a scenario for each type of world: the scenario named like the world, or the first scenario with this world.
 std::map<std::string, std::string> scenario_of_each_world(const DataRoot& data) {
   std::map<std::string, std::string> chosen;
   for (const std::string& name : scenario_names(data)) {

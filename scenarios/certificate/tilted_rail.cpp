@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sensing elements saturate along their own axes, so a saturated element keeps the readings on a plane per element and
-// sign (clipped_plane.hpp). The row draws devices, saturates their elements one at a time, fits this plane to the
-// readings and compares it with the drawn one. Planes of real devices: real_rails.cpp.
+// Sensing elements saturate along their own axes, so a saturated element keeps the readings on a plane for each element
+// and sign (clipped_plane.hpp). The measurement simulates devices with random elements and saturates one element at a
+// time. Then it fits a plane to the readings and compares the fitted plane with the simulated plane. real_rails.cpp
+// contains planes of real devices.
 #include <algorithm>
 #include <cmath>
 
@@ -29,7 +30,7 @@ sim::SensorSpec tilted(const DataSheet& sheet, const TiltedRailSetup& setup) {
   return sensor;
 }
 
-/// Difference between fitted and drawn planes.
+/// Difference between fitted and simulated saturation planes.
 struct PlaneErrors {
   double slope = 0.0, distance_share = 0.0;
   int samples = 0;  ///< for the element and sign with the fewest

@@ -8,8 +8,8 @@
 
 namespace tumble::scenarios {
 
-/// Convert the value of the key `case` from and to YAML, without loss. Reading rejects, with file and line: an unknown
-/// key, a repeated method, a missing `fails` or `holds`, and a bound without its metric.
+/// Convert the value of the YAML key `case` to and from NamedCase, without loss. Reading rejects, with file and line,
+/// an unknown key, a repeated method, a missing `fails` or `holds`, and a `worse_than` without a metric.
 NamedCase case_from_yaml(const YamlNode& node);
 std::string to_yaml(const NamedCase& named);
 

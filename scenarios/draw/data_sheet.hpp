@@ -9,7 +9,7 @@
 
 namespace tumble::scenarios {
 
-/// A sensor's data sheet, models/sensors/DEVICE.yaml: each number with value, unit and source.
+/// Data sheet of a sensor, models/sensors/DEVICE.yaml: each number has a value, a unit and a source.
 struct DataSheet {
   struct Entry {
     std::string name;
@@ -25,8 +25,8 @@ struct DataSheet {
 };
 
 std::vector<std::string> device_names(const DataRoot& data);
-/// Loads the data sheet of `device`. Throws BadInput: unknown device (suggests the nearest name), unknown key, wrong
-/// unit, number without a source, or missing number.
+/// Loads the data sheet of `device`. Throws BadInput for an unknown device (suggests the nearest name), an unknown key,
+/// a wrong unit, a missing number, or a number without a source.
 DataSheet load_data_sheet(const DataRoot& data, const std::string& device);
 
 }  // namespace tumble::scenarios

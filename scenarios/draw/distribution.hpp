@@ -8,8 +8,8 @@
 
 namespace tumble::scenarios {
 
-/// A number of a scenario: constant or random. Each number draws from its own named stream, so adding one does not
-/// change the others.
+/// A number of a scenario, either constant or random. Each number is drawn from its own named random stream, so an
+/// added number does not change the others.
 struct Distribution {
   enum class Shape { constant, uniform, normal, log_uniform, choice };
   Shape shape = Shape::constant;
@@ -19,19 +19,20 @@ struct Distribution {
   bool operator==(const Distribution&) const = default;
 };
 
-/// Returns the name used in scenario files: "log_uniform".
+/// Returns the name of the shape in scenario files, for example "log_uniform".
 const char* to_string(Distribution::Shape shape);
 
-/// Returns why no number can be drawn ("low 3 is above high 2"); empty if the distribution is valid. Rejects a
-/// truncated normal distribution that keeps less than 1 % of the probability.
+/// Returns why the distribution is invalid (for example "low 3 is above high 2"), or an empty text if it is valid.
+/// Rejects a truncated normal distribution if the limits keep less than 1 % of the probability.
 std::string find_problem(const Distribution& distribution);
 
-/// Returns numbers that draws can reach: interval ends, choices, or the constant. For a normal distribution without
-/// truncation: only its mean.
+/// Returns extreme values that a draw can have: the ends of the interval, the choices, or the constant. For a normal
+/// distribution without truncation, returns only the mean.
 std::vector<double> support_points(const Distribution& distribution);
 
-/// Draws the number of (seed, place) from sim::Stream(seed, "draw." + place). A truncated normal is redrawn until the
-/// number is within the limits. Throws BadInput if find_problem reports a problem.
+/// Draws the number for `seed` and `place` from the random stream sim::Stream(seed, "draw." + place). A truncated
+/// normal distribution is sampled again until the number is within the limits. Throws BadInput if find_problem returns
+/// a problem.
 double draw_number(const Distribution& distribution, std::uint64_t seed, std::string_view place);
 
 }  // namespace tumble::scenarios

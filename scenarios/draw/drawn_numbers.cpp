@@ -15,7 +15,7 @@ void add(const std::string& place, const std::map<std::string, Distribution>& nu
 
 }  // namespace
 
-// The places must match those of draw_given.cpp; a test compares them.
+// The places must match the places in draw_given.cpp; a test compares both.
 std::vector<DrawnNumber> drawn_numbers(const Scenario& scenario) {
   std::vector<DrawnNumber> out;
   add("duration_s", scenario.duration_s, out);

@@ -9,15 +9,15 @@
 
 namespace tumble::scenarios {
 
-/// A number of a scenario that differs between draws.
+/// Number of a scenario that depends on the seed.
 struct DrawnNumber {
   std::string place;  ///< stream name: "world.slope_rad", "sensors.imu.mount_error.x_m"
   Distribution distribution;
-  /// Returns the number for draw `seed` without resolving or simulating that draw.
+  /// Returns the number for `seed` without resolving or simulating the scenario.
   double of(std::uint64_t seed) const { return draw_number(distribution, seed, place); }
 };
 
-/// Returns all random numbers of the scenario in the file's order; constants are omitted.
+/// Returns all random numbers of the scenario, in the order of the file.
 std::vector<DrawnNumber> drawn_numbers(const Scenario& scenario);
 
 }  // namespace tumble::scenarios

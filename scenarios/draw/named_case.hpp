@@ -8,7 +8,7 @@
 
 namespace tumble::scenarios {
 
-/// Accepted result of one method on a named case.
+/// Expected result of one method on a named case.
 struct Expectation {
   std::string method;                ///< "slam/tumble"
   bool fails = false;                ///< whether the method is expected to fail
@@ -20,8 +20,8 @@ struct Expectation {
   bool operator==(const Expectation&) const = default;
 };
 
-/// The key `case` of a file in scenarios/regressions: metadata next to the numbers of its one draw. Methods, metrics
-/// and statuses are plain texts here; scenarios/cases checks that they exist.
+/// Value of the key `case` in a file of scenarios/regressions: the origin and the expected results of one simulated
+/// run. Methods, metrics and statuses are plain texts here; scenarios/cases checks that they exist.
 struct NamedCase {
   std::string scenario;    ///< scenario from which the case was drawn
   std::uint64_t seed = 0;  ///< seeds everything random beyond the listed numbers

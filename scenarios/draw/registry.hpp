@@ -9,7 +9,7 @@
 
 namespace tumble::scenarios {
 
-/// Component types that scenario files and data sheets are checked against.
+/// Component types that scenario files and data sheets may name.
 struct Registry {
   std::span<const sim::ComponentType> worlds;
   std::span<const sim::ComponentType> robots;
@@ -17,11 +17,11 @@ struct Registry {
   std::span<const sim::ComponentType> sensors;
   std::span<const sim::Parameter> mount_error;
 
-  /// Returns the types of this build.
+  /// Returns the component types that this build simulates.
   static Registry of_simulation();
 };
 
-/// Returns the type with this name, or null.
+/// Returns the component type with this name, or null.
 const sim::ComponentType* find_type(std::span<const sim::ComponentType> types, const std::string& name);
 /// Returns the parameter with this name, or null.
 const sim::Parameter* find_parameter(std::span<const sim::Parameter> parameters, const std::string& name);

@@ -24,11 +24,12 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr std::uintmax_t kLargestFile = 4u << 20;
-/// Identifiers become file names. A file name has at most 255 bytes, including a seed and an extension.
+/// Identifiers become file names, so their length is limited. A file name has at most 255 bytes, including a seed and
+/// an extension.
 constexpr std::size_t kIdentifierMax = 100;
 
-/// Counts parser events. Each event consumes at least one byte of text, so many more events than bytes mean an endless
-/// loop. The parser enters such loops on some invalid texts.
+/// Counts parser events. Each event consumes at least one byte of text, so many more events than bytes indicate an
+/// endless loop. The parser enters endless loops on some invalid texts.
 class Counter : public YAML::EventHandler {
  public:
   Counter(const std::string& text, const std::string& file) : most_(4 * text.size() + 64), file_(file) {}
@@ -188,7 +189,7 @@ std::vector<std::pair<std::string, YamlNode>> YamlNode::entries() const {
     const std::string name = key.text();
     if (!seen.insert(name).second) key.fail(fmt::format("key '{}' is given twice", name));
     YamlNode value(entry.second, file_, join(place_, name));
-    // Blocks, aliases and empty values report no usable line of their own; use the line of their key.
+    // Blocks, aliases and empty values report no usable line, so the line of their key is used.
     value.line_ = key.line_;
     out.emplace_back(name, std::move(value));
   }

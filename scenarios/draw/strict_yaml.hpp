@@ -13,14 +13,14 @@
 
 namespace tumble::scenarios {
 
-/// Returns the text of a file. Throws BadInput if it cannot be read or exceeds 4 MiB.
+/// Returns the text of a file. Throws BadInput if the file cannot be read or exceeds 4 MiB.
 std::string read_text_file(const std::filesystem::path& path);
 
-/// A YAML node that knows its location. All errors are one-line BadInput: "FILE:LINE: PLACE: what". Stricter than YAML:
-/// rejects repeated keys, keys that are not text, and a second document.
+/// A YAML node with its location in the file. Every error is a BadInput with a one-line message: "FILE:LINE: PLACE:
+/// what". The parser is stricter than YAML: it rejects repeated keys, keys that are not text, and a second document.
 class YamlNode {
  public:
-  /// Parses a text with one document and returns its root; messages start with `file`.
+  /// Parses a text with one document and returns the root node; error messages start with `file`.
   static YamlNode parse(const std::string& text, const std::string& file);
 
   int line() const { return line_; }  ///< starts at 1
@@ -38,13 +38,14 @@ class YamlNode {
   std::string identifier() const;
   /// Returns a finite number; rejects quoted text.
   double number() const;
-  /// Returns a number that may be `.inf` or `-.inf`.
+  /// Returns a number, which may be `.inf` or `-.inf`.
   double number_or_infinity() const;
   std::uint64_t unsigned_integer() const;
   std::vector<YamlNode> items() const;
   /// Returns the entries of a map in the order of the file.
   std::vector<std::pair<std::string, YamlNode>> entries() const;
-  /// Returns the entries of a map by key. The map must have every key in `required`, and may have those in `optional`.
+  /// Returns the entries of a map by key. The map must have every key in `required` and may have the keys in
+  /// `optional`.
   std::map<std::string, YamlNode> fields(std::span<const std::string> required,
                                          std::span<const std::string> optional = {}) const;
 

@@ -3,14 +3,14 @@
 
 #include <string>
 
-/// Scalars as written to YAML files.
+/// Writes scalars as YAML text.
 namespace tumble::scenarios {
 
-/// Returns the shortest text that parses to the same double, also `.inf` and `-.inf`. Throws BadInput with `place` for
-/// NaN.
+/// Returns the shortest text that parses to the same double; infinite values are `.inf` and `-.inf`. Throws BadInput
+/// with `place` if the value is NaN.
 std::string yaml_number(double value, const std::string& place);
 
-/// Returns an identifier unchanged, other text in double quotes with YAML escapes.
+/// Returns an identifier unchanged, and any other text in double quotes with YAML escapes.
 std::string yaml_word(const std::string& text);
 
 }  // namespace tumble::scenarios

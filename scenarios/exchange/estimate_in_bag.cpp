@@ -62,7 +62,7 @@ Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
   return out;
 }
 
-/// Applies the alignment to pose and covariance.
+/// Applies the alignment to the pose and its covariance.
 PoseState moved_by(const Alignment& alignment, const PoseState& pose) {
   PoseState out = alignment.apply(pose);
   Eigen::Matrix<double, 6, 6> turn = Eigen::Matrix<double, 6, 6>::Zero();
@@ -71,7 +71,8 @@ PoseState moved_by(const Alignment& alignment, const PoseState& pose) {
   return out;
 }
 
-/// Converts a pose of A to the body. An attitude error phi moves the body's position by phi x (lever arm in W).
+/// Converts a pose of frame A to a pose of the body. An attitude error phi moves the body's position by phi x (lever
+/// arm in W).
 BagTrack::Pose body_pose(const PoseState& moved, const Eigen::Isometry3d& T_AB) {
   const Eigen::Quaterniond q_WA = moved.q_WA.normalized();
   BagTrack::Pose out;
@@ -88,7 +89,7 @@ BagTrack::Pose body_pose(const PoseState& moved, const Eigen::Isometry3d& T_AB) 
 class BodyAt {
  public:
   explicit BodyAt(const std::vector<BagTrack::Pose>& poses) : poses_(poses) {}
-  /// Returns false if poses are missing on one side.
+  /// Returns false if there is no pose before or no pose after `time_ns`.
   bool operator()(std::int64_t time_ns, Eigen::Isometry3d& T_WB) const {
     const auto after = std::lower_bound(poses_.begin(), poses_.end(), time_ns,
                                         [](const BagTrack::Pose& pose, std::int64_t t) { return pose.time_ns < t; });
@@ -108,7 +109,8 @@ class BodyAt {
   const std::vector<BagTrack::Pose>& poses_;
 };
 
-/// Returns the points of one sweep, placed by the track. `hit_W_m`: parallel to them, or empty.
+/// Returns the points of one sweep, transformed to W with the poses of the track. `hit_W_m` contains the true hits of
+/// the points, or is empty.
 BagCloud cloud_of(const BagTrack& track, const sim::LidarRecord& sweep, const std::vector<Eigen::Vector3f>& hit_W_m) {
   const BodyAt body_at(track.poses);
   BagCloud cloud;
@@ -123,7 +125,7 @@ BagCloud cloud_of(const BagTrack& track, const sim::LidarRecord& sweep, const st
   return cloud;
 }
 
-/// Adds clouds of the first lidar, one per sweep, created on demand from `sensors`, `points` and `truth`.
+/// Adds clouds of the first lidar, one per sweep; each cloud is created on demand from `sensors`, `points` and `truth`.
 void add_clouds(const sim::Sensors& sensors, const std::vector<PointStore>* points, const StoredTruth* truth,
                 BagTrack& track) {
   if (sensors.lidars.empty()) return;
@@ -141,7 +143,7 @@ void add_clouds(const sim::Sensors& sensors, const std::vector<PointStore>* poin
   };
 }
 
-/// Checks that the estimate was computed from these sensors.
+/// Throws BadInput unless the estimate was computed from these sensor data.
 void require_own(const std::filesystem::path& path, const std::string& own) {
   const std::string made_from = estimated_sensors(path);
   if (made_from.empty() || made_from == own) return;
@@ -150,7 +152,7 @@ void require_own(const std::filesystem::path& path, const std::string& own) {
       made_from, own));
 }
 
-/// Converts "slam/tumble" to a topic and frame name.
+/// Converts a method name such as "slam/tumble" to a topic and frame name.
 std::string plain_name(const std::string& method) {
   std::string stem;
   for (const char c : method) stem += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';

@@ -21,16 +21,16 @@ namespace {
 constexpr std::size_t kSpans = 10, kSweepsOfSpan = 12;
 constexpr double kSlowest_rad_s = 0.1, kFastest_rad_s = 2.0;
 constexpr std::size_t kLeastPairs = 12;
-/// Largest error relative to the median rotation; above it, lidar and gyro do not measure the same motion. Lidar alone
-/// has an error of about a tenth.
+/// Largest error relative to the median rotation; above this limit, lidar and gyro do not measure the same motion. The
+/// lidar's rotation alone has an error of about a tenth.
 constexpr double kAgrees = 0.3;
-/// An explanation must reduce the error at least by these factors.
+/// A better interpretation must reduce the error at least by these factors.
 constexpr double kConclusive = 0.5, kDelayConclusive = 0.6;
 constexpr double kDegreesPerRadian = 57.29577951308232;
 constexpr double kDelayMost_s = 0.5, kDelayStep_s = 0.01, kDelaySaid_s = 0.03;
 constexpr std::int64_t kGap_ns = 100'000'000;
 
-/// Returns the sweeps [first, last) as a recording with this lidar only.
+/// Returns the sweeps `first` to `last` - 1 as a recording with this lidar only.
 sim::Sensors span_alone(const sim::LidarRecord& lidar, const PointStore* aside, std::size_t first, std::size_t last) {
   sim::LidarRecord out = sweep_alone(lidar, aside, first);
   const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
@@ -86,7 +86,7 @@ class Integral {
 
  private:
   std::int64_t start(std::size_t k) const { return k == 0 ? imu_.time_ns[0] - imu_.period_ns : imu_.time_ns[k - 1]; }
-  /// Returns the sample whose window contains the instant.
+  /// Returns the sample whose averaging window contains the instant.
   std::optional<std::size_t> sample_at(std::int64_t time_ns) const {
     const auto at = std::lower_bound(imu_.time_ns.begin(), imu_.time_ns.end(), time_ns);
     if (at == imu_.time_ns.end() || time_ns < start(0)) return std::nullopt;
@@ -100,12 +100,12 @@ class Integral {
   std::vector<Eigen::Vector3d> sum_;
 };
 
-/// Rotations from lidar and gyro over the same intervals, both in IMU axes.
+/// Rotations from lidar and gyro over equal time intervals, both in IMU axes.
 struct Pairs {
   std::vector<Eigen::Vector3d> seen, said;
   double rotation_rad = 0.0;  // median of `seen`
 
-  /// Returns the median of error(k) relative to the rotation.
+  /// Returns the median of error(k) divided by the median rotation.
   template <class Error>
   double share(Error&& error) const {
     std::vector<double> errors;
@@ -132,8 +132,8 @@ Pairs pairs_at(const Integral& integral, const Eigen::Matrix3d& R_IL, std::span<
   return out;
 }
 
-/// Returns the orthogonal matrix of that determinant, 1 or -1, that best maps gyro rotations to lidar rotations (Wahba
-/// 1965, by singular values).
+/// Returns the orthogonal matrix with the stated determinant, 1 or -1, that best maps gyro rotations to lidar rotations
+/// (Wahba 1965, by singular values).
 Eigen::Matrix3d best_orthogonal(const Pairs& pairs, double determinant) {
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for (std::size_t k = 0; k < pairs.seen.size(); ++k) sum += pairs.seen[k] * pairs.said[k].transpose();
@@ -188,7 +188,7 @@ std::string pairs_text(const RotationAgreement& found) {
   return fmt::format(" over {} pairs of sweeps", found.pairs);
 }
 
-/// Throws if reading the gyro in another unit would remove the disagreement.
+/// Throws BadInput if another unit of the gyro would remove the disagreement.
 std::string unit_text(const std::string& where, const RotationAgreement& found, GyroUnit unit) {
   const bool degrees = unit == GyroUnit::deg_s;
   const std::string read = fmt::format(
@@ -273,11 +273,11 @@ std::optional<RotationAgreement> rotation_agreement(const sim::ImuRecord& imu, c
     fit_unit(pairs, delay_s, delayed, delayed_error);
     if (step == 0) fit_unit(pairs, delay_s, at_once, at_once_error);
   }
-  // one of a hundred delays fits slightly better by chance
+  // among a hundred candidate delays, one fits slightly better by chance
   RotationAgreement out = delayed_error < kDelayConclusive * at_once_error ? delayed : at_once;
   if (out.unit_error > kAgrees) return std::nullopt;
   fit_axes(pairs_at(integral, R_IL, seen, std::llround(1e9 * out.delay_s)), out);
-  // When tracking fails in a tumble, rotation angles alone may agree by chance.
+  // If tracking fails in a tumble, rotation angles alone may agree by chance.
   if (std::min({out.error_as_read, out.axes_error, out.turned_error}) > kAgrees) return std::nullopt;
   return out;
 }

@@ -13,8 +13,8 @@
 #include "scenarios/recordings/import.hpp"
 #include "sim/recording.hpp"
 
-/// Checks a gyro against the lidar's rotation between sweeps: unit, signs and axes, mounting, clock. Useful for
-/// hand-held or driven bodies with little tilt, where gravity does not show these errors.
+/// Checks unit, signs, axes, mounting and clock of a gyro against the lidar's rotation between sweeps. The check is
+/// useful for hand-held or driven bodies with little tilt, where gravity does not reveal wrong axes or units.
 namespace tumble::scenarios {
 
 /// Rotation of a lidar between two instants.
@@ -23,10 +23,11 @@ struct SeenRotation {
   Eigen::Vector3d rotation_L_rad = Eigen::Vector3d::Zero();  ///< rotation vector, lidar axes
 };
 
-/// Returns rotations between the ends of consecutive sweeps from `slam/constant_velocity`, which only uses the lidar.
-/// Processes at most ten spans of a dozen sweeps, spread over the recording, each with a separate map. Keeps registered
-/// pairs with 0.1 to 2 rad/s: slower ones are noise, faster ones distort the sweeps. Points are in `lidar`, or in
-/// `aside` if not null. About 10 ms per sweep.
+/// Returns the rotations between the ends of consecutive sweeps, as `slam/constant_velocity` estimates them from the
+/// lidar alone. Processes at most ten parts of a dozen sweeps, spread over the recording, each with its own map. Keeps
+/// pairs of registered sweeps with rates of 0.1 to 2 rad/s, because slower rotations are noise and faster rotations
+/// distort the sweeps. The points are in `lidar`, or in `aside` if `aside` is not null. The cost is about 10 ms per
+/// sweep.
 std::vector<SeenRotation> seen_rotations(const sim::LidarRecord& lidar, const PointStore* aside);
 
 /// A signed permutation: true axis i is `sign[i]` times axis `axis[i]` as read.
@@ -38,7 +39,7 @@ struct SignedAxes {
   std::string text() const;  ///< "(-x, y, z)"
 };
 
-/// Agreement of a gyro with a lidar. Errors are medians over the pairs, relative to the median rotation.
+/// Agreement of a gyro with a lidar. The errors are medians over the sweep pairs, relative to the median rotation.
 struct RotationAgreement {
   std::size_t pairs = 0;
   double unit = 1.0;        ///< 1, 57.3 or 1/57.3: factor from the gyro's integral to the lidar's rotation
@@ -54,17 +55,18 @@ struct RotationAgreement {
   double turned_error = 1.0;
 };
 
-/// Compares gyro and lidar. Returns empty for fewer than a dozen pairs within the gyro's readings. Also returns empty
-/// if no unit, axes or rotation bring the two within 30 %. Uses the mountings of `imu` and `lidar`. O(pairs).
+/// Compares the rotation that the gyro measures with the rotation that the lidar shows. Returns empty for fewer than a
+/// dozen sweep pairs within the time of the gyro's readings. Also returns empty if no unit, axes or mounting rotation
+/// make gyro and lidar agree within 30 %. Uses the mountings of `imu` and `lidar`. O(pairs).
 std::optional<RotationAgreement> rotation_agreement(const sim::ImuRecord& imu, const sim::LidarRecord& lidar,
                                                     std::span<const SeenRotation> seen);
 
-/// Returns a note on the agreement, a warning with a better interpretation, or "" if undetermined. Throws BadInput,
-/// with a message that starts with `where`, if the rates are in the other unit.
+/// Returns a note that gyro and lidar agree, a warning with a better interpretation of the gyro, or "" if undetermined.
+/// Throws BadInput, with a message that starts with `where`, if the rates are in deg/s instead of rad/s or vice versa.
 std::string agreement_text(const std::string& where, const RotationAgreement& agreement, GyroUnit unit);
 
-/// Returns notes on each IMU of a recording with lidar and IMUs, else none. Throws BadInput as above; `where` is the
-/// recording's path.
+/// Returns notes on each IMU of a recording; the list is empty unless the recording has a lidar and an IMU. Throws
+/// BadInput if the rates are in a wrong unit; `where` is the recording's path.
 std::vector<std::string> lidar_rotation_notes(const std::string& where, const Imported& recording, GyroUnit unit);
 
 }  // namespace tumble::scenarios

@@ -30,8 +30,8 @@ constexpr double kCorrelationTolerance = 1e-3;  // tolerance for covariances wri
 constexpr std::size_t kStampsToJudge = 10;  // fewer stamps could span a short time by chance
 constexpr double kUnitsApart = 100.0;       // a span of a hundredth indicates another unit or a broken answer
 
-/// Returns ", and looks like UNIT" for stamps that should be in `unit` and span `times` the recording; empty if no unit
-/// fits.
+/// Returns ", and looks like UNIT" for stamps that should be in `unit` and span `times` the duration of the recording;
+/// empty if no unit fits.
 std::string unit_like(std::string_view unit, double times) {
   constexpr std::array<std::pair<const char*, double>, 4> kUnits = {
       {{"nanoseconds", 1e-9}, {"microseconds", 1e-6}, {"milliseconds", 1e-3}, {"seconds", 1.0}}};
@@ -109,7 +109,7 @@ std::uintmax_t AnswerBounds::map_bytes() const {
 
 void AnswerBounds::require_size(const std::filesystem::path& file, std::uintmax_t bytes) const {
   const std::string name = file.filename().string();
-  // Rejects links, which could lead to files that the method did not write.
+  // Rejects symbolic links, which could lead to files that the method did not write.
   if (!std::filesystem::is_regular_file(std::filesystem::symlink_status(file)))
     throw BadInput(name + ": is not a regular file");
   std::error_code error;

@@ -11,35 +11,37 @@
 
 namespace tumble::scenarios {
 
-/// Limits on the result of an external method for one recording. The file size is checked before the file is read,
-/// because reading is outside the method's time limit.
+/// Limits on the result of an external method for one recording. The size of a file is checked before reading, because
+/// reading is outside the method's time limit.
 class AnswerBounds {
  public:
-  /// Returns the location of row k for a message: "poses.tum:3".
+  /// Returns the location of row `row` for an error message, for example "poses.tum:3".
   using Place = std::function<std::string(std::size_t row)>;
 
   explicit AnswerBounds(const sim::Sensors& sensors);
 
-  /// Size limit of a table, text or trajectory: 1 KiB per row, for 10 000 rows plus 4 per IMU sample and per lidar
-  /// sweep.
+  /// Returns the size limit of a table, text or trajectory: 1 KiB per row, for 10 000 rows plus 4 per IMU sample and
+  /// per lidar sweep.
   std::uintmax_t table_bytes() const;
-  /// Size limit of a float32 map: 32 bytes per point, for 10 000 points plus 4 per lidar point.
+  /// Returns the size limit of a float32 map: 32 bytes per point, for 10 000 points plus 4 per lidar point.
   std::uintmax_t map_bytes() const;
 
-  /// Throws BadInput unless `file` is a regular file of at most `bytes`. Does not read it.
+  /// Throws BadInput unless `file` is a regular file of at most `bytes`. Does not read the file.
   void require_size(const std::filesystem::path& file, std::uintmax_t bytes) const;
 
-  /// Check an answer's values; throw BadInput with place, value and bound. Stamps: within 10 s of the recording.
-  /// Positions [m]: finite, within 1e7 m of the origin, which allows Earth-centred coordinates. Quaternions: norm 1
-  /// within 1 %, as in TUM files. Rates [rad/s]: finite, below 1e6; their covariances: finite.
+  /// These functions check the values of an external method's result and throw BadInput with location, value and limit.
+  /// Stamps must be within 10 s of the recording. Positions [m] must be finite and within 1e7 m of the origin, which
+  /// allows Earth-centred coordinates. Quaternions must have norm 1 within 1 %, as in TUM files. Rates [rad/s] must be
+  /// finite and below 1e6, and the covariances of rates must be finite.
   void require_rates(const std::vector<RateState>& rates, const Place& place) const;
   void require_poses(const std::vector<PoseState>& poses, const Place& place) const;
   void require_attitudes(const std::vector<AttitudeState>& attitudes, const Place& place) const;
-  /// Throws BadInput if ten or more stamps are probably not in `unit`. Their span is then below a hundredth of the
-  /// recording, or above a hundred times the recording while matching another unit.
+  /// Throws BadInput if ten or more stamps are probably not in `unit`. The unit is wrong if the time span of the stamps
+  /// is below a hundredth of the recording, or is above a hundred times the recording and matches another unit.
   void require_unit(std::span<const double> stamps_s, const char* unit, const Place& place) const;
   void require_unit(const Estimate& estimate, const char* unit, const Place& place) const;
-  /// Checks the pose and trajectory of each sweep, and the points of the map, with the same bounds.
+  /// Checks the pose and trajectory of each sweep, and the points of the map, with the limits for positions and
+  /// quaternions.
   void require_slam(const Estimate& estimate) const;
 
  private:

@@ -8,10 +8,11 @@
 #include "scenarios/methods/imu_check.hpp"
 #include "scenarios/methods/method.hpp"
 
-/// Shared by the attitude methods: a filter of the estimator library processes the primary IMU sample by sample.
+/// Runs an attitude filter of the estimator library on the primary IMU sample by sample; all attitude methods use this
+/// function.
 namespace tumble::scenarios {
 
-/// For filters that report no covariance.
+/// Covariance type of filters that report no covariance.
 struct NoCovariance {
   template <typename State>
   Eigen::Matrix3d operator()(const State&) const {
@@ -19,9 +20,9 @@ struct NoCovariance {
   }
 };
 
-/// Runs a filter over the primary IMU and returns one attitude per sample, in the IMU's frame. `Filter` has Params,
-/// State with q_WI, and step(sample, state). `covariance(state)` returns the covariance for AttitudeState. The first
-/// error ends the run; earlier attitudes are kept.
+/// Runs a filter over the primary IMU and returns one attitude per sample, in the IMU's frame. `Filter` needs the types
+/// Params and State (with q_WI) and the function step(sample, state). `covariance(state)` returns the covariance for
+/// AttitudeState. The first error ends the run; attitudes computed before the error are kept.
 template <typename Filter, typename CovarianceOf = NoCovariance>
 Estimate run_attitude_filter(const sim::Sensors& sensors, const typename Filter::Params& params,
                              const CovarianceOf& covariance = {}) {

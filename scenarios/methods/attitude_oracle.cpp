@@ -37,7 +37,7 @@ sim::Sensors unclipped_gyros(const sim::Sensors& sensors, const sim::Truth& trut
 }
 
 Estimate run_attitude_oracle(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput& oracle) {
-  // Check the original readings too: an oracle must fail where every method must fail.
+  // The original readings are also checked, because an oracle must fail where every method must fail.
   Estimate estimate;
   std::vector<ImuSample> samples;
   estimate.status = bridge::primary_imu_samples(sensors, samples);

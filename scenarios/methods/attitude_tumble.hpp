@@ -7,18 +7,19 @@
 #include "sim/recording.hpp"
 #include "tumble/attitude/tumble_attitude.hpp"
 
-/// The method attitude/tumble, also for callers that supply other readings.
+/// Declares the method attitude/tumble, also for callers that supply other readings.
 namespace tumble::scenarios {
 
 /// Returns the filter's parameters with the library's defaults.
 const Settings<TumbleAttitude::Params>& attitude_tumble_settings();
 
-/// Estimates one attitude per sample. A rig uses the primary IMU, with clipped rates recovered first; a sphere uses all
-/// its IMUs merged. Errors: those of the records and of the filter; earlier attitudes are kept.
+/// Estimates one attitude per sample. On a rig, the filter uses the primary IMU with recovered clipped rates; on a
+/// sphere, the filter uses all IMUs merged to one. Errors are those of the records and of the filter; attitudes
+/// computed before an error are kept.
 Estimate run_attitude_tumble(const sim::Sensors& sensors, const sim::Values& parameters);
 
-/// Reports for how long the inclination is unknown to 0.5 rad (2σ within a quarter turn), for example after an IMU gap
-/// in a tumble. Adds a doubt and the health value `attitude_unknown_s`.
+/// Reports for how long the inclination is unknown to 0.5 rad (2 sigma within a quarter turn), for example after an IMU
+/// gap in a tumble. Adds a failed health check and the health value `attitude_unknown_s`.
 void report_unknown_attitude(Estimate& estimate);
 
 }  // namespace tumble::scenarios

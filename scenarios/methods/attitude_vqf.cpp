@@ -8,7 +8,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-// The library's defaults are the authors' settings.
+// The default parameters are those of the authors.
 const Settings<Vqf::Params>& attitude_vqf_settings() {
   static const Settings<Vqf::Params> all{Vqf::Params{}};
   return all;

@@ -16,7 +16,7 @@ namespace tumble::scenarios::bridge {
 
 namespace {
 
-// Maps the bits of sim to the estimator's flags explicitly, so that a change on one side cannot pass unnoticed.
+// Maps the clip bits of sim to the estimator's flags explicitly, so that a change on one side causes an error.
 constexpr std::array<std::pair<int, ClipFlag>, 6> kClipBits = {
     {{0, kClipGyroX}, {1, kClipGyroY}, {2, kClipGyroZ}, {3, kClipAccelX}, {4, kClipAccelY}, {5, kClipAccelZ}}};
 
@@ -28,7 +28,8 @@ std::uint8_t clip_flags(std::uint8_t sim_bits) {
   return flags;
 }
 
-// Stamps in a wrong unit differ at least 1000-fold; slow reading of a device stays below this factor.
+// Stamps in a wrong unit differ at least 1000-fold from the stated period; slow reading of a device stays below this
+// factor.
 constexpr double kPeriodsMax = 20.0;
 
 Status check_period(const sim::ImuRecord& record, std::span<const ImuSample> samples) {
@@ -54,8 +55,8 @@ bool in_range(const sim::ImuRecord& record, const ImuSample& sample) {
   return check_range(record, sample.angular_velocity_rad_s, sample.specific_force_m_s2).ok();
 }
 
-// Removes single readings beyond what the device can measure. Lasting or frequent ones stay, so that the recording is
-// refused.
+// Removes single readings beyond the values that the device can measure. Lasting or frequent readings beyond the limit
+// are kept, so that the recording is refused.
 void leave_out_wild(const sim::ImuRecord& record, std::vector<ImuSample>& samples) {
   const auto beyond = [&](const ImuSample& sample) { return !in_range(record, sample); };
   const auto count = std::count_if(samples.begin(), samples.end(), beyond);
@@ -68,8 +69,8 @@ void leave_out_wild(const sim::ImuRecord& record, std::vector<ImuSample>& sample
   samples.resize(kept);
 }
 
-// Checks what every method assumes: finite readings within the device's range, increasing stamps at the stated period,
-// no gaps.
+// Checks the assumptions of every method: finite readings within the device's range, increasing stamps at the stated
+// period, no gaps.
 Status check_stream(const sim::ImuRecord& record, std::span<const ImuSample> samples) {
   if (samples.empty()) return {Trouble::empty, "time_ns", 0.0, 1.0};
   if (const Status status = check_samples(samples, kGapMaxS); !status.ok()) return status;
@@ -159,7 +160,7 @@ std::size_t sweep_count(const sim::LidarRecord& record) {
   const std::size_t sweeps = record.sweep_start_ns.size();
   const std::size_t points = record.position_L_m.size();
   const std::string place = "lidar '" + record.name + "'";
-  // A lidar without sweeps may lack the closing index.
+  // A lidar without sweeps may lack the final index of sweep_first.
   if (sweeps == 0 && record.sweep_first.empty()) return 0;
   require_length(place, "sweep_first", record.sweep_first.size(), sweeps + 1);
   require_length(place, "offset_ns", record.offset_ns.size(), points);

@@ -8,7 +8,7 @@
 #include "scenarios/methods/external_method.hpp"
 #include "scenarios/processes/command.hpp"
 
-/// Shared by runs of external programs: commands and Python functions.
+/// Helper functions to run external commands and Python functions.
 namespace tumble::scenarios {
 
 std::string less_folder(std::string text, const std::filesystem::path& folder);
@@ -16,8 +16,8 @@ std::string less_folder(std::string text, const std::filesystem::path& folder);
 /// Appends the end of the program's output to the message `what`.
 std::string with_last_words(const std::string& what, const CommandEnd& end);
 
-/// Calls `work` and removes the scratch folder's path from messages of BadInput and NoAnswer. That path differs in each
-/// run; the messages then name files relative to it.
+/// Calls `work` and removes the path of the scratch folder from messages of BadInput and NoAnswer. The scratch path
+/// differs in each run; without the path, messages name files relative to the scratch folder.
 template <class Work>
 auto without_folder(const std::filesystem::path& scratch, Work&& work) {
   try {
@@ -33,7 +33,7 @@ auto without_folder(const std::filesystem::path& scratch, Work&& work) {
 void require_done(const CommandEnd& end);
 
 /// Returns the first line of a version command's output, and a digest of the whole output. The command runs in `folder`
-/// for at most 30 s. On failure throws BadInput, with a message that starts with `place`.
+/// for at most 30 s. Throws BadInput, with a message that starts with `place`, if the version command fails.
 std::string version_said(Command command, const std::string& place);
 
 }  // namespace tumble::scenarios

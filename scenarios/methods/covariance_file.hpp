@@ -8,8 +8,8 @@
 
 #include "scenarios/recordings/table_file.hpp"
 
-/// Reads and writes covariances of an estimate's poses or attitudes, one row each, because TUM files have no columns
-/// for them. Columns: ESTIMATE.md.
+/// Reads and writes covariances of an estimate's poses or attitudes, one row per stamp, because TUM files have no
+/// columns for covariances. ESTIMATE.md describes the columns.
 namespace tumble::scenarios {
 
 /// Writes one covariance per stamp: the upper triangle, row by row. Writes no file if all covariances are zero (not
@@ -17,7 +17,7 @@ namespace tumble::scenarios {
 void write_covariances(const std::filesystem::path& path, const std::vector<std::int64_t>& stamps_ns,
                        const std::vector<Eigen::Matrix3d>& covariances);
 
-/// Reads one covariance per stamp. Throws BadInput with path and line if the rows do not match the stamps.
+/// Reads one covariance per stamp. Throws BadInput with path and line if the rows of the file do not match the stamps.
 std::vector<Eigen::Matrix3d> read_covariances(const std::filesystem::path& path,
                                               const std::vector<std::int64_t>& stamps_ns);
 

@@ -6,12 +6,13 @@
 #include <string>
 #include <vector>
 
-/// Results of an estimate's health checks: possible faults of the estimate or of its input.
+/// Results of an estimate's health checks: possible faults of the estimate or of the sensor readings.
 namespace tumble::scenarios {
 
 struct Estimate;
 
-/// A failed health check, for stages and programs. The same is written for people as a row of `health`.
+/// A failed health check, in a form that later processing steps and programs use. For people, the failed check is also
+/// written as an entry of `health`.
 struct Doubt {
   enum class About {
     readings,        ///< IMU readings contradict each other or gravity
@@ -43,20 +44,21 @@ inline constexpr std::array kAllDoubts = {
     Doubt::About::lidar_scale, Doubt::About::beyond_range,   Doubt::About::digest,     Doubt::About::learnt_rig,
     Doubt::About::unit_frozen, Doubt::About::unit_disagrees, Doubt::About::unit_silent};
 
-/// Returns the key of a doubt in the health: `imu_implausible`, `imu_2_frozen_since_s`. Only this function knows these
-/// names.
+/// Returns the key of a failed check in the health, for example `imu_implausible` or `imu_2_frozen_since_s`. The
+/// function is the only place that defines the keys of failed checks.
 std::string row_of(const Doubt& doubt);
 
-/// Adds a doubt to the estimate, sorted by key, and its row to the health. Replaces a doubt with the same key.
+/// Adds a failed check to the estimate, sorted by key, and adds the check's entry to the health. A failed check with an
+/// equal key is replaced.
 void add_doubt(const Doubt& doubt, Estimate& estimate);
 
-/// Returns true if the estimate has a doubt about the same thing.
+/// Returns true if the estimate already has a failed check with the key of `doubt`.
 bool has_doubt(const Doubt& doubt, const Estimate& estimate);
 
-/// Records in the health that a check passed.
+/// Records in the health that the check `about` passed.
 void report_no_doubt(Doubt::About about, Estimate& estimate);
 
-/// Restores the doubts of an estimate from its health, for estimates that were read from a file.
+/// Restores the failed checks of an estimate from the health values, for estimates that were read from a file.
 std::vector<Doubt> doubts_in(const std::map<std::string, double>& health);
 
 }  // namespace tumble::scenarios

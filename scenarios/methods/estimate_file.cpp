@@ -47,7 +47,8 @@ Eigen::Vector3d read_vector(const Table& table, const Table::Row& row, std::size
   return {table.number(row, first), table.number(row, first + 1), table.number(row, first + 2)};
 }
 
-// Reads x y z w. Throws if the norm differs from 1. Accepts NaN, which a diverged method writes.
+// Reads a quaternion x y z w. Throws BadInput if the norm differs from 1. Accepts NaN, because a diverged method writes
+// NaN.
 Eigen::Quaterniond read_quaternion(const Table& table, const Table::Row& row, std::size_t first, bool normalise) {
   Eigen::Quaterniond q(table.number(row, first + 3), table.number(row, first), table.number(row, first + 1),
                        table.number(row, first + 2));
@@ -109,7 +110,7 @@ void read_rates(const std::filesystem::path& path, std::vector<RateState>& rates
   }
 }
 
-// 0 air, 1 grip, 2 slip, 3 slide, as in a recording's truth
+// The numbers are 0 air, 1 grip, 2 slip, 3 slide, as in a recording's truth.
 void write_contacts(const std::filesystem::path& path, const Estimate& estimate) {
   const bool flagged = !estimate.uncertain.empty();
   TableWriter table(path, ',', flagged ? kFlaggedContactsHeader : kContactsHeader);
@@ -301,7 +302,7 @@ void read_header(const std::filesystem::path& path, Kind& kind, std::string& met
   estimate.frame = reader.named("frame", Frame::centre);
   const json& status = reader.object("status");
   estimate.status.trouble = JsonMembers(path, status).named("trouble", Trouble::diverged);
-  // A Status holds a static string, so the actual field is only in the file's message.
+  // A Status contains a static string, so only the message in the file names the actual field.
   if (!estimate.status.ok()) estimate.status.field = "estimate.json";
   for (const auto& [name, value] : reader.object("health").items())
     estimate.health[name] = value.is_number() ? value.get<double>() : std::nan("");
@@ -320,7 +321,7 @@ void write_estimate(const std::filesystem::path& folder, const std::string& meth
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw BadInput(folder.string() + ": cannot create the folder: " + error.message());
-  // Remove files of an earlier estimate; they would be read as part of this one.
+  // Files of an earlier estimate are removed, because they would be read as part of this estimate.
   for (const char* name : kEstimateFiles) std::filesystem::remove(folder / name, error);
   if (!estimate.rates.empty()) write_rates(folder / "rates.csv", estimate.rates);
   if (!estimate.attitudes.empty()) write_attitudes(folder, estimate.attitudes);
@@ -350,7 +351,7 @@ void write_estimate(const std::filesystem::path& folder, const std::string& meth
   if (!estimate.map.empty()) write_map(folder / "map.ply", estimate.map);
   if (!estimate.transcript.empty()) replace_file(folder / "transcript.txt", estimate.transcript);
 
-  // Written last: this file marks a complete folder.
+  // estimate.json is written last and marks a complete folder.
   replace_file(folder / "estimate.json", header_of(method, kind, estimate, sensors_digest).dump(2) + '\n');
 }
 

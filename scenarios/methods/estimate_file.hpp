@@ -8,13 +8,14 @@
 
 namespace tumble::scenarios {
 
-/// File names that the folder of an estimate may contain.
+/// Names of the files that the folder of an estimate may contain.
 inline constexpr const char* kEstimateFiles[] = {"estimate.json",           "rates.csv",     "attitude.tum",
                                                  "trajectory.tum",          "contacts.csv",  "sweeps.csv",
                                                  "sweep_poses.csv",         "map.ply",       "position_covariance.csv",
                                                  "attitude_covariance.csv", "transcript.txt"};
 
-/// Writes an estimate to a folder. Only files that apply are written, estimate.json last. Columns: ESTIMATE.md.
+/// Writes an estimate to a folder. Files without content are not written; estimate.json is written last. ESTIMATE.md
+/// describes the columns.
 ///
 /// - estimate.json: method, kind, frame, status, health, digest of the input sensors
 /// - rates.csv, attitude.tum, attitude_covariance.csv
@@ -22,20 +23,22 @@ inline constexpr const char* kEstimateFiles[] = {"estimate.json",           "rat
 /// - sweeps.csv, sweep_poses.csv, map.ply
 /// - transcript.txt: output of an external program
 ///
-/// All scored values are restored bit-exactly. The only exception is the last bit of quaternions in TUM files, which
-/// are normalised on reading. Velocities of `poses`, and covariances of `poses` other than position, are not written.
+/// Reading restores all scored values bit-exactly. The only exception is the last bit of quaternions in TUM files,
+/// because reading normalises quaternions. Velocities of `poses`, and covariances of `poses` other than position, are
+/// not written.
 ///
-/// Throws BadInput if writing fails. Throws std::invalid_argument if `contacts` is not as long as `poses`, or
-/// `uncertain` is neither empty nor as long.
+/// Throws BadInput if writing fails. Throws std::invalid_argument if the length of `contacts` differs from `poses`, or
+/// if `uncertain` is neither empty nor as long as `poses`.
 void write_estimate(const std::filesystem::path& folder, const std::string& method, Kind kind, const Estimate& estimate,
                     const std::string& sensors_digest = "");
 
-/// Returns the digest of the sensors that an estimate was computed from; empty if the folder does not state one.
+/// Returns the digest of the sensor data from which the estimate was computed, or an empty text if the folder states no
+/// digest.
 std::string estimated_sensors(const std::filesystem::path& path);
 
-/// Reads such a folder, or a single TUM file of another program. A TUM file has kind position, poses of `tum_frame`,
-/// and the file's name; all its numbers must be finite. A folder may contain NaN, which a diverged method writes.
-/// Throws BadInput with path, line and reason.
+/// Reads the folder of an estimate, or a single TUM file of another program. The estimate of a TUM file has kind
+/// position, the frame `tum_frame` and the file's name; all numbers of the file must be finite. The folder of an
+/// estimate may contain NaN, because a diverged method writes NaN. Throws BadInput with path, line and reason.
 Estimate read_estimate(const std::filesystem::path& path, Kind& kind, std::string& method, Frame tum_frame);
 
 }  // namespace tumble::scenarios

@@ -10,8 +10,8 @@
 
 namespace tumble::scenarios {
 
-/// An external method: a command described in a file NAME.yaml, or a Python function in NAME.py. Keys and placeholders:
-/// EXTERNAL.md.
+/// An external method: a command described in a file NAME.yaml, or a Python function in NAME.py. EXTERNAL.md describes
+/// the keys and placeholders.
 struct ExternalDescription {
   enum class Output { rates, tum, estimate };
 
@@ -32,19 +32,20 @@ struct ExternalDescription {
   std::string digest;  ///< digest of this file and of the files that the command names by {folder}
 };
 
-/// Returns the placeholders that a command may use in braces: "recording", "csv", "output".
+/// Returns the names of the placeholders that a command may use in braces: "recording", "csv", "output".
 std::vector<std::string> external_placeholders();
 
-/// Returns the placeholders in a word of a command, in order. Throws BadInput for an unknown one and suggests the
-/// nearest name.
+/// Returns the placeholders in one argument of a command, in order. Throws BadInput for an unknown placeholder and
+/// suggests the nearest name.
 std::vector<std::string> placeholders_in(const std::string& word);
 
-/// Returns the word with every placeholder replaced.
+/// Returns the argument with every placeholder replaced by its value.
 std::string filled(const std::string& word, const std::map<std::string, std::string>& values);
 
-/// Reads NAME.yaml, or NAME.py with exactly one function `rate`, `attitude`, `position` or `slam`, which sets the
-/// method's kind. Throws BadInput with file, line and reason: an unknown or missing key; an unknown kind, frame or
-/// placeholder; a command that never names its output; a limit out of bounds; no such function or several.
+/// Reads NAME.yaml, or NAME.py with exactly one function called `rate`, `attitude`, `position` or `slam`. The
+/// function's name sets the kind of the method. Throws BadInput with file, line and reason for an unknown or missing
+/// key, an unknown kind, frame or placeholder, a command that never names its output, a limit out of range, or a Python
+/// file without exactly one such function.
 ExternalDescription read_external(const std::filesystem::path& file);
 
 }  // namespace tumble::scenarios

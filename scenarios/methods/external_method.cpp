@@ -26,7 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Sensor data in one format; written only if the command names it.
+/// Sensor data in one format; written only if the command names the format.
 struct Provision {
   const char* placeholder;
   const char* name;  ///< file or folder in the scratch folder
@@ -90,7 +90,7 @@ Command command_of(const ExternalDescription& description, const std::vector<std
   return command;
 }
 
-/// Writes the data that the command names, then runs the command to its end.
+/// Writes the sensor data that the command names, then runs the command until it ends.
 CommandEnd provide_and_run(const ExternalDescription& description, const sim::Sensors& sensors,
                            const std::map<std::string, std::string>& values, const fs::path& scratch) {
   const std::set<std::string> wanted = named_in(description.command);
@@ -128,7 +128,7 @@ Estimate run(const ExternalDescription& description, const sim::Sensors& sensors
   }
 }
 
-/// Returns the version: output of the version command, the function's file, and the description's digest.
+/// Returns the version: output of the version command, file of the function, and digest of the description.
 std::string version_of(const ExternalDescription& description) {
   const std::string own = "description " + description.digest;
   if (!description.python.empty()) return python_version(description) + "; " + own;

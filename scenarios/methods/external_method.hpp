@@ -14,8 +14,8 @@
 
 namespace tumble::scenarios {
 
-/// An external program gave no answer: it crashed, could not be started, timed out, or the machine lacked memory or
-/// disk space. Contains the program's output so far.
+/// Error if an external program gave no result: the program crashed, could not be started, timed out, or the machine
+/// lacked memory or disk space. The message contains the program's output so far.
 class NoAnswer : public std::runtime_error {
  public:
   enum class Why { crashed, out_of_time, machine };
@@ -29,7 +29,7 @@ class NoAnswer : public std::runtime_error {
   std::string transcript_;
 };
 
-/// The answer of an external program is invalid. Contains the program's output.
+/// Error if the result of an external program is invalid. The message contains the program's output.
 class RefusedAnswer : public BadInput {
  public:
   RefusedAnswer(const std::string& what, std::string transcript) : BadInput(what), transcript_(std::move(transcript)) {}
@@ -39,19 +39,21 @@ class RefusedAnswer : public BadInput {
   std::string transcript_;
 };
 
-/// Returns the method described by NAME.yaml or NAME.py (EXTERNAL.md). For a command: writes the sensors to a separate
-/// folder in the requested formats, runs the command in its own process with its limits, and reads the result. For a
-/// Python function: exchanges the same data through shared memory. The program never receives the truth.
+/// Returns the method described by NAME.yaml or NAME.py (EXTERNAL.md). A command receives the sensor data in a separate
+/// folder in the requested formats, runs in its own process with its limits, and leaves a result that is read
+/// afterwards. A Python function exchanges the sensor data and the result through shared memory. The external program
+/// never receives the truth.
 ///
-/// The time limit is that of the description, at most `time_limit_s`. Throws BadInput if the description is invalid or
-/// its version command fails. Running the method throws NoAnswer, or RefusedAnswer if the result is invalid.
+/// The time limit is the limit in the description, but at most `time_limit_s`. Throws BadInput if the description is
+/// invalid or if the version command fails. Running the method throws NoAnswer, or RefusedAnswer if the result is
+/// invalid.
 Method external_method(const std::filesystem::path& file,
                        double time_limit_s = std::numeric_limits<double>::infinity());
 
-/// Returns true if `name` is a file that describes a method: NAME.yaml, NAME.py.
+/// Returns true if `name` has the form NAME.yaml or NAME.py, which describes an external method.
 bool is_method_file(const std::string& name);
 
-/// Calls find_methods (method.hpp) for a list; external methods get at most `time_limit_s`.
+/// Calls find_methods (method.hpp) for a list; the time limit of external methods is at most `time_limit_s`.
 std::vector<MethodPointer> find_methods_within(std::span<const std::string> names, double time_limit_s);
 
 }  // namespace tumble::scenarios

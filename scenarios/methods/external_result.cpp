@@ -44,7 +44,7 @@ Eigen::Matrix3d covariance(const Table& table, const Table::Row& row) {
   return out;
 }
 
-/// Reads one row per sample of the first IMU, in order.
+/// Reads one rate per sample of the first IMU, in order.
 std::vector<RateState> read_rates(const std::filesystem::path& file, const sim::Sensors& sensors) {
   if (sensors.imus.empty()) throw BadInput("the recording has no IMU; a rate method needs the samples of an IMU");
   const std::vector<std::int64_t>& stamps = sensors.imus.front().time_ns;
@@ -71,7 +71,7 @@ std::vector<RateState> read_rates(const std::filesystem::path& file, const sim::
   return rates;
 }
 
-/// Returns the first numbers of a TUM file's lines; stops at the first invalid line, which the TUM reader reports.
+/// Returns the first number of each line of a TUM file; stops at the first invalid line, which the TUM reader reports.
 std::vector<double> stamps_of(const std::filesystem::path& file) {
   std::vector<double> stamps_s;
   std::ifstream stream(file);
@@ -89,7 +89,7 @@ std::vector<double> stamps_of(const std::filesystem::path& file) {
   return stamps_s;
 }
 
-/// Reads poses of the stated frame from a TUM file.
+/// Reads poses of the frame that the description states from a TUM file.
 Estimate read_poses(const ExternalDescription& description, const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file))
     throw BadInput(file.filename().string() + ": the command did not write this file");
@@ -125,7 +125,7 @@ void require_sizes(const AnswerBounds& bounds, ExternalDescription::Output outpu
   }
 }
 
-/// Returns a function that locates row k in the file; the file is only scanned when a message needs the line.
+/// Returns a function that locates row k in the file; the file is only scanned when an error message needs the line.
 AnswerBounds::Place rows_of(const std::filesystem::path& file, bool headed) {
   return [file, headed](std::size_t row) {
     std::ifstream stream(file);
@@ -184,7 +184,8 @@ Estimate read_external_result(const ExternalDescription& description, const std:
       estimate.rates = read_rates(output, sensors);
       break;
     case ExternalDescription::Output::tum:
-      // Checked before parsing: stamps in a wrong unit may overflow the time type and give an unhelpful message.
+      // The unit is checked before parsing, because stamps in a wrong unit may overflow the time type and give an
+      // unhelpful message.
       bounds.require_unit(stamps_of(output), "seconds", rows_of(output, false));
       estimate = read_poses(description, output);
       break;

@@ -10,7 +10,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Appends the axes that are frozen at `time_ns`, or extends their last interval.
+/// Appends the axes that are frozen at `time_ns`, or extends the last interval of these axes.
 void extend(const FrozenAxes::State& state, TimeNs time_ns, std::vector<FrozenAxis>& out) {
   for (const Triad triad : {Triad::gyro, Triad::accelerometer}) {
     for (int axis = 0; axis < 3; ++axis) {

@@ -20,13 +20,16 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr double kArmShareMin = 0.5;  // 1: matches the mountings; 0: no relation; -1: flipped sign
-// A larger deviation from 1 indicates a scale error common to all units. Forces grow with the squared rate, so this is
-// 3 % of gyro scale, three times the data sheet's. Good runs of `slip` give 0.999 to 1.002.
+// A larger deviation from 1 indicates a scale error that all units have in common. Centripetal force grows with the
+// squared rate, so the limit corresponds to 3 % of gyro scale, three times the data sheet's scale error. Runs of `slip`
+// without faults give 0.999 to 1.002.
 constexpr double kArmShareOff = 0.06;
-// The gyro scale is confirmed by the rotation of gravity; then the mountings or an accelerometer are wrong.
+// Within these limits, the rotation of gravity confirms the gyro scale; the cause is then a mounting or an
+// accelerometer.
 constexpr double kSlopeRight = 0.02, kSlopeAgreed = 0.99;
-// Share of hand-held samples above which a recording counts as hand-held. Measured: hand-held at least 0.91, thrown at
-// most 0.25, mostly below 0.6 with wrong axes (hill, throw, twirl, swing, seeds 99101 and 99102).
+// Fraction of hand-held samples above which a recording counts as hand-held. Measured fractions are at least 0.91 for
+// hand-held motion, and at most 0.25 for thrown bodies, mostly below 0.6 with wrong axes (hill, throw, twirl, swing,
+// seeds 99101 and 99102).
 constexpr double kHeldShare = 0.8;
 
 Status reported(Status status, Estimate& estimate) {
@@ -34,7 +37,7 @@ Status reported(Status status, Estimate& estimate) {
   return status;
 }
 
-/// Returns true if rates may be in degrees per second, as RateReport::rate_unit_suspect.
+/// Returns true if rates may be in degrees per second, by the criterion of RateReport::rate_unit_suspect.
 bool unit_suspect(std::span<const ImuSample> samples) {
   return std::any_of(samples.begin(), samples.end(), [](const ImuSample& sample) {
     return sample.angular_velocity_rad_s.cwiseAbs().maxCoeff() > RateModelParams{}.rate_max_rad_s;
@@ -47,15 +50,15 @@ double fastest_rad_s(std::span<const ImuSample> samples) {
   return fastest;
 }
 
-/// Adds to the covariance of rate `k`.
+/// Adds a matrix to the covariance of rate `k`.
 void inflate_rate(std::size_t k, const Eigen::Matrix3d& by_rad2_s2, Estimate& estimate) {
   estimate.suspect_rad2_s2.resize(estimate.rates.size(), Eigen::Matrix3d::Zero());
   estimate.suspect_rad2_s2[k] += by_rad2_s2;
   estimate.rates[k].covariance_rad2_s2 += by_rad2_s2;
 }
 
-/// Increases the covariance of all rates by the squared rate. A flipped sign gives an error of twice the rate, half the
-/// scale an error of half the rate.
+/// Increases the covariance of all rates by the squared rate. A flipped sign gives an error of twice the rate; a scale
+/// of one half gives an error of half the rate.
 void inflate_rates(Estimate& estimate) {
   for (std::size_t k = 0; k < estimate.rates.size(); ++k)
     inflate_rate(k, estimate.rates[k].w_WI_I_rad_s.squaredNorm() * Eigen::Matrix3d::Identity(), estimate);
@@ -88,7 +91,7 @@ Status check_rest_force(const sim::Sensors& sensors, std::span<const ImuSample> 
   return reported(gravity.size_verdict(state), estimate);
 }
 
-/// Runs check_imu(); also returns whether the rotation of gravity confirms the gyro scale.
+/// Runs check_imu() and returns whether the rotation of gravity confirms the gyro scale.
 Status check_turning(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate,
                      bool& gyro_right) {
   const Status of_rest = check_rest_force(sensors, samples, estimate);

@@ -22,24 +22,24 @@ namespace tumble::scenarios {
 
 enum class Kind { rate, attitude, position, slam };
 const char* to_string(Kind kind);
-/// Returns "rate/tumble".
+/// Returns the kind and the name of a method, for example "rate/tumble".
 std::string full_name(Kind kind, const std::string& method);
 
 /// Frame of an estimate's poses: the primary IMU, the lidar, the body, or the sphere's centre.
 enum class Frame { imu, lidar, body, centre };
 const char* to_string(Frame frame);
 
-/// Result of a method. Each kind fills its own members and leaves the others empty.
+/// Result of a method. Each kind of method fills the members of its kind and leaves the other members empty.
 struct Estimate {
   Status status;                         ///< error of the whole run, or `ok`
   Frame frame = Frame::imu;              ///< frame of `attitudes` and `poses`
   std::vector<RateState> rates;          ///< kind rate, and the rates used by a slam method for deskewing
   std::vector<AttitudeState> attitudes;  ///< kind attitude
   std::vector<PoseState> poses;          ///< kinds position and slam, at IMU times
-  /// Estimated contact mode at each pose, parallel to `poses`; empty if not estimated. `air`: no contact, or a contact
-  /// with unknown motion (a bump).
+  /// Estimated contact mode at each pose, parallel to `poses`; empty if not estimated. `air` means no contact, or a
+  /// contact with unknown motion (a bump).
   std::vector<sim::ContactLabel> contacts;
-  /// True for poses in an event whose displacement is uncertain, parallel to `contacts`; empty if not estimated.
+  /// True for poses in a slip event whose displacement is uncertain, parallel to `contacts`; empty if not estimated.
   std::vector<bool> uncertain;
   /// Estimated position of the sphere's centre relative to the centre of mass, body axes [m].
   Eigen::Vector3d centre_B_m = Eigen::Vector3d::Zero();
@@ -54,15 +54,15 @@ struct Estimate {
   std::string transcript;                    ///< output of an external program; not scored
 };
 
-/// Extra input of an oracle: unclipped readings and true state. The harness builds it from the truth, only for methods
-/// that declare `needs_truth`.
+/// Extra input of an oracle method: unclipped readings and the true state. The harness creates this input from the
+/// truth, only for methods that declare `needs_truth`.
 struct OracleInput {
   const sim::Truth* truth = nullptr;
 };
 
 class SettingsTable;
 
-/// Input that is available to run a method on.
+/// Properties of a recording that decide which methods can run on it.
 struct Subject {
   std::string robot;  ///< "" if unknown
   bool has_lidar = true;
@@ -81,21 +81,23 @@ struct MethodInfo {
   std::size_t parameters_first = 0;  ///< number of leading parameters that users set most often
   bool needs_truth = false;
   std::vector<std::string> robots;  ///< "rig", "sphere"; empty: all
-  /// Returns why the method does not apply ("needs a lidar, and there is none"); empty if it does. Slam methods need a
-  /// lidar.
+  /// Returns why the method does not apply (for example "needs a lidar, and there is none"), or an empty text if the
+  /// method applies. All slam methods need a lidar.
   std::string why_not(const Subject& subject) const;
   bool applies_to(const Subject& subject) const { return why_not(subject).empty(); }
-  /// Reference without a treatment of the problem; other methods of its kind are compared with it in pairs. For rates:
-  /// the clipped gyro; for slam: the chain with the clipped gyro. A kind may have none.
+  /// True for the reference without a treatment of saturation or slip; the other methods of a kind are compared with
+  /// the kind's baseline in pairs. The baseline of rate methods is the clipped gyro; the baseline of slam methods is
+  /// the chain with the clipped gyro. A kind of method may have no baseline.
   bool baseline = false;
-  /// Can start from a saved calibration of the device, and saves what it calibrates (rate_tumble.hpp).
+  /// True if the method can start from a saved calibration of the device and saves the calibration that it estimates
+  /// (rate_tumble.hpp).
   bool learns_rig = false;
   std::string version;  ///< version of a method that is not part of this build
 };
 
 std::string full_name(const MethodInfo& info);
 
-/// Runs a method on a recording. Deterministic: the same input gives the same bits.
+/// Runs a method on a recording. A method is deterministic: equal inputs give bit-identical results.
 using RunMethod = std::function<Estimate(const sim::Sensors&, const sim::Values& parameters, const OracleInput&)>;
 
 struct Method {
@@ -103,18 +105,18 @@ struct Method {
   RunMethod run;
 };
 
-/// Points to a method of this build (static), or to a shared method from a file.
+/// Points to a method of this build (static), or to a shared method that was read from a file.
 using MethodPointer = std::shared_ptr<const Method>;
 
 /// Returns all methods of this build, sorted by kind, then in order of registration.
 std::span<const Method> methods();
 
 /// Returns every method called `name` ("saave"), the method of one kind ("rate/oracle"), or the method described by a
-/// file NAME.yaml (external_method.hpp). Throws BadInput for an unknown name (suggests the nearest) and for an external
-/// method with the name of a built-in one.
+/// file NAME.yaml (external_method.hpp). Throws BadInput for an unknown name (suggests the nearest name), and for an
+/// external method with the name of a built-in method.
 std::vector<MethodPointer> find_methods(const std::string& name);
 
-/// Returns the methods of a list, each once. Also throws BadInput for two methods with the same kind and name.
+/// Returns the methods that a list names, each once. Also throws BadInput if two methods have equal kind and name.
 std::vector<MethodPointer> find_methods(std::span<const std::string> names);
 
 /// Returns a non-owning pointer to a method of this build.

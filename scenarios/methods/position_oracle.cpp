@@ -27,7 +27,7 @@ std::size_t physics_index(const sim::Truth& truth, std::int64_t time_ns, std::si
   return std::min(static_cast<std::size_t>(std::max<std::int64_t>(time_ns, 0) / truth.period_ns), count - 1);
 }
 
-/// Omits parameters that the exact attitude makes unnecessary.
+/// Omits parameters that are not needed because the attitude is exact.
 const Settings<RollingSmoother::Params>& settings_with_attitude() {
   static const Settings<RollingSmoother::Params> all =
       oracle_settings({"gyro_range_rad_s", "tilt_sigma_rad", "gyro_bias_sigma_rad_s", "gyro_scale_sigma",
@@ -71,7 +71,7 @@ Estimate run_exact_attitude(const sim::Sensors& sensors, const sim::Values& para
   return estimate;
 }
 
-/// An edge tilts the contact normal only briefly: short intervals of `incline` become bumps.
+/// Changes short intervals of `incline` to bumps, because an edge tilts the contact normal only briefly.
 void edges_are_bumps(std::int64_t period_ns, std::vector<RollingMode>& modes) {
   for (std::size_t begin = 0; begin < modes.size();) {
     std::size_t end = begin;
@@ -84,7 +84,7 @@ void edges_are_bumps(std::int64_t period_ns, std::vector<RollingMode>& modes) {
   }
 }
 
-/// Returns the mode of each sample from the labels and normals of the truth.
+/// Returns the mode of each sample from the contact labels and contact normals of the truth.
 std::vector<RollingMode> true_modes(const sim::Truth& truth, const std::vector<ImuSample>& samples) {
   std::vector<RollingMode> at_step(truth.label.size(), RollingMode::grip);
   for (const sim::ContactTruth& contact : truth.contacts) {

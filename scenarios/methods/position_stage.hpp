@@ -6,11 +6,12 @@
 #include "scenarios/methods/method.hpp"
 #include "scenarios/methods/settings.hpp"
 
-/// Uses a position method as first stage of a sphere's slam method, which exposes all its parameters under the same
-/// names.
+/// Uses a position method as the first stage of a sphere's slam method; the slam method has all parameters of the
+/// position method under equal names.
 namespace tumble::scenarios {
 
-/// Returns the settings of the slam method: its own, then those of `position`. Their names differ.
+/// Returns the settings of the slam method: its own settings, then the settings of `position`. The two sets of settings
+/// have no common name.
 std::vector<const SettingsTable*> stages_after(std::vector<const SettingsTable*> own, const Method& position);
 
 /// Returns the values in `parameters` that belong to the position method.

@@ -19,13 +19,13 @@ constexpr double kSpinsM_s = 0.2, kSpinsShare = 0.3;  // excess speed at which a
 constexpr int kRecoveringUnits = 3;                   // number of IMUs that can recover a rate beyond the range
 constexpr double kRecoveredSigmaRadS = 1.0;
 constexpr double kUnknownRadiusShare = 0.05;  // prior of a radius that a known distance calibrates
-// priors of a device without a data sheet, mounted anywhere in the sphere
+// Prior standard deviations for a device without a data sheet, mounted anywhere in the sphere.
 constexpr double kUnknownGyroBiasRadS = 5e-3, kUnknownAccelBiasMS2 = 0.4, kUnknownScale = 0.01, kUnknownDelayS = 5e-3,
                  kUnknownLeverArmM = 0.05;
 constexpr double kUnknownInclinePerS = 1e-9;  // its accelerometer bias resembles a slope, so the floor is assumed level
 
-/// The library's defaults for the sphere of the models. The lever-arm prior is wider, because the lever arm is stated
-/// from the centre of mass instead of the sphere's centre.
+/// Returns the library's defaults for the sphere in `models/`. The lever-arm prior is wider than the default, because
+/// the lever arm is stated from the centre of mass instead of the sphere's centre.
 RollingSmoother::Params defaults(double lag_s = RollingSmoother::kWholeRun) {
   RollingSmoother::Params params;
   params.filter.radius_m = presets::kSphereRadius_m;
@@ -34,16 +34,16 @@ RollingSmoother::Params defaults(double lag_s = RollingSmoother::kWholeRun) {
   return params;
 }
 
-/// Parameters stated by the sensors, or that depend on their number.
+/// Returns the parameters that the sensors state or that depend on the number of sensors.
 std::vector<std::string> stated() {
   return {"radius_m", "gravity_m_s2", "lever_arm_x_m", "lever_arm_y_m", "lever_arm_z_m", "gyro_range_rad_s",
           "accel_range_m_s2", "recovered_rate_sigma_rad_s",
-          // these depend on whether the device is known
+          // the following parameters depend on whether the device is known
           "gyro_bias_sigma_rad_s", "accel_bias_sigma_m_s2", "tilt_sigma_rad", "accel_scale_sigma", "gyro_scale_sigma",
           "accel_delay_sigma_s", "lever_arm_sigma_m", "incline_begins_per_s"};
 }
 
-/// Parameters of the live filter, and its threshold for reporting a slip.
+/// Parameters of the live filter, and the threshold for reporting a slip.
 struct LiveParams {
   RollingParams filter;
   double slip_claimed_from = 0.5;
@@ -86,8 +86,8 @@ void widen_unknown(const sim::Sensors& sensors, RollingParams& params) {
   params.expert.modes.incline_begins_per_s = std::min(params.expert.modes.incline_begins_per_s, kUnknownInclinePerS);
 }
 
-/// Sets the sensors' values. The lever arm is stated from the centre of mass; its offset to the sphere's centre is
-/// estimated.
+/// Sets the parameters that the sensors state. The lever arm is stated from the centre of mass; the offset from the
+/// centre of mass to the sphere's centre is estimated.
 void set_stated(const sim::Sensors& sensors, const MergedImus& imus, RollingParams& params) {
   params.radius_m = sensors.sphere_radius_m;
   params.gravity_m_s2 = sensors.gravity_m_s2;
@@ -108,7 +108,8 @@ PoseState body_pose(TimeNs time_ns, const Eigen::Quaterniond& q_WB, const Eigen:
   return pose;
 }
 
-/// Returns true if the sphere rotates faster than it travels. A hop in which this happens belongs to a slip.
+/// Returns true if the sphere rotates faster than it travels. A hop during which the sphere rotates too fast belongs to
+/// a slip.
 bool spins(double radius_m, const PoseState& pose, const ImuSample& sample) {
   const double rolling_m_s = radius_m * (pose.q_WA * sample.angular_velocity_rad_s).head<2>().norm();
   const double speed_m_s = pose.v_WA_m_s.norm();
@@ -134,7 +135,7 @@ void add_contact(RollingMode mode, bool at_rest, bool uncertain, double radius_m
   if (at_rest) estimate.health["samples_rest"] += 1.0;
 }
 
-/// Merges the IMUs. Returns false if that fails; `estimate.status` states why.
+/// Merges the IMUs of the sphere. Returns false on failure; `estimate.status` then states the reason.
 bool merged(const char* method, const sim::Sensors& sensors, MergedImus& imus, Estimate& estimate) {
   estimate.frame = Frame::centre;
   estimate.status = merge_imus(sensors, imus);
@@ -156,7 +157,7 @@ bool merged(const char* method, const sim::Sensors& sensors, MergedImus& imus, E
   return true;
 }
 
-/// Returns the contact mode of the live filter over all hypotheses.
+/// Returns the contact mode that the live filter reports over all hypotheses.
 RollingMode claimed_mode(const RollingFilter::State& state, double claimed_from) {
   const bool claimed = state.slip_probability >= claimed_from;
   if (claimed == slips(state.mode)) return state.mode;
@@ -181,7 +182,7 @@ Estimate run_live(const sim::Sensors& sensors, const sim::Values& parameters, co
   set_stated(sensors, imus, params.filter);
   live_settings().apply(parameters, params);
   const RollingFilter filter(params.filter);
-  // 430 KiB: too large for a worker's stack
+  // heap allocation, because 430 KiB are too large for a worker's stack
   const auto state = std::make_unique<RollingFilter::State>();
   estimate.poses.reserve(imus.samples.size());
   for (const ImuSample& sample : imus.samples) {
@@ -268,7 +269,8 @@ void smooth(const RollingSmoother::Params& params, const MergedImus& imus, std::
     smoother.finish(known, *state, take);
   }
   report_samples(state->live, estimate);
-  // The lever arm was stated from the centre of mass, so its error gives the position of the sphere's centre.
+  // The lever arm was stated from the centre of mass, so the estimated error of the lever arm gives the position of the
+  // sphere's centre.
   estimate.centre_B_m = -state->constants.lever_arm_error_m;
   estimate.health["centre_x_m"] = estimate.centre_B_m.x();
   estimate.health["centre_y_m"] = estimate.centre_B_m.y();

@@ -40,7 +40,7 @@ class Arrays {
     if (columns > 0) shape.push_back(columns);
     return place(dtype, shape, std::as_bytes(std::span(rows)));
   }
-  /// Adds a matrix, row by row.
+  /// Adds the matrix of a pose, row by row.
   json add(const Eigen::Isometry3d& T) {
     const Eigen::Matrix<double, 4, 4, Eigen::RowMajor> rows = T.matrix();
     matrices_.emplace_back(rows.data(), rows.data() + rows.size());
@@ -142,11 +142,11 @@ json of_series(const sim::SeriesRecord& series, Arrays& arrays) {
           {"constants", std::move(constants)}};
 }
 
-/// Reads an answer in memory: its text, and the arrays that the text describes.
+/// Reads a result in memory: the JSON text, and the arrays that the text describes.
 class Answer {
  public:
   Answer(const SharedMemory& memory, const AnswerBounds& bounds) {
-    // The function can make the memory larger than the size that it was given.
+    // The function can make the memory larger than the size that the function received.
     const std::uintmax_t most = bounds.table_bytes() + bounds.map_bytes();
     if (memory.size() > most)
       throw BadInput(
@@ -167,7 +167,7 @@ class Answer {
   }
   bool has(const char* name) const { return text_.contains("arrays") && text_["arrays"].contains(name); }
 
-  /// Returns rows of `columns` values; `rows` is the required number, or any.
+  /// Returns rows of `columns` values; `rows` is the required number of rows, or any number.
   template <typename Value>
   std::vector<Value> array(const char* name, const char* dtype, std::size_t columns,
                            std::optional<std::size_t> rows) const {
@@ -221,7 +221,7 @@ void read_rates(const Answer& answer, const sim::Sensors& sensors, Estimate& est
   }
 }
 
-/// Reads the poses of kinds position, slam and attitude; attitude has no positions.
+/// Reads the poses of the kinds position, slam and attitude; attitude has no positions.
 std::vector<PoseState> read_poses(const Answer& answer) {
   const auto times_ns = answer.array<std::int64_t>("time_ns", "<i8", 1, {});
   const auto quaternions = answer.array<double>("quaternion", "<f8", 4, times_ns.size());

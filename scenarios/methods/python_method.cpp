@@ -28,7 +28,7 @@ except ImportError:
 print("Python", sys.version.split()[0] + ", numpy", numpy.__version__)
 )";
 
-/// Returns the command: the description's interpreter or the user's, followed by `words`.
+/// Returns the command: the interpreter of the description or of the user, followed by `words`.
 Command interpreter(const ExternalDescription& description, const ScratchFolder& scratch,
                     const std::vector<std::string>& words) {
   Command command{.words = description.interpreter,

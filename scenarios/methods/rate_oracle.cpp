@@ -19,7 +19,7 @@ Estimate run_rate_oracle(const sim::Sensors& sensors, const sim::Values&, const 
 
 Status unclipped_rates(const sim::Sensors& sensors, const sim::Truth& truth, std::vector<RateState>& out) {
   out.clear();
-  // Check the original readings too: an oracle must fail where every method must fail.
+  // The original readings are also checked, because an oracle must fail where every method must fail.
   std::vector<ImuSample> samples;
   Status status = bridge::primary_imu_samples(sensors, samples);
   if (!status.ok()) return status;

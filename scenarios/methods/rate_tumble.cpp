@@ -20,7 +20,8 @@
 
 namespace tumble::scenarios {
 
-// A range or density of 0 means that the data sheet states none: use no range, and the library's density.
+// A range or density of 0 means that the data sheet states none; in this case no range and the library's default
+// density are used.
 RateSmoother::Params stated_params(const sim::ImuRecord& record, RateSmoother::Params params) {
   RateModelParams& model = params.model;
   model.nominal.lever_arm_m = bridge::lever_arm_I_m(record);
@@ -103,7 +104,8 @@ void report_health(const RateReport& report, Estimate& result) {
 }
 
 constexpr double kTrust = 4.0;
-// Change of the gyro elements' slopes between runs. In six runs of a hand-held device the slope was 0.017 to 0.021.
+// Change of the cross-axis sensitivities of the gyro elements between runs. In six runs of a hand-held device, the
+// cross-axis sensitivity was 0.017 to 0.021.
 constexpr double kElementDrift = 2e-3;
 
 }  // namespace
@@ -121,7 +123,7 @@ const Settings<RateSmoother::Params>& rate_tumble_settings() {
 void start_from_learnt(const LearntRig& rig, RateSmoother::Params& params) {
   const RigConstants::Matrix prior = RateModel(params.model, 0.01).prior_covariance();
   start_from(rig, kTrust, params);
-  // Biases change at every switch-on: use the default prior.
+  // Biases change at every switch-on, so the default prior is used.
   constexpr int kBias = 3, kBiases = 6;
   RigConstants& constants = params.model.calibration->constants;
   constants.gyro_bias_rad_s = params.model.nominal.gyro_bias_rad_s;
@@ -130,7 +132,7 @@ void start_from_learnt(const LearntRig& rig, RateSmoother::Params& params) {
   covariance.diagonal().tail<RigConstants::kSize - RigConstants::kElements>().array() += kElementDrift * kElementDrift;
   covariance.middleRows<kBiases>(kBias).setZero();
   covariance.middleCols<kBiases>(kBias).setZero();
-  // Limit the covariance to the default prior.
+  // Limits the covariance to the default prior.
   const RigConstants::Matrix floor = (1.0 - 1.0 / kTrust) * prior.inverse();
   RigConstants::Matrix filled = covariance;
   filled.block<kBiases, kBiases>(kBias, kBias).setIdentity();
@@ -165,8 +167,8 @@ double distance_of_rigs(const RigCalibration& before, const RigCalibration& now,
 
 namespace {
 
-/// Compares a stored calibration with one from a run that did not use it. Returns false and adds a doubt if they belong
-/// to different rigs.
+/// Compares a stored calibration with a calibration from a run that did not use the stored calibration. Returns false
+/// and adds a failed health check if the two calibrations belong to different rigs.
 bool may_be_of_this_rig(const LearntRig& given, const std::optional<LearntRig>& fresh, Estimate& result) {
   constexpr double kDistanceMax = 2.0;  // see distance_of_rigs
   report_no_doubt(Doubt::About::learnt_rig, result);
@@ -220,7 +222,8 @@ Status tumble_rates(const sim::Sensors& sensors, std::span<const ImuSample> samp
   if (status.ok()) status = RateSmoother(params).estimate(samples, auxiliary_imus, out.rates, out.report);
   if (status.ok()) {
     report_health(out.report, result);
-    // Further IMUs determine the rate even if the body is hand-held; the hand-held smoother does not use them.
+    // Auxiliary IMUs determine the rate even if the body is hand-held; the hand-held smoother does not use auxiliary
+    // IMUs.
     if (auxiliary_imus.empty()) out.carried = join_regimes(sensors, samples, out.report, out.rates, result.health);
   }
   return status;

@@ -21,13 +21,13 @@ namespace tumble::scenarios {
 /// Returns the parameters of rate/tumble with the library's defaults.
 const Settings<RateSmoother::Params>& rate_tumble_settings();
 
-/// Returns the names of the noise densities that a recording states if its data sheet has them.
+/// Returns the names of the noise densities that a recording states if its data sheet has these densities.
 const std::vector<std::string>& stated_densities();
 
-/// Returns `params` with the values in an IMU record: lever arm, noise, ranges.
+/// Returns `params` with the values of an IMU record: lever arm, noise, ranges.
 RateSmoother::Params stated_params(const sim::ImuRecord& record, RateSmoother::Params params);
 
-/// Returns the defaults of `settings` with the record's values, overridden by `parameters`.
+/// Returns the defaults of `settings` with the values of the record, overridden by `parameters`.
 RateSmoother::Params smoother_params(const sim::ImuRecord& record, const Settings<RateSmoother::Params>& settings,
                                      const sim::Values& parameters);
 
@@ -40,50 +40,53 @@ struct SmoothedRates {
 };
 
 /// Smooths the rates of `samples`, which may differ from the recording's readings. Adds the smoother's report to the
-/// health and doubts of `result`.
+/// health and the failed checks of `result`.
 Status tumble_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, RateSmoother::Params params,
                     SmoothedRates& out, Estimate& result);
 
-/// Adds the readings of other IMUs on the same body, at the stamps of `samples`. Uses the first further IMUs except
-/// `imu_reference`, at most kAuxiliaryImusMax, with their calibrated mountings in `model`. Errors: those of a record.
+/// Adds the readings of other IMUs on the body, at the stamps of `samples`. Uses the first auxiliary IMUs except
+/// `imu_reference`, at most kAuxiliaryImusMax, and writes their calibrated mountings to `model`. Errors are those of
+/// the records.
 Status auxiliary_readings(const sim::Sensors& sensors, std::span<const ImuSample> samples, RateModelParams& model,
                           std::vector<std::vector<AuxiliaryReading>>& out);
 
 /// Runs rate/tumble from the saved calibration `given` (null: none) and writes the new calibration to `found` (may be
-/// null). `found` is unchanged if the status is not ok. It is also unchanged if the constants could not be estimated
-/// and no saturation limit is certain (with_rails). The covariance of `given` is multiplied by four, because rigs
-/// change between runs, but never exceeds the default prior.
+/// null). `found` is unchanged if the status is not ok. `found` is also unchanged if the constants could not be
+/// estimated and no saturation level is certain (with_rails). The covariance of `given` is multiplied by four, because
+/// rigs change between runs, but never exceeds the default prior.
 Estimate run_rate_tumble(const sim::Sensors& sensors, const sim::Values& parameters, const LearntRig* given,
                          std::optional<LearntRig>* found);
 
-/// Runs the streaming method `tumble_lag` in the same way. It saves constants only if their covariance decreased.
+/// Runs the streaming method `tumble_lag` with a saved calibration, like run_rate_tumble. The streaming method saves
+/// the calibration only if its covariance decreased.
 Estimate run_rate_tumble_lag(const sim::Sensors& sensors, const sim::Values& parameters, const LearntRig* given,
                              std::optional<LearntRig>* found);
 
 /// Sets the smoother's priors from a saved calibration: lever arm and inertia with four times their covariance, and the
-/// saturation limits. Biases change at every switch-on and are not used.
+/// saturation levels. Biases change at every switch-on and are not used.
 void start_from_learnt(const LearntRig& rig, RateSmoother::Params& params);
 
 /// Returns the calibration before a run: `given` if not null, else the prior in `model`.
 LearntRig known_before(const LearntRig* given, const RateModelParams& model);
 
-/// Calibration that several runs on one rig start from and produce.
+/// Calibration that several runs on one rig start from and update.
 struct Learning {
   std::optional<LearntRig> given;  ///< empty: start without calibration
   std::optional<LearntRig> of_batch, of_stream;
-  /// Returns the calibration to save; null if none. Prefers the batch result, which uses the whole recording, unless it
-  /// only has saturation limits and the streaming result has more.
+  /// Returns the calibration to save; null if none. Prefers the result of the smoother over the whole recording. The
+  /// streaming result is preferred only if it has more than the smoother, which only has saturation levels.
   const LearntRig* found() const;
 };
 
 /// Returns the distance between two calibrations: the larger Mahalanobis distance of lever arm and inertia, divided by
-/// the root of the number of unknowns. The same rig gave 0.14 to 1.0 in 18 pairs of runs; an inertia error of 30 % gave
-/// at least 2.3. `trust` multiplies the covariance of `before`, as in start_from.
+/// the square root of the number of unknowns. Two runs on an unchanged rig gave 0.14 to 1.0 in 18 pairs; an inertia
+/// error of 30 % gave at least 2.3. `trust` multiplies the covariance of `before`, as in start_from.
 double distance_of_rigs(const RigCalibration& before, const RigCalibration& now, double trust);
 
-/// Returns `method` with a calibration that starts from and updates `learning`, which must outlive it. If a start
-/// calibration exists, the method also runs without it. If the two results differ (distance_of_rigs), the estimate gets
-/// a doubt and nothing is saved. Throws BadInput for methods other than rate/tumble and rate/tumble_lag.
+/// Returns `method` with a calibration that starts from and updates `learning`; `learning` must outlive the returned
+/// method. If `learning` has a start calibration, the method also runs without the calibration. If the results with and
+/// without the start calibration differ (distance_of_rigs), the estimate gets a failed health check and no calibration
+/// is saved. Throws BadInput unless the method is rate/tumble or rate/tumble_lag.
 Method learning_method(const Method& method, Learning& learning);
 
 Method rate_tumble_lag();

@@ -23,7 +23,7 @@ bool does_not_clip(const RateState& rate) {
   return rate.clipped_axes == 0;
 }
 
-/// Also requires that the reading is not suspect. Plateaus without a clear saturation limit are suspect.
+/// The comparison also requires that the reading is not suspect. Plateaus without a clear saturation limit are suspect.
 bool is_read(const RateState& rate) {
   return does_not_clip(rate) && rate.source == RateSource::measured;
 }
@@ -41,7 +41,7 @@ Eigen::Vector3d bias_rad_s(const std::vector<ImuSample>& samples, const std::vec
   return bias;
 }
 
-/// Rates of rate/tumble to replace readings; empty if nothing clips or the smoother failed.
+/// Rates of rate/tumble that replace readings; empty if nothing clips or the smoother failed.
 struct Recovery {
   std::vector<RateState> rates;
   Eigen::Vector3d bias_rad_s = Eigen::Vector3d::Zero();

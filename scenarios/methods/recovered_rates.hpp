@@ -11,7 +11,7 @@
 #include "tumble/angular_velocity/rate_state.hpp"
 #include "tumble/common/imu.hpp"
 
-/// Replaces clipped gyro readings by rates of rate/tumble, for methods that use them as readings.
+/// Replaces clipped gyro readings by rates of rate/tumble, for methods that process gyro readings.
 namespace tumble::scenarios {
 
 struct RecoveredRates {
@@ -24,13 +24,13 @@ struct RecoveredRates {
 
 /// Replaces all three axes of clipped samples by the rates of rate/tumble, because a tilted saturation plane also
 /// corrupts the other axes. Adds the gyro bias, estimated as the mean difference of unclipped samples. The samples are
-/// unchanged if nothing clips or the smoother fails. `samples`: those of the primary IMU.
+/// unchanged if no reading clips or if the smoother fails. `samples` are the samples of the primary IMU.
 RecoveredRates recover_clipped(const sim::Sensors& sensors, std::vector<ImuSample>& samples,
                                std::map<std::string, double>& health);
 
-/// Also replaces readings that rate/tumble marks as suspect, and all readings of a gyro slower than its output rate,
-/// whose delay rate/tumble removes. Not for smoothers with their own motion bounds: these do better with the original
-/// suspect readings.
+/// In addition to clipped readings, replaces readings that rate/tumble marks as suspect. If the gyro is slower than its
+/// output rate, replaces all readings, because rate/tumble removes the gyro's delay. Smoothers with their own motion
+/// limits should not use this function, because they perform better with the original suspect readings.
 RecoveredRates recover_in_time(const sim::Sensors& sensors, std::vector<ImuSample>& samples,
                                std::map<std::string, double>& health);
 

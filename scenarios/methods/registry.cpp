@@ -74,7 +74,7 @@ std::vector<Method> all_methods() {
   return all;
 }
 
-/// A name of a built-in method would be ambiguous in the results.
+/// An external method with the name of a built-in method would be ambiguous in the results.
 MethodPointer method_of_file(const std::string& file, double time_limit_s) {
   auto method = std::make_shared<const Method>(external_method(file, time_limit_s));
   for (const Method& own : methods()) {
@@ -123,7 +123,7 @@ Method make_method(MethodInfo info, RunCore run) {
       std::make_shared<const std::vector<sim::Parameter>>(joined_rows(settings, info.parameters_first));
   info.parameters = *parameters;
   const bool needs_truth = info.needs_truth;
-  // The capture owns `parameters`, which the info refers to.
+  // The capture owns `parameters`, to which `info` refers.
   RunMethod wrapped = [name, settings, parameters, needs_truth, run](
                           const sim::Sensors& sensors, const sim::Values& given, const OracleInput& oracle) {
     if (needs_truth && oracle.truth == nullptr) {

@@ -10,15 +10,17 @@
 #include "scenarios/methods/method.hpp"
 #include "tumble/common/imu.hpp"
 
-/// Registers the methods. To add one: write KIND_NAME.cpp that defines `Method KIND_NAME()`, declare it here, list it
-/// once in registry.cpp, and add the file to CMakeLists.txt.
+/// Registers the methods. A new method needs a file KIND_NAME.cpp that defines `Method KIND_NAME()`, a declaration
+/// here, a line in registry.cpp, and the file's name in CMakeLists.txt.
 namespace tumble::scenarios {
 
-/// Computes an estimate. `parameters` is complete and within bounds; `oracle.truth` is set if the method needs it.
+/// Computes an estimate. `parameters` is complete and within limits; `oracle.truth` is set if the method needs the
+/// truth.
 using RunCore = Estimate (*)(const sim::Sensors&, const sim::Values& parameters, const OracleInput& oracle);
 
-/// Creates a method from `run`. Collects `info.parameters` from its settings, resolves them, and passes the truth only
-/// to oracles. The result throws BadInput for an unknown or out-of-bound parameter and for missing truth.
+/// Creates a method from `run`. Collects `info.parameters` from the settings of the stages, resolves parameter values,
+/// and passes the truth only to oracles. Running the method throws BadInput for an unknown parameter, a value out of
+/// range, or a missing truth.
 Method make_method(MethodInfo info, RunCore run);
 
 Method rate_raw();
@@ -62,15 +64,15 @@ Method slam_poses_autogain_fusion();
 Method slam_poses_tumble();
 Method slam_rolling_prior();
 
-/// Rate stages, shared by the rate methods and the slam chains. Each returns one RateState per sample; `out` is empty
-/// on error.
+/// Rate stages that the rate methods and the slam chains share. Each stage returns one RateState per sample; on error,
+/// `out` is empty.
 Status raw_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, std::vector<RateState>& out);
 Status unclipped_rates(const sim::Sensors& sensors, const sim::Truth& truth, std::vector<RateState>& out);
 
-/// Counts the rates by source in `health`.
+/// Counts the rates by their source (for example measured or estimated) in `health`.
 void count_sources(std::span<const RateState> rates, std::map<std::string, double>& health);
 
-/// Known motion as input: one velocity per IMU sample.
+/// Motion that is known in advance, as one velocity per IMU sample.
 struct KnownMotion {
   struct Velocity {
     Eigen::Vector3d v_WI_I_m_s = Eigen::Vector3d::Zero();
@@ -84,16 +86,17 @@ struct KnownMotion {
 
 /// Options of the lidar-inertial chain.
 struct SlamChain {
-  /// Estimates lidar mounting, lidar clock and gravity. Processes the recording twice: the second pass starts from the
-  /// calibration of the first.
+  /// Estimates lidar mounting, lidar clock offset and gravity. The recording is processed twice; the second pass starts
+  /// from the calibration of the first pass.
   bool calibration = false;
   const KnownMotion* along = nullptr;  ///< motion that generated the samples
 };
 
 struct SlamStage;
 
-/// Runs the lidar-inertial chain of all registration methods: deskewing with the given rates, registration, mapping.
-/// Parameters: slam_settings.hpp. Returns true if the run ends localised on its map.
+/// Runs the lidar-inertial chain of all registration methods: deskewing with the rates in the estimate, registration,
+/// mapping. slam_settings.hpp describes the parameters. Returns true if the run ends with a pose that is known in its
+/// map.
 bool run_slam_chain(const sim::Sensors& sensors, std::span<const ImuSample> samples, const SlamStage& stage,
                     const SlamChain& chain, Estimate& estimate);
 

@@ -10,11 +10,11 @@
 namespace tumble::scenarios {
 
 /// Reports the known saturation limits of the primary gyro in `health` (ESTIMATE.md, "Rails"): the level of each axis
-/// whose limit was observed, and the plane parameters of a tilted limit. Omits levels taken from another axis or a data
-/// sheet.
+/// with an observed limit, and the plane parameters of a tilted limit. Levels that were copied from another axis or
+/// from a data sheet are omitted.
 void report_rails(const KnownRails& rails, std::map<std::string, double>& health);
 
-/// Reports the saturation limits found by a run of the smoother.
+/// Reports the saturation levels that the smoother found in a run.
 void report_rails(const RateReport& report, std::map<std::string, double>& health);
 
 }  // namespace tumble::scenarios

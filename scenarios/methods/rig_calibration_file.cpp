@@ -24,20 +24,20 @@ using nlohmann::json;
 constexpr double kMost = 1e6;
 constexpr const char* kKeys[] = {"lever_arm_m", "gyro_bias_rad_s", "accel_bias_m_s2", "inertia",
                                  "covariance",  "gyro_rail_rad_s", "accel_rail_m_s2"};
-// Missing in early files, whose covariance has fewer rows.
+// Early calibration files lack the key and have fewer covariance rows.
 constexpr const char* kElementsKey = "gyro_elements";
-// Missing in early files.
+// Early calibration files lack this key.
 constexpr const char* kPlanesKey = "gyro_planes_rad_s";
-// Missing in early files.
+// Early calibration files lack this key.
 constexpr const char* kAccelPlanesKey = "accelerometer_planes_m_s2";
 constexpr const char* kAccelElementsKey = "accelerometer_elements";
-// Missing in early files.
+// Early calibration files lack these keys.
 constexpr const char *kErrorsKey = "device_errors", *kErrorsCovarianceKey = "device_errors_covariance";
-// Change of the accelerometer elements' slopes between runs, as for the gyro.
+// Change of the cross-axis sensitivities of the accelerometer elements between runs, as for the gyro.
 constexpr double kSlopeDrift = 2e-3;
-// Planes with lower log-odds are not saved: motion peaks can resemble a saturation plane.
+// Planes with lower log-odds are not saved, because motion peaks can resemble a saturation plane.
 constexpr double kSureLogOdds = 10.0;
-// Lower bound of the slope's standard deviation: rails.md (R59).
+// Lower bound of the cross-axis sensitivity's standard deviation: rails.md (R59).
 constexpr double kSlopeSigmaMin = 3e-4;
 constexpr int kWithoutElements = RigConstants::kElements;
 
@@ -60,7 +60,7 @@ json rails(const LearntRig& rig, std::size_t first) {
   return out;
 }
 
-// Reads arrays; errors state the fault and its location.
+// Reads arrays; error messages state the fault and its location.
 class CalibrationReader {
  public:
   CalibrationReader(const std::filesystem::path& path, const json& object) : path_(path), object_(object) {}
@@ -81,7 +81,7 @@ class CalibrationReader {
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (!values[i].is_number() || !std::isfinite(values[i].get<double>()))
         complain(key, "holds an element that is not a number");
-      // Far beyond any rig constant; it would dominate all other numbers.
+      // A number far beyond any rig constant would dominate all other numbers.
       if (std::abs(values[i].get<double>()) > kMost) {
         complain(key, fmt::format("is {}; its magnitude must be at most 1e6", values[i].dump()));
       }
@@ -133,7 +133,8 @@ std::optional<double> lowest(const LearntRig& rig, std::size_t first) {
 constexpr double kToleranceShare = 2e-3;
 
 // Returns true if the intercept of a plane is known: two standard deviations are within the tolerance of the next run.
-// If two elements only clip together, the slope between them is unknown, and so is the level elsewhere.
+// If two elements only clip together, the cross-axis sensitivity between the two is unknown, and so is the level at
+// other readings.
 bool reported_level(const RailPlane& plane, int sign) {
   const Eigen::Vector4d cut(0.0, 0.0, sign, 1.0);
   const double variance = cut.dot(plane.covariance * cut), most = 0.5 * kToleranceShare * plane.distance_rad_s;
@@ -155,7 +156,7 @@ void LearntRig::keep(const RailPlanes& planes, Triad triad) {
   for (std::size_t j = 0; j < 3; ++j) {
     const std::optional<RailPlane>& plane = planes.element[j];
     if (plane && plane->log_odds < kSureLogOdds) {
-      // Also widen the covariance of the plane's slopes.
+      // The covariance of the plane's cross-axis sensitivities is also widened.
       const double sigma = RateModelParams{}.element_sigma;
       const Eigen::Index at = RigConstants::kElements + 2 * static_cast<Eigen::Index>(j);
       if (triad == Triad::gyro) calibration.covariance.diagonal().segment<2>(at).array() += sigma * sigma;
@@ -176,7 +177,7 @@ void LearntRig::keep(const RailPlanes& planes, Triad triad) {
 
 namespace {
 
-// Stores slopes and intercept of an element with a certain plane.
+// Stores cross-axis sensitivities and intercept of an element with a certain plane.
 void take_element(const RailPlane& plane, Triad triad, std::size_t j, LearntRig& rig) {
   const auto first = static_cast<Eigen::Index>(2 * j), at = RigConstants::kElements + first;
   const Eigen::Vector2d slopes(plane.row[static_cast<Eigen::Index>((j + 1) % 3)],
@@ -300,7 +301,7 @@ void read_device_errors(const CalibrationReader& reader, const json& object, Lea
   reader.read(kErrorsCovarianceKey, known.covariance);
   known.errors = SensorErrors::from(errors);
   const SensorErrors::Vector deviation = known.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
-  // The entries differ by orders of magnitude: normalise by their standard deviations.
+  // The entries differ by orders of magnitude, so they are normalised by their standard deviations.
   const SensorErrors::Vector over = deviation.cwiseMax(1e-300).cwiseInverse();
   const SensorErrors::Matrix scaled = over.asDiagonal() * known.covariance * over.asDiagonal();
   if (!scaled.allFinite() || (scaled - scaled.transpose()).cwiseAbs().maxCoeff() > 1e-9 ||

@@ -10,15 +10,17 @@
 #include "sim/parameters.hpp"
 #include "tumble/common/imu.hpp"
 
-/// Building blocks of the rigid registration methods. A rate method supplies Estimate::rates, a trajectory model the
-/// motion within a sweep, RigidOdometry the registration. Each method's file combines its own choice.
+/// Building blocks of the rigid registration methods. A rate method supplies Estimate::rates, a trajectory model
+/// predicts the motion within a sweep, and RigidOdometry registers the sweep. The file of each method combines a rate
+/// method with a trajectory model.
 namespace tumble::scenarios {
 
 /// Predicts the motion of each sweep and updates itself with the registration result.
 class TrajectoryModel {
  public:
   virtual ~TrajectoryModel() = default;
-  /// Predicts from the end of the last sweep (at first: the start of this sweep) to `to_ns`.
+  /// Predicts the motion from the end of the last sweep to `to_ns`; for the first sweep, the prediction starts at the
+  /// sweep's start.
   virtual baselines::RigidOdometry::Motion expect(TimeNs from_ns, TimeNs to_ns) = 0;
   /// Updates the model after each sweep; `report.verdict` states whether the registration succeeded.
   virtual void learn(const baselines::RigidOdometry& odometry, const LidarInertialOdometry::SweepReport& report) = 0;
@@ -29,33 +31,36 @@ struct StartAtRest {
   Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
   Eigen::Vector3d gyro_bias_rad_s = Eigen::Vector3d::Zero();
 };
-/// Averages at most the first second, as long as the gyro stays below 0.05 rad/s, and at least one sample. Returns
-/// `too_few` or `degenerate` if no attitude results.
+/// Averages the readings of at most the first second, as long as the gyro stays below 0.05 rad/s, and at least one
+/// sample. Returns `too_few` or `degenerate` if the readings do not determine an attitude.
 Status start_at_rest(std::span<const ImuSample> samples, StartAtRest& out);
 
-/// Prepares the methods that use the raw gyro: samples of the first IMU, rates with flagged clipped axes, and the
+/// Prepares the input of methods that use the raw gyro: samples of the first IMU, rates with flagged clipped axes, and
 /// initial values.
 Status raw_start(const sim::Sensors& sensors, std::vector<ImuSample>& samples, std::vector<RateState>& rates,
                  StartAtRest& start);
 
-/// Returns the IMU windows that overlap (from_ns, to_ns], with bias-corrected rates and forces. Each window is split
-/// into `parts`; rate and force are linear between the windows' means. The first window starts at or before from_ns.
+/// Returns the IMU averaging windows that overlap (from_ns, to_ns], with bias-corrected rates and forces. Each window
+/// is split into `parts`; rate and force vary linearly between the mean values of the windows. The first window starts
+/// at or before from_ns.
 std::vector<MotionSample> imu_motion(std::span<const ImuSample> samples, std::span<const RateState> rates,
                                      const Eigen::Vector3d& bias_rad_s, TimeNs from_ns, TimeNs to_ns, int parts = 1);
 
-/// Returns the same windows with constant body rate and acceleration (body axes, without gravity).
+/// Returns the IMU averaging windows that overlap the interval, with constant body rate and acceleration (body axes,
+/// without gravity).
 std::vector<MotionSample> steady_motion(std::span<const ImuSample> samples, const Eigen::Vector3d& rate_I_rad_s,
                                         const Eigen::Vector3d& force_I_m_s2, TimeNs from_ns, TimeNs to_ns);
 
 /// Returns a prior covariance for registration with a weak motion model.
 Eigen::Matrix<double, 9, 9> loose_covariance(double sigma_m, double sigma_rad);
 
-/// Runs the chain with rigid registration. Sweeps that the IMU does not cover are counted, not registered. A covered
-/// lidar is not an error.
+/// Runs the chain with rigid registration. Sweeps beyond the end of the IMU readings are counted but not registered. A
+/// sweep without returns is not an error.
 void run_rigid_chain(const sim::Sensors& sensors, std::span<const ImuSample> samples,
                      const baselines::RigidOdometry::Params& params, TrajectoryModel& model, Estimate& estimate);
 
-/// Returns the parameters of the rigid methods and their mapping to the library; T_IL comes from the calibration.
+/// Returns the parameters of the rigid methods and their mapping to the library; the mounting T_IL comes from the
+/// calibration.
 const Settings<baselines::RigidOdometry::Params>& rigid_settings();
 baselines::RigidOdometry::Params rigid_params(const sim::Sensors& sensors, const sim::Values& parameters);
 

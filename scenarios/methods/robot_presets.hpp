@@ -3,22 +3,22 @@
 
 #include <Eigen/Geometry>
 
-/// Default parameters for which the library has no default: numbers of the robots in `models/`. A recording states its
-/// own.
+/// Default parameters without a default in the library: numbers of the robots in `models/`. The values in a recording
+/// override these defaults.
 namespace tumble::scenarios::presets {
 
-/// Returns the vector from the rig's centre of mass to its MTi-30, IMU axes; `models/rig.xml`.
+/// Returns the vector from the rig's centre of mass to the MTi-30, in IMU axes, from `models/rig.xml`.
 Eigen::Vector3d rig_lever_arm_m();
 
-/// Returns a box around the rig's cage in lidar axes, with a margin of some centimetres; returns inside it hit the rig
-/// itself.
+/// Returns a box around the rig's cage in lidar axes, with a margin of some centimetres; returns inside the box come
+/// from the rig.
 Eigen::AlignedBox3d rig_body_L();
 
-/// Slightly below the gyro's saturation level in `models/sensors/mti30.yaml`; the method of Saave tests for larger
-/// readings.
+/// Threshold slightly below the saturation level of the gyro in `models/sensors/mti30.yaml`; the method of Saave treats
+/// larger readings as saturated.
 inline constexpr double kRigSaturationPoint_rad_s = 10.45;
 
-/// Radius of the sphere's shell; `models/sphere.xml`.
+/// Radius of the sphere's shell, from `models/sphere.xml`.
 inline constexpr double kSphereRadius_m = 0.145;
 
 }  // namespace tumble::scenarios::presets

@@ -8,18 +8,18 @@
 
 namespace tumble::scenarios {
 
-/// Runs `run` with corrected IMU sample times (SampleClock) instead of the host's stamps. Rates are returned with the
-/// original stamps, poses and attitudes with the corrected times. The health reports the largest jitter as
-/// `stamps_mended_s` [s]. If no stamp needs correction, `run` receives `sensors` unchanged, else a full copy.
+/// Calls `run` with corrected sample times of the IMU (SampleClock) instead of the host's stamps. Rates are returned
+/// with the original stamps, poses and attitudes with the corrected times. The health reports the largest correction as
+/// `stamps_mended_s` [s]. If no stamp needs correction, `run` receives `sensors` itself, else a full copy.
 Estimate with_sample_times(const sim::Sensors& sensors, const std::function<Estimate(const sim::Sensors&)>& run);
 
-/// Runs `run` on the sensors without the samples that OutlierFilter rejects. The health counts them in
-/// `rejected_readings` if there are any. Without outliers `run` gets `sensors` themselves, else a copy.
+/// Calls `run` with the sensors without the samples that OutlierFilter rejects. The health counts rejected samples in
+/// `rejected_readings`, if there are any. Without outliers, `run` receives `sensors` itself, else a copy.
 Estimate without_outliers(const sim::Sensors& sensors, const std::function<Estimate(const sim::Sensors&)>& run);
 
-/// Wraps a RunCore with both corrections, for our methods other than the public API classes (which correct stamps
-/// themselves) and for oracles. Published methods use the stamps unchanged. An oracle keeps each sample, because the
-/// truth has one value per sample.
+/// Wraps a RunCore with the correction of sample times and the removal of outliers. Oracles and our methods use the
+/// wrapper, except for the public API classes, which correct stamps themselves. Published methods use the stamps
+/// unchanged. For an oracle, outliers are kept, because the truth has one value per sample.
 template <RunCore run>
 Estimate at_sample_times(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput& oracle) {
   const auto timed = [&](const sim::Sensors& kept) {

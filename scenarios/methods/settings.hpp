@@ -17,8 +17,8 @@
 #include "tumble/common/fields_by_name.hpp"
 #include "tumble/common/parameters.hpp"
 
-/// Converts a library's `Params` to a method's parameters. Tables, parsing and tests use only the descriptions of its
-/// fields (common/parameters.hpp).
+/// Converts the `Params` struct of a library class to the parameters of a method. Tables, parsing and tests use only
+/// the descriptions of the struct's fields (common/parameters.hpp).
 namespace tumble::scenarios {
 
 namespace detail {
@@ -26,7 +26,7 @@ namespace detail {
 /// Returns the names of a vector's coordinates, with the axis in front of the unit: "lever_arm_x_m".
 std::array<std::string, 3> coordinate_names(const std::string& name, const Field& field);
 
-/// Calls `each(name, value, field, whole)` for each number in a `Params`; a vector has three.
+/// Calls `each(name, value, field, whole)` for each number in a `Params`; a vector has three numbers.
 template <class Params, class Each>
 void visit_numbers(Params& params, Each each) {
   visit_by_name(params, [&each](const std::string& name, auto& value, const Field& field) {
@@ -44,30 +44,30 @@ void visit_numbers(Params& params, Each each) {
 
 /// Fields of a `Params` that a method treats specially.
 struct SettingsOptions {
-  /// Fields stated by the recording; a user's value takes precedence. A name may end in `*`.
+  /// Fields whose values the recording states; a user's value takes precedence. A name may end in `*`.
   std::vector<std::string> stated = {};
   /// Fields that follow from other parameters and cannot be set. A name may end in `*`.
   std::vector<std::string> fixed = {};
-  /// Fields to list first for this method's users.
+  /// Fields that are listed first for users of this method.
   std::vector<std::string> first = {};
   /// Parameters of another stage; a field with an equal name gets `prefix`.
   std::span<const sim::Parameter> beside = {};
   std::string prefix = {};
 };
 
-/// Names, table rows and values; the type-independent base of all Settings.
+/// Names, table rows and values of parameters; the type-independent base of all Settings.
 class SettingsTable {
  public:
   virtual ~SettingsTable() = default;
   SettingsTable(const SettingsTable&) = delete;
   SettingsTable& operator=(const SettingsTable&) = delete;
 
-  /// Frequently used parameters come first.
+  /// Returns the parameter rows; frequently used parameters come first.
   std::span<const sim::Parameter> rows() const { return rows_; }
   std::size_t first_rows() const { return first_rows_; }
   /// Returns true for integer parameters: counts, switches, choices.
   bool is_whole(std::string_view name) const { return whole_.contains(name); }
-  /// Returns true if the recording states the value, so that only a user's value overrides it.
+  /// Returns true if the recording states the parameter's value, so that only a user's value overrides the recording.
   bool is_stated(std::string_view name) const { return stated_.contains(name); }
   /// Returns every number of the `Params` by the library's names, taken from `values`.
   virtual std::map<std::string, double> numbers(const sim::Values& values) const = 0;
@@ -76,7 +76,7 @@ class SettingsTable {
   explicit SettingsTable(SettingsOptions options);
   void add(const std::string& field_name, double value, const Field& field, bool whole);
   void sort_rows();
-  /// Returns true if `values` sets the field, and its parameter name in `name`.
+  /// Returns true if `values` sets the field, and writes the parameter's name to `name`.
   bool applies(const std::string& field_name, const sim::Values& values, std::string& name) const;
 
  private:
@@ -89,19 +89,20 @@ class SettingsTable {
   std::deque<std::string> texts_;  ///< owns the texts that the other members refer to
 };
 
-/// Resolves values for all `rows` of the stages, like sim::resolve; omits those that the recording states and the user
-/// did not set. Throws InvalidSituation like sim::resolve, and for a fraction where an integer is required.
+/// Resolves values for all `rows` of the stages, like sim::resolve; omits parameters that the recording states and the
+/// user did not set. Throws InvalidSituation like sim::resolve, and for a fraction where an integer is required.
 sim::Values resolve_settings(const std::string& place, const sim::Values& given,
                              std::span<const SettingsTable* const> stages);
 
-/// Returns the rows of several stages with distinct names, frequently used ones first; `first` is the number of these.
+/// Returns the rows of several stages with distinct names, frequently used rows first; `first` is the number of
+/// frequently used rows.
 std::vector<sim::Parameter> joined_rows(std::span<const SettingsTable* const> stages, std::size_t& first);
 
-/// Parameters of one stage of a method. Must be static, because its rows are referenced.
+/// Parameters of one stage of a method. The object must be static, because methods keep references to its rows.
 template <class Params>
 class Settings : public SettingsTable {
  public:
-  /// `defaults` are the library's, except where the method states others.
+  /// `defaults` are the library's default values, except where the method states its own.
   explicit Settings(const Params& defaults, SettingsOptions options = {})
       : SettingsTable(std::move(options)), defaults_(defaults) {
     detail::visit_numbers(defaults_, [this](const std::string& name, const auto& value, const Field& field,
@@ -110,7 +111,7 @@ class Settings : public SettingsTable {
   }
   const Params& defaults() const { return defaults_; }
 
-  /// Copies the values to `params`; values that the recording states and the user did not set are unchanged.
+  /// Copies the values to `params`; a field that the recording states and the user did not set is unchanged.
   void apply(const sim::Values& values, Params& params) const {
     detail::visit_numbers(params, [&](const std::string& field_name, auto& value, const Field&, bool) {
       using Value = std::remove_cvref_t<decltype(value)>;

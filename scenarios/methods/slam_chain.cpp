@@ -43,19 +43,20 @@ LidarInertialOdometry::Params odometry_params(const sim::Sensors& sensors, const
   return odometry;
 }
 
-/// Cuts a sweep at the end of the IMU data if most of it remains. Otherwise a clock offset would drop the last sweep.
+/// Cuts a sweep at the end of the IMU data if most of the sweep remains. If sweeps were not cut, a clock offset would
+/// drop the last sweep.
 bool shorten(std::int64_t end_ns, bridge::Sweep& sweep) {
   if (end_ns >= sweep.end_ns) return true;
   const std::int64_t left_ns = end_ns - sweep.start_ns;
   if (2 * left_ns < sweep.end_ns - sweep.start_ns) return false;
-  // Keep points beyond the sweep's end: they are a fault of the recording, and the mapper reports them.
+  // Points beyond the sweep's end are kept, because they are a fault of the recording that the mapper reports.
   const std::int64_t length_ns = sweep.end_ns - sweep.start_ns;
   std::erase_if(sweep.points, [&](const LidarPoint& p) { return p.offset_ns > left_ns && p.offset_ns <= length_ns; });
   sweep.end_ns = end_ns;
   return true;
 }
 
-/// Interpolates the velocity at `time_ns`; `next` is the index of the first sample after it, or slightly more.
+/// Interpolates the velocity at `time_ns`; `next` is the index of the first sample after `time_ns`, or slightly more.
 KnownMotion::Velocity velocity_at(std::int64_t time_ns, std::span<const ImuSample> samples, const KnownMotion& motion,
                                   std::size_t next) {
   while (next > 0 && samples[next - 1].time_ns >= time_ns) --next;
@@ -73,7 +74,8 @@ class SweepFeed {
             LidarInertialOdometry& odometry, Estimate& estimate)
       : samples_(samples), offset_ns_(offset_ns), along_(along), odometry_(odometry), estimate_(estimate) {}
 
-  /// Adds the IMU samples up to the sweep, then the sweep. Returns false on error; the estimate's status states why.
+  /// Adds the IMU samples up to the sweep's end, then the sweep. Returns false on error; the status of the estimate
+  /// then states the reason.
   bool add(bridge::Sweep sweep) {
     if (!add_samples(sweep.end_ns + offset_ns_)) return false;
     if (!shorten(samples_.back().time_ns - offset_ns_, sweep)) {
@@ -83,13 +85,13 @@ class SweepFeed {
     return add_velocity() && add_points(sweep);
   }
 
-  /// Finishes the recording.
+  /// Processes the end of the recording.
   void finish() {
     for (std::vector<PoseState>& open : odometry_.window_trajectories()) apply_next(std::move(open));
   }
 
  private:
-  /// Adds IMU samples up to the first at or after `to_ns`.
+  /// Adds IMU samples up to the first sample at or after `to_ns`.
   bool add_samples(TimeNs to_ns) {
     while (next_ < samples_.size() && (next_ == 0 || samples_[next_ - 1].time_ns < to_ns)) {
       estimate_.status = odometry_.add_imu(samples_[next_], estimate_.rates[next_]);
@@ -110,7 +112,7 @@ class SweepFeed {
   bool add_points(const bridge::Sweep& sweep) {
     SweepReport report;
     const Status status = odometry_.add_sweep(sweep.start_ns, sweep.end_ns, sweep.points, report);
-    // The IMU starts after the sweep, which therefore has no pose.
+    // The IMU readings start after the sweep, so the sweep has no pose.
     if (status.trouble == Trouble::too_few && report.trajectory.empty()) {
       leave_out_unfinished(estimate_);
       return true;
@@ -137,7 +139,7 @@ class SweepFeed {
   std::size_t smoothed_ = 0;  ///< number of smoothed sweeps
 };
 
-/// Feeds the whole recording; `estimate` receives its sweeps.
+/// Processes the whole recording; `estimate` receives the sweeps.
 void run_sweeps(const sim::LidarRecord& lidar, std::span<const ImuSample> samples, LidarInertialOdometry& odometry,
                 double time_offset_s, const KnownMotion* along, Estimate& estimate) {
   const auto offset_ns = static_cast<TimeNs>(std::llround(time_offset_s * 1e9));
@@ -179,9 +181,9 @@ bool determines_calibration(const Estimate& run) {
   return 5 * static_cast<std::size_t>(rejected) <= run.sweeps.size();
 }
 
-/// The first pass estimates the calibration; the last pass starts from it and builds a consistent map. If the
-/// calibration moves further than its stated uncertainty allows, another pass starts from the new value with the
-/// initial uncertainty, until it converges.
+/// The first pass estimates the calibration; the last pass starts from this calibration and builds a consistent map. If
+/// the calibration moves further than its stated uncertainty allows, another pass starts from the new value with the
+/// initial uncertainty, until the calibration converges.
 Estimate run_passes(const sim::LidarRecord& lidar, std::span<const ImuSample> samples,
                     const LidarInertialOdometry::Params& given, const SlamChain& chain, const Estimate& before,
                     LidarInertialOdometry& odometry, CalibrationVerdict& verdict) {
@@ -223,7 +225,7 @@ Estimate run_passes(const sim::LidarRecord& lidar, std::span<const ImuSample> sa
   return run;
 }
 
-/// Flags saturated accelerometer readings, as the device should have done.
+/// Flags saturated accelerometer readings that the device should have flagged.
 void flag_railed_forces(const sim::ImuRecord& record, std::vector<ImuSample>& samples) {
   ClippingFinder::Params params;
   params.upright_rails = stated_rails(record);
@@ -273,7 +275,7 @@ SlamParams with_few_matches(SlamParams params) {
   return params;
 }
 
-// Adds calibration uncertainties of a hand-assembled rig.
+// Adds the calibration uncertainties of a hand-assembled rig.
 SlamParams with_calibration(SlamParams params) {
   const TumblingOdometry::Params door;
   params.odometry.mount_sigma_rad = door.mount_sigma_rad;

@@ -25,14 +25,15 @@ void report_innovations(Estimate& estimate) {
   estimate.health["innovation_90"] = all[all.size() * 9 / 10];
 }
 
-/// Returns true if the rig is stationary during the sweep. A lidar then sees only rings; their degeneracy does no harm.
+/// Returns true if the rig is stationary during the sweep. At rest, the lidar only sees rings, whose degeneracy does no
+/// harm.
 bool rests(const SweepReport& sweep) {
   if (sweep.trajectory.size() < 2) return false;
   const PoseState &first = sweep.trajectory.front(), &last = sweep.trajectory.back();
   return (last.p_WA_m - first.p_WA_m).norm() < kRests_m && first.q_WA.angularDistance(last.q_WA) < kRests_rad;
 }
 
-/// Returns the share of sweeps in motion whose surfaces constrain all directions.
+/// Returns the fraction of the moving sweeps whose surfaces constrain all directions.
 double well_constrained_share(std::span<const SweepReport> sweeps) {
   std::size_t constrained = 0, moving = 0;
   for (const SweepReport& sweep : sweeps) {
@@ -62,8 +63,8 @@ void report_scale(const SweepScale& scale, Estimate& estimate) {
 }
 
 /// Returns true if the run is localised on its map: tracking never failed, the calibration stayed within its
-/// uncertainty, and lidar ranges and motion have the same scale. A wrong scale gives a map of the wrong size even if
-/// all sweeps agree.
+/// uncertainty, and lidar ranges and motion have one scale. A wrong scale gives a map of the wrong size even if all
+/// sweeps agree.
 bool is_localised(const CalibrationVerdict& calibration, const Localisation& localisation, const SweepScale* scale) {
   if (!calibration.converged && calibration.moved > StatedCalibration::kMaxDeviations) return false;
   return localisation.verdict().ok() && !(scale && scale->is_off());

@@ -8,26 +8,27 @@
 #include "tumble/mapping/detail/sweep_scale.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 
-/// Final steps of a run over sweeps.
+/// Computes the final results of a run over sweeps.
 namespace tumble::scenarios {
 
-/// Replaces the trajectory of a sweep by its smoothed trajectory, if not empty.
+/// Replaces the trajectory of a sweep by the smoothed trajectory, if `smoothed` is not empty.
 void apply_smoothed(std::vector<PoseState> smoothed, LidarInertialOdometry::SweepReport& sweep);
 
-/// Calibration check over all passes of a recording.
+/// Result of the calibration check over all passes of a recording.
 struct CalibrationVerdict {
   double moved = 0.0;  ///< distance from the initial calibration in its standard deviations
   bool converged = true;
 };
 
-/// Writes the final poses, map and status of a run; the estimate already holds the sweeps. Only this function decides
-/// whether the run is localised. Returns `too_few` status if no sweep was registered. `localisation`: from the mapper's
-/// first report of each sweep. `scale`: null if not checked. Returns true if the run is localised and completed.
+/// Writes the final poses, map and status of a run; the estimate already holds the sweeps. All callers use this
+/// function to decide whether the run is localised. Returns `too_few` status if no sweep was registered. `localisation`
+/// comes from the mapper's first report of each sweep. `scale` is null if the scale was not checked. Returns true if
+/// the run is localised and completed.
 bool conclude(const LidarInertialOdometry& odometry, const CalibrationVerdict& calibration,
               const Localisation& localisation, const SweepScale* scale, Estimate& estimate);
 
-/// The same for one pass. A calibration that moved by more than five of its stated standard deviations was wrong
-/// (health `lidar_calibration_mahalanobis`).
+/// Concludes a run with a single pass. A calibration that moved by more than five of its stated standard deviations is
+/// reported as wrong (health `lidar_calibration_mahalanobis`).
 void conclude_sweeps(const LidarInertialOdometry& odometry, const StatedCalibration& given, const SweepScale& scale,
                      const Localisation& localisation, Estimate& estimate);
 

@@ -10,7 +10,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-// Observer gains per second, from the authors' settings (Chen et al., sec. IV-D).
+// Observer gains per second, from the authors' settings (Chen et al.). IV-D).
 constexpr double kGainPosition = 4.5;
 constexpr double kGainVelocity = 11.25;
 constexpr double kGainAttitude = 4.0;

@@ -11,12 +11,13 @@ namespace {
 
 constexpr int kPosesPerSweep = 10;  // poses per sweep for recordings without IMU
 
-// A very weak prior: as in the published methods of this family, the registration alone decides.
+// A very weak prior, so that the registration alone determines the pose, as in published methods with constant
+// velocity.
 constexpr double kVelocityPriorM = 1.0;
 constexpr double kVelocityPriorRad = 0.5;
 
-/// Repeats the last change of pose, in translation and rotation. The IMU only supplies sample times for the poses, and
-/// the initial vertical, which the scores need. Without IMU the body is assumed upright at the start.
+/// Predicts that the last change of pose repeats, in translation and rotation. The IMU only supplies the times of the
+/// poses and the initial vertical, which the scores need. Without IMU the body is assumed upright at the start.
 class ConstantVelocity : public TrajectoryModel {
  public:
   ConstantVelocity(std::span<const ImuSample> samples, const Eigen::Quaterniond& q_WL) : samples_(samples) {

@@ -15,8 +15,8 @@ constexpr double kSwitchPriorM = 0.5;
 constexpr double kSwitchPriorRad = 0.3;
 constexpr double kHealthyRad = 0.05;  // rotation error with a healthy gyro
 
-/// Uses the gyro's rotation while it is healthy, else repeats the last rotation; translation has constant velocity. The
-/// gyro is unhealthy in sweeps with a saturated axis or a silence.
+/// Uses the gyro's rotation while the gyro is healthy, else repeats the last rotation; the translation has constant
+/// velocity. The gyro counts as unhealthy in sweeps with a saturated axis or a gap in the readings.
 class HealthSwitch : public TrajectoryModel {
  public:
   HealthSwitch(std::span<const ImuSample> samples, std::span<const RateState> rates, const StartAtRest& start)

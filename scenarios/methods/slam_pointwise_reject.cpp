@@ -30,7 +30,7 @@ void run_filter(const sim::Sensors& sensors, std::span<const ImuSample> samples,
   const sim::LidarRecord& lidar = sensors.lidars.front();
   const double rail = unsaturated_range(sensors.imus.front().stated_accel_range_m_s2);
   std::size_t next = 0;
-  // The IMU must reach a sample at or after the sweep's end.
+  // The IMU readings must include a sample at or after the sweep's end.
   const auto covers = [&](const bridge::Sweep& sweep) {
     while (next < samples.size() && (next == 0 || samples[next - 1].time_ns < sweep.end_ns)) {
       unsigned clipped = estimate.rates[next].clipped_axes;

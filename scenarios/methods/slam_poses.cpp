@@ -10,7 +10,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Parameters of the map, named as those of the registration methods.
+/// Parameters of the map, with the names that the registration methods use.
 struct MapParams {
   VoxelMap::Params map;
   double nearest_m = 0.3;
@@ -49,7 +49,7 @@ class Track {
   bool covers(std::int64_t time_ns) const {
     return !poses_.empty() && time_ns >= poses_.front().time_ns && time_ns <= poses_.back().time_ns;
   }
-  /// O(1) for times close to the previous query.
+  /// The cost is O(1) for times close to the previous query.
   Eigen::Isometry3d at(std::int64_t time_ns) {
     while (next_ > 1 && poses_[next_ - 1].time_ns > time_ns) --next_;
     while (next_ + 1 < poses_.size() && poses_[next_].time_ns < time_ns) ++next_;
@@ -65,8 +65,8 @@ class Track {
   std::size_t next_ = 1;
 };
 
-// The lidar is calibrated from the centre of mass, a few millimetres from the sphere's centre. Methods that do not
-// estimate this offset assume zero.
+// The lidar's mounting refers to the centre of mass, a few millimetres from the sphere's centre. For methods that do
+// not estimate the offset between the two centres, the offset is zero.
 Estimate map_from_poses(const Method& position, const sim::Sensors& sensors, const sim::Values& parameters) {
   Estimate estimate = position.run(sensors, values_of(position, parameters), {});
   estimate.contacts.clear();
@@ -121,7 +121,7 @@ Estimate run_poses_tumble(const sim::Sensors& sensors, const sim::Values& parame
   return map_from_poses(tumble(), sensors, parameters);
 }
 
-/// Returns a slam method that maps from the poses of `position`.
+/// Returns a slam method that builds the map from the poses of `position`.
 Method posed(MethodInfo info, const Method& position, RunCore run) {
   info.kind = Kind::slam;
   info.settings = stages_after({&map_settings()}, position);

@@ -10,7 +10,7 @@
 #include "scenarios/methods/registry.hpp"
 #include "tumble/common/imu.hpp"
 
-/// Slam methods in addition to registry.hpp, and their shared parts.
+/// Declares slam methods in addition to registry.hpp, and functions that these methods share.
 namespace tumble::scenarios {
 
 Method slam_published();
@@ -23,7 +23,7 @@ Method slam_floor();
 Method slam_tumble_lag();
 Method slam_tumble_live();
 
-/// Distinguishes the slam methods of the rig.
+/// Options that distinguish the slam methods of the rig.
 struct RigSlam {
   std::string name, doc;
   bool ours = false;
@@ -34,7 +34,8 @@ struct RigSlam {
 };
 Method rig_slam(RigSlam what, RunCore run);
 
-/// Starts an estimate with the rates that `rates` computes from the primary IMU's `samples`, or with the error.
+/// Starts an estimate with the rates that `rates` computes from the `samples` of the primary IMU, or with the error of
+/// `rates`.
 Estimate begin_with_rates(const sim::Sensors& sensors, std::vector<ImuSample>& samples,
                           const std::function<Status(Estimate&)>& rates);
 

@@ -12,15 +12,16 @@
 #include "scenarios/methods/sphere_attitude.hpp"
 #include "tumble/common/so3.hpp"
 
-/// Maps from a rolling sphere with the rig's registration, with rolling odometry as its prior.
+/// Builds maps from a rolling sphere with the rig's registration, with rolling odometry as the prior.
 namespace tumble::scenarios {
 
 namespace {
 
-// Uncertainty of a sweep's start relative to the last sweep's end, over 0.1 s, in addition to the velocity's.
+// Uncertainty of a sweep's start relative to the last sweep's end, over 0.1 s, in addition to the velocity's
+// uncertainty.
 constexpr double kPriorSigmaM = 1e-4, kPriorSigmaRad = 2e-5, kPriorSigmaMS = 1e-4, kForceSigmaShare = 2e-3;
 
-/// The chain's parameters with a tight prior from rolling, because consecutive sweeps see new, unmapped areas.
+/// Returns the chain's parameters with a tight prior from rolling, because consecutive sweeps see new, unmapped areas.
 const Settings<SlamParams>& prior_settings() {
   static const Settings<SlamParams> all = [] {
     SlamParams params;
@@ -28,7 +29,7 @@ const Settings<SlamParams>& prior_settings() {
     params.odometry.expert.prior.sigma_rad = kPriorSigmaRad;
     params.odometry.expert.prior.sigma_m_s = kPriorSigmaMS;
     params.odometry.expert.prior.force_share = kForceSigmaShare;
-    // these belong to the generated samples
+    // the following parameters belong to the generated samples
     return slam_settings(params, {"gravity_m_s2", "correction_max_m", "correction_max_rad"});
   }();
   return all;
@@ -91,8 +92,8 @@ const Method& followed() {
   return method;
 }
 
-/// Generates IMU readings along the poses of the position method, with little gravity. The mapper integrates them
-/// within a sweep and thus follows the rolling odometry.
+/// Generates IMU readings along the poses of the position method, with little gravity. The mapper integrates the
+/// generated readings within a sweep and thus follows the rolling odometry.
 std::vector<ImuSample> samples_along(const Estimate& poses, const sim::Sensors& sensors, std::span<const ImuSample> raw,
                                      double gravity_m_s2) {
   const Eigen::Isometry3d& T_BI = sensors.imus.front().T_BI;
@@ -125,8 +126,8 @@ struct Radius {
   double m = 0.0, sigma_m = 0.0;
 };
 
-/// Estimates the radius at which the rolled distance equals that of the registered sweeps, over segments with
-/// continuous contact. Empty if there are too few segments.
+/// Estimates the radius at which the rolled distance equals the distance of the registered sweeps, over segments with
+/// continuous contact. Returns empty if there are too few segments.
 std::optional<Radius> radius_by_lidar(const Estimate& rolled, const Estimate& registered, const sim::Sensors& sensors,
                                       double radius_m, const AlongParams& params) {
   const Eigen::Isometry3d T_IG =
@@ -181,7 +182,8 @@ Estimate roll(const sim::Sensors& sensors, const sim::Values& parameters, double
   return followed().run(own, values, {});
 }
 
-/// Returns the velocity of the primary IMU along the poses. `loosely` allows for an uncertain radius.
+/// Returns the velocity of the primary IMU along the poses. `loosely` increases the uncertainty to allow for an
+/// uncertain radius.
 KnownMotion motion_of(const Estimate& rolled, std::span<const ImuSample> samples, const sim::Sensors& sensors,
                       const AlongParams& params, bool loosely) {
   const Eigen::Isometry3d& T_BI = sensors.imus.front().T_BI;
@@ -209,7 +211,7 @@ KnownMotion motion_of(const Estimate& rolled, std::span<const ImuSample> samples
   return motion;
 }
 
-/// Registers with `rolled` as the prior between two sweeps.
+/// Registers sweeps with `rolled` as the prior between two sweeps.
 Estimate register_along(const Estimate& rolled, const sim::Sensors& sensors, std::span<const ImuSample> raw,
                         const sim::Values& parameters, bool loosely) {
   Estimate estimate;
@@ -228,7 +230,7 @@ Estimate register_along(const Estimate& rolled, const sim::Sensors& sensors, std
   return estimate;
 }
 
-/// Runs twice: loosely to estimate the radius, then tightly with rolling of that radius.
+/// Runs twice: with a weak prior to estimate the radius, then with a tight prior and the estimated radius.
 Estimate run_rolling_prior(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   Estimate estimate;
   estimate.frame = Frame::imu;

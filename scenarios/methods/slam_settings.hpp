@@ -27,18 +27,19 @@ struct SlamParams {
   }
 };
 
-/// Adds calibration uncertainties of a hand-assembled rig.
+/// Adds the calibration uncertainties of a hand-assembled rig.
 SlamParams with_calibration(SlamParams params);
-/// Accepts registrations with few matches if they agree with the prior. Baselines do not use this: a clipped gyro makes
-/// the prior wrong (`hill` seed 8: 272 m of error).
+/// Accepts registrations with few matches if the registered pose agrees with the prior. Baselines do not accept few
+/// matches, because a clipped gyro makes the prior wrong (`hill` seed 8: 272 m of error).
 SlamParams with_few_matches(SlamParams params);
-/// Estimates the saturation deficit of clipped axes in the registration.
+/// Estimates, in the registration, the part of the rate that saturation hides on clipped axes.
 SlamParams with_saturation_deficit(SlamParams params);
 
-/// Returns the parameters of a method on the chain. The recording's values and `fixed` are not settable.
+/// Returns the parameters of a method that uses the chain. Users cannot set the values that the recording states or the
+/// parameters in `fixed`.
 Settings<SlamParams> slam_settings(const SlamParams& defaults, std::vector<std::string> fixed = {});
 
-/// The chain's part of a method's parameters. Both must outlive the run.
+/// Parameters of the chain within the parameters of a method. The referenced objects must outlive the run.
 struct SlamStage {
   const Settings<SlamParams>& settings;
   const sim::Values& parameters;

@@ -18,12 +18,13 @@ const Settings<SlamParams>& slam_tumble_gyro_only_settings() {
   return all;
 }
 
-/// Initial value for a clipped rate: `readings` times the reading, plus a share of the excess of a cubic over the gap.
+/// Initial value for a clipped rate: `readings` times the reading, plus a fraction of the cubic's excess over the
+/// reading in the gap.
 struct Guess {
   double readings, share_of_cubic;
 };
-/// Sorted by how many maps succeed (docs/figures.md). Registration converges from within about 3 rad/s of the true
-/// rate, so gaps of different lengths need different values.
+/// Guesses are sorted by the number of maps that succeed (docs/figures.md). Registration converges from within about 3
+/// rad/s of the true rate, so gaps of different lengths need different values.
 constexpr std::array<Guess, 10> kGuesses = {{{1.0, 0.7},
                                              {1.2, 0.0},
                                              {1.0, 1.0},
@@ -35,7 +36,7 @@ constexpr std::array<Guess, 10> kGuesses = {{{1.0, 0.7},
                                              {1.0, 0.3},
                                              {1.0, 1.5}}};
 
-/// Interpolates each gap of each axis by a cubic; saturation limits may be tilted planes.
+/// Interpolates each gap of each axis by a cubic; saturation levels may be tilted planes.
 Status cubic_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, std::vector<RateState>& out) {
   baselines::ClippedBaseline::Params params;
   params.tilted_rails = true;

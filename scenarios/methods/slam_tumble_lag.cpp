@@ -21,7 +21,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-// The recording states the lever arm; zero is a placeholder until then.
+// The recording states the lever arm; until then, zero is a placeholder.
 TumblingOdometry::Params lag_defaults() {
   TumblingOdometry::Params out;
   out.lever_arm_I_m.setZero();
@@ -59,7 +59,7 @@ TumblingOdometry::Params stated_params(const sim::Sensors& sensors, const sim::V
   return params;
 }
 
-/// Which output of TumblingOdometry makes the estimate.
+/// Selects which output of TumblingOdometry becomes the estimate.
 enum class Word {
   live,  ///< pose at each IMU sample, as soon as the sample is processed
   last,  ///< final trajectory of each sweep
@@ -78,7 +78,7 @@ class Listener {
   void observe(const TumblingOdometry& odometry) {
     PoseState pose;
     if (word_ != Word::live || !odometry.newest(pose).ok()) return;
-    // while a sample is held the newest pose stays that of the sample before
+    // while TumblingOdometry delays a sample, the newest pose belongs to the sample before
     if (live_.empty() || pose.time_ns > live_.back().time_ns) live_.push_back(pose);
   }
   void take(TumblingOdometry& odometry) {
@@ -107,8 +107,8 @@ class Listener {
     apply_smoothed(std::move(smoothed), estimate_.sweeps[smoothed_++]);
   }
 
-  /// Replaces the trajectory of each sweep by its live poses. Sweeps before the first live pose, at rest about 0.3 s
-  /// after the start, are unchanged.
+  /// Replaces the trajectory of each sweep by its live poses. Sweeps before the first live pose (at rest about 0.3 s
+  /// after the start) are unchanged.
   void speak_live() {
     auto next = live_.begin();
     for (SweepReport& sweep : estimate_.sweeps) {
@@ -129,7 +129,8 @@ class Listener {
   std::vector<PoseState> live_;
 };
 
-/// Feeds the recording in real-time order: each sample at the end of its window, each sweep after its last point.
+/// Passes the recording to TumblingOdometry in real-time order: each sample at the end of its window, each sweep after
+/// its last point.
 Status replay(const sim::Sensors& sensors, std::span<const ImuSample> samples, TumblingOdometry& odometry,
               Listener& listener) {
   const sim::LidarRecord& lidar = sensors.lidars.front();

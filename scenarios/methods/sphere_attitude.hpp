@@ -10,7 +10,7 @@
 #include "sim/recording.hpp"
 #include "tumble/common/imu.hpp"
 
-/// Attitude input for position methods of the sphere that do not estimate attitude.
+/// Computes the attitude for position methods of the sphere that do not estimate attitude.
 namespace tumble::scenarios {
 
 /// Samples of the primary IMU without the gyro bias at rest, and the attitude at the end of each sample's window.
@@ -31,16 +31,16 @@ struct RestParams {
 };
 const Settings<RestParams>& rest_settings();
 
-/// Averages bias and tilt over the first `rest_s`, then integrates the gyro. Errors: those of the samples and of the
-/// levelling. Throws BadInput, naming `method`, if the recording is not from a sphere. O(N).
+/// Averages bias and tilt over the first `rest_s`, then integrates the gyro. Errors are those of the samples and of the
+/// initial levelling. Throws BadInput, naming `method`, if the recording is not from a sphere. O(N).
 Status sphere_attitude(const char* method, const sim::Sensors& sensors, double rest_s, SphereAttitude& out);
 
 /// Returns the pose of the sphere's centre in body axes, from the attitude of the IMU.
 PoseState centre_pose(const sim::Sensors& sensors, TimeNs time_ns, const Eigen::Quaterniond& q_WI,
                       const Eigen::Vector3d& p_WG_m, const Eigen::Vector3d& v_WG_m_s);
 
-/// Labels a contact point that moves along the floor: `slide` if the centre travels faster than the sphere rotates,
-/// `slip` if the sphere rotates faster.
+/// Labels a moving contact point: `slide` if the centre travels faster than the sphere rotates, `slip` if the sphere
+/// rotates faster.
 sim::ContactLabel slip_or_slide(double radius_m, const Eigen::Quaterniond& q_WI, const Eigen::Vector3d& w_WI_I_rad_s,
                                 const Eigen::Vector3d& v_WG_m_s);
 

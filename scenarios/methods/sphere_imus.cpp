@@ -24,8 +24,8 @@ namespace {
 constexpr double kSilentMaxS = 0.05;      // a unit without readings for longer is absent
 constexpr double kEdgeShare = 0.9;        // fraction of a sample period over which end readings are extrapolated
 constexpr double kSilentReportedS = 0.5;  // a longer silence is reported
-// Elements without an observed saturation plane are assumed aligned and exact. With a slope uncertainty of 0.03, three
-// clipped units would no longer determine the rate (slip_long, seeds 4, 30 and 42).
+// Sensing elements without an observed saturation plane are assumed aligned and exact. With an uncertainty of 0.03 for
+// the cross-axis sensitivity, three clipped units would no longer determine the rate (slip_long, seeds 4, 30 and 42).
 constexpr double kUnknownSlope = 0.0;
 
 ImuSample absent(TimeNs time_ns) {
@@ -35,8 +35,8 @@ ImuSample absent(TimeNs time_ns) {
   return sample;
 }
 
-/// Returns a unit's usable readings: finite, in order and within the device's range. Throws BadInput if the record's
-/// arrays differ in length.
+/// Returns the usable readings of an IMU: finite, in order and within the device's range. Throws BadInput if the
+/// record's arrays differ in length.
 std::vector<ImuSample> readings_of(const sim::ImuRecord& record, Status& status, int& beyond_range) {
   std::vector<ImuSample> samples;
   status = bridge::imu_samples(record, samples);
@@ -57,8 +57,8 @@ std::vector<ImuSample> readings_of(const sim::ImuRecord& record, Status& status,
   return samples;
 }
 
-/// Sets the clip flags of a unit's readings and estimates the directions of its elements. The unit may have frozen
-/// axes.
+/// Sets the clip flags of an IMU's readings and estimates the directions of its sensing elements. The IMU may have
+/// frozen axes.
 void judge(const sim::ImuRecord& record, std::vector<ImuSample>& samples, ElementRows& gyro, ElementRows& accel) {
   ClippingFinder::Params params;
   params.upright_rails = stated_rails(record);
@@ -73,8 +73,8 @@ void judge(const sim::ImuRecord& record, std::vector<ImuSample>& samples, Elemen
   accel = found.rails.rows(Triad::accelerometer, kUnknownSlope);
 }
 
-/// Resamples a unit's readings to the times of another. Absent where the nearest reading is further away than
-/// kSilentMaxS, and beyond a sample period outside the readings.
+/// Resamples the readings of an IMU to the times of another IMU. A reading is absent if the nearest reading is further
+/// away than kSilentMaxS, and beyond a sample period outside the readings.
 std::vector<ImuSample> at_times_of(const std::vector<ImuSample>& primary, const std::vector<ImuSample>& own) {
   std::vector<ImuSample> out;
   out.reserve(primary.size());
@@ -97,7 +97,7 @@ std::vector<ImuSample> at_times_of(const std::vector<ImuSample>& primary, const 
   return out;
 }
 
-/// All units resampled to the same times.
+/// All IMUs resampled to common times.
 struct Units {
   std::vector<std::string> names;
   std::vector<Eigen::Isometry3d> T_BI;
@@ -107,7 +107,7 @@ struct Units {
   int resampled = 0, beyond_range = 0;
 };
 
-/// Returns the longest time without a reading of the unit within `first_ns` to `last_ns`.
+/// Returns the longest time between `first_ns` and `last_ns` without a reading of the IMU.
 TimeNs longest_silence(const std::vector<ImuSample>& unit, TimeNs first_ns, TimeNs last_ns) {
   TimeNs longest_ns = std::max(unit.front().time_ns - first_ns, last_ns - unit.back().time_ns);
   for (std::size_t k = 1; k < unit.size(); ++k) {
@@ -116,7 +116,7 @@ TimeNs longest_silence(const std::vector<ImuSample>& unit, TimeNs first_ns, Time
   return longest_ns;
 }
 
-/// Chooses the valid unit that supplies the times: the first one, or a later one without silences.
+/// Chooses the valid IMU that supplies the times: the first valid IMU, or a later IMU without gaps.
 std::optional<std::size_t> choose_base(const std::vector<std::vector<ImuSample>>& readings,
                                        const std::vector<Status>& statuses) {
   TimeNs first_ns = std::numeric_limits<TimeNs>::max(), last_ns = std::numeric_limits<TimeNs>::min();
@@ -199,7 +199,7 @@ void silence(std::vector<ImuSample>& unit, TimeNs from_ns, TimeNs to_ns = std::n
   }
 }
 
-/// Returns the start of a silence that lasts to the end or is long.
+/// Returns the start of a gap in the readings that lasts to the end or is long.
 std::optional<TimeNs> silent_since(const std::vector<ImuSample>& unit) {
   std::size_t from = unit.size();
   for (std::size_t k = 0; k <= unit.size(); ++k) {
@@ -223,8 +223,8 @@ Status frozen_in_all(const FrozenAxis& axis) {
   return {Trouble::out_of_range, field, seconds(axis.to_ns - axis.from_ns), FrozenAxes::Params{}.frozen_s};
 }
 
-/// Marks readings as absent while an axis of their unit is frozen, and reports this. Returns an error if no unit
-/// remains.
+/// Marks readings as absent while an axis of their IMU is frozen, and reports the frozen axis. Returns an error if no
+/// IMU remains.
 Status exclude_frozen(Units& units, std::vector<Doubt>& out) {
   const TimeNs start_ns = units.samples[0].front().time_ns;
   std::optional<FrozenAxis> any;
@@ -245,7 +245,7 @@ Status exclude_frozen(Units& units, std::vector<Doubt>& out) {
   return {};
 }
 
-/// Sets the ranges stated for the first unit's device.
+/// Sets the ranges stated for the device of the first IMU.
 void give_ranges(const sim::ImuRecord& primary, MergedImus& out, ImuMerge::Params& params) {
   if (primary.stated_gyro_range_rad_s > 0.0) out.gyro_range_rad_s = unsaturated_range(primary.stated_gyro_range_rad_s);
   if (primary.stated_accel_range_m_s2 > 0.0) out.accel_range_m_s2 = unsaturated_range(primary.stated_accel_range_m_s2);
@@ -271,7 +271,7 @@ void erase_unit(Units& units, std::size_t unit) {
   units.accel_elements.erase(units.accel_elements.begin() + at);
 }
 
-/// Marks the readings of faulty units as absent from the start of the fault. Returns true if there were any.
+/// Marks the readings of faulty IMUs as absent from the start of the fault. Returns true if any IMU is faulty.
 bool leave_out_found(const ImuMerge::State& state, Units& units, std::vector<Doubt>& out) {
   const TimeNs start_ns = units.samples[0].front().time_ns;
   bool any = false;
@@ -290,7 +290,7 @@ bool leave_out_found(const ImuMerge::State& state, Units& units, std::vector<Dou
   return any;
 }
 
-/// Reports the estimated calibration of the units, and of the merged unit's position between them.
+/// Reports the estimated calibration of the IMUs, and the position of the merged IMU between them.
 void report_units(const ImuMerge& merge, const ImuMerge::State& state, const Units& units, MergedImus& out) {
   out.units = static_cast<int>(units.names.size());
   out.lever_arm_m = merge.p_C_m();

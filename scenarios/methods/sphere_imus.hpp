@@ -12,11 +12,11 @@
 #include "tumble/common/imu.hpp"
 #include "tumble/common/status.hpp"
 
-/// All IMUs of a sphere merged to one.
+/// Merges all IMUs of a sphere to one.
 namespace tumble::scenarios {
 
 struct MergedImus {
-  /// Calibration of one unit; offset and bias relative to the mean of all units.
+  /// Calibration of one IMU; time offset and bias are relative to the mean of all IMUs.
   struct Unit {
     std::string name;
     double time_offset_s = 0.0, time_offset_sigma_s = 0.0;  ///< positive is later
@@ -37,12 +37,12 @@ struct MergedImus {
   std::vector<Doubt> out;  ///< units not used, or not all the time: frozen, silent (NaN, no readings), or inconsistent
 };
 
-/// Merges all IMUs except `imu_reference`. The stamps are those of the first unit with valid stamps; readings of other
-/// units are interpolated. A unit is excluded while it is silent (NaN, no readings) or one of its axes is frozen
-/// (find_frozen_axes). A second pass excludes frozen or inconsistent units from the start of the fault.
+/// Merges all IMUs except `imu_reference`. The stamps are those of the first IMU with valid stamps; readings of the
+/// other IMUs are interpolated. An IMU is excluded while it has no readings (or NaN) or while one of its axes is frozen
+/// (find_frozen_axes). A second pass excludes frozen or inconsistent IMUs from the start of the fault.
 ///
-/// Errors: those of the primary unit if no unit is valid; `out_of_range` with the axis if frozen axes leave no unit
-/// (`out.out` lists them). O(N).
+/// Errors are those of the primary IMU if no IMU is valid, and `out_of_range` with the axis if frozen axes leave no IMU
+/// (`out.out` lists the excluded IMUs). O(N).
 Status merge_imus(const sim::Sensors& sensors, MergedImus& out);
 
 }  // namespace tumble::scenarios

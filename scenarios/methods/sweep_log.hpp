@@ -7,7 +7,7 @@
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/method.hpp"
 
-/// Per-sweep bookkeeping shared by all slam chains: counts, reports and results.
+/// Counts, reports and results per sweep, shared by all slam chains.
 namespace tumble::scenarios {
 
 using SweepReport = LidarInertialOdometry::SweepReport;
@@ -15,30 +15,31 @@ using SweepReport = LidarInertialOdometry::SweepReport;
 /// Counts the error of a sweep, if any, as `sweeps_NAME` in the estimate's health.
 void count_trouble(const Status& status, Estimate& estimate);
 
-/// Counts the error and verdict of the sweep that ends at `end_ns`, and appends the sweep. Returns false, with the
-/// error as the estimate's status, only if the sweep has no pose. A covered lidar is not an error.
+/// Counts the error and verdict of the sweep that ends at `end_ns`, and appends the sweep to the estimate. Returns
+/// false, with the error as the estimate's status, only if the sweep has no pose. A sweep without returns is not an
+/// error.
 bool append_sweep(const Status& status, TimeNs end_ns, SweepReport report, Estimate& estimate);
 
-/// Appends the poses later than the last one. Consecutive sweeps share the IMU sample at their boundary; the earlier
-/// sweep keeps it.
+/// Appends the poses that are later than the estimate's last pose. Consecutive sweeps share the IMU sample at their
+/// boundary; the earlier sweep supplies the pose of this sample.
 void append_poses(std::span<const PoseState> trajectory, Estimate& estimate);
 
-/// Counts and drops a sweep that the IMU does not cover.
+/// Counts and drops a sweep that extends beyond the IMU readings.
 void leave_out_unfinished(Estimate& estimate);
 
-/// Counts the error of a sweep that has no pose because it came before the IMU or had too few points to start the map.
-/// Returns false for any other sweep.
+/// Counts the error of a sweep that has no pose because the sweep came before the IMU readings or had too few points to
+/// start the map. Returns false for any other sweep.
 bool leave_out_before_map(const Status& status, const SweepReport& report, Estimate& estimate);
 
 /// Interface of a mapper for the loop over sweeps.
 struct SweepMapper {
-  /// Returns true if the IMU covers the sweep. An error is set as the estimate's status and ends the run.
+  /// Returns true if the IMU covers the sweep. Adds the sweep; an error becomes the estimate's status and ends the run.
   std::function<bool(const bridge::Sweep&)> covers;
   std::function<Status(const bridge::Sweep&, SweepReport&)> add;
 };
 
-/// Processes all sweeps in order and collects their poses; status `too_few` if none was registered. Returns false if an
-/// error ended the run early.
+/// Processes all sweeps in order and collects their poses; the status is `too_few` if no sweep was registered. Returns
+/// false if an error ended the run early.
 bool run_over_sweeps(const sim::LidarRecord& lidar, const SweepMapper& mapper, Estimate& estimate);
 
 }  // namespace tumble::scenarios

@@ -29,8 +29,8 @@ struct CommandEnd {
   double cpu_s = 0.0;      ///< of the command without its children
 };
 
-/// Runs the command in a separate process group. At the time limit the whole group is killed; the group also dies with
-/// this process. Throws std::system_error if no process can be started.
+/// Runs the command in a separate process group. At the time limit, the whole process group is killed; the group also
+/// ends when this process ends. Throws std::system_error if no process can be started.
 CommandEnd run_command(const Command& command);
 
 }  // namespace tumble::scenarios

@@ -8,8 +8,8 @@
 
 namespace tumble::scenarios {
 
-/// A child process that writes to a pipe. It dies with its parent, leaves no core file, and never returns to the
-/// caller's code. Linux only.
+/// A child process that writes to a pipe. The child ends when its parent ends, leaves no core file, and never returns
+/// to the caller's code. The class works on Linux only.
 class Process {
  public:
   struct End {
@@ -19,26 +19,28 @@ class Process {
     double cpu_s = 0;              ///< used by the child without its children
     double peak_mib = 0;           ///< largest resident size
     std::string describe() const;  ///< "ended by signal 11 (Segmentation fault)"
-    /// Returns true if ended from outside: SIGKILL (out of memory, an operator), SIGTERM, or a time quota.
+    /// Returns true if the process was ended from outside: SIGKILL (out of memory, an operator), SIGTERM, or a time
+    /// quota.
     bool killed() const;
   };
 
   /// Forks and runs `work(write_end)` in the child, in a separate process group if `own_group`. An exception in `work`
   /// ends the child with exit status 1. Throws std::system_error if no process can be started.
   explicit Process(const std::function<void(int)>& work, bool own_group);
-  /// The same with input: `work(read_end, write_end)` reads what `write_text` writes.
+  /// Forks and runs `work(read_end, write_end)`, which can read the text that `write_text` writes.
   explicit Process(const std::function<void(int, int)>& work, bool own_group);
-  /// Kills the process (or its group) and waits for it.
+  /// Kills the process (or its process group) and waits for its end.
   ~Process();
   Process(Process&& other) noexcept;
   Process& operator=(Process&&) = delete;
 
   int read_end() const { return fd_; }
-  /// Writes all of `text` to the child's input; false if it no longer reads.
+  /// Writes all of `text` to the child's input; returns false if the child has closed its input.
   bool write_text(const std::string& text);
-  /// Appends the pipe's content; false at its end.
+  /// Appends the available content of the pipe; returns false at the end of the pipe.
   bool read_available(std::string& buffer);
-  /// Waits until the child has ended; false at the deadline (of now_s()). Collect the result with wait().
+  /// Waits until the child has ended; returns false at the deadline, which is a time of now_s(). The caller collects
+  /// the result with wait().
   bool ends_before(double deadline_s);
   void kill();
   End wait();
@@ -54,11 +56,11 @@ class Process {
 
 inline constexpr double kMib = 1024.0 * 1024.0;  ///< bytes
 
-/// Limits the data (RLIMIT_DATA) of this process and each future child, within the inherited limit. Larger allocations
-/// fail with std::bad_alloc, or no process can be started.
+/// Limits the data memory (RLIMIT_DATA) of this process and of each future child, within the inherited limit. Beyond
+/// the limit, allocations fail with std::bad_alloc and new processes cannot be started.
 void limit_memory(double mib);
 
-/// Writes all of `text`; false if the reader is closed.
+/// Writes all of `text`; returns false if the reader is closed.
 bool write_all(int fd, const std::string& text);
 
 /// Returns monotonic time [s].

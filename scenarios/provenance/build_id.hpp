@@ -6,7 +6,7 @@
 namespace tumble::scenarios {
 
 /// Returns the identity of the code: version, compiler, build type and digest of the sources of estimator, sim and
-/// scenarios at build time. Equal sources built alike have equal identities on any machine.
+/// scenarios at build time. Equal sources with an equal compiler and build type have equal identities on any machine.
 const std::string& build_id();
 
 }  // namespace tumble::scenarios

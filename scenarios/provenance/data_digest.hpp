@@ -7,8 +7,8 @@
 
 namespace tumble::scenarios {
 
-/// Returns a digest of all files that determine draws: models, catalogue and named cases. Outcomes with different
-/// digests are not mixed in one database.
+/// Returns a digest of all files that determine simulated runs: models, catalogue and named cases. Outcomes with
+/// different data digests are not stored in one database.
 std::string data_digest(const DataRoot& data);
 
 }  // namespace tumble::scenarios

@@ -12,61 +12,64 @@
 
 namespace tumble::scenarios {
 
-/// Returns the format names of export_recording: csv kitti mcap pcd ply rosbag1 rosbag2 rosbag2_mcap tum.
+/// Returns the names of the export formats: csv kitti mcap pcd ply rosbag1 rosbag2 rosbag2_mcap tum.
 std::vector<std::string> export_formats();
 
-/// Returns true for bag formats: mcap rosbag1 rosbag2 rosbag2_mcap.
+/// Returns true for a bag format: mcap rosbag1 rosbag2 rosbag2_mcap.
 bool is_bag_format(const std::string& format);
 
-/// Returns the format for a file extension (.mcap, .bag, .tum); empty for others.
+/// Returns the format for a file extension (.mcap, .bag, .tum), and an empty text for other extensions.
 std::string format_of_ending(const std::filesystem::path& out);
 
-/// Options of a format: for bags the extra content and the layout of sweeps, for trajectories the frame.
+/// Options of an export format: extra content and sweep layout for bags, frame for trajectories.
 struct ExportChoices {
   bool truth = false;
   SweepLayout sweeps = own_sweep_layout();
-  /// Called with the sensors (points and truth on disk) to add estimates (scenarios/exchange); may be empty.
+  /// Function that adds estimates (scenarios/exchange); called with the sensors, whose points and truth are on disk.
+  /// May be empty.
   std::function<void(const sim::Sensors&, BagWriting&)> more = {};
   std::string frame = "body";  ///< for `tum` and `kitti`: frame of the written true poses, as in true_mounting
 };
 
-/// Writes a recording file in another format. `tum` and `kitti` write one file with the true poses of a frame. `mcap`
-/// and `rosbag1` write one file with the sensors. `csv`, `pcd`, `ply`, `rosbag2` and `rosbag2_mcap` write to a folder,
-/// which is created if missing. `choices` lists further content of bags (topics: bag.hpp). Existing files are replaced
-/// atomically.
+/// Writes a recording file in another format. The formats `tum` and `kitti` give one file with the true poses of a
+/// frame. The formats `mcap` and `rosbag1` give one file with the sensor data. The formats `csv`, `pcd`, `ply`,
+/// `rosbag2` and `rosbag2_mcap` give a folder, which is created if missing. `choices` states further content of bags
+/// (topics: bag.hpp). Existing files are replaced atomically.
 ///
-/// Returns notes: which sensors were renamed (export_names.hpp), and which have no message type in a bag. Throws
-/// BadInput: unknown format (suggests the nearest), missing data for the format, or an output path that cannot be
-/// written. Bags are written sweep by sweep; memory holds the IMU samples, 32 bytes per message, and the poses from
-/// `choices`.
+/// Returns notes on sensors that were renamed (export_names.hpp) and on sensors without a message type in a bag. Throws
+/// BadInput for an unknown format (suggests the nearest name), data that the format needs and the recording lacks, or
+/// an output path that cannot be written. Bags are written sweep by sweep; memory holds the IMU samples, 32 bytes per
+/// message, and the poses from `choices`.
 std::vector<std::string> export_recording(const std::filesystem::path& recording, const std::string& format,
                                           const std::filesystem::path& out, const ExportChoices& choices = {});
 
 /// Returns T_BA of a frame A without calibration errors: `body`, `centre` (of the sphere's shell), or a sensor by its
-/// exported or original name. Throws BadInput for another name and lists the known ones.
+/// exported or original name. Throws BadInput for another name and lists the known names.
 Eigen::Isometry3d true_mounting(const sim::Truth& truth, const std::string& frame);
 
-/// Writes "t x y z qx qy qz qw" per physics sample: T_WA of the frame, seconds from the start with nine decimals.
-/// Numbers round-trip exactly; `origin_ns` is added to the times. Omits times without a known pose.
+/// Writes one line "t x y z qx qy qz qw" per physics sample: T_WA of the frame A, and seconds from the start with nine
+/// decimals. Numbers are restored exactly when read; `origin_ns` is added to the times. Omits times without a known
+/// pose.
 void export_tum(const sim::Truth& truth, const std::filesystem::path& file, std::int64_t origin_ns = 0,
                 const std::string& frame = "body");
-/// The same, segment by segment.
+/// Writes a truth on disk segment by segment.
 void export_tum(const StoredTruth& truth, const std::filesystem::path& file, std::int64_t origin_ns = 0,
                 const std::string& frame = "body");
 
-/// Writes the upper three rows of T_WA, row by row, per physics sample. KITTI's format has no time, so references with
-/// gaps throw BadInput.
+/// Writes the upper three rows of the matrix T_WA, row by row, one line per physics sample. KITTI's format has no time,
+/// so references with gaps throw BadInput.
 void export_kitti(const sim::Truth& truth, const std::filesystem::path& file, const std::string& frame = "body");
 
-/// Writes NAME.csv per IMU with the columns of a sensor_msgs/Imu: stamp s, stamp ns, frame, attitude x y z w, rate,
-/// specific force, each with its covariance (in brackets, space separated; rad/s, m/s^2). The attitude is unknown: its
-/// covariance starts with -1, as in ROS.
-/// Per series: stamp s, stamp ns, frame, and one column per quantity. With a truth also truth.csv: time, T_WB, v_WB_W,
-/// w_WB_B, f_B, label. NAME is the exported name of the sensor (export_names), also below.
+/// Writes NAME.csv for each IMU with the columns of a sensor_msgs/Imu: stamp s, stamp ns, frame, attitude x y z w, rate
+/// [rad/s], specific force [m/s^2]. Each quantity has its covariance in brackets, separated by spaces. The attitude is
+/// unknown, so its covariance starts with -1, as in ROS. Each additional sensor series has the columns stamp s, stamp
+/// ns, frame, and one column per quantity. With a truth, also writes truth.csv with time, T_WB, v_WB_W, w_WB_B, f_B,
+/// label. NAME is the exported name of the sensor (export_names).
 void export_csv(const sim::Sensors& sensors, const sim::Truth* truth, const std::filesystem::path& folder);
 
-/// Writes NAME_000000.ply (or .pcd) per sweep, binary, not deskewed, in L: x y z intensity ring, and offset_ns if
-/// points have times. Sweep starts are in NAME_times.txt, in seconds. import_sweeps restores them bit-exactly.
+/// Writes NAME_000000.ply (or .pcd) for each sweep, binary, not deskewed, in lidar axes: x y z intensity ring, and
+/// offset_ns if points have times. NAME_times.txt contains the sweep starts in seconds, which import_sweeps restores
+/// bit-exactly.
 void export_ply(const sim::Sensors& sensors, const std::filesystem::path& folder);
 void export_pcd(const sim::Sensors& sensors, const std::filesystem::path& folder);
 

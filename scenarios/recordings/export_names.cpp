@@ -10,13 +10,13 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Names used by bags (bag.hpp) and by a CSV's truth.
+/// Names that bags (bag.hpp) and the truth of a CSV export use.
 const std::set<std::string>& own_names() {
   static const std::set<std::string> names = {"body", "clock", "tf", "tf_static", "truth", "world"};
   return names;
 }
 
-/// Frames that readers, including ours, do not treat as sensors.
+/// Frames that readers, including the readers of this project, do not treat as sensors.
 const std::set<std::string>& frames_of_no_sensor() {
   static const std::set<std::string> names = {"base_link", "map", "odom"};
   return names;
@@ -47,7 +47,7 @@ std::string why_another(const Claim& claim) {
                      claim.sensor, claim.given);
 }
 
-/// For sensors or their truth.
+/// Applies to sensors and to their truth.
 template <class Recorded>
 ExportNames names_of(const Recorded& recorded) {
   std::vector<Claim> claims;

@@ -9,7 +9,7 @@
 
 namespace tumble::scenarios {
 
-/// Names of the sensors of one kind, in order.
+/// Exported names of the sensors of one kind, in order.
 struct GivenNames {
   std::vector<std::string> names;
   std::vector<std::string> notes;  ///< which sensors were renamed because of a conflict
@@ -21,13 +21,14 @@ struct ExportNames {
   std::set<std::string> taken;  ///< these names, and the export's own topics and frames
 };
 
-/// Returns unique names of letters, digits, - and _, safe as file names. They differ from the export's own topics and
-/// frames (truth, body, world, tf …) and from frames that readers reserve (map, odom, base_link). A sensor keeps its
-/// name if no earlier sensor has it; else a number is appended. For a truth: the names of its sensors.
+/// Returns unique names of letters, digits, - and _, safe as file names. The names differ from the export's own topics
+/// and frames (truth, body, world, tf …) and from frames that readers reserve (map, odom, base_link). A sensor keeps
+/// its name if no earlier sensor has this name; else a number is appended. For a truth, returns the names of the
+/// sensors in the truth.
 ExportNames export_names(const sim::Sensors& sensors);
 ExportNames export_names(const sim::Truth& truth);
 
-/// Returns the first free name of `name`, `name`_2, _3 … and marks it as taken.
+/// Returns the first free name among `name`, `name`_2, `name`_3 …, and marks this name as taken.
 std::string free_name(const std::string& name, std::set<std::string>& taken);
 
 }  // namespace tumble::scenarios

@@ -8,10 +8,10 @@ namespace tumble::scenarios::hdf5 {
 
 namespace {
 
-/// Far above any valid text; a corrupted length must not request all memory.
+/// The limit is far above any valid text; without a limit, a corrupted length could request all memory.
 constexpr std::size_t kLongestText = std::size_t{16} << 20;
 
-/// Zero-padded UTF-8 text of `length` bytes. The library rejects length 0.
+/// Returns the type of a zero-padded UTF-8 text of `length` bytes. The HDF5 library rejects length 0.
 Handle text_type(std::size_t length) {
   Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
   H5Tset_size(type.get(), std::max<std::size_t>(length, 1));
@@ -35,7 +35,7 @@ void Group::write_attribute(const std::string& name, const std::string& value) c
   const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
   const Handle attribute(H5Acreate2(group_.get(), name.c_str(), type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT),
                          H5Aclose);
-  // c_str ends in a zero, which an empty text needs as its single byte
+  // c_str ends in a zero byte, which HDF5 needs as the single byte of an empty text
   if (!attribute.valid() || H5Awrite(attribute.get(), type.get(), value.c_str()) < 0)
     fail(name, "cannot be written" + last_error());
 }
@@ -100,7 +100,7 @@ std::int64_t Group::int_attribute(const std::string& name) const {
   if (H5Tget_class(type.get()) != H5T_INTEGER) fail(name, "attribute must be an integer");
   std::int64_t value = 0;
   if (H5Aread(attribute.get(), H5T_NATIVE_INT64, &value) < 0) fail(name, "attribute cannot be read" + last_error());
-  // the library clamps values that do not fit
+  // HDF5 limits values that do not fit to the range of the type
   if (!is_signed(type) && value == std::numeric_limits<std::int64_t>::max()) fail(name, "attribute is too large");
   return value;
 }

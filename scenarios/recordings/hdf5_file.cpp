@@ -31,8 +31,8 @@ Handle open_file(const std::filesystem::path& path) {
   throw BadInput(path.string() + ": truncated, damaged or not an HDF5 file" + reason);
 }
 
-/// Takes over the driver's memory at close instead of freeing it. Only then is the superblock complete
-/// (H5Fget_file_image of 1.10 leaves a stale checksum).
+/// Takes ownership of the HDF5 driver's memory at close, instead of freeing the memory. The superblock is complete only
+/// at close, because H5Fget_file_image of HDF5 1.10 leaves a stale checksum.
 H5FD_file_image_callbacks_t keep_image_in(void** user) {
   H5FD_file_image_callbacks_t calls{};
   calls.image_malloc = [](std::size_t size, H5FD_file_image_op_t, void*) { return std::malloc(size); };
@@ -56,8 +56,8 @@ H5FD_file_image_callbacks_t keep_image_in(void** user) {
   return calls;
 }
 
-/// Returns the length stated in the superblock (format specification, superblock version 3: byte 28); the driver's
-/// memory is longer.
+/// Returns the length stated in the superblock (format specification, superblock version 3: byte 28); the memory of the
+/// driver is longer.
 std::uint64_t stated_length(const void* image) {
   std::uint64_t length = 0;
   std::memcpy(&length, static_cast<const char*>(image) + 28, sizeof(length));
@@ -66,7 +66,7 @@ std::uint64_t stated_length(const void* image) {
 
 /// Creates a file under `label` with the driver in `access`.
 Handle create_file(const std::string& name, const std::string& label, const Handle& access) {
-  // Format 1.10 has a checksum on all metadata, so that the library detects flipped bytes.
+  // Format 1.10 has a checksum on all metadata, so that HDF5 detects flipped bits.
   if (H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG) < 0 ||
       H5Pset_libver_bounds(access.get(), H5F_LIBVER_V110, H5F_LIBVER_V110) < 0) {
     throw BadInput(name + ": cannot be prepared for writing" + last_error());
@@ -85,7 +85,7 @@ Handle create_in_memory(const std::string& name, void** image) {
   if (H5Pset_fapl_core(access.get(), kGrowth, false) < 0 || H5Pset_file_image_callbacks(access.get(), &calls) < 0) {
     throw BadInput(name + ": cannot be prepared for writing" + last_error());
   }
-  // Not an existing file's name: the library would read that file into memory first.
+  // The name must not be that of an existing file, because HDF5 would read the existing file into memory first.
   return create_file(name, name + " in memory", access);
 }
 
@@ -93,7 +93,7 @@ Handle create_on_disk(const std::string& name, const std::filesystem::path& path
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   if (H5Pset_fapl_sec2(access.get()) < 0) throw BadInput(name + ": cannot be prepared for writing" + last_error());
   Handle file = create_file(name, path.string(), access);
-  // Reserve space after creation, which truncates the file.
+  // Space is reserved after the creation, because the creation truncates the file.
   void* descriptor = nullptr;
   if (H5Fget_vfd_handle(file.get(), H5P_DEFAULT, &descriptor) < 0)
     throw BadInput(name + ": cannot be prepared for writing" + last_error());
@@ -135,8 +135,8 @@ Handle::~Handle() {
 }
 
 Silence::Silence() {
-  // After some damaged files the library's exit cleanup fails and prints messages. Handles close all files here, so the
-  // cleanup is not needed.
+  // After some damaged files, the exit cleanup of HDF5 fails and prints messages. The handles here close all files, so
+  // the cleanup is not needed.
   static const herr_t once = H5dont_atexit();
   (void)once;
   H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
@@ -216,7 +216,7 @@ void DiskFile::close() {
     throw BadInput(name_ + ": cannot be assembled in memory");
   std::filesystem::resize_file(path_, stated_length(head.data()), error);
   if (error) throw BadInput(name_ + ": cannot be written: " + error.message());
-  // A close that failed midway reports nothing; superblock and length agree only in a complete file.
+  // A close that failed midway reports no error; superblock and file length agree only in a complete file.
   if (!Handle(H5Fopen(path_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose).valid())
     throw BadInput(name_ + ": cannot be assembled in memory" + last_error());
 }

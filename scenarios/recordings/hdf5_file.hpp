@@ -10,13 +10,14 @@
 #include "scenarios/recordings/hdf5_group.hpp"
 #include "scenarios/recordings/hdf5_layout.hpp"
 
-/// HDF5 files. Every error is BadInput "FILE: PLACE: what". Private to scenarios/recordings.
+/// Opens and writes HDF5 files. Every error is a BadInput with the message "FILE: PLACE: what". Used only within
+/// scenarios/recordings.
 namespace tumble::scenarios::hdf5 {
 
 /// A file opened for reading.
 class InputFile {
  public:
-  /// Throws BadInput: missing, not HDF5, truncated.
+  /// Throws BadInput if the file is missing, truncated, or not HDF5.
   explicit InputFile(const std::filesystem::path& path);
   const Group& root() const { return root_; }
 
@@ -26,17 +27,19 @@ class InputFile {
   Group root_;
 };
 
-/// A file composed in memory. The library cannot recover from a failed close, so it must never meet a full disk.
+/// A file composed in memory. The HDF5 library cannot recover from a failed close, so it must never write to a full
+/// disk.
 class MemoryFile {
  public:
-  /// Messages start with `name`.
+  /// Error messages start with `name`.
   explicit MemoryFile(const std::string& name);
   ~MemoryFile();
   MemoryFile(const MemoryFile&) = delete;
   MemoryFile& operator=(const MemoryFile&) = delete;
 
   const Group& root() const { return root_; }
-  /// Closes the file with all its objects and returns its bytes, valid during the lifetime of this object.
+  /// Closes the file with all HDF5 objects and returns the file's bytes, which are valid during the lifetime of this
+  /// object.
   std::span<const std::byte> close();
 
  private:
@@ -47,18 +50,18 @@ class MemoryFile {
   Group root_;
 };
 
-/// A file written to disk, replacing an empty one. Reserves the maximum space first, so that the library never meets a
-/// full disk.
+/// An HDF5 file that is written directly to disk, in place of an empty file. Reserves the maximum disk space first, so
+/// that the HDF5 library never writes to a full disk.
 class DiskFile {
  public:
-  /// Messages start with `name`. Throws BadInput if there is not enough space.
+  /// Error messages start with `name`. Throws BadInput if there is not enough space.
   DiskFile(const std::string& name, const std::filesystem::path& path, std::uint64_t most_bytes);
   ~DiskFile();
   DiskFile(const DiskFile&) = delete;
   DiskFile& operator=(const DiskFile&) = delete;
 
   const Group& root() const { return root_; }
-  /// Closes the file with all its objects and releases unused space.
+  /// Closes the file with all HDF5 objects and releases unused disk space.
   void close();
 
  private:

@@ -11,10 +11,10 @@
 #include <string>
 #include <utility>
 
-/// RAII handles of the HDF5 C library, and the memory layout of rows. Private to scenarios/recordings.
+/// RAII handles of the HDF5 C library, and the memory layout of rows. Used only within scenarios/recordings.
 namespace tumble::scenarios::hdf5 {
 
-/// An identifier of the library with its close function.
+/// An identifier of the HDF5 library, closed by the matching function on destruction.
 class Handle {
  public:
   using Close = herr_t (*)(hid_t);
@@ -31,7 +31,7 @@ class Handle {
   Close close_ = nullptr;
 };
 
-/// Suppresses the library's messages in this thread during its lifetime.
+/// Suppresses the messages of the HDF5 library in this thread during the object's lifetime.
 class Silence {
  public:
   Silence();
@@ -86,10 +86,10 @@ constexpr std::size_t rows_in_chunk(std::size_t row_bytes) {
   return std::max<std::size_t>(kChunkBytes / row_bytes, 1);
 }
 
-/// Returns the library's type of a scalar in memory.
+/// Returns the HDF5 library's type of a scalar in memory.
 hid_t memory_type(Scalar scalar);
 
-/// Returns " (reason)" for the library's last error; empty if unknown.
+/// Returns " (reason)" for the last error of the HDF5 library, or an empty text if unknown.
 std::string last_error();
 
 }  // namespace tumble::scenarios::hdf5

@@ -9,7 +9,7 @@
 
 namespace tumble::scenarios {
 
-/// Appends the shortest text that parses to the same number.
+/// Appends the shortest text that parses to an equal number.
 template <class Number>
 void append_number(std::string& text, Number value) {
   std::array<char, 32> digits;
@@ -17,7 +17,7 @@ void append_number(std::string& text, Number value) {
   text.append(digits.data(), end);
 }
 
-/// Returns three significant digits, for messages.
+/// Returns the value with three significant digits, for messages.
 inline std::string rounded(double value) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.3g", value);

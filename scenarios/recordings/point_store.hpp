@@ -10,7 +10,7 @@
 
 namespace tumble::scenarios {
 
-/// The points of one lidar on disk: the columns of a sim::LidarRecord, one file each. The record itself then has no
+/// The points of one lidar on disk: each column of a sim::LidarRecord is one file. The record itself then has no
 /// points.
 struct PointStore {
   PointStore() = default;
@@ -18,7 +18,7 @@ struct PointStore {
       : position_L_m(folder), range_m(folder), intensity(folder), offset_ns(folder), ring(folder) {}
 
   std::size_t size() const { return position_L_m.size(); }
-  /// Moves the points of `record` to the end of the files. Throws BadInput as ScratchFile does.
+  /// Moves the points of `record` to the end of the files. Throws BadInput like ScratchFile.
   void take(sim::LidarRecord& record);
 
   ColumnFile<Eigen::Vector3f> position_L_m;
@@ -27,7 +27,7 @@ struct PointStore {
   ColumnFile<std::uint16_t> ring;
 };
 
-/// Returns a record with one sweep only, with its points from `lidar`, or from `aside` if not null.
+/// Returns a record with a single sweep, whose points come from `lidar`, or from `aside` if `aside` is not null.
 sim::LidarRecord sweep_alone(const sim::LidarRecord& lidar, const PointStore* aside, std::size_t sweep);
 
 }  // namespace tumble::scenarios

@@ -16,7 +16,7 @@ namespace {
 /// Archive that reads every field from a group.
 class RecordingReader {
  public:
-  /// `scratch`: folder for columns that are not kept in memory.
+  /// `scratch` is the folder for columns that are not kept in memory.
   explicit RecordingReader(hdf5::Group group, std::filesystem::path scratch = {})
       : group_(std::move(group)), scratch_(std::move(scratch)) {}
 
@@ -85,7 +85,7 @@ class RecordingReader {
     if (group_.has(name)) list(name, records, fields);
   }
 
-  /// missing in files of other programs
+  /// the digest is missing in files of other programs
   std::string digest_or_empty() const { return group_.has_attribute("digest") ? group_.text_attribute("digest") : ""; }
 
  private:
@@ -93,7 +93,7 @@ class RecordingReader {
   std::filesystem::path scratch_;
 };
 
-/// ContactColumns or StoredContacts.
+/// `Columns` is ContactColumns or StoredContacts.
 template <class Columns>
 void require_one_length(const Columns& columns, const std::string& file) {
   for (const std::size_t other : {columns.point_W_m.size(), columns.normal_W.size(), columns.slip_velocity_W_m_s.size(),

@@ -25,7 +25,7 @@ std::string in(const std::string& place, const std::string& problem) {
   return problem.empty() ? "" : place + ": " + problem;
 }
 
-/// Requires that all lengths equal the first.
+/// Returns a problem unless all lengths equal the first length.
 std::string length_problem(const Lengths& lengths) {
   const auto& [first_name, first] = *lengths.begin();
   for (const auto& [name, length] : lengths) {
@@ -58,7 +58,7 @@ std::string first_of(std::initializer_list<std::string> problems) {
   return found == problems.end() ? "" : *found;
 }
 
-/// For rows that a sensor may lack.
+/// Checks rows that a sensor may lack.
 std::string optional_length_problem(const char* name, std::size_t length, std::size_t needed) {
   if (length == 0 || length == needed) return "";
   return fmt::format("{} has {} rows, must have {} or none", name, length, needed);
@@ -77,8 +77,8 @@ std::string text_problem(const char* name, const std::string& text) {
   return following == 0 ? "" : std::string(name) + " is not plain text in UTF-8";
 }
 
-/// Times count from the start of the recording. Beyond three years they belong to another clock, and differences may
-/// overflow.
+/// Checks that times count from the start of the recording. Times beyond three years belong to another clock, and
+/// differences of such times may overflow.
 std::string times_problem(const char* name, const std::vector<std::int64_t>& times_ns) {
   const auto far = [](std::int64_t t) { return t > kTimeMax_ns || t < -kTimeMax_ns; };
   const auto found = std::find_if(times_ns.begin(), times_ns.end(), far);
@@ -155,7 +155,7 @@ std::string point_times_problem(const sim::LidarRecord& lidar, const Offsets& of
   return lidar.point_times == sim::PointTimes::measured ? "" : offset_problem(offsets);
 }
 
-/// `points`: the record itself, or its points on disk.
+/// `points` is the record itself, or the record's points on disk.
 template <class Points>
 std::string lidar_problem(const sim::LidarRecord& lidar, const Points& points) {
   return first_of({text_problem("name", lidar.name), text_problem("device", lidar.device),
@@ -169,7 +169,7 @@ std::string lidar_problem(const sim::LidarRecord& lidar, const Points& points) {
                    sweep_problem(lidar, points.position_L_m.size()), point_times_problem(lidar, points.offset_ns)});
 }
 
-/// Names of columns consist of letters, digits and _.
+/// Checks that the names of columns consist of letters, digits and _.
 std::string column_problem(const std::string& name) {
   const auto plain = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
   if (!name.empty() && std::all_of(name.begin(), name.end(), plain)) return "";
@@ -189,7 +189,7 @@ std::string names_problem(const std::string& list, const std::vector<Record>& re
   return problem;
 }
 
-/// For readings or their truth.
+/// Checks readings or their truth.
 template <class Quantity>
 std::string quantities_problem(const std::vector<Quantity>& quantities) {
   std::string problem = names_problem("quantities", quantities);
@@ -221,7 +221,7 @@ std::string series_truth_problem(const sim::SeriesTruth& series) {
       {text_problem("name", series.name), pose_problem("T_BX", series.T_BX), quantities_problem(series.quantities)});
 }
 
-/// Returns how a sensor's readings and their truth differ in structure.
+/// Returns how the structure of a sensor's readings differs from the structure of their truth.
 std::string series_mismatch(const sim::SeriesRecord& series, const sim::SeriesTruth& truth) {
   if (truth.quantities.empty()) return "";  // a reference has none
   if (truth.quantities.size() != series.quantities.size()) return "truth and sensor differ in the number of quantities";
@@ -233,7 +233,7 @@ std::string series_mismatch(const sim::SeriesRecord& series, const sim::SeriesTr
   return problem;
 }
 
-/// `imu`: a sim::ImuTruth, or one on disk; the other truths likewise.
+/// `imu` is a sim::ImuTruth or an IMU truth on disk; the other functions accept both kinds alike.
 template <class Imu>
 std::string imu_truth_problem(const Imu& imu) {
   return first_of(
@@ -378,7 +378,7 @@ std::string find_mismatch(const sim::Sensors& sensors, const sim::Truth& truth) 
                                              imu.magnetic_field_t.size())}));
   }
   for (std::size_t i = 0; i < truth.lidars.size() && problem.empty(); ++i) {
-    // find_problem ensured that it ends in the number of points
+    // find_problem ensured that the last entry of sweep_first is the number of points
     const std::vector<std::uint64_t>& first = sensors.lidars[i].sweep_first;
     problem = in("lidars/" + std::to_string(i),
                  optional_length_problem("truth hit_W_m", truth.lidars[i].hit_W_m.size(),

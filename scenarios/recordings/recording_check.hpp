@@ -11,18 +11,19 @@
 
 namespace tumble::scenarios {
 
-/// Returns an inconsistency, as "sensors/imus/0: gyro has 5 rows, time_ns 6"; empty if there is none. Checks lengths,
-/// periods, calibrations (rotations), sweep order, labels and surface ids. Does not check readings: NaN, gaps and time
-/// order are reported by the estimator. `points`: one store per lidar if the points are on disk, else empty.
+/// Returns a description of an inconsistency, such as "sensors/imus/0: gyro has 5 rows, time_ns 6", or an empty text if
+/// there is none. Checks lengths, periods, calibrations (rotations), sweep order, labels and surface ids. Readings are
+/// not checked; the estimator reports NaN, gaps and time order. `points` has one store per lidar if the points are on
+/// disk, else `points` is empty.
 std::string find_problem(const sim::Sensors& sensors, const std::vector<PointStore>& points = {});
 std::string find_problem(const sim::Truth& truth);
 std::string find_problem(const StoredTruth& truth);
 
-/// Returns true if a file states a digest of its sensor data, which detects damage. Files of other programs may lack
-/// it. Throws BadInput as readers do.
+/// Returns true if a file states a digest of its sensor data, which allows the reader to detect damage. Files of other
+/// programs may lack the digest. Throws BadInput like the readers of recording_file.hpp.
 bool states_digest(const std::filesystem::path& path);
 
-/// Returns how the truth differs in structure from the sensors; empty if it matches.
+/// Returns how the structure of the truth differs from the sensors, or an empty text if the truth matches.
 std::string find_mismatch(const sim::Sensors& sensors, const sim::Truth& truth);
 
 }  // namespace tumble::scenarios

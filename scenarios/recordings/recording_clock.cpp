@@ -12,7 +12,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// A clock that starts less than this before the first stamp belongs to the recording.
+/// If a clock's zero is less than this time before the first stamp, the clock started with the recording.
 constexpr std::int64_t kOwnZero_ns = 1000000000;
 
 void shift(sim::Sensors& sensors, std::int64_t by_ns) {

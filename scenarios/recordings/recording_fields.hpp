@@ -9,22 +9,23 @@
 #include "scenarios/recordings/point_store.hpp"
 #include "sim/recording.hpp"
 
-/// The single list of a recording's fields except truth (truth_fields.hpp): names, units and columns of FORMAT.md.
-/// Writer, reader and digest are archives that visit this list, so none can omit a field. Private to
+/// Lists all fields of a recording except the truth (truth_fields.hpp), with the names, units and columns of FORMAT.md.
+/// Writer, reader and digest are archives that visit this list, so no archive can omit a field. Used only within
 /// scenarios/recordings.
 ///
-/// An archive has: value(name, text | double | int64), pose(name, isometry), point(name, vector, unit), rows(name,
-/// vector, unit, columns, storage), texts(name, strings), list(name, records, fields), group(name, record, fields).
-/// optional_rows, optional_point, optional_list and point_times are for later additions to the format. They are absent,
-/// and not hashed, if empty, zero or measured, so that older files keep their digests.
-/// rows are a std::vector, or a ColumnFile of the same rows if points are on disk.
+/// An archive has the members value(name, text | double | int64), pose(name, isometry), point(name, vector, unit),
+/// rows(name, vector, unit, columns, storage), texts(name, strings), list(name, records, fields) and group(name,
+/// record, fields). The members optional_rows, optional_point, optional_list and point_times are for later additions to
+/// the format. Later additions are absent, and not hashed, if they are empty, zero or have the default value
+/// "measured", so that older files keep their digests. The rows of a field are a std::vector, or a ColumnFile if points
+/// are on disk.
 namespace tumble::scenarios {
 
-/// How rows are stored: deflated where this was measured to help, plain for the noise-like floats of a lidar
-/// (FORMAT.md).
+/// Storage of rows in the file: deflated where measurements showed a smaller file, plain for the noise-like floats of a
+/// lidar (FORMAT.md).
 enum class Storage { plain, deflated };
 
-/// A lidar with its points on disk, for the lists below. Views have references to const.
+/// A lidar with its points on disk, for the lists of fields. Views have references to const.
 struct StoredLidar {
   sim::LidarRecord sweeps;
   PointStore points;
@@ -33,7 +34,7 @@ struct StoredLidarView {
   const sim::LidarRecord& sweeps;
   const PointStore& points;
 };
-/// Pairs the lidars of `sensors` with their points on disk, in order.
+/// Pairs each lidar of `sensors` with its points on disk, in order.
 std::vector<StoredLidarView> views_of(const sim::Sensors& sensors, const std::vector<PointStore>& points);
 
 inline constexpr const char* kXyz = "x y z";
@@ -79,7 +80,7 @@ void point_fields(Archive& archive, Points& points) {
   archive.rows("ring", points.ring, "1", "", Storage::deflated);
 }
 
-/// For a record with its points, or with points on disk: `lidar.sweeps` and `lidar.points`.
+/// Visits the sweeps and points of a lidar, whose points are in the record or on disk (`lidar.sweeps`, `lidar.points`).
 template <class Archive, class Lidar>
 void lidar_fields(Archive& archive, Lidar& lidar) {
   if constexpr (requires { lidar.sweeps; }) {
@@ -111,7 +112,7 @@ void series_fields(Archive& archive, Series& series) {
   });
 }
 
-/// `lidars`: sensors.lidars or their views.
+/// `lidars` are sensors.lidars or views of these lidars.
 template <class Archive, class Sensors, class Lidars>
 void sensors_fields(Archive& archive, Sensors& sensors, Lidars& lidars) {
   archive.value("robot", sensors.robot);

@@ -12,7 +12,7 @@
 
 namespace tumble::scenarios {
 
-/// Name and version of the file format, in the attributes `format` and `format_version`.
+/// Name of the file format in the attribute `format`; the version is in the attribute `format_version`.
 inline constexpr const char* kRecordingFormat = "tumble recording";
 inline constexpr int kRecordingVersion = 1;
 
@@ -30,35 +30,38 @@ struct RecordingInfo {
   bool has_truth = false;
 };
 
-/// Returns the XXH3 digest (128 bit) of every field of sensors and truth in a fixed order: equal data, equal digest.
+/// Returns the XXH3 digest (128 bit) of every field of sensors and truth in a fixed order; equal data have equal
+/// digests.
 std::string digest(const sim::Sensors& sensors, const sim::Truth* truth);
-/// The same for points on disk, one store per lidar.
+/// Returns the digest for points on disk, with one store per lidar.
 std::string digest(const sim::Sensors& sensors, const std::vector<PointStore>& points, const sim::Truth* truth);
-/// The same for the truth only.
+/// Returns the digest of the truth only.
 std::string digest(const sim::Truth& truth);
 std::string digest(const StoredTruth& truth);
 
-/// Writes a recording as HDF5 (scenarios/recordings/FORMAT.md) to a temporary file in the same folder, then renames it.
-/// `truth` may be null. format_version, digest and has_truth of `info` are set by the writer. The file is composed in
-/// memory, which doubles the memory use. Throws BadInput if the folder is not writable or the disk is full (no partial
-/// file remains). Throws std::invalid_argument for inconsistent data (find_problem in recording_check.hpp).
+/// Writes a recording as HDF5 (scenarios/recordings/FORMAT.md) to a temporary file in the output folder, then renames
+/// the file. `truth` may be null. The writer sets format_version, digest and has_truth of `info`. The file is composed
+/// in memory, which doubles the memory use. Throws BadInput if the folder is not writable or the disk is full (no
+/// partial file remains). Throws std::invalid_argument for inconsistent data (find_problem in recording_check.hpp).
 void write_recording(const std::filesystem::path& path, const RecordingInfo& info, const sim::Sensors& sensors,
                      const sim::Truth* truth);
 
-/// The same for points on disk; produces the same bytes. The file is written directly to disk after reserving its
-/// maximum size. Memory holds the sensors without points, the truth, and some MiB.
+/// Writes a recording whose points are on disk; the file has the bytes that the version for points in memory writes.
+/// The file is written directly to disk after the maximum size is reserved. Memory holds the sensors without points,
+/// the truth, and some MiB.
 void write_recording(const std::filesystem::path& path, const RecordingInfo& info, const sim::Sensors& sensors,
                      const std::vector<PointStore>& points, const sim::Truth* truth);
 
-/// Reads the metadata. Each reader opens only its own group. All throw BadInput with path and reason: missing, not
-/// HDF5, truncated, missing or wrongly shaped dataset, other format version, inconsistent lengths, digest mismatch.
+/// Reads the metadata. Each reader function opens only the group that it needs. All reader functions throw BadInput
+/// with path and reason if the file is missing, truncated or not HDF5, if a dataset is missing or has a wrong shape, or
+/// if format version, lengths or digest do not match.
 RecordingInfo read_info(const std::filesystem::path& path);
 sim::Sensors read_sensors(const std::filesystem::path& path);
-/// The same, with the points on disk in `scratch`, one store per lidar; the records then have none.
+/// Reads the sensors with the points on disk in `scratch`, one store per lidar; the records then have no points.
 sim::Sensors read_sensors(const std::filesystem::path& path, const std::filesystem::path& scratch,
                           std::vector<PointStore>& points);
 sim::Truth read_truth(const std::filesystem::path& path);
-/// The same, with the rows on disk in `scratch`; memory holds one MiB at a time.
+/// Reads the truth with its rows on disk in `scratch`; memory holds one MiB at a time.
 StoredTruth read_truth(const std::filesystem::path& path, const std::filesystem::path& scratch);
 
 }  // namespace tumble::scenarios

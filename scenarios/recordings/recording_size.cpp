@@ -23,8 +23,8 @@ class SizeBound {
   void point(const char*, const Eigen::Vector3d&, const char*) { bytes += kHead_bytes; }
   template <template <class...> class Rows, class Row, class... More>
   void rows(const char*, const Rows<Row, More...>& rows, const char*, const char*, Storage) {
-    // Chunks that deflate does not shrink are stored plain, and the last is padded. The index needs less than 1 in
-    // 1000.
+    // Chunks that deflate does not shrink are stored without compression, and the last chunk is padded. The chunk index
+    // needs less than 0.1 % of the data.
     const std::uint64_t plain = std::uint64_t{rows.size()} * sizeof(Row);
     bytes += plain + plain / 1000 + hdf5::kChunkBytes + kHead_bytes;
   }

@@ -54,7 +54,7 @@ std::optional<struct stat> status_of(const fs::path& path) {
   return found;
 }
 
-/// Resolves symbolic links, even dangling ones.
+/// Resolves symbolic links, including dangling links.
 fs::path behind_links(const fs::path& path) {
   fs::path place = path;
   std::error_code error;
@@ -75,7 +75,7 @@ void require_replaceable(const fs::path& given, const fs::path& place) {
   if (access(place.c_str(), W_OK) != 0) fail(given, errno);
 }
 
-/// Input folders must not be modified, at any depth.
+/// Throws BadInput if the output is within an input folder, at any depth, because inputs must not be modified.
 void require_outside(const fs::path& output, std::span<const fs::path> inputs) {
   std::error_code error;
   const fs::path place = fs::canonical(output, error);

@@ -9,13 +9,14 @@
 
 #include "scenarios/recordings/unfinished.hpp"
 
-/// Atomic output: writes next to the final path, then renames; only replaces regular files.
+/// Writes output atomically: to a temporary file next to the final path, which is then renamed; only regular files are
+/// replaced.
 namespace tumble::scenarios {
 
-/// A file under construction next to its final path. Removed unless moved there, also when a signal ends the program
-/// (unfinished.hpp). Follows symbolic links. An existing target must be a writable regular file; its mode and owner are
-/// kept. Throws BadInput with the path and the system's reason (no such folder, no permission, disk full, a device, a
-/// pipe).
+/// A file under construction next to its final path. The file is removed unless it is moved to its final path, also
+/// when a signal ends the program (unfinished.hpp). Symbolic links are followed. An existing target must be a writable
+/// regular file; its mode and owner are kept. Throws BadInput with the path and the system's reason (missing folder, no
+/// permission, disk full, a device, a pipe).
 class OutputFile {
  public:
   explicit OutputFile(const std::filesystem::path& path);
@@ -23,10 +24,10 @@ class OutputFile {
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
-  /// Returns the temporary path, for libraries that write by name.
+  /// Returns the temporary path, for libraries that write to a named file.
   const std::filesystem::path& unfinished() const { return unfinished_; }
   void write(std::span<const std::byte> bytes);
-  /// Flushes the file to disk and renames it, so that the path always has the complete old or new file.
+  /// Flushes the file to disk and renames it, so that the final path always has the complete old or new file.
   void move_into_place();
 
  private:
@@ -35,9 +36,9 @@ class OutputFile {
   bool moved_ = false;
 };
 
-/// An output folder, which must be missing or empty, so that old files are not mistaken for new ones. Throws BadInput
-/// otherwise. Unless kept, its content is removed, and the folder too if it was created here, also when a signal ends
-/// the program.
+/// An output folder, which must be missing or empty, so that old files are not mistaken for new files. Throws BadInput
+/// if the folder is not empty. Unless kept, the content is removed, also when a signal ends the program; the folder is
+/// also removed if it was created here.
 class OutputFolder {
  public:
   explicit OutputFolder(const std::filesystem::path& folder);
@@ -56,11 +57,11 @@ class OutputFolder {
   bool made_ = false, kept_ = false;
 };
 
-/// Writes `bytes` by an OutputFile.
+/// Writes `bytes` with an OutputFile.
 void replace_file(const std::filesystem::path& path, std::span<const std::byte> bytes);
 void replace_file(const std::filesystem::path& path, std::string_view text);
 
-/// Throws BadInput if the output is one of the inputs (same device and inode), or exists within an input folder.
+/// Throws BadInput if the output is one of the inputs (equal device and inode), or exists within an input folder.
 void require_not_an_input(const std::filesystem::path& output, std::span<const std::filesystem::path> inputs);
 
 }  // namespace tumble::scenarios

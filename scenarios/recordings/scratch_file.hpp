@@ -10,14 +10,14 @@
 #include <utility>
 #include <vector>
 
-/// Temporary storage on disk for data that exceed the memory.
+/// Stores data temporarily on disk if the data exceed the memory.
 namespace tumble::scenarios {
 
-/// Returns the nearest existing folder of an output path, so that temporary data are on the same disk.
+/// Returns the nearest existing folder of an output path, so that temporary data are on the disk of the output.
 std::filesystem::path scratch_folder_of(const std::filesystem::path& output);
 
 /// An unnamed file that disappears with the object or the process. Grows at its end. Throws BadInput with the folder
-/// and the system's reason (no such folder, no permission, disk full).
+/// and the system's reason (missing folder, no permission, disk full).
 class ScratchFile {
  public:
   explicit ScratchFile(std::filesystem::path folder);
@@ -33,7 +33,7 @@ class ScratchFile {
 
   std::uint64_t bytes() const { return bytes_; }
   void append(std::span<const std::byte> bytes) { write(bytes_, bytes); }
-  /// Writes at an offset within the file or at its end.
+  /// Writes bytes at an offset within the file or at its end.
   void write(std::uint64_t at, std::span<const std::byte> bytes);
   void read(std::uint64_t at, std::span<std::byte> bytes) const;
 
@@ -43,8 +43,8 @@ class ScratchFile {
   std::uint64_t bytes_ = 0;
 };
 
-/// A column of a recording in a ScratchFile, read and written by segments like a std::vector<Row>. Without a folder it
-/// stays empty.
+/// A column of a recording in a ScratchFile, read and written by segments like a std::vector<Row>. Without a folder,
+/// the column stays empty.
 template <class Row>
 class ColumnFile {
  public:
@@ -56,13 +56,13 @@ class ColumnFile {
   void read(std::size_t first, std::span<Row> rows) const {
     if (!rows.empty()) file_->read(first * sizeof(Row), std::as_writable_bytes(rows));
   }
-  /// Returns rows [first, last).
+  /// Returns the rows from `first` to `last` - 1.
   std::vector<Row> rows(std::size_t first, std::size_t last) const {
     std::vector<Row> out(last - first);
     read(first, out);
     return out;
   }
-  /// Calls `take(first, rows)` for segments of `length` rows; the last may be shorter.
+  /// Calls `take(first, rows)` for segments of `length` rows; the final segment may be shorter.
   template <class Take>
   void for_segments(std::size_t length, Take&& take) const {
     std::vector<Row> rows;

@@ -12,7 +12,7 @@ namespace tumble::scenarios {
 /// A temporary folder, removed with the object, also when a signal ends the program.
 class ScratchFolder {
  public:
-  /// `use` becomes part of its name. Throws std::filesystem::filesystem_error on failure.
+  /// `use` becomes part of the folder's name. Throws std::filesystem::filesystem_error on failure.
   explicit ScratchFolder(const std::string& use);
   ~ScratchFolder();
   ScratchFolder(const ScratchFolder&) = delete;

@@ -42,9 +42,10 @@ struct StoredLidarTruth {
   ColumnFile<std::int32_t> surface_id;
 };
 
-/// A sim::Truth on disk: its rows are columns of scratch files, other members are unchanged.
+/// A sim::Truth on disk: rows are columns of scratch files; the other members are those of sim::Truth.
 struct StoredTruth {
-  /// Returns the body states of rows [first, last), with the mountings and `p_BG_m`, without sensors and contacts.
+  /// Returns the body states from row `first` to row `last` - 1, with the mountings and `p_BG_m`, without sensors and
+  /// contacts.
   sim::Truth states(std::size_t first, std::size_t last) const;
   std::size_t size() const { return p_WB_m.size(); }
 

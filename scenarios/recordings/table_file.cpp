@@ -38,11 +38,11 @@ std::vector<std::string> split(const std::string& line, char separator) {
   return cells;
 }
 
-/// Longest line; a pose with covariance has less than a thousand bytes. Protects the memory from files without line
-/// ends and endless devices.
+/// Longest line; a pose with covariance has less than a thousand bytes. The limit protects the memory from files
+/// without line ends and from endless devices.
 constexpr std::size_t kLineMax = 1 << 20;
 
-/// Like std::getline. Throws BadInput for a line longer than kLineMax.
+/// Reads a line like std::getline. Throws BadInput for a line longer than kLineMax.
 bool read_line(std::istream& file, const std::filesystem::path& path, int number, std::string& line) {
   line.clear();
   auto& bytes = *file.rdbuf();
@@ -166,7 +166,8 @@ std::int64_t Table::time_ns(const Row& row, std::size_t column) const {
   const bool plain = text.find_first_not_of("-0123456789.") == std::string::npos;
   std::int64_t whole = 0;
   std::int64_t fraction = 0;
-  // Epoch seconds with nine decimals exceed a double: parse whole and fraction separately.
+  // Epoch seconds with nine decimals exceed the precision of a double, so the whole part and the fraction are parsed
+  // separately.
   if (plain && point != std::string::npos && point > 0 && parse(text.substr(0, point), whole)) {
     std::string digits = text.substr(point + 1, 9);
     digits.append(9 - digits.size(), '0');

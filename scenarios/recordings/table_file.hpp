@@ -12,11 +12,11 @@
 namespace tumble::scenarios {
 
 /// Writes a text file of numbers, one row per line: TUM (blanks, no header) or CSV (commas, one header line). Doubles
-/// round-trip exactly; stamps are seconds with nine decimals or integers.
+/// are restored exactly when read; stamps are integers or seconds with nine decimals.
 class TableWriter {
  public:
-  /// An empty `header` is not written. Throws BadInput if the file cannot be opened. An existing file is replaced only
-  /// by `close`; a table that is not closed is discarded.
+  /// An empty `header` is not written. Throws BadInput if the file cannot be opened. `close` replaces an existing file;
+  /// a table that is not closed is discarded.
   TableWriter(const std::filesystem::path& path, char separator, const std::string& header);
   void integer(std::int64_t value);
   void number(double value);
@@ -34,8 +34,8 @@ class TableWriter {
   bool row_empty_ = true;
 };
 
-/// Rows of text cells with a checked count. Skips empty lines and lines that start with '#'. Throws BadInput with path
-/// and line number.
+/// Rows of text cells; every row has the expected number of cells. Skips empty lines and lines that start with '#'.
+/// Throws BadInput with path and line number for a wrong number of cells or an invalid value.
 struct Table {
   struct Row {
     int line;

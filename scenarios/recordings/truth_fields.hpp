@@ -8,7 +8,7 @@
 #include "scenarios/recordings/recording_fields.hpp"
 #include "sim/recording.hpp"
 
-/// The single list of a recording's truth fields, for the archives of recording_fields.hpp. Private to
+/// Lists all truth fields of a recording, for the archives of recording_fields.hpp. Used only within
 /// scenarios/recordings.
 namespace tumble::scenarios {
 
@@ -71,7 +71,7 @@ void series_truth_fields(Archive& archive, Series& series) {
   });
 }
 
-/// `contacts` holds truth.contacts by column; truth.contacts itself is not visited.
+/// `contacts` contains truth.contacts by column; truth.contacts itself is not visited.
 template <class Archive, class Truth, class Contacts>
 void truth_fields(Archive& archive, Truth& truth, Contacts& contacts) {
   archive.value("period_ns", truth.period_ns);

@@ -36,7 +36,7 @@ static_assert(std::atomic<pid_t>::is_always_lock_free && std::atomic<bool>::is_a
 
 std::atomic<int> waiting{0}, pending{0};  // number of SignalsWait objects, and the signal received meanwhile
 
-/// A record of getdents64. readdir is not allowed in a signal handler because it allocates.
+/// A directory record of getdents64; readdir is not allowed in a signal handler because readdir allocates memory.
 struct Listed {
   std::uint64_t inode;
   std::int64_t next;

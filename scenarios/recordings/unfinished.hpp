@@ -6,8 +6,9 @@
 /// Removes incomplete outputs when a signal ends the process.
 namespace tumble::scenarios {
 
-/// An incomplete file or folder. During its lifetime, a signal of `remove_unfinished_on_signals` removes it, with all
-/// content of a folder. Only the process that created it removes it, not its children.
+/// An incomplete file or folder. During the object's lifetime, a signal of `remove_unfinished_on_signals` removes the
+/// file or folder, with all content of a folder. Only the process that created the object removes the path; its child
+/// processes do not.
 class Unfinished {
  public:
   enum class Kind { file, folder, contents };  ///< contents: an existing folder that itself remains
@@ -24,7 +25,8 @@ class Unfinished {
   int place_ = -1;
 };
 
-/// Blocks these signals during its lifetime, while a path exists that is not yet an Unfinished.
+/// Blocks the signals of `remove_unfinished_on_signals` during the object's lifetime, while a new path has no
+/// Unfinished object yet.
 class SignalsWait {
  public:
   SignalsWait();
@@ -33,8 +35,8 @@ class SignalsWait {
   SignalsWait& operator=(const SignalsWait&) = delete;
 };
 
-/// Installs handlers: SIGINT, SIGTERM and SIGHUP, unless ignored, remove incomplete outputs and then have their usual
-/// effect. The handlers are async-signal-safe: only system calls on static storage.
+/// Installs signal handlers: SIGINT, SIGTERM and SIGHUP, unless ignored, remove incomplete outputs and then have their
+/// usual effect. The handlers are async-signal-safe: only system calls on static storage.
 void remove_unfinished_on_signals();
 
 }  // namespace tumble::scenarios

@@ -9,7 +9,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-// BROAD (Laidig et al., Data 2021): e = q_est (x) q_true*, in W, heading aligned at the first sample
+// Attitude error as in BROAD (Laidig et al., Data 2021): e = q_est (x) q_true*, in W, with the heading aligned at the
+// first sample.
 struct AttitudeError {
   double inclination_rad;
   double heading_rad;
@@ -48,7 +49,7 @@ bool rmse(const ScoredEstimate& scored, double& value) {
   return true;
 }
 
-/// Returns squared tilt errors divided by their estimated variances, while in motion.
+/// Returns squared tilt errors divided by their estimated variances, while the body moves.
 std::vector<double> normalised_tilt_errors(const ScoredEstimate& scored) {
   const TruthTrack& truth = truth_track(scored);
   std::vector<double> normalised;

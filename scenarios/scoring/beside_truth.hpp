@@ -11,8 +11,8 @@
 #include "scenarios/scoring/scored_estimate.hpp"
 #include "scenarios/scoring/truth_track.hpp"
 
-/// Pairs an estimate's poses and rates with the truth, for several families of metrics. Each result is computed at
-/// first use and cached per estimate. All functions throw what TruthTrack and ClippingTruth throw.
+/// Pairs an estimate's poses and rates with the truth, for several groups of metrics. Each result is computed at first
+/// use and cached for the estimate. All functions throw the exceptions of TruthTrack and ClippingTruth.
 namespace tumble::scenarios {
 
 /// Returns the true motion of the estimate's frame.
@@ -31,9 +31,9 @@ struct PairedRate {
   std::size_t sample = 0;  ///< index of the primary IMU's sample whose window contains the instant; valid if the truth
                            ///< is known
 
-  /// Bit j: axis j is clipped. 0 if the truth is unknown.
+  /// Returns the clipped axes (bit j: axis j), or 0 if the truth is unknown.
   std::uint8_t clipped_axes() const { return truth ? truth->clipped_axes : std::uint8_t{0}; }
-  /// Returns estimate minus truth in true IMU axes; requires a known truth.
+  /// Returns the estimated minus the true rate in true IMU axes; the truth must be known.
   Eigen::Vector3d error_rad_s() const { return estimate->w_WI_I_rad_s - truth->rate_rad_s; }
 };
 

@@ -6,9 +6,9 @@
 
 namespace tumble::scenarios {
 
-/// Name of a metric over the samples of a draw whose measure `axis` is in [low, high):
-/// "rate_error_median_rad_s@clip_depth_rad_s:1:2". `high` may be infinite. Such metrics are plotted as a curve over the
-/// measure and appear in no table.
+/// Metric over the samples whose measure `axis` is in [low, high), with a name such as
+/// "rate_error_median_rad_s@clip_depth_rad_s:1:2". `high` may be infinite. Binned metrics are plotted as a curve over
+/// the measure and appear in no table.
 struct BinnedMetric {
   std::string base;  ///< "rate_error_median_rad_s"
   std::string axis;  ///< "clip_depth_rad_s"; ends in its unit, as metrics do
@@ -16,7 +16,7 @@ struct BinnedMetric {
   std::string name() const;
 };
 
-/// Parses a name; empty if `metric` is not the name of a binned metric.
+/// Parses a name; returns empty if `metric` is not the name of a binned metric.
 std::optional<BinnedMetric> parse_binned(const std::string& metric);
 
 }  // namespace tumble::scenarios

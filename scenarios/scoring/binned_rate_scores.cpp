@@ -12,7 +12,7 @@
 #include "scenarios/scoring/families.hpp"
 #include "scenarios/statistics/statistics.hpp"
 
-/// Rate errors over clipped samples of similar clipping depth, clipping duration or number of clipped axes.
+/// Computes rate errors over clipped samples of similar clipping depth, clipping duration or number of clipped axes.
 namespace tumble::scenarios {
 
 namespace {
@@ -31,7 +31,8 @@ constexpr const auto& edges() {
   if constexpr (kAxis == BinAxis::count) return kCountEdges;
 }
 
-/// Returns for each sample the duration of its segment of clipped samples; 0 if not clipped.
+/// Returns, for each sample, the duration of the segment of clipped samples to which it belongs; 0 if the sample is not
+/// clipped.
 std::vector<double> segment_lengths_s(const ScoredEstimate& scored) {
   const ClippingTruth& truth = clipping_truth(scored);
   const double period_s = 1e-9 * static_cast<double>(scored.sensors().imus.front().period_ns);

@@ -7,7 +7,7 @@
 
 namespace tumble::scenarios {
 
-/// Returns the CPU time metric of an estimate, as sweeps store it.
+/// Returns the description of an estimate's CPU time, as sweeps store this metric.
 const MetricInfo& estimate_cost();
 
 /// Returns true if a score is a computing cost, which varies between identical runs.

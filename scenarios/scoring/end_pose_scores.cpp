@@ -12,7 +12,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-// Returns the last sweep within the truth. A delayed clock can stamp the end of a recording beyond it.
+// Returns the last sweep within the time of the truth. A delayed clock can stamp the last sweeps of a recording beyond
+// the truth.
 const LidarInertialOdometry::SweepReport* last_covered(const ScoredEstimate& scored) {
   const Estimate& estimate = scored.estimate();
   const TruthTrack& truth = truth_track(scored);
@@ -77,8 +78,8 @@ bool rotation_error_end(const ScoredEstimate& scored, double& value) {
   return true;
 }
 
-// Computes the normalised squared error of the last sweep's pose, aligned at the first pose. Its mean is 1 for a
-// consistent covariance.
+// Computes the normalised squared error of the last sweep's pose after alignment at the first pose. The mean of this
+// error is 1 for a consistent covariance.
 bool pose_nees(const ScoredEstimate& scored, double& value) {
   if (scored.estimate().sweeps.empty() || scored.estimate().poses.empty()) return false;
   const auto* last_sweep = last_covered(scored);
@@ -90,7 +91,7 @@ bool pose_nees(const ScoredEstimate& scored, double& value) {
   const PoseState true_pose = truth_track(scored).pose(last.time_ns);
   Eigen::Matrix<double, 6, 1> error;
   error << true_pose.p_WA_m - aligned.p_WA_m, so3::log((true_pose.q_WA * aligned.q_WA.conjugate()).normalized());
-  // The covariance refers to the estimator's world: rotate the error there.
+  // The covariance refers to the estimator's world, so the error is rotated to this world.
   const Eigen::Matrix3d back = alignment.transform().linear().transpose();
   error << Eigen::Vector3d(back * error.head<3>()), Eigen::Vector3d(back * error.tail<3>());
   const Eigen::LLT<Eigen::Matrix<double, 6, 6>> factor(last.covariance);

@@ -5,8 +5,8 @@
 
 #include "scenarios/scoring/score.hpp"
 
-/// The metrics, one source file per family. To add a metric: write its function in the family's file and add it to the
-/// list there. A new family is declared here and added in score.cpp.
+/// Declares the metrics; each group of metrics has one source file. A new metric needs a function in the source file of
+/// its group and an entry in the list of that file. A new group of metrics is declared here and added in score.cpp.
 namespace tumble::scenarios {
 
 std::vector<Metric> rate_metrics();
@@ -21,7 +21,8 @@ std::vector<Metric> map_metrics();
 std::vector<Metric> sweep_border_metrics();
 std::vector<Metric> time_offset_metrics();  ///< for all kinds
 
-/// Returns further quantities: costs and motion values that sweeps store, and measures and bases of the binned metrics.
+/// Returns quantities that are no metrics: costs and motion values that sweeps store, and the quantities from which
+/// binned metrics are built.
 std::vector<MetricInfo> cost_quantities();
 std::vector<MetricInfo> motion_quantities();
 std::vector<MetricInfo> binned_rate_quantities();

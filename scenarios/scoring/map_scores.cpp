@@ -43,7 +43,8 @@ std::vector<Eigen::Vector3f> seen_surface(const sim::Truth& truth) {
   return one_per_cell(hits, kSurfaceCellM);
 }
 
-// Returns the distances of the finite map points to the true surface, at most kErrorLimitM each. Requires a surface.
+// Returns the distances of the finite map points to the true surface, each limited to kErrorLimitM. The true surface
+// must be available.
 std::vector<float> map_distances_m(const ScoredEstimate& scored) {
   std::vector<Eigen::Vector3f> finite;
   for (const Eigen::Vector3f& point : scored.once(map_in_world)) {
@@ -98,7 +99,8 @@ bool map_coverage(const ScoredEstimate& scored, double& value) {
   return true;
 }
 
-// A method without a map has failed. A trajectory without sweeps comes from an external program that does not map.
+// A method without a map counts as failed. A trajectory without sweeps comes from an external program that does not
+// build a map.
 bool failed(const ScoredEstimate& scored, double& value) {
   const Estimate& estimate = scored.estimate();
   if (scored.surface() == nullptr || (estimate.sweeps.empty() && estimate.map.empty())) return false;

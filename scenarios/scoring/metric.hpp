@@ -7,34 +7,35 @@
 
 #include "scenarios/methods/method.hpp"
 
-/// Description of a metric, given once where it is registered. Tables, reports, gates and triage use only this
-/// description.
+/// Describes a metric; the description is stated once, where the metric is registered. Tables, reports, gates and
+/// triage use only this description.
 namespace tumble::scenarios {
 
-/// Which values of a metric are better:
+/// States which values of a metric are better:
 /// - lower: errors;
 /// - higher: overlap;
 /// - two_sided: a target is best (coverage of an interval, normalised errors);
 /// - none: values are not ranked (costs, counts, properties of the reference).
 enum class Sense { lower, higher, two_sided, none };
 
-/// Unit of stored values. `share` is in [0, 1]. `verdict` is 0, or 1 for a failure; only its share over draws is
-/// meaningful, not its median. `time_offset` is signed, in seconds, and shown in milliseconds.
+/// Unit of the stored values of a metric. A `share` is in [0, 1]. A `verdict` is 0, or 1 for a failure; only the
+/// fraction of failures over many runs is meaningful, not the median. A `time_offset` is signed, in seconds, and shown
+/// in milliseconds.
 enum class Unit { number, share, verdict, rad, rad_s, m, m_s, m_s2, s, time_offset, mib };
-/// Returns the unit at the end of metrics' names: "1", "rad", "rad/s", …
+/// Returns the unit at the end of metric names: "1", "rad", "rad/s", …
 const char* symbol(Unit unit);
 
-/// How the gate compares two values on one draw: by ratio (errors, normalised errors) or by difference (shares and
-/// signed values).
+/// States how the gate compares two values on one simulated run: by ratio (errors, normalised errors) or by difference
+/// (fractions and signed values).
 enum class Compared { by_ratio, by_difference };
 
-/// Where a metric appears: first in the report, also in the gate, or only in the full table.
+/// States where a metric appears: first in the report, also in the gate, or only in the full table.
 enum class Place { detail, held, headline };
 
-/// Target of a metric that is not two-sided.
+/// Target value of a metric that is not two-sided.
 inline constexpr double kNoTarget = std::numeric_limits<double>::quiet_NaN();
 
-/// Description of a metric or of a similar quantity of a draw.
+/// Description of a metric or of a similar quantity of a simulated run.
 struct MetricInfo {
   std::string name;  ///< ends in its unit
   Unit unit = Unit::number;
@@ -45,11 +46,12 @@ struct MetricInfo {
   Compared compared = Compared::by_ratio;
 };
 
-/// Returns the description of a metric (for binned metrics that of the base), cost or motion value. Unknown names, from
-/// databases of other versions, get a description without sense.
+/// Returns the description of a metric, cost or motion value; for a binned metric, the description of the unbinned
+/// metric. Unknown names, from databases of other versions, get a description with Sense::none.
 const MetricInfo& metric_info(const std::string& name);
 
-/// Display style: SI values times `factor` in `unit`. Degrees and percent are used only for display.
+/// Display style of a metric: SI values are multiplied by `factor` and shown in `unit`. Degrees and percent are used
+/// only for display.
 struct MetricStyle {
   std::string unit;
   double factor = 1.0;
@@ -59,19 +61,20 @@ MetricStyle style_of(Unit unit);
 /// Returns "lower is better", "higher is better", "best near 1" or "no contest".
 std::string sense_text(const MetricInfo& metric);
 
-/// Returns true if `a` is better than `b`; always false for unranked metrics and NaN. With a target, the closer value
-/// is better, by ratio if both are positive.
+/// Returns true if `a` is better than `b`; always false for unranked metrics and NaN. For a metric with a target, the
+/// value closer to the target is better; closeness is measured by ratio if both values are positive.
 bool is_better(const MetricInfo& metric, double a, double b);
 
-/// Returns a badness for paired differences: the value where lower is better, its negative where higher is better, the
-/// distance from the target (of logarithms if both are positive), else NaN.
+/// Returns a badness for paired differences: the value where lower is better, the negative value where higher is
+/// better, and the distance from the target for a target (of logarithms if value and target are positive); else NaN.
 double how_bad(const MetricInfo& metric, double value);
 
-/// Returns the value assigned to failed runs: infinity, or minus infinity where higher is better. NaN, which statistics
-/// ignore, for two-sided and unranked metrics.
+/// Returns the value assigned to failed runs: infinity, or minus infinity where higher is better. For two-sided and
+/// unranked metrics, returns NaN, which statistics ignore.
 double worst_value(const MetricInfo& metric);
 
-/// Return the headline metrics of a kind, and all gate metrics including these, in order of registration.
+/// Return the headline metrics of a kind, and all gate metrics including the headline metrics, in order of
+/// registration.
 std::vector<std::string> headline_metrics(Kind kind);
 std::vector<std::string> held_metrics(Kind kind);
 

@@ -8,7 +8,8 @@
 
 namespace tumble::scenarios {
 
-/// Statistics of a simulated motion, to compare a scenario with a published campaign. Computed from the truth only.
+/// Statistics of a simulated motion, to compare a scenario with a published campaign. The statistics are computed from
+/// the truth only.
 struct MotionSummary {
   double moving_s = 0.0;            ///< from the first to the last instant above 0.1 m/s or 0.3 rad/s
   double rest_at_end_s = 0.0;       ///< from the last such instant to the end of the recording
@@ -27,7 +28,7 @@ struct MotionSummary {
                                           ///< own noise
 };
 
-/// Summarises a motion in O(N). Throws BadInput if sensors and truth do not belong together or have no IMU.
+/// Summarises a motion in O(N). Throws BadInput if sensors and truth do not belong together or if there is no IMU.
 MotionSummary summarise_motion(const sim::Sensors& sensors, const sim::Truth& truth);
 
 }  // namespace tumble::scenarios

@@ -11,8 +11,8 @@
 
 namespace tumble::scenarios {
 
-/// Tests whether any point of a set is within a fixed distance. Exact; uses a hash of cells as wide as the distance and
-/// checks 27 cells. Ignores points that are not finite.
+/// Tests whether any point of a set is within a fixed distance. The test is exact; it uses a hash of cells as wide as
+/// the distance and checks 27 cells. Ignores points that are not finite.
 class Nearness {
  public:
   Nearness(std::span<const Eigen::Vector3f> points_m, float distance_m);

@@ -7,13 +7,13 @@
 
 namespace tumble::scenarios {
 
-/// How a method's run on a draw ended. The method is responsible for `ok`, `diverged` (score.hpp, `verdict`), `failed`
-/// (reported by itself), `crashed` and `timeout`. `killed` is a fault of the machine (signal from outside, no memory,
-/// no process). `rejected` means that the draw cannot be simulated.
+/// Describes how a method's run on a recording ended. The method is responsible for `ok`, `diverged` (score.hpp,
+/// `verdict`), `failed` (the method returned an error), `crashed` and `timeout`. `killed` is a fault of the machine
+/// (signal from outside, no memory, no process). `rejected` means that the scenario cannot be simulated with this seed.
 enum class OutcomeStatus { ok, diverged, failed, crashed, timeout, killed, rejected };
 
 std::span<const OutcomeStatus> outcome_statuses();
-/// Returns the name used in the results database.
+/// Returns the name of the status in the results database.
 const char* to_string(OutcomeStatus status);
 std::optional<OutcomeStatus> outcome_status_named(std::string_view name);
 

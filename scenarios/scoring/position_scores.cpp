@@ -36,7 +36,7 @@ bool height_error_max(const ScoredEstimate& scored, double& value) {
   value = 0.0;
   for (const PairedPose& pose : poses) {
     const double error = std::abs(pose.estimate.p_WA_m.z() - pose.truth.p_WA_m.z());
-    // unlike std::max, this propagates NaN
+    // unlike std::max, this comparison propagates NaN
     if (!(error <= value)) value = error;
     if (std::isnan(value)) break;
   }
@@ -64,7 +64,7 @@ bool rest_drift(const ScoredEstimate& scored, double& value) {
 }
 
 /// Returns squared errors divided by their reported variances, once the body moves. Errors are in the axes of the
-/// covariance: those of the estimate's world.
+/// covariance, which are the axes of the estimate's world.
 std::vector<double> normalised_position_errors(const ScoredEstimate& scored) {
   const Estimate& estimate = scored.estimate();
   const PairedTrack& track = paired_track(scored);

@@ -4,7 +4,7 @@
 #include "scenarios/scoring/cost.hpp"
 #include "scenarios/scoring/families.hpp"
 
-/// Quantities stored in addition to the metrics and shown in the same way.
+/// Describes quantities that are stored in addition to the metrics and displayed like metrics.
 namespace tumble::scenarios {
 
 std::vector<MetricInfo> cost_quantities() {

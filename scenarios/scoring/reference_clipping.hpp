@@ -7,12 +7,13 @@
 #include <span>
 #include <vector>
 
-/// Detects clipped readings of a real gyro with a reference of the rate. Independent of the estimator's detection.
+/// Detects clipped readings of a real gyro with a reference of the rate. The detection is independent of the
+/// estimator's detection.
 namespace tumble::scenarios {
 
-/// Saturation limit of axis j with sign s, a tilted plane in the readings: s y_j = rail + slopes . (the other two axes,
+/// Saturation limit of axis j with sign s, a tilted plane in the readings: s y_j = rail + slopes * (the other two axes,
 /// in order). The plane is tilted because sensing elements saturate along their own, slightly non-orthogonal axes
-/// before the device's calibration.
+/// before the calibration of the device.
 struct ReferenceRail {
   bool found = false;
   double rail_rad_s = 0.0;
@@ -21,20 +22,21 @@ struct ReferenceRail {
 
 /// Returns the saturation planes, defined as follows.
 ///
-/// Candidates are samples within 5 % of the axis' extreme of that sign, with a known reference. A candidate counts if
-/// the reference exceeds the reading by more than 2 %. The excess must also exceed four times the median difference
-/// between reading and reference on that axis. A limit exists if at least five candidates, and at least half of them,
-/// count.
+/// Candidates are samples within 5 % of the extreme reading of the axis and sign, with a known reference rate. A
+/// candidate is confirmed if the reference exceeds the reading by more than 2 %. The excess must also be larger than
+/// four times the median difference between reading and reference on that axis. A saturation limit exists if at least
+/// five candidates, and at least half of the candidates, are confirmed.
 ///
-/// Its plane is the least-squares fit to these samples, with a slope prior of 0 +- 0.03 and a residual deviation of
-/// 0.02 rad/s. A second fit uses only samples within 2 % of the first plane. Axis j of a sample is clipped if reading
-/// and reference both reach 0.98 of the plane. A NaN reference makes a sample unknown: no axis is flagged.
+/// The saturation plane is the least-squares fit to the confirmed samples, with a prior of 0 +- 0.03 for the cross-axis
+/// sensitivities and a residual deviation of 0.02 rad/s. A second fit uses only samples within 2 % of the first plane.
+/// Axis j of a sample is clipped if reading and reference both reach 0.98 of the plane. If the reference is NaN, the
+/// sample is unknown and no axis is flagged.
 ///
 /// `reading` and `reference` are parallel, in IMU axes [rad/s]. O(N).
 std::array<ReferenceRail, 6> reference_rails(std::span<const Eigen::Vector3d> reading,
                                              std::span<const Eigen::Vector3d> reference);
 
-/// Returns the clipped axes of each sample; bit j: axis j.
+/// Returns the clipped axes of each sample; bit j marks axis j.
 std::vector<std::uint8_t> clipped_by_reference(std::span<const Eigen::Vector3d> reading,
                                                std::span<const Eigen::Vector3d> reference);
 

@@ -12,8 +12,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// A sample is unclipped for certain if every axis is below this share of its extreme. It rotates if its rate exceeds
-/// this value.
+/// A sample is certainly unclipped if every axis is below this fraction of the axis's extreme reading. The body rotates
+/// if the rate exceeds kRotating_rad_s.
 constexpr double kFarShare = 0.9, kRotating_rad_s = 0.5;
 
 double error_norm(const Eigen::Vector3d& estimate, const Eigen::Vector3d& reference) {
@@ -32,7 +32,8 @@ double error_axis(const Eigen::Vector3d& estimate, const Eigen::Vector3d& refere
 
 using ErrorOf = double (*)(const Eigen::Vector3d&, const Eigen::Vector3d&);
 
-/// Returns a percentile of the estimate's error at clipped samples; for one axis, at the samples where that axis clips.
+/// Returns a percentile of the estimate's error at clipped samples; for a single axis, at the samples where this axis
+/// clips.
 template <ErrorOf kError, int kPercent, unsigned kAxes>
 bool clipped_error(const ScoredEstimate& scored, double& value) {
   if (!clipping_truth(scored).is_reference()) return false;
@@ -44,7 +45,7 @@ bool clipped_error(const ScoredEstimate& scored, double& value) {
   return quantile_of(errors, 0.01 * kPercent, value);
 }
 
-/// Returns a percentile of the difference between reference and gyro where nothing clips and the body rotates.
+/// Returns a percentile of the difference between reference and gyro where no axis clips and the body rotates.
 template <ErrorOf kError, int kPercent>
 bool reference_error(const ScoredEstimate& scored, double& value) {
   const ClippingTruth& truth = clipping_truth(scored);
@@ -61,8 +62,8 @@ bool reference_error(const ScoredEstimate& scored, double& value) {
   return quantile_of(errors, 0.01 * kPercent, value);
 }
 
-/// Returns the variances of the reference's axes, from the interquartile range of its difference to the unclipped gyro
-/// (assumed normal).
+/// Returns the variances of the reference's axes, from the interquartile range of the difference between reference and
+/// unclipped gyro (assumed normal).
 Eigen::Vector3d reference_variance(const ScoredEstimate& scored, const ClippingTruth& truth) {
   const auto& reading = scored.sensors().imus.front().gyro_rad_s;
   Eigen::Vector3d variance = Eigen::Vector3d::Zero();
@@ -78,7 +79,7 @@ Eigen::Vector3d reference_variance(const ScoredEstimate& scored, const ClippingT
   return variance;
 }
 
-/// Unlike rate_coverage_3sigma, includes the reference's own error.
+/// Unlike rate_coverage_3sigma, this metric includes the error of the reference.
 bool reference_coverage(const ScoredEstimate& scored, double& value) {
   const ClippingTruth& truth = clipping_truth(scored);
   if (!truth.is_reference()) return false;
@@ -138,7 +139,7 @@ void add_pair(const std::string& name, const std::string& doc, std::vector<Metri
                  clipped_error<kError, 90, kAxes>});
 }
 
-/// Properties of the reference, not of a method: not ranked.
+/// These metrics are properties of the reference, not of a method, and are not ranked.
 template <ErrorOf kError>
 void add_reference(const std::string& name, const std::string& doc, std::vector<Metric>& all) {
   all.push_back({{"rate_" + name + "_median_rad_s", Unit::rad_s, "median " + doc, Sense::none},

@@ -28,9 +28,9 @@ namespace {
 
 // longest gap of an estimate as a fraction of the recording
 constexpr double kHoleMaxShare = 0.2;
-// minimum share of gyro samples with an estimated rate
+// minimum fraction of gyro samples with an estimated rate
 constexpr double kAnsweredMin = 0.9;
-// end errors below this are never a divergence, however short the path
+// end errors below this value are never a divergence, even for a short path
 constexpr double kEndErrorFloorM = 1.0;
 
 std::vector<Metric> all_metrics() {
@@ -74,7 +74,7 @@ bool attitudes_hold(const ScoredEstimate& scored) {
   return reaches(scored.estimate().attitudes, truth.last_ns());
 }
 
-/// No rolling or tumbling robot travels this far: an estimate with such a pose is wrong.
+/// No rolling or tumbling robot travels this far, so an estimate with such a pose is wrong.
 constexpr double kFarthest_m = 1e7;
 
 bool poses_hold(const ScoredEstimate& scored) {
@@ -93,8 +93,8 @@ bool poses_reach_and_hold(const ScoredEstimate& scored) {
   return reaches(scored.estimate().poses, truth_track(scored).last_ns()) && poses_hold(scored);
 }
 
-// A run that is long enough for the end error must have enough sweeps for it. An external trajectory without sweeps is
-// judged by its poses.
+// Returns false if a run that is long enough for the end error has too few registered sweeps. An external trajectory
+// without sweeps is judged by its poses.
 bool sweeps_hold(const ScoredEstimate& scored) {
   const Estimate& estimate = scored.estimate();
   for (const auto& sweep : estimate.sweeps) {

@@ -10,18 +10,17 @@
 #include "scenarios/scoring/beside_truth.hpp"
 #include "scenarios/scoring/families.hpp"
 
-/// Slip and slide events: compares a position method's contact modes with the truth's contact labels.
+/// Compares the slip and slide events of a position method's contact modes with those of the truth's contact labels.
 ///
-/// An event is an interval of the labels slip and slide. It includes gaps of up to kBridge_ns of grip, and up to
-/// kHop_ns of air in total, because an unbalanced spinning sphere hops.
-/// A true event counts if it lasts kShortest_ns and its contact speed reaches kLeastSpeed_m_s. Weaker events cannot be
-/// distinguished from grip and cause no position error.
-/// An estimated event is correct if at least half of it overlaps true events, including weak and short ones, each
-/// widened by kMargin_ns. A true event is detected if correct events cover at least half of it. Slip and slide are not
-/// distinguished.
-/// The position is lost in a true event if the horizontal error grows by more than kLost_m from its start to its end.
-/// The event is flagged if the reported horizontal sigma grows by more than kFlagged_m. Both use kMargin_ns on either
-/// side.
+/// An event is an interval of the labels slip and slide. An event includes gaps of up to kBridge_ns of grip, and up to
+/// kHop_ns of air in total, because an unbalanced spinning sphere hops. A true event counts if the event lasts
+/// kShortest_ns and the contact speed reaches kLeastSpeed_m_s. Weaker events cannot be distinguished from grip and
+/// cause no position error. An estimated event is correct if at least half of the event overlaps true events, including
+/// weak and short events, each widened by kMargin_ns. A true event is detected if correct estimated events cover at
+/// least half of the true event. Slip and slide are not distinguished. The position is lost in a true event if the
+/// horizontal error grows by more than kLost_m from the start to the end of the event. The event is flagged if the
+/// reported horizontal sigma grows by more than kFlagged_m. The two criteria for position loss use kMargin_ns on either
+/// side of the event.
 namespace tumble::scenarios {
 
 namespace {
@@ -82,7 +81,7 @@ bool counts(const SlipSpan& span, const sim::Truth& truth) {
   return false;
 }
 
-/// A label holds from its own instant to the next one's.
+/// A label applies from its own instant to the instant of the next label.
 std::vector<SlipSpan> claimed_spans(const Estimate& estimate) {
   if (estimate.contacts.size() != estimate.poses.size()) {
     throw BadInput(
@@ -120,7 +119,7 @@ struct MatchedEvents {
 
 std::optional<MatchedEvents> match_events(const ScoredEstimate& scored) {
   const sim::Truth& truth = scored.truth();
-  // a reference has poses only
+  // the truth of a reference has poses only
   if (scored.estimate().contacts.empty() || truth.label.empty()) return std::nullopt;
   const std::vector<SlipSpan> all = true_spans(truth);
   MatchedEvents out;
@@ -167,12 +166,12 @@ bool delay(const ScoredEstimate& scored, double& value) {
   return true;
 }
 
-/// A true event with the position error in it.
+/// A true event and the position error during the event.
 struct Passed {
   bool lost = false, flagged = false;
 };
 
-/// Returns the true events that count and that the estimate covers; none without a covariance.
+/// Returns the true events that count and for which the estimate has poses; returns none without a covariance.
 std::vector<Passed> passed_events(const ScoredEstimate& scored) {
   const sim::Truth& truth = scored.truth();
   std::vector<Passed> out;

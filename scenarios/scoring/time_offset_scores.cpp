@@ -12,14 +12,14 @@ namespace {
 /// Least-squares fit of `behind = offset * change`, from errors of the estimate and rates of change of the truth.
 class OffsetFit {
  public:
-  /// Ignores unknown values.
+  /// Adds a pair of values; ignores unknown values.
   void add(const Eigen::Vector3d& behind, const Eigen::Vector3d& change_per_s) {
     if (!change_per_s.allFinite()) return;
     product_ += change_per_s.dot(behind);
     square_ += change_per_s.squaredNorm();
   }
 
-  /// Returns false if nothing changed.
+  /// Returns false if the truth did not change.
   bool offset_s(double& value) const {
     if (!(square_ > std::numeric_limits<double>::min())) return false;
     value = product_ / square_;
@@ -30,7 +30,7 @@ class OffsetFit {
   double product_ = 0.0, square_ = 0.0;
 };
 
-// Uses unclipped samples only: there the gyro measures the rate, and the remaining error is a time offset.
+// Uses unclipped samples only, because the gyro measures the rate there and the remaining error is a time offset.
 bool rate_offset(const ScoredEstimate& scored, double& value) {
   const ClippingTruth& truth = clipping_truth(scored);
   const std::int64_t period_ns = scored.sensors().imus.front().period_ns;

@@ -10,33 +10,34 @@
 
 namespace tumble::scenarios {
 
-/// The true motion of one frame of the robot, at any instant of the recording.
+/// The true motion of one frame of the robot at any instant of the recording.
 ///
-/// Interpolates position linearly and attitude by slerp between physics samples (0.5 ms apart). At 400 m/s^2 and 25
-/// rad/s the error is below 13 um and 1 urad. The frame is the true mounting, so calibration errors of the estimator
-/// count as errors.
+/// Position is interpolated linearly, and attitude by slerp, between physics samples (0.5 ms apart). At 400 m/s^2 and
+/// 25 rad/s, the interpolation error is below 13 um and 1 urad. The frame has its true mounting, so calibration errors
+/// of the estimator count as errors.
 class TruthTrack {
  public:
-  /// The body is at rest if its speed and rate are below both bounds within this time around the instant. Without any
-  /// known position, only the rate counts.
+  /// The body is at rest if its speed and rate are below their limits within this time around the instant. If no
+  /// position is known, only the rate counts.
   static constexpr double kRestWindowS = 0.1;
   static constexpr double kRestSpeedMS = 0.03;
   static constexpr double kRestRateRadS = 0.05;
 
-  /// Throws BadInput if the truth's arrays differ in length, are empty, or lack the frame's sensor. O(number of physics
-  /// samples).
+  /// Throws BadInput if the truth's arrays differ in length or are empty, or if the truth lacks the frame's sensor.
+  /// O(number of physics samples).
   TruthTrack(const sim::Truth& truth, Frame frame);
 
   std::int64_t last_ns() const { return last_ns_; }
-  /// Returns true if the pose is known at this time; a reference has gaps.
+  /// Returns true if the pose is known at this time; the poses of a reference can have gaps.
   bool covers(std::int64_t time_ns) const;
   /// Returns true if the attitude is known, even if the position is not.
   bool covers_attitude(std::int64_t time_ns) const;
 
-  /// Returns the pose of the frame in W and the velocity of its origin, NaN where the position is unknown. The attitude
-  /// must be covered. O(1).
+  /// Returns the pose of the frame in W and the velocity of its origin, with NaN where the position is unknown. The
+  /// attitude must be known at `time_ns`. O(1).
   PoseState pose(std::int64_t time_ns) const;
-  /// Returns the angular rate of the frame in its own axes [rad/s], NaN where unknown. `time_ns` must be covered. O(1).
+  /// Returns the angular rate of the frame in its own axes [rad/s], with NaN where the rate is unknown. `time_ns` must
+  /// be covered. O(1).
   Eigen::Vector3d rate_rad_s(std::int64_t time_ns) const;
   /// Returns the path length of the frame's origin since time 0 [m]; `time_ns` must be covered.
   double path_m(std::int64_t time_ns) const;
@@ -44,7 +45,7 @@ class TruthTrack {
   bool at_rest(std::int64_t time_ns) const;
 
  private:
-  /// Neighbouring samples of an instant, with the interpolation fraction.
+  /// Samples before and after an instant, with the interpolation fraction.
   struct Between {
     std::size_t index = 0, next = 0;
     double share = 0.0;
@@ -62,7 +63,7 @@ class TruthTrack {
   std::vector<bool> rest_;
 };
 
-/// Estimated and true pose at one instant, both in W, the estimate aligned.
+/// Estimated and true pose at one instant, both in W after alignment of the estimate.
 struct PairedPose {
   std::int64_t time_ns = 0;
   PoseState estimate;
@@ -71,13 +72,13 @@ struct PairedPose {
   bool rest = false;
 };
 
-/// Alignment of the estimator's world with W, in four degrees of freedom, because gravity fixes roll and pitch. Initial
-/// tilt errors therefore count.
+/// Alignment of the estimator's world with W in four degrees of freedom, because gravity fixes roll and pitch. Initial
+/// tilt errors therefore count as errors.
 struct Alignment {
   double yaw_rad = 0;
   Eigen::Vector3d translation_m = Eigen::Vector3d::Zero();
 
-  /// Aligns `estimate` to the position and heading of `truth`.
+  /// Returns the alignment that moves `estimate` to the position and heading of `truth`.
   static Alignment at(const PoseState& estimate, const PoseState& truth);
   Eigen::Isometry3d transform() const;
   PoseState apply(const PoseState& pose) const;
@@ -93,7 +94,8 @@ double rotation_angle_rad(const Eigen::Quaterniond& q);
 /// heading.
 Eigen::Vector2d tilt_error_rad(const Eigen::Quaterniond& q_estimate, const Eigen::Quaterniond& q_true);
 
-/// Poses of an estimate paired with the truth, aligned at the first pose that the truth covers. Empty if there is none.
+/// Poses of an estimate paired with the truth, aligned at the first pose for which the truth is known. The list is
+/// empty if there is no such pose.
 struct PairedTrack {
   Alignment alignment;
   std::vector<PairedPose> poses;

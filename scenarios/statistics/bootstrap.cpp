@@ -35,12 +35,12 @@ double sorted_median(std::span<const double> sorted) {
   return middle_of(sorted[(n - 1) / 2], sorted[n / 2]);
 }
 
-/// Returns the acceleration from the jackknife, statistics.md (S3). It is zero for an even sample size, where two
-/// medians remain, equally often.
+/// Returns the acceleration from the jackknife, statistics.md (S3). The acceleration is zero for an even sample size,
+/// because removing a value leaves two possible medians equally often.
 double acceleration(std::span<const double> sorted) {
   const std::size_t n = sorted.size(), m = n / 2;
   if (n % 2 == 0) return 0.0;
-  // medians after removing a value above, a value below, or the median itself, with their counts
+  // medians after the removal of a value above the median, of a value below, or of the median itself, with their counts
   const std::array<std::pair<double, double>, 3> left = {{{middle_of(sorted[m - 1], sorted[m]), static_cast<double>(m)},
                                                           {middle_of(sorted[m], sorted[m + 1]), static_cast<double>(m)},
                                                           {middle_of(sorted[m - 1], sorted[m + 1]), 1.0}}};
@@ -60,7 +60,8 @@ double acceleration(std::span<const double> sorted) {
 MedianBootstrap::MedianBootstrap(std::size_t size, std::size_t resamples) : size_(size) {
   if (size == 0) throw BadInput("bootstrap: there are no values");
   if (resamples < 100) throw BadInput(fmt::format("bootstrap: resamples is {}, must be at least 100", resamples));
-  // statistics.md (S1): the lower middle of n uniform numbers, and the one above, conditional on it
+  // statistics.md (S1): the lower middle of n uniform numbers, and the next larger number, conditional on the lower
+  // middle
   sim::Stream stream(size, "statistics.bootstrap");
   const auto n = static_cast<double>(size);
   const std::size_t rank = (size + 1) / 2;

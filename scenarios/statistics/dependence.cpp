@@ -45,7 +45,7 @@ double mean(std::span<const double> values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-/// Returns the ends of at most `wanted` classes of sorted pairs. Equal x are never separated.
+/// Returns the ends of at most `wanted` classes of sorted pairs. Equal values of x are in one class.
 std::vector<std::size_t> class_ends(const CompletePairs& sorted, std::size_t wanted) {
   const std::size_t n = sorted.size();
   std::vector<std::size_t> distinct;

@@ -7,10 +7,11 @@
 
 #include "scenarios/statistics/statistics.hpp"
 
-/// Statistical dependence between two numbers over the same draws.
+/// Computes the statistical dependence between two numbers over a set of simulated runs.
 namespace tumble::scenarios {
 
-/// Returns ranks from 1; ties get their mean rank. Infinite values are ranked normally; the rank of NaN is NaN.
+/// Returns ranks from 1; equal values get their mean rank. Infinite values are ranked like finite values; the rank of
+/// NaN is NaN.
 std::vector<double> mean_ranks(std::span<const double> values);
 
 struct Correlation {
@@ -20,8 +21,8 @@ struct Correlation {
 };
 
 /// Returns Spearman's rank correlation with the interval of Bonett and Wright (Psychometrika 65:23, 2000),
-/// statistics.md (S16), and the p-value of Student's distribution, (S17). Ignores pairs with NaN. The full interval
-/// [-1, 1] results for fewer than four pairs or a constant variable. Throws BadInput if the lengths differ.
+/// statistics.md (S16), and the p-value of Student's distribution, (S17). Pairs with NaN are ignored. For fewer than
+/// four pairs or a constant variable, the interval is [-1, 1]. Throws BadInput if the lengths differ.
 Correlation rank_correlation(std::span<const double> x, std::span<const double> y);
 
 struct FirstOrder {
@@ -30,19 +31,20 @@ struct FirstOrder {
   std::size_t classes = 0;  ///< 0: too few pairs
 };
 
-/// Estimates the first-order (Sobol') index of y by x from given data, whatever else y depends on. The index is the
-/// variance of class means over equally large classes of x, statistics.md (S18), minus its expectation without
-/// dependence, (S19). Source: Plischke, Borgonovo, Smith, EJOR 226:536, 2013. If x takes few values, each is a class.
-/// If y are ranks, the p-value, (S20), is that of the Kruskal-Wallis test.
+/// Estimates the first-order (Sobol') index of y by x from existing data; y may depend on other numbers. The index is
+/// the variance of class means over equally large classes of x, statistics.md (S18), minus the expected value of this
+/// variance without dependence, (S19). Source: Plischke, Borgonovo, Smith, EJOR 226:536, 2013. If x takes few values,
+/// each value is a class. If y contains ranks, the p-value, (S20), is that of the Kruskal-Wallis test.
 ///
-/// y must be finite; pairs with NaN are ignored. Needs at least 24 pairs. Throws BadInput if the lengths differ.
+/// y must be finite; pairs with NaN are ignored. The estimate needs at least 24 pairs. Throws BadInput if the lengths
+/// differ.
 FirstOrder first_order_index(std::span<const double> x, std::span<const double> y);
 
-/// Statistic of a class with its 95 % interval: mean (Student, finite values), median (order statistics, infinite
-/// values are ranked normally), or share of ones (Clopper and Pearson).
+/// Statistic of a class with its 95 % interval: mean (Student, finite values), median (order statistics, which also
+/// rank infinite values), or fraction of ones (Clopper and Pearson).
 enum class Centre { mean, median, share };
 
-/// The draws with x from `low` to `high`, both included.
+/// The simulated runs with x from `low` to `high`, both included.
 struct DependenceClass {
   double low = 0.0, high = 0.0;
   std::size_t draws = 0;
@@ -51,12 +53,13 @@ struct DependenceClass {
 
 inline constexpr std::size_t kDependenceClassesMax = 8, kDependenceDrawsMin = 12;
 
-/// Returns the partial dependence of y on x from given data, statistics.md (S22), (S23), for draws with independent
-/// numbers. Uses at most `kDependenceClassesMax` equally large classes of x, with at least `kDependenceDrawsMin` draws
-/// each. Equal x are never separated; if x takes few values, each is a class.
+/// Returns the partial dependence of y on x from existing data, statistics.md (S22), (S23), for simulated runs with
+/// independent random numbers. Uses at most `kDependenceClassesMax` equally large classes of x, with at least
+/// `kDependenceDrawsMin` simulated runs each. Equal values of x are in one class; if x takes few values, each value is
+/// a class.
 ///
-/// Ignores pairs with NaN; empty below `kDependenceDrawsMin` pairs. Throws BadInput if the lengths differ, or if a
-/// share has values other than 0 and 1.
+/// Ignores pairs with NaN; returns an empty list below `kDependenceDrawsMin` pairs. Throws BadInput if the lengths
+/// differ, or if Centre::share is requested for values other than 0 and 1.
 std::vector<DependenceClass> partial_dependence(std::span<const double> x, std::span<const double> y, Centre centre);
 
 }  // namespace tumble::scenarios

@@ -16,7 +16,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Ranks of the non-zero differences by size. Twice the mean rank of a tie is an integer.
+/// Ranks of the non-zero differences by absolute value. Ranks are doubled, because twice the mean rank of equal values
+/// is an integer.
 struct SignedRanks {
   std::vector<std::size_t> doubled;
   std::size_t total = 0, positive = 0;  ///< sums of the doubled ranks

@@ -28,12 +28,12 @@ double normal_quantile(double share) {
   return quantile(boost::math::normal(), share);
 }
 
-/// Returns the smallest number of differences that can reach the risk: 2 / 2^n <= risk, with equal signs.
+/// Returns the smallest number of differences that can reach the risk with equal signs: 2 / 2^n <= risk.
 double fewest(double risk) {
   return std::ceil(1.0 - std::log2(risk));
 }
 
-/// Returns the share of pairs of differences with a positive sum, counting zero sums half: statistics.md (S10).
+/// Returns the fraction of pairs of differences with a positive sum, where zero sums count half: statistics.md (S10).
 double positive_sums(std::vector<double> differences) {
   std::sort(differences.begin(), differences.end());
   double count = 0.0;

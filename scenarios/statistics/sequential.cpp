@@ -41,7 +41,7 @@ SequentialSignTest::Verdict SequentialSignTest::look(double share, std::int64_t 
   return verdict_;
 }
 
-/// statistics.md (S14): each pair adds one positive sign or none.
+/// statistics.md (S14): each pair adds one positive sign or no sign.
 void SequentialSignTest::toss(std::int64_t pairs) {
   for (std::int64_t k = 0; k < pairs; ++k) {
     going_on_.push_back(0.0);
@@ -54,7 +54,7 @@ void SequentialSignTest::toss(std::int64_t pairs) {
 /// statistics.md (S15). The distribution is symmetric, so both sides stop equally.
 void SequentialSignTest::stop_beyond(double allowed) {
   std::size_t stopped = 0;
-  // never stop both sides of one number
+  // never stop both sides at one number
   while (2 * stopped + 1 < going_on_.size()) {
     const double more = going_on_[going_on_.size() - 1 - stopped];
     if (spent_a_side_ + more > allowed) break;

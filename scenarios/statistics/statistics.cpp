@@ -25,7 +25,7 @@ std::vector<double> numbers_of(std::span<const double> values) {
   return numbers;
 }
 
-/// Position of a quantile in a sorted sample: between two neighbours, or at one.
+/// Position of a quantile in a sorted sample: between two neighbouring values, or at one value.
 struct RankPlace {
   RankPlace(double share, std::size_t count) {
     const double place = share * static_cast<double>(count - 1);
@@ -34,7 +34,7 @@ struct RankPlace {
     part = place - static_cast<double>(below);
   }
   double between(double low, double high) const {
-    // Infinities are not interpolated: a position above minus infinity, or exactly at a value, returns that value.
+    // Infinities are not interpolated: a position above minus infinity, or exactly at a value, returns the value.
     return part == 0.0 || std::isinf(low) ? low : low + part * (high - low);
   }
   std::size_t below, above;
@@ -48,7 +48,7 @@ double quantile(std::span<const double> values, double share) {
     throw BadInput(fmt::format("quantile: share is {}, must be within [0, 1]", std::to_string(share)));
   std::vector<double> numbers = numbers_of(values);
   if (numbers.empty()) return kNaN;
-  // Two ranks are sufficient, and reports compute quantiles of millions of values: avoid a full sort.
+  // Two ranks are sufficient; a full sort is avoided, because reports compute quantiles of millions of values.
   const RankPlace place(share, numbers.size());
   const auto below = numbers.begin() + static_cast<std::ptrdiff_t>(place.below);
   std::nth_element(numbers.begin(), below, numbers.end());
@@ -70,14 +70,15 @@ bool quantile_of(std::span<const double> values, double share, double& value) {
 
 namespace {
 
-/// Returns the largest rank r (from 1) with P(fewer than r of n are below the median) <= kTail; 0: none.
+/// Returns the largest rank r (from 1) with P(fewer than r of n values are below the median) <= kTail; 0 if there is no
+/// such rank.
 std::size_t tail_rank(std::size_t values) {
   const auto n = static_cast<double>(values);
   const auto exponent = [&](std::size_t k) {
     const auto count = static_cast<double>(k);
     return std::lgamma(n + 1) - std::lgamma(count + 1) - std::lgamma(n - count + 1) - n * std::log(2.0);
   };
-  // Terms increase up to n / 2. For large n most of them underflow to 0 and can be skipped.
+  // The terms increase up to n / 2. For large n, most of the terms underflow to 0 and can be skipped.
   constexpr double kNothing = -750.0;
   std::size_t first = 0;
   for (std::size_t above = values / 2; first < above;) {
@@ -103,7 +104,7 @@ Interval median_interval(std::span<const double> values) {
   std::vector<double> numbers = numbers_of(values);
   Interval interval{kNaN, -kInfinity, kInfinity};
   if (numbers.empty()) return interval;
-  // four ranks are sufficient, as above
+  // four ranks are sufficient, so a full sort is avoided
   const RankPlace middle(0.5, numbers.size());
   const auto begin = numbers.begin(), below = begin + static_cast<std::ptrdiff_t>(middle.below);
   std::nth_element(begin, below, numbers.end());

@@ -21,7 +21,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Values of the two methods on one draw.
+/// Values of the two methods on one simulated run.
 struct ValuePair {
   double own, other;
 };
@@ -41,7 +41,8 @@ void require_sound(const Summary& summary, const ComparisonOptions& options) {
   require_held(summary, methods, options.metrics);
 }
 
-/// Returns the draws on which both methods have a value or failed. Without a worst value, failed runs are omitted.
+/// Returns the simulated runs on which both methods have a value or failed. If there is no worst value, failed runs are
+/// omitted.
 std::vector<ValuePair> pairs_of(const MetricSummary& own, const MetricSummary& other, double worst) {
   const std::vector<RankedValue> first = ranked_values(own, worst), second = ranked_values(other, worst);
   std::vector<ValuePair> pairs;
@@ -53,7 +54,7 @@ std::vector<ValuePair> pairs_of(const MetricSummary& own, const MetricSummary& o
   return pairs;
 }
 
-/// Returns the difference; 0 if both failed.
+/// Returns the difference of two values, or 0 if both runs failed.
 double less(double own, double other) {
   return own == other ? 0.0 : own - other;
 }
@@ -130,13 +131,14 @@ class Comparing {
       for (double& each : relieved) each = -each;
       row.not_inferior_chance = signed_rank_chance(relieved);
     }
-    // the side of the rank sum, as in the test
+    // side of the rank sum, as in the test
     tends_.push_back(!contested ? 0.0 : signed_rank_chance(worse_by) < 0.5 ? 1.0 : -1.0);
     differences_.push_back(std::move(contested ? worse_by : raw));
     out_.metrics.push_back(std::move(row));
   }
 
-  /// Compares failures on the draws of both methods. `seeds` are all, `failed` the failed ones, both ascending.
+  /// Compares failures on the simulated runs of both methods. `seeds` contains all seeds, `failed` the seeds of failed
+  /// runs, both ascending.
   void add_failures(const Contest& contest, const std::string& what, const std::vector<std::uint64_t>& seeds,
                     const std::vector<std::uint64_t>& failed, const std::vector<std::uint64_t>& other_seeds,
                     const std::vector<std::uint64_t>& other_failed) {
@@ -182,7 +184,8 @@ class Comparing {
     return found->second;
   }
 
-  /// Plan of one test in a table, with the risk divided by the number of tests (Holm's bound for the smallest p-value).
+  /// Returns the plan of one test in a table, with the risk divided by the number of tests (Holm's bound for the
+  /// smallest p-value).
   Plan plan(std::size_t tests) const {
     return {options_.risk / static_cast<double>(std::max<std::size_t>(tests, 1)), options_.power};
   }

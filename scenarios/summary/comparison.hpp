@@ -9,17 +9,18 @@
 #include "scenarios/statistics/statistics.hpp"
 #include "scenarios/summary/summary.hpp"
 
-/// Compares two methods on the same draws: size and significance of the difference (docs/maths/statistics.md).
+/// Compares two methods on the same simulated runs: size and significance of the difference (docs/maths/statistics.md).
 namespace tumble::scenarios {
 
-/// Non-inferiority margin, in the metric's unit or as a share of the other method's value on the same draw.
+/// Non-inferiority margin, in the metric's unit or as a fraction of the other method's value on the same simulated run.
 struct Margin {
   double value = 0.0;
   bool relative = false;
 };
 
-/// Returns how much worse `own` is than `other` on a draw, minus the margin; negative if not worse. A negative margin
-/// requires an improvement. Infinite if one method failed, 0 if both did.
+/// Returns how much worse `own` is than `other` on a simulated run, minus the margin; the result is negative if `own`
+/// is not worse by more than the margin. A negative margin requires an improvement. The result is infinite if only
+/// `own` belongs to a failed run, and 0 if both runs failed.
 double worse_by(const MetricInfo& info, double own, double other, const Margin& allowed);
 
 struct ComparisonOptions {
@@ -34,27 +35,27 @@ struct ComparisonOptions {
 enum class Finding { undecided, better, worse };
 const char* to_string(Finding finding);
 
-/// The two compared methods.
+/// The two methods to compare.
 struct Contest {
   std::string scenario;
   Kind kind = Kind::rate;
   std::string method, against;
 };
 
-/// Returns true if both compare within the same section with the same reference method.
+/// Returns true if both contests compare within one section with one reference method.
 inline bool one_section(const Contest& a, const Contest& b) {
   return a.scenario == b.scenario && a.kind == b.kind && a.against == b.against;
 }
 
-/// One metric over the draws on which both methods have a value. Failed runs get the worst value (`worst_value`); if
-/// both failed or are equal, neither is better.
+/// Comparison of one metric over the simulated runs on which both methods have a value. Failed runs get the worst value
+/// (`worst_value`); if both runs failed or are equal, neither method is better.
 struct MetricComparison {
   Contest contest;
   std::string metric;
   std::int64_t pairs = 0, better = 0, worse = 0;
   double median = 0.0, against_median = 0.0;
-  /// Median of the paired differences, method minus reference, with its BCa interval. For a metric with a target:
-  /// differences of the distances from it (`how_bad`).
+  /// Median of the paired differences, method minus reference, with its BCa interval. For a metric with a target,
+  /// differences are those of the distances from the target (`how_bad`).
   Interval difference{};
   double sign_chance = 1.0, rank_chance = 1.0;  ///< two-sided p-values
   double corrected = 1.0;                       ///< `rank_chance` corrected by Holm over all metrics of the comparison
@@ -68,7 +69,8 @@ struct MetricComparison {
                               ///< impossible
 };
 
-/// Draws on which a run is not ok or a verdict fails. A failed run counts as a failed verdict.
+/// Comparison of failures: simulated runs on which the status is not ok or a verdict fails. A failed run counts as a
+/// failed verdict.
 struct FailureComparison {
   Contest contest;
   std::string what;  ///< "not ok", "map_failed"
@@ -84,9 +86,9 @@ struct Comparison {
   std::vector<FailureComparison> failures;
 };
 
-/// Compares in the order of the summary's sections. Costs and other unranked metrics are compared only if named,
-/// without a finding. Throws BadInput for methods or metrics that the results lack (suggests the nearest), and for
-/// risk, power or margin out of bounds.
+/// Compares the methods in the order of the summary's sections. Costs and other unranked metrics are compared only if
+/// the caller names them, and give no finding. Throws BadInput for methods or metrics that the results lack (suggests
+/// the nearest name), and for a risk, power or margin out of range.
 Comparison compare(const Summary& summary, const ComparisonOptions& options);
 
 }  // namespace tumble::scenarios

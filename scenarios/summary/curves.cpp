@@ -21,11 +21,11 @@ namespace {
 
 constexpr std::size_t kDrawsPerBin = 8;
 constexpr std::size_t kBinsMax = 6, kBinsMin = 3;
-/// Measures for binning whole draws (scenarios/sweep/motion_values.hpp).
+/// Measures by which whole simulated runs are binned (scenarios/sweep/motion_values.hpp).
 constexpr std::array kDrawMeasures = {"motion_clipped_share", "motion_clip_depth_max_rad_s",
                                       "motion_clip_length_max_s"};
 
-/// One outcome: scores for curves, and whether it failed.
+/// One outcome with its scores for curves, and whether the run failed.
 struct Run {
   std::uint64_t seed = 0;
   bool ok = false, failed = false;
@@ -35,7 +35,7 @@ struct Run {
     std::size_t place = 0;
     return find(metric, place);
   }
-  /// Finds a score; tries index `place` first, which other runs of the method used, and updates it.
+  /// Finds a score; tries index `place` first, which other runs of the method used, and updates `place`.
   const double* find(const std::string* metric, std::size_t& place) const {
     if (place < scores.size() && scores[place].metric == metric) return &scores[place].value;
     const auto found = std::find_if(scores.begin(), scores.end(), [&](const auto& s) { return s.metric == metric; });
@@ -48,7 +48,7 @@ struct Run {
 /// Runs of one kind and scenario at one setting, by method, sorted by seed.
 using Runs = std::map<std::string, std::vector<Run>, std::less<>>;
 using RunsBySetting = std::map<std::tuple<std::string, std::string, Kind>, std::map<double, Runs>>;
-/// A selection of runs.
+/// A selection of runs, by method.
 using PickedRuns = std::map<std::string, std::vector<const Run*>>;
 
 /// Cached properties of a metric.
@@ -110,7 +110,8 @@ PickedRuns all_of(const Runs& runs) {
   return all;
 }
 
-/// Returns true if any method has a value of the metric on that draw. Otherwise failures are ignored.
+/// Returns true if any method has a value of the metric on that simulated run. If no method has a value, failures on
+/// the run are ignored.
 bool is_scored(const PickedRuns& runs, const std::string* metric, std::uint64_t seed) {
   return std::any_of(runs.begin(), runs.end(), [&](const auto& entry) {
     const auto& own = entry.second;
@@ -120,7 +121,7 @@ bool is_scored(const PickedRuns& runs, const std::string* metric, std::uint64_t 
   });
 }
 
-/// Returns false if no draw has a value of the metric.
+/// Returns false if no run has a value of the metric.
 bool point_of(const std::vector<const Run*>& own, const PickedRuns& runs, const std::string* metric,
               CurvePoint& point) {
   const MetricInfo& info = metric_info(*metric);
@@ -163,7 +164,7 @@ void keep(Curve curve, std::vector<Curve>& all) {
   if (!curve.lines.empty()) all.push_back(std::move(curve));
 }
 
-/// Returns the reader's name; adds it if no score has it.
+/// Returns the name as stored by the reader; adds the name if no score has it.
 const std::string* name_of(const std::string& metric, Names& names) {
   return &*names.insert(metric).first;
 }
@@ -191,7 +192,7 @@ std::string bin_label(const BinnedMetric& bin, double factor) {
   return fmt::format("{:g} – {:g}", bin.low * factor, bin.high * factor);
 }
 
-/// Bins by axis and base metric, ascending, each with its full metric name.
+/// Bins by axis and metric, ascending, each with its full metric name.
 using Bins =
     std::map<std::pair<std::string, std::string>, std::map<double, std::pair<BinnedMetric, const std::string*>>>;
 
@@ -228,7 +229,8 @@ void add_sample_curves(const RunsBySetting& plain, std::vector<Curve>& all) {
   }
 }
 
-/// Sorts draws into bins of equal counts by a measure: (median measure, ascending seeds).
+/// Sorts simulated runs into bins of equal counts by a measure; each bin has the median of the measure and ascending
+/// seeds.
 std::vector<std::pair<double, std::vector<std::uint64_t>>> bins_of_draws(std::span<const DrawValues> draws,
                                                                          const std::string& scenario,
                                                                          const std::string& measure) {
@@ -236,7 +238,7 @@ std::vector<std::pair<double, std::vector<std::uint64_t>>> bins_of_draws(std::sp
   for (const DrawValues& draw : draws) {
     if (draw.scenario != scenario) continue;
     for (const Score& score : draw.values) {
-      // draws without clipping have no position on a clipping axis
+      // runs without clipping have no position on a clipping axis
       if (score.metric == measure && score.value > 0.0) ranked.emplace_back(score.value, draw.seed);
     }
   }

@@ -10,11 +10,11 @@
 #include "scenarios/summary/summary.hpp"
 #include "scenarios/sweep/results.hpp"
 
-/// Curves of a metric over a varied number or a measure of the draws.
+/// Computes curves of a metric over a varied number or a measure of the simulated runs.
 namespace tumble::scenarios {
 
-/// One method at one x of a curve, over its draws. Failed outcomes rank worst, so quantiles may be infinite; NaN if no
-/// draw has a value.
+/// One method at one x value of a curve, summarised over the simulated runs. Failed outcomes rank worst, so quantiles
+/// may be infinite; quantiles are NaN if no run has a value.
 struct CurvePoint {
   double x = 0.0;
   std::string label;  ///< label of a bin: "0.5 – 1"; empty for a set number
@@ -30,7 +30,7 @@ struct CurveLine {
 };
 
 struct Curve {
-  /// Meaning of x: a number set by the suite, a measure of binned samples, or a measure of whole draws.
+  /// Meaning of x: a number that the suite varies, a measure of binned samples, or a measure of whole simulated runs.
   enum class Source { set, samples, draws };
   Source source = Source::set;
   std::string axis;  ///< varied key or name of the measure; ends in its unit
@@ -40,11 +40,13 @@ struct Curve {
   std::vector<CurveLine> lines;  ///< in the order of the registry
 };
 
-/// Returns every curve in the results. These are: each varied number per scenario and headline metric; each measure
-/// with binned metrics (scenarios/scoring/binned_metric.hpp); and each clipping measure of the draws, in bins of equal
-/// counts, with at least three bins. A run failed if it did not end `ok` or its map failed. O(number of scores * log).
+/// Returns every curve in the results. There is a curve for each varied number per scenario and headline metric, for
+/// each measure with binned metrics (scenarios/scoring/binned_metric.hpp), and for each clipping measure of the
+/// simulated runs, in at least three bins of equal counts. A run counts as failed if its status is not `ok` or its map
+/// failed. O(number of scores * log).
 std::vector<Curve> find_curves(const Results& results);
-/// The same with the results' draws supplied. Also computes `summary` in the same pass over the results.
+/// Returns every curve, with the properties of the simulated runs supplied by the caller. Also computes `summary` in a
+/// single pass over the results.
 std::vector<Curve> find_curves(const Results& results, std::span<const DrawValues> draws, Summary& summary);
 
 }  // namespace tumble::scenarios

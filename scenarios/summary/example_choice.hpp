@@ -9,7 +9,7 @@
 
 #include "scenarios/summary/summary.hpp"
 
-/// Chooses the draws of a sweep to show as examples, from the results only.
+/// Chooses which simulated runs of a sweep to show as examples, from the results only.
 namespace tumble::scenarios {
 
 /// A scenario of the sweep, in the suite's order.
@@ -24,32 +24,33 @@ struct ExampleDraw {
   auto operator<=>(const ExampleDraw&) const = default;
 };
 
-/// Finds the draw with the median headline score of the baseline in its scenario. Uses the first kind except attitude,
-/// and its first headline metric with a value. Returns false if there is no such score.
+/// Finds the simulated run with the median headline score of the baseline in its scenario. Uses the first kind of
+/// method except attitude, and the first headline metric with a value. Returns false if there is no headline score.
 bool typical_seed(const Summary& summary, const std::string& scenario, std::uint64_t& seed);
 
-/// Returns at most `count` typical draws, in the order of the candidates: the first scenario of each robot, then each
-/// second, and so on.
+/// Returns at most `count` typical simulated runs, in the order of the candidates: the first scenario of each robot,
+/// then the second scenario of each robot, and so on.
 std::vector<ExampleDraw> choose_examples(const Summary& summary, std::span<const ExampleCandidate> candidates,
                                          std::size_t count);
 
-/// A draw on which methods failed.
+/// A simulated run on which methods failed.
 struct FailedOn {
   ExampleDraw draw;
   std::size_t methods = 0;  ///< failed methods that need no truth
 };
 
-/// Returns every draw with a failed method: most failures first, then by scenario and seed.
+/// Returns every simulated run with a failed method, sorted by number of failures (descending), scenario and seed.
 std::vector<FailedOn> rank_failures(const Summary& summary);
 
-/// Returns the first `count` of these draws in the candidates' scenarios. Omits draws on which only oracles failed.
+/// Returns the first `count` failed runs among the scenarios of the candidates. Runs on which only oracles failed are
+/// omitted.
 std::vector<ExampleDraw> choose_failures(const Summary& summary, std::span<const ExampleCandidate> candidates,
                                          std::size_t count);
 
-/// Returns the scored rows of a draw, without points of curves.
+/// Returns the scored rows of a simulated run, without points of curves.
 std::vector<Outcome> rows_to_show(const Results& results, const ExampleDraw& draw);
 
-/// Returns a digest of these rows and their build. An example with another digest belongs to other results.
+/// Returns a digest of the shown rows and their build. An example with another digest belongs to other results.
 std::string digest_of_rows(const Results& results, const ExampleDraw& draw);
 
 }  // namespace tumble::scenarios

@@ -9,10 +9,10 @@
 #include "scenarios/statistics/statistics.hpp"
 #include "scenarios/sweep/suite_triage.hpp"
 
-/// Which true input improves a method most, over many draws (docs/maths/statistics.md).
+/// Finds which true input improves a method most, over many simulated runs (docs/maths/statistics.md).
 namespace tumble::scenarios {
 
-/// One input replaced by its truth, over the draws where this changed anything.
+/// Effect of replacing one input by its truth, over the simulated runs where the replacement changed the input.
 struct InputWorth {
   std::string scenario;  ///< empty: all scenarios together
   std::string input, doc;
@@ -22,15 +22,15 @@ struct InputWorth {
   std::int64_t broken = 0;             ///< failures only with the true input
   Interval cured_share{};              ///< share of `failed` (Clopper and Pearson, 95 %); NaN without any
   std::int64_t better = 0, worse = 0;  ///< draws, by the metric
-  /// Median decrease of the metric's badness (`how_bad`) with its BCa interval. Runs that are not ok rank worst. NaN if
-  /// no draw has the metric.
+  /// Median decrease of the metric's badness (`how_bad`) with its BCa interval. Runs that are not ok rank worst. The
+  /// interval is NaN if no run has the metric.
   Interval improvement{};
   double chance = 1.0;     ///< p-value of the two-sided signed-rank test
   double corrected = 1.0;  ///< corrected by Holm, over all rows
 };
 
-/// Evaluates each scenario, and all together if there are several. Sorted by the share of removed failures, then by
-/// p-value. Draws without rows are omitted.
+/// Evaluates each scenario, and all scenarios together if there are several. Sorted by the fraction of removed
+/// failures, then by p-value. Simulated runs without triage rows are omitted.
 std::vector<InputWorth> worth_of_inputs(std::span<const DrawTriage> draws, const std::string& metric);
 
 }  // namespace tumble::scenarios

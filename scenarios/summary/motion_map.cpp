@@ -11,7 +11,7 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr std::size_t kCells = MotionMap::kCells;
-/// Margin of the grid around the draws, in decades.
+/// Margin of the grid around the simulated runs, in decades.
 constexpr double kMargin = 0.25;
 
 struct Decades {
@@ -46,7 +46,7 @@ GridAxis axis_over(const std::vector<Decades>& points, double Decades::*member) 
   return axis;
 }
 
-/// Returns the distribution of a cell's draws over its row; the part beyond the ends is redistributed.
+/// Returns the distribution of a cell's runs over its grid row; the part beyond the ends is redistributed.
 std::vector<double> kernel(std::size_t from, double width) {
   std::vector<double> weights(kCells);
   double sum = 0.0;
@@ -77,7 +77,7 @@ std::vector<double> smoothed(const std::vector<double>& counts, const GridAxis& 
   return out;
 }
 
-/// Keeps every n-th point, so that at most `kPointsMax` remain.
+/// Keeps every n-th point, so that at most `kPointsMax` points remain.
 std::vector<MotionPoint> thinned(const std::vector<MotionPoint>& points) {
   const std::size_t stride = (points.size() + MotionMap::kPointsMax - 1) / MotionMap::kPointsMax;
   std::vector<MotionPoint> out;
@@ -85,8 +85,8 @@ std::vector<MotionPoint> thinned(const std::vector<MotionPoint>& points) {
   return out;
 }
 
-/// Deschênes and others: the first publication reports rates and forces. The second, by its abstract, reports forces;
-/// its other number is an angular acceleration.
+/// The two publications of the rig are by Deschênes and others; the earlier publication reports rates and forces. The
+/// later publication reports forces in its abstract; the other reported number is an angular acceleration.
 std::vector<PublishedExtreme> published() {
   return {{"rig down a hill, 32 tumbles", "Deschênes and others, ICRA 2024: 18.6 rad/s, 157.8 m/s² (a device of 16 g)",
            18.6, 157.8},

@@ -8,15 +8,15 @@
 
 #include "scenarios/sweep/outcome.hpp"
 
-/// Distribution of a sweep's draws over maximum rate and maximum specific force.
+/// Distribution of a sweep's simulated runs over maximum rate and maximum specific force.
 namespace tumble::scenarios {
 
-/// One draw, from the truth: maximum rate of the body, and maximum unclipped specific force of its primary IMU.
+/// Maximum true rate of the body, and maximum unclipped specific force of the primary IMU, in one simulated run.
 struct MotionPoint {
   double rate_rad_s = 0.0, force_m_s2 = 0.0;
 };
 
-/// The draws of one scenario.
+/// The simulated runs of one scenario.
 struct MotionCloud {
   std::string scenario;
   std::size_t draws = 0;            ///< draws with both numbers above 0
@@ -29,7 +29,7 @@ struct PublishedExtreme {
   double rate_rad_s, force_m_s2;
 };
 
-/// Share of all draws over a grid with logarithmic axes: a kernel density estimate.
+/// Density of all simulated runs over a grid with logarithmic axes, as a kernel density estimate.
 struct MotionMap {
   static constexpr std::size_t kCells = 48;  ///< per axis
   static constexpr std::size_t kPointsMax = 500;
@@ -40,9 +40,9 @@ struct MotionMap {
   std::vector<PublishedExtreme> extremes;  ///< published values for the plot
 };
 
-/// Counts draws in cells, then smooths along both axes by a Gaussian of Scott's width in logarithms (Multivariate
-/// Density Estimation, 1992, section 6.3: sigma n^(-1/6)), at least half a cell. The part of a kernel beyond the grid
-/// is redistributed. The two maxima of a draw need not occur at the same time. O(draws + cells^(3/2)).
+/// Counts simulated runs in cells, then smooths along both axes by a Gaussian of Scott's width in logarithms
+/// (Multivariate Density Estimation, 1992, section 6.3: sigma n^(-1/6)), at least half a cell. The part of a kernel
+/// beyond the grid is redistributed. The two maxima of a run need not occur at the same time. O(draws + cells^(3/2)).
 MotionMap motion_map(std::span<const DrawValues> draws);
 
 }  // namespace tumble::scenarios

@@ -14,12 +14,12 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Which distribution a quantity shows: values of the draws, the share of draws that have it, or all clipped samples
+/// Distribution that a quantity shows: values of the runs, the fraction of runs with a property, or all clipped samples
 /// pooled.
 enum class Over { draws, share_of_draws, clipped_samples };
 
-/// A quantity with published values: the campaign of the tumbling rig (32 tumbles down a hill, ICRA 2024) and the
-/// project's target. The plot shades `low` to `high`; equal values give a line.
+/// A quantity with published values: those of the campaign of the tumbling rig (32 tumbles down a hill, ICRA 2024) and
+/// the project's target. The plot shades `low` to `high`; equal values give a line.
 struct Quantity {
   const char* metric;
   const char* name;
@@ -47,8 +47,9 @@ constexpr std::array kQuantities = {
              Over::share_of_draws},
 };
 
-/// Returns the mean weighted by each draw's clipped samples, with its 95 % interval: the ratio estimator of a cluster
-/// sample (Cochran, Sampling Techniques, 1977, section 9A.2), because samples within a draw are correlated.
+/// Returns the mean weighted by the number of clipped samples in each run, with its 95 % interval. The method is the
+/// ratio estimator of a cluster sample (Cochran, Sampling Techniques, 1977, section 9A.2), because samples within a run
+/// are correlated.
 Interval pooled(std::span<const DrawValues* const> draws, const std::string& metric) {
   std::vector<std::pair<double, double>> weighted;  // number of samples, share of them
   double samples = 0.0, hits = 0.0, square = 0.0;

@@ -11,14 +11,14 @@
 /// Compares simulated motions with the published campaign of the tumbling rig.
 namespace tumble::scenarios {
 
-/// One quantity of one scenario over its draws; draws without a value are omitted.
+/// One quantity of one scenario over its simulated runs; runs without a value are omitted.
 struct Spread {
   std::string scenario;
   std::string metric;    ///< "motion_peak_rate_rad_s"
   std::string quantity;  ///< "largest rate"
   std::string unit;
   std::string published;  ///< text about the published value; empty if none
-  /// Published range in `unit`; equal: one number; NaN: none.
+  /// Published range in `unit`; equal limits mean one number, NaN means no published value.
   double published_low = std::numeric_limits<double>::quiet_NaN();
   double published_high = std::numeric_limits<double>::quiet_NaN();
   double factor = 1.0;         ///< from SI to `unit`
@@ -31,9 +31,10 @@ struct Spread {
 inline constexpr const char* kPublishedMotion =
     "the published campaign of the rig (32 tumbles down a hill) and the target of the scenario hill";
 
-/// Returns one spread per quantity and scenario, scenarios in the order of the draws. For a share of draws ("draws that
-/// clip the gyro") values are 0 or 1. The median is then the share, and the quantiles are its 95 % interval. The same
-/// holds for a share of all clipped samples, weighted by each draw's number of them.
+/// Returns one spread per quantity and scenario, with scenarios in the order of the simulated runs. For a fraction of
+/// runs ("draws that clip the gyro"), the value of each run is 0 or 1. The median is then the fraction of runs, and the
+/// quantiles are the limits of its 95 % interval. A fraction of all clipped samples is computed alike, with each run
+/// weighted by its number of clipped samples.
 std::vector<Spread> motion_spreads(std::span<const DrawValues> draws);
 
 }  // namespace tumble::scenarios

@@ -9,16 +9,16 @@
 #include "scenarios/summary/comparison.hpp"
 #include "scenarios/sweep/results.hpp"
 
-/// Early stopping of a sweep: tests whether one method is better than another while draws complete
+/// Stops a sweep early: tests whether one method is better than another while simulated runs complete
 /// (docs/maths/statistics.md, "Stopping when the question is answered").
 namespace tumble::scenarios {
 
-/// Key of the note with the question, written by `describe`.
+/// Key of the note that stores the question, as `describe` writes it.
 inline constexpr const char* kQuestionNote = "until";
 
 /// Asks whether `method` is better than `against` in `metric` by more than the margin.
 struct Question {
-  std::string method, against;  ///< "rate/tumble"; both of one kind
+  std::string method, against;  ///< "rate/tumble"; both methods are of one kind
   std::string metric;
   Margin margin;       ///< 0: any improvement
   double risk = 0.05;  ///< probability of a wrong answer over all scenarios and looks
@@ -26,7 +26,7 @@ struct Question {
   std::uint64_t first_seed = 1, last_seed = 1;
   std::vector<std::string> scenarios;
 
-  /// Returns the seeds after which to look, ascending; the last is the sweep's last seed.
+  /// Returns the seeds after which the results are analysed, ascending; the last seed is that of the sweep.
   std::vector<std::uint64_t> look_seeds() const;
   /// Returns the question as one line; equal questions give equal lines.
   std::string describe() const;
@@ -42,19 +42,20 @@ struct Answer {
   std::int64_t needed = 0;               ///< pairs of one sign that were needed for an answer
 };
 
-/// Throws BadInput: equal methods, methods of two kinds or without a full name, an unranked metric, margin or risk out
-/// of bounds, or no look.
+/// Throws BadInput for equal methods, methods of two kinds or without a full name, an unranked metric, a margin or risk
+/// out of range, or no analysis.
 void require_sound(const Question& question);
 
-/// Stores the question in the results. Throws BadInput if they contain another question or any draws, because the risk
-/// is valid only for a question asked in advance.
+/// Stores the question in the results. Throws BadInput if the results contain another question or any simulated runs,
+/// because the risk is valid only for a question asked in advance.
 void claim(Results& results, const Question& question, const std::filesystem::path& database);
 
-/// Returns the answers of the looks until `last_seed`, up to which all draws must be complete. Depends on these results
-/// only. In the order of the question's scenarios; failed runs rank worst.
+/// Returns the answers of the analyses until `last_seed`; all simulated runs up to `last_seed` must be complete. The
+/// answers depend only on the results up to `last_seed`. The answers are in the order of the question's scenarios;
+/// failed runs rank worst.
 std::vector<Answer> answers(const Results& results, const Question& question, std::uint64_t last_seed);
 
-/// Returns the finding in words: "not by the margin" if the method is not better by more than the margin.
+/// Returns the finding in words, for example "not by the margin" if the method is not better by more than the margin.
 const char* finding_text(const Answer& answer, const Question& question);
 
 bool all_answered(const std::vector<Answer>& answers);

@@ -7,20 +7,22 @@
 
 #include "scenarios/summary/summary.hpp"
 
-/// Selects methods, metrics and draws of a summary.
+/// Selects methods, metrics and simulated runs of a summary.
 namespace tumble::scenarios {
 
-/// "tumble" names the method of every kind, "rate/tumble" that of one.
+/// Returns true if `name` names the method: "tumble" names the method of every kind, "rate/tumble" the method of one
+/// kind.
 bool is_named(const std::string& name, Kind kind, const std::string& method);
 
-/// Returns true if any name matches the method; without names, if it needs no truth.
+/// Returns true if any of `names` matches the method; if `names` is empty, returns true for a method that does not need
+/// the truth.
 bool is_selected(std::span<const std::string> names, Kind kind, const MethodSummary& method);
 
 /// Throws BadInput for a method or metric that the summary lacks; suggests the nearest name.
 void require_held(const Summary& summary, std::span<const std::string> methods, std::span<const std::string> metrics);
 
-/// Returns the summary with the values and failures of at most `most` draws per scenario, evenly spaced in seed order.
-/// Medians, intervals and counts still refer to all draws.
+/// Returns the summary with the values and failures of at most `most` simulated runs per scenario, evenly spaced in
+/// seed order. Medians, intervals and counts still refer to all simulated runs.
 Summary at_most_draws(const Summary& summary, std::size_t most);
 
 }  // namespace tumble::scenarios

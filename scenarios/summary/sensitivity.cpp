@@ -12,7 +12,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Scores of a row's draws, as values and as badness.
+/// Scores of the simulated runs in a table row, as values and as badness.
 struct Scored {
   std::vector<std::uint64_t> seeds;
   std::vector<double> values, badness;
@@ -26,7 +26,7 @@ Scored scored(const MetricSummary& metric, const MetricInfo& info) {
     out.seeds.push_back(each.seed);
     // for a verdict, a failed run counts as a failed verdict
     out.values.push_back(info.unit == Unit::verdict && each.value != 0.0 ? 1.0 : each.value);
-    // for verdicts and costs, larger counts as worse
+    // for verdicts and costs, larger values count as worse
     const bool contested = info.sense != Sense::none;
     out.badness.push_back(contested ? how_bad(info, each.value) : each.value);
   }
@@ -55,7 +55,7 @@ void add_quarters(const std::vector<double>& numbers, const std::vector<double>&
   out.median_high = quantile(highest, 0.5);
 }
 
-/// Returns the numbers at these seeds; NaN if missing.
+/// Returns the numbers at these seeds, with NaN for missing seeds.
 std::vector<double> at_seeds(const std::vector<RankedValue>& numbers, const std::vector<std::uint64_t>& seeds) {
   std::vector<double> column;
   column.reserve(seeds.size());

@@ -13,18 +13,19 @@
 #include "scenarios/summary/summary.hpp"
 #include "scenarios/sweep/outcome.hpp"
 
-/// Sensitivity of a method's scores to each random number of its draws (docs/maths/statistics.md).
+/// Computes how a method's scores depend on each random number of its simulated runs (docs/maths/statistics.md).
 namespace tumble::scenarios {
 
 /// An influence with a larger corrected p-value is not significant.
 inline constexpr double kInfluenceRisk = 0.05;
 
-/// Numbers of a scenario's draws by name, sorted by seed.
+/// Random numbers of a scenario's simulated runs by name, each list sorted by seed.
 using NumbersOfDraws = std::map<std::string, std::vector<RankedValue>>;
 
 /// Returns the scenario's random numbers for the summary's seeds.
 NumbersOfDraws numbers_of_draws(const Summary& summary, const Scenario& scenario);
-/// Returns the motion values of one scenario. These are effects like the scores, possibly of the same causes.
+/// Returns the motion values of the simulated runs of one scenario. Motion values are effects like the scores, and may
+/// have the same causes.
 NumbersOfDraws numbers_of_motion(std::span<const DrawValues> draws, const std::string& scenario);
 
 /// Influence of one number on one score.
@@ -33,15 +34,16 @@ struct Influence {
   Correlation correlation;  ///< with the badness: positive if larger numbers are worse
   FirstOrder first_order;   ///< of the ranks of the score
   double corrected = 1.0;   ///< p-value of both statistics, corrected by Holm over all numbers of the row
-  /// Median of the score over the quarters of the draws with the lowest and highest numbers.
+  /// Median of the score over the quarter of the runs with the lowest numbers, and over the quarter with the highest
+  /// numbers.
   double median_low = 0.0, median_high = 0.0;
-  /// Partial dependence: median of the score, or share of failures, over classes of the number.
+  /// Partial dependence: median of the score, or fraction of failures, over classes of the number.
   std::vector<DependenceClass> dependence = {};
-  /// Returns the larger of the index and the square of rho, for ranking.
+  /// Returns the larger of the first-order index and the square of the rank correlation, for ranking.
   double strength() const;
 };
 
-/// One metric of one method on one scenario; `metric` is "not ok" for failures.
+/// Sensitivity of one metric of one method on one scenario; `metric` is "not ok" for failures.
 struct Sensitivity {
   std::string scenario;
   Kind kind = Kind::rate;
@@ -55,12 +57,12 @@ struct SensitivityOptions {
   std::vector<std::string> metrics;  ///< empty: the headline metrics of each kind
 };
 
-/// Minimum number of draws for a row, and minimum of failures and of successes for "not ok". Below 24 draws only the
-/// rank correlation is used.
+/// Minimum number of simulated runs for a row of the table; the next constant is the minimum number of failures and of
+/// successes for "not ok". Below 24 simulated runs, only the rank correlation is used.
 inline constexpr std::size_t kSensitivityDrawsMin = 12, kSensitivityFailuresMin = 5;
 
-/// Analyses the sections of scenarios in `numbers`, in their order; omits rows with too few draws. Failed runs rank
-/// worst. Throws BadInput for a method or metric that the results lack.
+/// Analyses the sections whose scenarios are in `numbers`, in the order of the sections; omits rows with too few
+/// simulated runs. Failed runs rank worst. Throws BadInput for a method or metric that the results lack.
 std::vector<Sensitivity> sensitivities(const Summary& summary, const std::map<std::string, NumbersOfDraws>& numbers,
                                        const SensitivityOptions& options);
 

@@ -29,7 +29,7 @@ const MethodInfo* registered(Kind kind, const std::string& name) {
   return rank < methods().size() ? &methods()[rank].info : nullptr;
 }
 
-/// Returns the registered baseline if present, else the first registered method that needs no truth.
+/// Returns the registered baseline if it is present, else the first registered method that does not need the truth.
 std::string choose_baseline(Kind kind, const std::vector<MethodSummary>& methods) {
   for (const MethodSummary& method : methods) {
     const MethodInfo* info = registered(kind, method.method);
@@ -41,7 +41,7 @@ std::string choose_baseline(Kind kind, const std::vector<MethodSummary>& methods
   return methods.front().method;
 }
 
-/// Compares draw by draw; if both failed, neither is better.
+/// Compares run by run; if both methods failed, neither is better.
 Wins paired_wins(const MetricSummary& own, const MetricSummary& base, const MetricInfo& info) {
   Wins wins;
   if (info.sense == Sense::none) return wins;
@@ -68,7 +68,7 @@ void finish(const std::string& name, MetricSummary& metric) {
   metric.quantile_95 = quantile(ranked, info.sense == Sense::higher ? 0.05 : 0.95);
 }
 
-/// Adds each failed outcome to every metric for which another method has a value on that draw.
+/// Adds each failed outcome to every metric for which another method has a value on the run.
 void place_failures(Section& section) {
   std::set<std::string> names;
   for (const MethodSummary& method : section.methods) {
@@ -103,7 +103,7 @@ void sort_by_seed(MetricSummary& metric) {
   }
 }
 
-/// Data of one method on one scenario, and the index of its metrics by the reader's names.
+/// Data of one method on one scenario, with the index of each metric by its name in the reader.
 struct Gathered {
   MethodSummary summary;
   std::unordered_map<const std::string*, MetricSummary*> places;

@@ -22,14 +22,14 @@ inline MetricStyle metric_style(const std::string& metric) {
 /// Returns the position of a method in the registry; unknown names come last.
 std::size_t method_rank(Kind kind, const std::string& name);
 
-/// Draws on which one method was better than the baseline, among those with values of both.
+/// Simulated runs on which one method was better than the baseline, among the runs on which both have values.
 struct Wins {
   std::int64_t count = 0, pairs = 0;
 };
 
-/// One metric of one method over all draws of a scenario. Only `ok` outcomes have values. Failed outcomes rank worst in
-/// median, quantile and pairs, so the median is infinite once half of the runs fail. Draws without a value from any
-/// method do not count.
+/// One metric of one method over all simulated runs of a scenario. Only `ok` outcomes have values. Failed outcomes rank
+/// worst in median, quantile and pairs, so the median is infinite once half of the runs fail. Simulated runs for which
+/// no method has a value do not count.
 struct MetricSummary {
   Interval centre{};  ///< median, or share for a verdict; with the 95 % interval
   double quantile_95 = 0.0;
@@ -66,7 +66,7 @@ struct Summary {
   std::map<std::string, std::int64_t> draws, rejected;  ///< per scenario
 };
 
-/// The value of one draw, or the worst value for a failure.
+/// The value of one simulated run, or the worst value for a failure.
 struct RankedValue {
   std::uint64_t seed;
   double value;
@@ -77,7 +77,7 @@ std::vector<RankedValue> ranked_values(const MetricSummary& metric, double worst
 
 /// Summarises the results in O(number of scores * log).
 Summary summarize(const Results& results);
-/// The same; also passes each plain outcome to `beside` while reading, to avoid a second pass.
+/// Summarises the results; also passes each unmodified outcome to `beside` while reading, to avoid a second pass.
 Summary summarize(const Results& results, Names& names, const std::function<void(const OutcomeView&)>& beside);
 
 }  // namespace tumble::scenarios

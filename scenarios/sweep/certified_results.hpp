@@ -8,11 +8,12 @@
 
 namespace tumble::scenarios {
 
-/// Returns this build's certificate if `results` or the store contain it, and stores it in `results`; measures nothing.
+/// Returns this build's certificate if `results` or the store contain it, and copies it to `results`; measures nothing.
 std::optional<Certificate> known_certificate(Results& results, const CertificateStore& store);
 
-/// Stores this build's certificate in `results` if missing: from the store, or measured now and saved in both. Returns
-/// the certificate. An interrupted measurement gives no entries and is not saved. Throws as measure_certificate does.
+/// Adds this build's certificate to `results` if it is missing: from the store, or measured now and saved in both.
+/// Returns the certificate. An interrupted measurement gives no entries and is not saved. Throws the exceptions of
+/// measure_certificate.
 Certificate certify_results(Results& results, const CertificateStore& store, const CertificateInput& input,
                             const CertifyOptions& options);
 

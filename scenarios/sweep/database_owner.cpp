@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
   throw BadInput(path.string() + ": cannot be locked: " + std::generic_category().message(error));
 }
 
-/// Resolves links, so that each file has exactly one lock.
+/// Resolves symbolic links, so that each file has exactly one lock.
 fs::path lock_of(const fs::path& database) {
   std::error_code error;
   fs::path place = fs::weakly_canonical(database, error);
@@ -52,7 +52,8 @@ std::string who_holds(int fd) {
   return line.empty() ? "another process" : line;
 }
 
-/// Returns true if the path still refers to the open file. The previous owner may have removed it in between.
+/// Returns true if the path still refers to the open file. The previous owner may have removed the path after this
+/// process opened the file.
 bool is_at(const fs::path& path, int fd) {
   struct stat open {
   }, named{};
@@ -84,7 +85,7 @@ DatabaseOwner::DatabaseOwner(const fs::path& database) : database_(database), lo
   if (fd_ < 0) fail_to_lock(lock_, EAGAIN);
   on_signal_.emplace(lock_, Unfinished::Kind::file);
   const std::string text = who_we_are() + "\n";
-  // the lock is valid even if its text cannot be written
+  // the lock is valid even if the text of the lock file cannot be written
   if (ftruncate(fd_, 0) == 0 && pwrite(fd_, text.data(), text.size(), 0) < 0) return;
 }
 

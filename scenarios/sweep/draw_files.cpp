@@ -24,7 +24,7 @@ std::filesystem::path DrawFiles::estimate(const MethodInfo& method) {
   return place;
 }
 
-/// Keeps the estimates of earlier sweeps with other methods when the folder is replaced.
+/// Keeps the estimates that earlier sweeps with other methods stored, when the folder is replaced.
 void DrawFiles::take_over(const sim::Sensors& sensors) const {
   const std::filesystem::path theirs = keeping_.folder / "estimates", own = folder_->path() / "estimates";
   if (!std::filesystem::exists(theirs)) return;

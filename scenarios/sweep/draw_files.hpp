@@ -11,13 +11,13 @@
 #include "scenarios/sweep/keep.hpp"
 #include "scenarios/sweep/unfinished_folder.hpp"
 
-/// Files that a draw's process stores on disk.
+/// Files that the process of a simulated run stores on disk.
 namespace tumble::scenarios {
 
-/// File with the command that reproduces a kept draw.
+/// File with the command that reproduces a kept run.
 inline constexpr const char* kDrawCommand = "command";
 
-/// Whether and where a draw is kept.
+/// States whether and where the files of a simulated run are kept.
 struct Keeping {
   enum class When { never, if_failed, always };
   When when = When::never;
@@ -28,19 +28,19 @@ struct Keeping {
                                  ///< task
 };
 
-/// Writes a draw that is kept. A write error does not affect the draw's outcomes.
+/// Writes the files of a simulated run that is kept. A write error does not change the outcomes of the run.
 class DrawFiles {
  public:
   explicit DrawFiles(const Keeping& keeping);
 
-  /// Returns where a method must write its estimate; empty if not needed.
+  /// Returns where a method must write its estimate, or an empty path if the estimate is not needed.
   std::filesystem::path estimate(const MethodInfo& method);
-  /// Writes the recording and moves everything to its final folder, or removes it. Estimates of other methods for the
-  /// same sensors remain.
+  /// Writes the recording and moves everything to its final folder, or removes everything. Existing estimates of other
+  /// methods from equal sensor data remain.
   void finish(const SimulatedDraw& draw, bool failed);
   /// Records that an estimate could not be written.
   void miss(const std::string& why) { trouble_ = why; }
-  /// Returns the error in one line; empty if none.
+  /// Returns the error in one line, or an empty text if there is none.
   const std::string& trouble() const { return trouble_; }
 
  private:

@@ -28,7 +28,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-// Returns the resident size of this process.
+// Returns the resident memory of this process.
 double resident_mib() {
   std::ifstream file("/proc/self/statm");
   double pages = 0.0;
@@ -43,8 +43,8 @@ double peak_mib() {
   return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
-/// Writes an estimate. A failure does not affect the outcome; KeptDraws::holds detects the missing file. Returns the
-/// error, or empty.
+/// Writes an estimate. A write failure does not change the outcome; KeptDraws::holds detects the missing file. Returns
+/// the error in one line, or an empty text.
 std::string leave_estimate(const Method& method, const SimulatedDraw& draw, const Estimate& estimate,
                            const std::filesystem::path& folder) {
   if (folder.empty()) return {};
@@ -73,7 +73,7 @@ void run_method_child(const Method& method, const SimulatedDraw& draw, const Sim
   write_all(fd, to_line({outcome, {}}));
 }
 
-// Reads until the process closes its pipe; false at the deadline.
+// Reads until the process closes its pipe; returns false at the deadline.
 bool read_until(Process& process, double deadline_s, std::string& buffer) {
   while (true) {
     const double left_s = deadline_s - now_s();
@@ -84,12 +84,12 @@ bool read_until(Process& process, double deadline_s, std::string& buffer) {
   }
 }
 
-/// Of the built-in methods only slam methods read lidars; external methods may read all that their kind receives.
+/// Among built-in methods, only slam methods read lidars; external methods may read all data that their kind receives.
 bool reads_lidars(const MethodInfo& info) {
   return info.kind == Kind::slam || (info.kind != Kind::rate && !info.version.empty());
 }
 
-/// Methods of kind `rate` read no lidar. Kept recordings contain lidars if any method of the draw reads them.
+/// Methods of kind `rate` read no lidar. Kept recordings contain lidars if any method of the run reads lidars.
 Lidars lidars_for(const DrawTask& task, bool recordings_unseen) {
   const bool kept = task.keeping.when != Keeping::When::never && task.keeping.lidars;
   const bool read =
@@ -100,7 +100,7 @@ Lidars lidars_for(const DrawTask& task, bool recordings_unseen) {
   return read ? Lidars::simulated : Lidars::left_out;
 }
 
-/// A draw modified by a setting for the methods; empty if unmodified.
+/// A simulated run whose sensor data a setting modified; empty if there is no setting.
 struct Given {
   Setting setting;
   std::optional<SimulatedDraw> draw, scored;
@@ -126,17 +126,17 @@ Outcome unanswered(const DrawTask& task, const DrawTask::Run& run, OutcomeStatus
   return outcome;
 }
 
-/// Reports that the draw cannot be drawn or simulated on any machine.
+/// Reports that the scenario and seed cannot be drawn or simulated on any machine.
 void reject(const DrawTask& task, const std::exception& error, int fd) {
   write_all(fd, to_line({{}, RejectedDraw{task.name, task.seed, one_line(error.what()), task.setting}}));
 }
 
-/// Assigns `status` to each run of a draw that could not be produced.
+/// Assigns `status` to each method run of a simulated run that could not be produced.
 void give_up(const DrawTask& task, OutcomeStatus status, const std::string& message, int fd) {
   for (const Outcome& outcome : without_answer(task, status, message)) write_all(fd, to_line({outcome, {}}));
 }
 
-/// A simulated or recorded draw, and the surface to score maps against, if there are maps.
+/// A simulated or recorded run, and the true surface for map scores if a method builds maps.
 struct MadeDraw {
   SimulatedDraw draw;
   std::optional<sim::Surface> surface;
@@ -161,7 +161,7 @@ DrawValues motion_of(const DrawTask& task, const sim::Recording& recording) {
   return values;
 }
 
-/// Produces the draw and reports its motion. Returns null after reporting the reason if this fails.
+/// Simulates or reads the run and reports its motion values. On failure, returns null after the reason was reported.
 std::unique_ptr<MadeDraw> made_draw(const DataRoot& data, const DrawTask& task, int fd, bool recordings_unseen) {
   try {
     std::unique_ptr<MadeDraw> made = make(data, task, recordings_unseen);
@@ -181,7 +181,8 @@ std::unique_ptr<MadeDraw> made_draw(const DataRoot& data, const DrawTask& task, 
   return nullptr;
 }
 
-/// Runs one method on the draw. `given`: the modified draw of the previous run, reused if the setting is the same.
+/// Runs one method on the sensor data. `given` contains the modified sensor data of the previous method run, which are
+/// reused if the settings are equal.
 Outcome run_one(const DrawTask& task, const DrawTask::Run& run, const MadeDraw& made, double timeout_s, Given& given,
                 DrawFiles& files) {
   Outcome outcome;
@@ -247,7 +248,7 @@ std::vector<Outcome> without_answer(const DrawTask& task, OutcomeStatus status, 
 void run_draw(const DataRoot& data, const DrawTask& task, double timeout_s, int fd, bool recordings_unseen) {
   const std::unique_ptr<const MadeDraw> made = made_draw(data, task, fd, recordings_unseen);
   if (!made) return;
-  // Otherwise memory freed by the simulation would hide the method's memory use.
+  // Memory that the simulation freed is returned to the system; otherwise it would hide the method's memory use.
   malloc_trim(0);
   DrawFiles files(task.keeping);
   bool failed = false;

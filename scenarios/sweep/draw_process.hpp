@@ -29,25 +29,28 @@ struct DrawTask {
 
 /// Longest wait for workers before checking deadlines.
 inline constexpr int kPollMs = 200;
-/// Time limit of a draw's simulation, in multiples of a run's time-out.
+/// Time limit of a simulation, in multiples of the time limit of a method run.
 inline constexpr double kSimulateTimeouts = 2.0;
 
-/// Returns the status of a run whose process ended without an answer.
+/// Returns the status of a method run whose process ended without a result.
 OutcomeStatus ended_as(const Process::End& end);
 
-/// Returns one outcome per run of a draw whose process gave no answer.
+/// Returns one outcome per method run if the process of the simulated run gave no result.
 std::vector<Outcome> without_answer(const DrawTask& task, OutcomeStatus status, const std::string& message);
 
-/// Simulates one draw, without lidars if no method reads them, and writes the results to `fd`, one message per line: a
-/// rejection if the draw cannot be drawn or simulated, else an outcome as each run ends. The caller writes the final
-/// empty message. `recordings_unseen` as in SweepOptions. Runs in a worker.
+/// Simulates one scenario and seed, without lidars if no method reads them, and runs the methods. Writes results to
+/// `fd`, one message per line: an outcome as each method run ends, or a rejection if the simulation is impossible. The
+/// caller writes the final empty message. `recordings_unseen` has the meaning of SweepOptions::recordings_unseen. The
+/// function runs in a worker process.
 void run_draw(const DataRoot& data, const DrawTask& task, double timeout_s, int fd, bool recordings_unseen = false);
 
 /// Runs one method in a separate process for at most `timeout_s` of wall time. Crashes, time-outs and exceptions become
-/// outcomes. Cost: CPU time and peak memory of the estimate, excluding the memory of the draw's process.
+/// outcomes. The cost in the outcome is the CPU time and peak memory of the estimate, without the memory of the calling
+/// process.
 ///
-/// The estimate is scored against `scored`, which equals `draw` unless its sensors were changed (triage). It is written
-/// to `folder` (estimate_file.hpp) unless that is empty; on failure `not_kept` states why.
+/// The estimate is scored against `scored`, which equals `draw` unless its sensor data were changed (triage). The
+/// estimate is written to `folder` (estimate_file.hpp) unless `folder` is empty; on failure, `not_kept` states the
+/// reason.
 Outcome run_isolated(const Method& method, const SimulatedDraw& draw, const SimulatedDraw& scored,
                      const sim::Surface* surface, double timeout_s, const std::filesystem::path& folder = {},
                      std::string* not_kept = nullptr);

@@ -11,7 +11,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns the next line without its newline; empty if the other end is closed.
+/// Returns the next line without its newline; returns empty if the other end is closed.
 std::optional<std::string> next_line(int fd, std::string& buffer) {
   char chunk[8192];
   std::size_t newline;
@@ -26,7 +26,7 @@ std::optional<std::string> next_line(int fd, std::string& buffer) {
   return line;
 }
 
-/// Runs in the worker: reads one line per draw until an empty line.
+/// Runs in the worker process: reads one line per task until an empty line.
 void serve(const WorkerTerms& terms, int tasks, int fd) {
   limit_memory(terms.memory_mib);
   std::string buffer;
@@ -34,7 +34,7 @@ void serve(const WorkerTerms& terms, int tasks, int fd) {
     if (line->empty()) return;
     run_draw(terms.data, terms.plan.from_line(*line), terms.timeout_s, fd, terms.recordings_unseen);
     malloc_trim(0);  // An idle worker must not hold memory of its last draw.
-    // Sent last: if the process dies earlier, including in destructors, the fault belongs to this draw.
+    // The last message is sent after all destructors, so that a process that dies earlier is assigned to this task.
     write_all(fd, to_line({}));
   }
 }

@@ -20,8 +20,9 @@ struct WorkerTerms {
   bool recordings_unseen = false;  ///< as in SweepOptions
 };
 
-/// A process that runs one draw after another. It communicates in lines of text, so that no state of a draw remains for
-/// the next. It is not reused after `kDrawsPerWorker` draws, or after a draw with a process that did not end normally.
+/// A process that executes one simulated run after another. The process communicates in lines of text, so that no state
+/// of a run remains for the next run. The process ends after `kDrawsPerWorker` runs, or after a run with a child
+/// process that did not end normally.
 class DrawWorker {
  public:
   static constexpr int kDrawsPerWorker = 200;
@@ -29,21 +30,21 @@ class DrawWorker {
   /// Throws std::system_error if no process can be started.
   explicit DrawWorker(const WorkerTerms& terms);
 
-  /// Sends a draw that must be complete by `deadline_s` (of now_s()). Returns false if the idle worker has died.
+  /// Sends a task that must be complete by `deadline_s` (a time of now_s()). Returns false if the idle worker has died.
   bool give(const DrawTask& task, double deadline_s);
 
   bool is_busy() const { return busy_; }
   bool is_late() const { return busy_ && now_s() > deadline_s_; }
-  /// Returns true if it may run another draw.
+  /// Returns true if the worker may execute another run.
   bool is_fresh() const { return !busy_ && !spoilt_ && served_ < kDrawsPerWorker; }
   int read_end() const { return process_.read_end(); }
-  /// Returns the current draw without the runs already answered.
+  /// Returns the current task without the method runs that already have results.
   const DrawTask& draw() const { return draw_; }
 
-  /// Appends new messages; after the last message of a draw the worker is idle. Returns false if the process has ended.
+  /// Appends new messages; after the last message of a run the worker is idle. Returns false if the process has ended.
   bool hear(std::vector<Message>& said);
   void kill() { process_.kill(); }
-  /// Ends an idle worker and waits for its end.
+  /// Ends an idle worker and waits for the end of the process.
   Process::End dismiss();
 
  private:

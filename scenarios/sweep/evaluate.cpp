@@ -72,7 +72,7 @@ OutcomeStatus status_of(NoAnswer::Why why) {
   return OutcomeStatus::killed;
 }
 
-/// Returns the estimate of a method that gave no answer, with the program's output.
+/// Returns the estimate of a method that gave no result, with the output of the program.
 Estimate no_estimate(const std::string& transcript = "") {
   Estimate none;
   none.transcript = transcript;

@@ -11,7 +11,7 @@
 
 namespace tumble::scenarios {
 
-/// One simulated or recorded draw, shared by all its outcomes.
+/// One simulated run or recording, shared by all its outcomes.
 struct SimulatedDraw {
   std::string scenario;
   std::uint64_t seed = 0;
@@ -23,36 +23,37 @@ struct SimulatedDraw {
   bool has_truth = true;  ///< recordings without truth are estimated but not scored
 };
 
-/// Whether the lidars are simulated. They take much of the time, and methods of kind `rate` do not read them.
+/// States whether the lidars are simulated. Lidars need much of the time, and methods of kind `rate` do not read
+/// lidars.
 enum class Lidars { simulated, left_out };
 
-/// Draws, builds and simulates once each. Without lidars, motion and IMUs are bit-identical, but the digest differs.
-/// Throws BadInput, sim::InvalidSituation, sim::SimulationFailure.
+/// Draws the random numbers, builds the situation and simulates it, each once. Without lidars, motion and IMUs are
+/// bit-identical, but the digest differs. Throws BadInput, sim::InvalidSituation, sim::SimulationFailure.
 SimulatedDraw simulate_draw(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, int threads,
                             Lidars lidars = Lidars::simulated);
 
 /// Returns the digest that the recording would have without its lidars.
 std::string digest_without_lidars(const sim::Recording& recording);
 
-/// Returns the properties of a scenario's draws that methods depend on.
+/// Returns the properties of a scenario on which the choice of methods depends.
 Subject subject_of(const Scenario& scenario);
 
-/// Returns the methods that apply, in the given order.
+/// Returns the methods that apply, in the order of `methods`.
 std::vector<MethodPointer> applicable(std::span<const MethodPointer> methods, const Subject& subject);
 
 /// Throws BadInput with the reason if a method does not apply to a scenario.
 void require_applies(const Method& method, const Scenario& scenario);
 
-/// Runs a method on the draw. An exception or error status sets `outcome` to failed; else it stays ok and can be
-/// scored. The first score is the estimate's CPU time.
+/// Runs a method on the sensor data of `draw`. An exception or error status sets `outcome` to failed; otherwise
+/// `outcome` stays ok and can be scored. The first score is the estimate's CPU time.
 Estimate run_method(const Method& method, const SimulatedDraw& draw, Outcome& outcome);
 
 /// Adds verdict and scores of a completed estimate. `surface` may be null.
 void assess(const Method& method, const SimulatedDraw& draw, const sim::Surface* surface, const Estimate& estimate,
             Outcome& outcome);
 
-/// Returns the original draw with the IMU stamps of `given`. An estimate is compared with the truth of the sample that
-/// carries its stamp, even if the sensors were modified.
+/// Returns the original simulated run with the IMU stamps of `given`. An estimate is compared with the truth of the IMU
+/// sample that has the estimate's stamp, even if the sensor data were modified.
 SimulatedDraw scored_by(const SimulatedDraw& draw, const SimulatedDraw& given);
 
 /// Returns the CPU time of this process and its finished children [s].

@@ -35,7 +35,7 @@ double margin_of(const MetricInfo& info, const GatePolicy& policy) {
   return info.unit == Unit::time_offset ? policy.time_margin_s : policy.share_margin;
 }
 
-/// Returns the change from `before` to `now` in the metric's comparison.
+/// Returns the change from `before` to `now` in the metric's comparison (ratio or difference).
 double difference(const MetricInfo& info, double before, double now) {
   if (before == now) return 0.0;
   if (by_difference(info)) return now - before;
@@ -44,8 +44,8 @@ double difference(const MetricInfo& info, double before, double now) {
   return std::log(now / before);
 }
 
-/// Returns how bad a draw is, for `GatePolicy::worst`: one minus the value of a share, the distance from the target of
-/// a signed value.
+/// Returns how bad a value is, for `GatePolicy::worst`: one minus the value of a fraction, the distance from the target
+/// of a signed value.
 double badness(const MetricInfo& info, double value) {
   if (!by_difference(info)) return value;
   return info.unit == Unit::share ? 1.0 - value : std::abs(value - info.target);
@@ -56,7 +56,8 @@ struct GatePair {
   double before = 0.0, now = 0.0;  ///< infinite (worst) if it was not ok
 };
 
-/// Pairs of a metric. Draws without a value in both runs are omitted; draws that lost their value are in `lost`.
+/// Pairs of accepted and new values of a metric. Runs without a value in both results are omitted; runs that lost their
+/// value are in `lost`.
 struct GatePairs {
   std::vector<GatePair> pairs;
   std::vector<std::uint64_t> lost;
@@ -88,7 +89,7 @@ double chance_beyond(std::vector<double> differences, double margin) {
   return signed_rank_chance(differences);
 }
 
-/// Checks that no draw is worse than the worst accepted draw times the allowed factor; the fault states which draw.
+/// Checks that no run is worse than the worst accepted run times the allowed factor; the fault names the run.
 void hold_worst_draw(const MetricInfo& info, const std::vector<GatePair>& pairs, const GatePolicy& policy,
                      GateResult& result) {
   if (pairs.empty()) return;
@@ -106,7 +107,7 @@ void hold_worst_draw(const MetricInfo& info, const std::vector<GatePair>& pairs,
                              three_digits(now.now), now.seed, three_digits(before.before));
 }
 
-/// Each metric counts as one test; two-sided ones use twice the smaller p-value. Adds the shift and any fault to the
+/// Each metric counts as one test; two-sided metrics use twice the smaller p-value. Adds the shift and any fault to the
 /// result.
 void hold_middle(const std::vector<GatePair>& pairs, const MetricInfo& info, const GatePolicy& policy,
                  std::size_t tests, GateResult& result) {
@@ -149,7 +150,7 @@ GateResult hold_metric(const GatePairs& found, const MethodRun& before, const Me
   return result;
 }
 
-/// A verdict counts as a failure: 0 must stay 0.
+/// A verdict that is 1 counts as a failure; a verdict that was 0 must stay 0.
 bool is_condemned(const MethodRun& run, const MetricInfo& verdict, std::size_t draw) {
   return value_at(run, verdict.name, draw) > 0.0;
 }
@@ -175,7 +176,7 @@ GateResult hold_outcomes(const GateRun& all, const MethodRun& before, const Meth
       fault = condemned(now);
     was += was_good ? 0 : 1;
     is += fault.empty() ? 0 : 1;
-    // a missing draw is a fault even if it failed in the accepted run
+    // a missing run is a fault even if the run failed in the accepted results
     if (result.fault.empty() && !fault.empty() && (was_good || !now.status[k])) {
       result.fault = fault + seed;
       result.seed = all.seeds[k];
@@ -196,7 +197,7 @@ MethodRun without_outcomes(const MethodRun& like) {
   return none;
 }
 
-/// A metric of a method over all scenarios that have it.
+/// A metric of a method over all scenarios that have the metric.
 struct Pooled {
   Kind kind = Kind::rate;
   std::string method;
@@ -207,7 +208,7 @@ struct Pooled {
   }
 };
 
-/// Returns the metrics of more than one scenario, in the order of the accepted run.
+/// Returns the metrics of more than one scenario, in the order of the accepted results.
 std::vector<Pooled> pooled_metrics(const GateRun& accepted) {
   std::vector<Pooled> seen, out;
   const auto has = [](const std::vector<Pooled>& list, const MethodRun& run, const MetricInfo& info) {

@@ -12,19 +12,19 @@
 #include "scenarios/scoring/metric.hpp"
 #include "scenarios/sweep/results.hpp"
 
-/// The gate compares a run over a suite's fixed seeds with the accepted run, draw by draw.
+/// The gate compares results on a suite's fixed seeds with accepted results, for each simulated run.
 ///
-/// A draw has the same bits in both runs, so differences between draws cancel in each pair. For each scenario and
-/// method of the accepted run the gate checks:
-/// - outcomes: a draw that was ok must be ok again, and no verdict (`map_failed`) may turn to 1;
-/// - presence: an ok outcome must have every metric that it had;
+/// A simulated run has equal sensor data in both results, so differences between seeds cancel in each pair. For each
+/// scenario and method of the accepted results, the gate makes these checks:
+/// - outcomes: a run that was ok must be ok again, and no verdict (`map_failed`) may change to 1;
+/// - presence: an ok outcome must still have every metric of the accepted outcome;
 /// - median of each gate metric (metric.hpp, `held_metrics`): the pairs must not shift for the worse by more than the
-///   margin. Pairs differ by the logarithm of their ratio or by their difference, as the metric states (`Compared`).
-///   The test is the exact signed-rank test (statistics/paired.hpp) of the differences minus the margin. Metrics with a
-///   target are checked on both sides: a covariance that becomes too small fails too. A run that is no worse fails any
-///   test of a gate with probability at most `risk` (Bonferroni);
+///   margin. The difference of a pair is the logarithm of the ratio or the plain difference, as the metric states
+///   (`Compared`). The test is the exact signed-rank test (statistics/paired.hpp) of the differences minus the margin.
+///   Metrics with a target are checked on both sides, so a covariance that becomes too small also fails. If the new
+///   results are not worse, the probability that any test of the gate fails is at most `risk` (Bonferroni);
 /// - median of a metric over all scenarios of a method, which detects shifts too small for one scenario;
-/// - the worst draw, which tests of the median miss: at most `worst` times the accepted worst.
+/// - the worst run, which tests of the median miss: at most `worst` times the accepted worst value.
 namespace tumble::scenarios {
 
 /// Results of one method, in the order of `GateRun::seeds`.
@@ -42,7 +42,7 @@ struct GateRun {
   const MethodRun* find(const std::string& scenario, Kind kind, const std::string& method) const;
 };
 
-/// Returns the gate metrics of plain outcomes for seeds `first` to `last`.
+/// Returns the gate metrics of unmodified outcomes for the seeds `first` to `last`.
 GateRun gate_run(std::span<const Outcome> outcomes, std::uint64_t first, std::uint64_t last);
 GateRun gate_run(const Results& results, std::uint64_t first, std::uint64_t last);
 
@@ -54,8 +54,8 @@ struct GatePolicy {
   double worst = 2.0;           ///< allowed factor on the accepted worst draw; at least 1
 };
 
-/// The accepted run of a suite: scenarios/gates/SUITE.yaml states the policy, SUITE.csv next to it the results. Both
-/// are kept in git.
+/// The accepted results of a suite: scenarios/gates/SUITE.yaml states the policy, and SUITE.csv contains the results.
+/// The two files are kept in git.
 struct Gate {
   std::string suite;
   GatePolicy policy;
@@ -63,17 +63,17 @@ struct Gate {
 };
 
 std::vector<std::string> gate_names(const DataRoot& data);
-/// Loads the gate of a suite, or a file if `name` ends in ".yaml" (with its run in ".csv"). `described` are external
-/// methods (external_method.hpp) that it may contain. Throws BadInput with file and line: no such gate (suggests the
-/// nearest), another suite, or an empty run. Also throws for an unknown key, kind, method, metric or status, a wrong
-/// row length, or a number out of bounds.
+/// Loads the gate of a suite, or a file if `name` ends in ".yaml" (with its results in the ".csv" file of equal name).
+/// `described` are external methods (external_method.hpp) that the gate may contain. Throws BadInput with file and line
+/// for an unknown gate (suggests the nearest name), another suite, or empty results. Also throws for an unknown key,
+/// kind, method, metric or status, a wrong row length, or a number out of bounds.
 Gate load_gate(const DataRoot& data, const std::string& name, std::span<const MethodPointer> described = {});
-/// Return policy and run as `load_gate` reads them; numbers round-trip exactly.
+/// Return policy and results as text that `load_gate` reads; numbers are restored exactly.
 std::string to_yaml(const Gate& gate);
 std::string to_csv(const GateRun& run);
 GateRun parse_gate_run(const std::string& text, const std::string& file, std::span<const MethodPointer> described = {});
 
-/// One result of the gate: the outcomes of a method (no metric), or one metric, for one scenario or all.
+/// One result of the gate: the outcomes of a method (no metric), or one metric, for one scenario or all scenarios.
 struct GateResult {
   std::string scenario;  ///< empty: all that have the metric
   Kind kind = Kind::rate;
@@ -91,10 +91,11 @@ struct GateResult {
   bool passes() const { return fault.empty(); }
 };
 
-/// Compares a run with the gate. Throws BadInput if the seeds differ or the accepted run is empty.
+/// Compares new results with the gate. Throws BadInput if the seeds differ or the accepted results are empty.
 std::vector<GateResult> hold_to_gate(const GateRun& run, const Gate& gate);
 
-/// Throws BadInput if a draw has no outcome, or a method has no ok one; such a run cannot be accepted.
+/// Throws BadInput if a simulated run has no outcome, or a method has no outcome that is ok; such results cannot be
+/// accepted.
 void require_acceptable(const GateRun& run);
 
 }  // namespace tumble::scenarios

@@ -38,7 +38,7 @@ std::vector<std::string> cells_of(const std::string& line) {
   return cells;
 }
 
-/// One line of the table, for messages.
+/// One line of the gate's table, with its location for messages.
 struct GateLine {
   const std::string& file;
   int number;
@@ -72,7 +72,7 @@ Kind read_kind(const GateLine& line) {
   line.fail("unknown kind '" + line.cells[1] + "'" + suggestion(line.cells[1], known));
 }
 
-/// Throws unless the method is built in or described by a file.
+/// Throws BadInput unless the method is built in or described by a file.
 void require_method(const GateLine& line, const MethodRun& run, std::span<const MethodPointer> described) {
   if (std::any_of(described.begin(), described.end(), [&](const MethodPointer& method) {
         return method->info.kind == run.kind && method->info.name == run.method;

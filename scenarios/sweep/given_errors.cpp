@@ -30,8 +30,8 @@ sim::ImuRecord& primary(sim::Sensors& sensors, const sim::Truth& truth) {
   return sensors.imus.front();
 }
 
-/// Shifts the stated centre of mass, and with it every sensor's lever arm; the sensors' relative mountings are
-/// unchanged. Replaces the scenario's own lever-arm error of the primary IMU.
+/// Shifts the stated centre of mass, and thereby the lever arm of every sensor; the relative mountings of the sensors
+/// are unchanged. The shift replaces the lever-arm error of the primary IMU in the scenario.
 void lever_arm(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation, double size) {
   const Eigen::Vector3d given_m = primary(sensors, truth).T_BI.translation();
   const Eigen::Vector3d shift_m =
@@ -41,7 +41,7 @@ void lever_arm(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situat
   for (sim::SeriesRecord& series : sensors.series) series.T_BX.translation() += shift_m;
 }
 
-/// Rotates the stated mounting between primary IMU and lidar. Replaces the scenario's own error.
+/// Rotates the stated mounting between primary IMU and lidar. The rotation replaces the mounting error in the scenario.
 void extrinsic_rotation(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation, double size) {
   const Eigen::Matrix3d R_BI_given = primary(sensors, truth).T_BI.linear();
   if (sensors.lidars.empty() || truth.lidars.empty())
@@ -51,21 +51,21 @@ void extrinsic_rotation(sim::Sensors& sensors, const sim::Truth& truth, const si
   sensors.lidars.front().T_BL.linear() = R_BI_given * R_IL_true * error.toRotationMatrix();
 }
 
-/// Shifts the clock of the primary IMU; jitter remains. Replaces the scenario's own offset.
+/// Shifts the clock of the primary IMU; jitter remains. The shift replaces the time offset in the scenario.
 void time_offset(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation, double size) {
   const double own_s = situation.sensors.front().values.at("time_offset_s");
   const auto shift_ns = static_cast<std::int64_t>(std::llround((size - own_s) * 1e9));
   for (std::int64_t& time_ns : primary(sensors, truth).time_ns) time_ns += shift_ns;
 }
 
-/// Increases the stated radius of the sphere by this.
+/// Increases the stated radius of the sphere by the size of the error.
 void radius(sim::Sensors& sensors, const sim::Truth&, const sim::Situation&, double size) {
   if (!(sensors.sphere_radius_m > 0.0)) throw BadInput("the recording has no sphere radius; this error needs a sphere");
   if (!(sensors.sphere_radius_m + size > 0.0)) throw BadInput("radius_error_m makes the radius zero or negative");
   sensors.sphere_radius_m += size;
 }
 
-/// States a range beyond every reading, so that none counts as clipped.
+/// States a range beyond every reading, so that no reading counts as clipped.
 void state_no_rail(sim::ImuRecord& imu) {
   double largest = 0.0;
   for (const Eigen::Vector3d& reading : imu.gyro_rad_s) largest = std::max(largest, reading.lpNorm<Eigen::Infinity>());
@@ -73,8 +73,8 @@ void state_no_rail(sim::ImuRecord& imu) {
   for (std::uint8_t& flags : imu.clip_flags) flags = static_cast<std::uint8_t>(flags & ~kGyroClipFlags);
 }
 
-/// Replaces clipped readings by unclipped ones with a constant error per clipped segment, like the output of a rate
-/// method with that error. Removes all clip flags.
+/// Replaces clipped readings by unclipped readings with a constant error per clipped segment, which simulates the
+/// output of a rate method with this error. Removes all clip flags.
 void rate_error(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation, double size) {
   const ClippingTruth clipping(sensors, truth);
   sim::ImuRecord& imu = primary(sensors, truth);
@@ -90,7 +90,7 @@ void rate_error(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situa
   state_no_rail(imu);
 }
 
-/// Changes the stated range relative to the true saturation limit, and removes the device's clip flags, which would
+/// Changes the stated range relative to the true saturation level, and removes the device's clip flags, which would
 /// reveal the truth.
 void stated_rail(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation, double size) {
   sim::ImuRecord& imu = primary(sensors, truth);
@@ -98,7 +98,7 @@ void stated_rail(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situ
   for (std::uint8_t& flags : imu.clip_flags) flags = static_cast<std::uint8_t>(flags & ~kGyroClipFlags);
 }
 
-/// Sets the saturation limit of methods with such a parameter.
+/// Sets the saturation level of methods that have a parameter for this level.
 void report_rail(std::span<const sim::Parameter> known, double size, sim::Values& given) {
   for (const sim::Parameter& parameter : known) {
     if (parameter.name != "saturation_point_rad_s") continue;

@@ -14,10 +14,11 @@
 #include "scenarios/sweep/database_owner.hpp"
 #include "scenarios/sweep/results.hpp"
 
-/// Keeps recordings and estimates of a sweep's draws next to its database (README.md, "What is kept").
+/// Keeps recordings and estimates of a sweep's simulated runs next to its database (README.md, "What is kept").
 namespace tumble::scenarios {
 
-/// Rule for which draws are kept. It depends on the results only, not on processes, interruptions or shards.
+/// Rule that selects which simulated runs are kept. The selection depends on the results only, not on processes,
+/// interruptions or shards.
 struct Keep {
   enum class Which { none, failed, worst, all };
   Which which = Which::none;
@@ -25,14 +26,14 @@ struct Keep {
   bool operator==(const Keep&) const = default;
 };
 
-/// Key of the note with the rule, written by `to_string`.
+/// Key of the note that stores the rule, as `to_string` writes it.
 inline constexpr const char* kKeepNote = "keep";
 
-/// Parses "none", "failed", "all", or "worst:N" with N from 1 to 1000. Throws BadInput.
+/// Parses "none", "failed", "all", or "worst:N" with N from 1 to 1000. Throws BadInput for any other text.
 Keep parse_keep(const std::string& text);
 std::string to_string(const Keep& keep);
 
-/// A draw of the plain scenario, without settings of curves.
+/// Scenario and seed of a simulated run, without settings of curves.
 struct DrawName {
   std::string scenario;
   std::uint64_t seed = 0;
@@ -40,38 +41,39 @@ struct DrawName {
   auto operator<=>(const DrawName&) const = default;
 };
 
-/// Returns the draws to keep. `all`: every draw with a row. `failed`: draws with a run that is not ok. `worst`: for
-/// each scenario and each method without truth, the worst draws by the first headline metric of its kind. Runs that are
-/// not ok rank worst; ties prefer lower seeds. Rejected draws have no recording and are never kept.
+/// Returns the simulated runs to keep. `all` keeps every run with a row. `failed` keeps runs with a status that is not
+/// ok. `worst` keeps, for each scenario and each method that does not use the truth, the worst runs by the first
+/// headline metric of the method's kind. Runs that are not ok rank worst; equally bad runs are kept by ascending seed.
+/// Rejected runs have no recording and are never kept.
 std::set<DrawName> draws_to_keep(const Results& results, const Keep& keep);
 
-/// The folder of kept draws next to a database, FILE.db.files/kept: SCENARIO/SEED/ with recording.h5,
+/// The folder of kept runs next to a database, FILE.db.files/kept: SCENARIO/SEED/ with recording.h5,
 /// estimates/KIND-METHOD/ and `command`. All functions throw BadInput with path and reason on file system errors.
 class KeptDraws {
  public:
   explicit KeptDraws(const std::filesystem::path& database);
 
   std::filesystem::path folder_of(const DrawName& draw) const;
-  /// Returns true if the draw is stored completely, with the estimates of all these rows.
+  /// Returns true if the run is stored completely, with the estimates of all rows in `estimated`.
   bool holds(const DrawName& draw, std::span<const Outcome> estimated) const;
   std::vector<DrawName> found() const;
   void remove(const DrawName& draw) const;
-  /// Removes incomplete files of a killed process. Requires that no other process writes there.
+  /// Removes incomplete files of a killed process. No other process may write to the folder during the call.
   void discard_unfinished() const;
-  /// Copies the draw, or its missing estimates, from another such folder, by hard links where possible. Returns false
-  /// if the other folder does not have the draw.
+  /// Copies the run, or its missing estimates, from another folder of kept runs, by hard links where possible. Returns
+  /// false if the other folder does not have the run.
   bool take(const DrawName& draw, const KeptDraws& from) const;
 
  private:
   std::filesystem::path folder_;
 };
 
-/// Returns the folder of a method's estimate in a draw's folder.
+/// Returns the folder of a method's estimate in the folder of a run.
 std::filesystem::path estimate_folder(const std::filesystem::path& draw, Kind kind, const std::string& method);
 
-/// Joins the kept draws of a merge, after its rows (merge.hpp). If all inputs and `out` keep by one rule, the result is
-/// that of a single sweep. Returns how many draws `out` has afterwards. If the rules differ or nothing is kept, `out`
-/// is unchanged.
+/// Joins the kept runs of a merge, after the rows were joined (merge.hpp). If all inputs and `out` have one rule, the
+/// result equals that of a single sweep. Returns the number of kept runs in `out` after the merge. If the rules differ
+/// or nothing is kept, `out` is unchanged.
 std::size_t merge_kept(const DatabaseOwner& out, std::span<const std::filesystem::path> in);
 
 }  // namespace tumble::scenarios

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Converts a file system error to a message with the path.
+/// Converts a file system error to a BadInput with the path.
 template <typename Action>
 auto guarded(Action&& action) {
   try {
@@ -64,7 +64,7 @@ fs::path KeptDraws::folder_of(const DrawName& draw) const {
 
 bool KeptDraws::holds(const DrawName& draw, std::span<const Outcome> estimated) const {
   const fs::path folder = folder_of(draw);
-  // the command is written last
+  // the file `command` is written last
   return guarded([&] {
     return fs::exists(folder / kDrawCommand) &&
            std::all_of(estimated.begin(), estimated.end(), [&](const Outcome& row) {

@@ -9,7 +9,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Hashes numbers one by one, so that no struct padding enters.
+/// Hashes number by number, so that no struct padding enters the digest.
 class NumberHasher : public Hasher {
  public:
   template <typename Number>

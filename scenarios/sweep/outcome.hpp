@@ -11,8 +11,8 @@
 
 namespace tumble::scenarios {
 
-/// The point of a curve that a row belongs to (variation.hpp): varied key and value. Without a key: unmodified scenario
-/// and methods.
+/// The point of a curve to which a row belongs (variation.hpp): varied key and value. An empty key means an unmodified
+/// scenario and unmodified methods.
 struct Setting {
   std::string key;
   double value = 0.0;
@@ -21,7 +21,7 @@ struct Setting {
   auto operator<=>(const Setting&) const = default;
 };
 
-/// One row of the results: one method on one draw.
+/// One row of the results: one method on one simulated run.
 struct Outcome {
   std::string scenario;
   std::uint64_t seed = 0;
@@ -35,7 +35,7 @@ struct Outcome {
   Setting setting = {};
 };
 
-/// Motion values of one draw, independent of the methods (scenarios/scoring/motion_summary.hpp).
+/// Motion values of one simulated run, independent of the methods (scenarios/scoring/motion_summary.hpp).
 struct DrawValues {
   std::string scenario;
   std::uint64_t seed = 0;
@@ -43,18 +43,18 @@ struct DrawValues {
   Setting setting = {};
 };
 
-/// Returns true for methods that completed: ok, diverged, failed.
+/// Returns true if the method completed: ok, diverged, failed.
 bool was_scored(OutcomeStatus status);
 
-/// Returns true if `status` has more information about the method. Order: completed, then crashed and timeout, then
-/// killed.
+/// Returns true if `status` has more information about the method than `other`. The order is: completed, then crashed
+/// and timeout, then killed.
 bool outranks(OutcomeStatus status, OutcomeStatus other);
 
-/// Returns true if a sweep may repeat rows of this status: crashed, timeout, killed.
+/// Returns true if a sweep may repeat rows with this status: crashed, timeout, killed.
 bool may_run_again(OutcomeStatus status);
 
-/// A draw that cannot be drawn or simulated on any machine; kind and method are empty in the database. If a process
-/// dies instead, its methods are crashed, timeout or killed.
+/// A scenario and seed that cannot be drawn or simulated on any machine; kind and method are empty in the database. If
+/// a process dies instead, the status of its methods is crashed, timeout or killed.
 struct RejectedDraw {
   std::string scenario;
   std::uint64_t seed = 0;

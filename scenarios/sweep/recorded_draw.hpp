@@ -8,7 +8,8 @@
 
 #include "scenarios/sweep/evaluate.hpp"
 
-/// Recordings in a suite. Each is one draw with the file's name as scenario and seed 1.
+/// Handles recordings in a suite. Each recording counts as one simulated run, with the file's name as scenario and seed
+/// 1.
 namespace tumble::scenarios {
 
 inline constexpr std::uint64_t kRecordingSeed = 1;
@@ -23,15 +24,16 @@ struct RecordedDraw {
   bool has_truth = false;
 };
 
-/// Returns the recordings that match the patterns (glob(7), relative to `folder` unless absolute), each once, sorted by
-/// name. Throws BadInput for a pattern without a match, two files with one name, and unreadable files.
+/// Returns the recordings that match the patterns (glob(7), relative to `folder` unless absolute), each recording once,
+/// sorted by name. Throws BadInput for a pattern without a match, two files with one name, and unreadable files.
 std::vector<RecordedDraw> find_recordings(std::span<const std::string> patterns, const std::filesystem::path& folder);
 
-/// Returns the methods that can run on a recording, in the given order: for its robot, if known, and its sensors.
-/// Oracles need a simulated recording.
+/// Returns the methods that can run on a recording, in the order of `methods`: methods that apply to its robot, if
+/// known, and its sensors. Oracles need a simulated recording.
 std::vector<MethodPointer> applicable(std::span<const MethodPointer> methods, const RecordedDraw& recording);
 
-/// Reads the recording as a draw. Throws BadInput if its digest has changed since it was found.
+/// Reads the recording in the form of a simulated run. Throws BadInput if the recording's digest has changed since
+/// find_recordings.
 SimulatedDraw read_draw(const RecordedDraw& recording);
 
 }  // namespace tumble::scenarios

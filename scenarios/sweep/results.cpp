@@ -15,7 +15,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-// SQLite has no NaN: store null instead.
+// SQLite has no NaN, so null is stored instead.
 void bind_value(SQLite::Statement& statement, int index, double value) {
   if (std::isnan(value))
     statement.bind(index);

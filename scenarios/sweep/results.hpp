@@ -19,7 +19,8 @@
 namespace tumble::scenarios {
 
 /// One row of the view scores(scenario, seed, kind, method, status, metric, value). An outcome without scores has one
-/// row with an empty metric and NaN. A rejected draw has one row with empty kind and method and status `rejected`.
+/// row with an empty metric and the value NaN. A rejected run has one row with empty kind and method and the status
+/// `rejected`.
 struct ScoreRow {
   std::string scenario;
   std::uint64_t seed;
@@ -30,19 +31,19 @@ struct ScoreRow {
   Setting setting = {};
 };
 
-/// Which rows are selected: unmodified scenarios and methods, points of curves, or both.
+/// Selects rows: those of unmodified scenarios and methods, points of curves, or both.
 enum class Rows { plain, curves, all };
 
-/// Row counts of a merge: added, replaced a lower-ranked row, and already present.
+/// Row counts of a merge: added rows, rows that replaced a lower-ranked row, and rows already present.
 struct MergeCounts {
   std::size_t added = 0, replaced = 0, held = 0;
   std::size_t rejected = 0;  ///< rejected draws among the added
 };
 
-/// Names shared by many rows, stored once by the reader.
+/// Names that many rows share; the reader stores each name once.
 using Names = std::set<std::string, std::less<>>;
 
-/// An outcome while reading. Its pointers are valid until the next outcome, except names.
+/// An outcome while reading. The pointers are valid until the next outcome, except pointers to names.
 struct OutcomeView {
   struct Value {
     const std::string* metric;  ///< in the `Names` of the reader
@@ -62,27 +63,28 @@ struct OutcomeView {
 std::string method_note(Kind kind, const std::string& name);
 bool is_method_note(const std::string& key);
 
-/// The results database (SQLite). Rows are unique by (scenario, seed, kind, method, setting); storing again replaces.
-/// Each store is one transaction, so that completed results survive a kill.
+/// The results database (SQLite). Rows are unique by (scenario, seed, kind, method, setting); storing a row again
+/// replaces the old row. Each call of store is one transaction, so that completed results survive the end of the
+/// process.
 class Results {
  public:
   /// `join` is `create_or_append` for callers that only use `absorb`, which itself ensures that each score has an
-  /// outcome. The database then skips this check.
+  /// outcome. In mode `join`, the database skips this check.
   enum class Mode { create_or_append, join, read_only };
-  /// Throws BadInput: missing file (read_only), not a results database, incomplete schema, another build (except
-  /// read_only; note "build"), or no space. All members throw likewise, with the path, also for stored values that are
-  /// not numbers.
+  /// Throws BadInput for a missing file (read_only), a file that is no results database, an incomplete schema, another
+  /// build (except read_only; note "build"), or lack of space. All members throw BadInput with the path, also for
+  /// stored values that are not numbers.
   Results(const std::filesystem::path& path, Mode mode);
   ~Results();
   Results(Results&&) noexcept;
 
-  /// Stores an outcome. Omits scores without a name, which `scores()` returns for outcomes without any. Removes a
-  /// rejection of the same draw.
+  /// Stores an outcome. Scores without a name are omitted; `scores()` returns such a score for an outcome without
+  /// scores. Removes a rejection of the same scenario and seed.
   void store(const Outcome& outcome);
-  /// Stores a rejection. Returns false, without storing, if the draw has an outcome.
+  /// Stores a rejection. Returns false, without storing, if the scenario and seed already have an outcome.
   bool store(const RejectedDraw& rejected);
   void store(const DrawValues& draw);
-  /// Stores a certificate; replaces an existing one of its build.
+  /// Stores a certificate and replaces an existing certificate of its build.
   void store(const Certificate& certificate);
   /// Stores a named text with the results: "suite", "build", "data".
   void set_note(const std::string& key, const std::string& text);
@@ -91,14 +93,14 @@ class Results {
   /// Copies all rows of another database, without notes, by the rule of merge.hpp, with constant memory. Throws
   /// BadInput if two scored rows differ in status, digest or a score other than cost, unless `mixed`.
   void absorb(const Results& shard, bool mixed, MergeCounts& counts);
-  /// Runs `work` in one transaction; stores nothing if it throws, and rethrows.
+  /// Runs `work` in one transaction; if `work` throws, stores nothing and rethrows.
   void in_one_transaction(const std::function<void()>& work);
 
-  /// Returns true if any draw has an outcome or a rejection.
+  /// Returns true if any simulated run has an outcome or a rejection.
   bool has_rows() const;
   /// Returns the row with the scenario, seed, kind, method and setting of `key`, without scores.
   std::optional<Outcome> find(const Outcome& key) const;
-  /// Returns the rows of one draw, curves included, without scores.
+  /// Returns the rows of one scenario and seed, including points of curves, without scores.
   std::vector<Outcome> outcomes_of(const std::string& scenario, std::uint64_t seed) const;
   std::vector<RejectedDraw> rejected_of(const std::string& scenario, std::uint64_t seed) const;
   /// Visits every outcome with its scores, in the order of storing; keeps only the metrics' names in memory.
@@ -108,7 +110,7 @@ class Results {
   std::vector<Outcome> outcomes(Rows rows = Rows::plain) const;
   std::vector<RejectedDraw> rejected(Rows rows = Rows::plain) const;
   std::vector<DrawValues> draws(Rows rows = Rows::plain) const;
-  /// Returns one certificate per build; a merged database may have several.
+  /// Returns one certificate per build; a merged database may have several certificates.
   std::vector<Certificate> certificates() const;
 
  private:

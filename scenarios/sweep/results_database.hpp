@@ -20,7 +20,7 @@ inline constexpr int kSqliteBusy = 5;  // as in sqlite3.h
 inline constexpr const char* kBusy =
     "another program is writing to this database; try again when that program has ended";
 
-/// SQLite's integers are signed, seeds unsigned: keep the bits.
+/// Converts an unsigned seed to SQLite's signed integer with equal bits.
 inline std::int64_t stored_seed(std::uint64_t seed) {
   return std::bit_cast<std::int64_t>(seed);
 }
@@ -28,13 +28,13 @@ inline std::uint64_t read_seed(std::int64_t stored) {
   return std::bit_cast<std::uint64_t>(stored);
 }
 
-/// An open results database, shared by reading (results_reading.cpp) and writing (results.cpp).
+/// An open results database, shared by results_reading.cpp and results.cpp (writing).
 struct Results::Impl {
   std::filesystem::path path;
   SQLite::Database database;
   bool in_transaction = false;  ///< a transaction of the caller
 
-  /// Opens a transaction unless the caller has one.
+  /// Opens a transaction unless the caller already has an open transaction.
   class Transaction {
    public:
     explicit Transaction(Impl& impl) {
@@ -55,13 +55,14 @@ struct Results::Impl {
                  SQLite::OPEN_NOMUTEX |
                      (mode == Mode::read_only ? SQLite::OPEN_READONLY : SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE),
                  kBusyTimeoutMs) {
-    // Rollback journal: one file, readable in a read-only folder, and each store is on the disk before it returns.
+    // Rollback journal: the database is one file, is readable in a read-only folder, and each store is on disk before
+    // the call returns.
     if (mode == Mode::read_only) return;
     database.exec("PRAGMA synchronous = FULL");
     database.exec(mode == Mode::join ? "PRAGMA foreign_keys = OFF" : "PRAGMA foreign_keys = ON");
   }
 
-  // Converts SQLite errors to one line with the path.
+  // Converts SQLite errors to a one-line BadInput with the path.
   template <typename Action>
   auto guarded(Action&& action) const {
     try {
@@ -77,7 +78,7 @@ struct Results::Impl {
 
   void create() {
     SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
-    // another process may have created it while this one waited for the lock
+    // another process may have created the schema while this process waited for the lock
     if (is_empty()) {
       database.exec(kSchema);
       database.exec("PRAGMA application_id = " + std::to_string(kApplicationId));

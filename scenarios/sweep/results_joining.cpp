@@ -21,7 +21,7 @@ namespace {
 
 constexpr const char* kDraw = " WHERE scenario = ? AND seed = ? AND varied = ? AND setting = ? AND kind ";
 
-/// A row of `outcomes` in the shard; its texts are valid until the next row.
+/// A row of the table `outcomes` in the shard; the texts are valid until the next row.
 struct ShardRow {
   std::int64_t id, seed;
   const char *scenario, *kind, *method, *status, *message, *recording_digest, *estimate_digest, *varied;
@@ -29,7 +29,7 @@ struct ShardRow {
 };
 
 /// Copies rows of a shard to another database with prepared statements. Reads outcomes and scores in parallel, sorted
-/// by outcome number. New numbers increase with the old ones, so that scores are appended.
+/// by outcome number. New outcome numbers increase with the old numbers, so that scores are appended.
 class Joining {
  public:
   Joining(SQLite::Database& into, const SQLite::Database& shard, const std::filesystem::path& path, bool mixed,
@@ -62,7 +62,7 @@ class Joining {
     draws.flush();
   }
 
-  /// Only for draws without an outcome.
+  /// Copies rejections of scenarios and seeds without an outcome.
   void join_rejections() {
     SQLite::Statement select(shard_, std::string(kColumns) + "WHERE kind = '' ORDER BY id");
     SQLite::Statement ran(into_, std::string("SELECT 1 FROM outcomes") + kDraw + "<> '' LIMIT 1");
@@ -110,7 +110,7 @@ class Joining {
     statement.bind(4, row.setting);
   }
 
-  /// Advances to the next row; errors include the shard's path.
+  /// Advances to the next row; error messages include the path of the shard.
   bool next(SQLite::Statement& select) const {
     try {
       return select.executeStep();
@@ -119,7 +119,7 @@ class Joining {
     }
   }
 
-  /// Returns the number of changed rows.
+  /// Executes the statement and returns the number of changed rows.
   static int run(SQLite::Statement& statement) {
     const int changed = statement.exec();
     statement.reset();
@@ -138,7 +138,7 @@ class Joining {
     throw BadInput(path_.string() + ": unknown kind '" + name + "'");
   }
 
-  /// Returns false if a row with the same key exists.
+  /// Returns false if a row with an equal key exists.
   bool insert(const ShardRow& row) {
     insert_.bindNoCopy(1, row.scenario);
     insert_.bind(2, row.seed);
@@ -153,7 +153,7 @@ class Joining {
     return run(insert_) == 1;
   }
 
-  /// Inserts or replaces the row; returns true if it was stored, with its number in `id`.
+  /// Inserts or replaces the row; returns true if the row was stored, with the number of the row in `id`.
   bool take(const ShardRow& row, std::int64_t& id) {
     require_kind(row.kind);
     const OutcomeStatus own = status(row.status);
@@ -174,7 +174,7 @@ class Joining {
     return true;
   }
 
-  /// Removes the existing row if the new one outranks it.
+  /// Removes the existing row if the new row outranks it.
   bool replaces_held(const ShardRow& row, OutcomeStatus own) {
     scores_into_.flush();
     held_.bindNoCopy(1, row.scenario);
@@ -199,7 +199,7 @@ class Joining {
     }
     if (outranks(known, own) || mixed_ || !was_scored(known)) return false;
     if (own != known || estimate != row.estimate_digest ||
-        // Lidars are not simulated if only rates are wanted, so the recording's digest is not compared for kind rate.
+        // Lidars are not simulated if only rate methods run, so the recording's digest is not compared for kind rate.
         (std::string(to_string(Kind::rate)) != row.kind && recording != row.recording_digest))
       complain(row, status_text, estimate);
     require_same_scores(row, id);
@@ -212,7 +212,7 @@ class Joining {
         path_.string(), words(row), row.status, row.estimate_digest, known, digest));
   }
 
-  /// Rows with one digest must have bit-identical scores, except costs.
+  /// Rows with equal digests must have bit-identical scores, except costs.
   void require_same_scores(const ShardRow& row, std::int64_t held) {
     std::map<std::string, double> known;
     held_scores_.bind(1, held);

@@ -7,10 +7,11 @@
 
 namespace tumble::scenarios {
 
-// Seeds are unsigned 64-bit numbers, stored as signed numbers with the same bits. A rejected draw is an outcome with
-// empty kind and method and status 'rejected'. The view `scores` has a row per score, and one with a null metric for an
-// outcome without scores. A point of a curve has its keys in `varied` and their value in `setting`. `varied` is empty
-// for unmodified scenarios and methods, the only rows in `scores`; points of curves are in the view `curves`.
+// Seeds are unsigned 64-bit numbers, stored as signed numbers with equal bits. A rejected run is an outcome with empty
+// kind and method and status 'rejected'. The view `scores` has a row for each score, and a row with a null metric for
+// an outcome without scores. A point of a curve has its keys in `varied` and their value in `setting`. `varied` is
+// empty for unmodified scenarios and methods; the view `scores` only contains rows with empty `varied`, and the view
+// `curves` contains points of curves.
 const char* const kSchema = R"sql(
 CREATE TABLE notes (
   key TEXT PRIMARY KEY NOT NULL,
@@ -74,7 +75,8 @@ CREATE TABLE certificates (
 
 namespace {
 
-/// Returns "table outcomes", "column seed of table outcomes", "view scores". Columns of views follow from the tables.
+/// Returns names such as "table outcomes", "column seed of table outcomes", "view scores". The columns of views are
+/// omitted, because they follow from the tables.
 std::set<std::string> parts_of(const SQLite::Database& database) {
   std::set<std::string> parts;
   SQLite::Statement objects(database, "SELECT type || ' ' || name FROM sqlite_master WHERE type IN ('table', 'view')");
@@ -92,7 +94,7 @@ std::string missing_of_schema(const SQLite::Database& database) {
   SQLite::Database model(":memory:", SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
   model.exec(kSchema);
   const std::set<std::string> found = parts_of(database);
-  // A missing table is reported before its columns and views.
+  // A missing table is reported before missing columns and views.
   std::string missing;
   for (const std::string& part : parts_of(model)) {
     if (found.contains(part)) continue;

@@ -11,10 +11,10 @@
 #include <string_view>
 #include <vector>
 
-/// Fast insertion of many rows into a results database.
+/// Inserts many rows into a results database with little cost per row.
 namespace tumble::scenarios {
 
-// SQLite has no NaN: store null instead.
+// Binds null for NaN, because SQLite has no NaN.
 inline void bind_number(double value, SQLite::Statement& to, int index) {
   if (std::isnan(value))
     to.bind(index);
@@ -22,7 +22,7 @@ inline void bind_number(double value, SQLite::Statement& to, int index) {
     to.bind(index, value);
 }
 
-/// Stores each of the texts shared by many rows once.
+/// Stores each text that many rows share only once.
 class Kept {
  public:
   const std::string& operator()(std::string_view text) {
@@ -74,7 +74,8 @@ struct DrawValue {
   }
 };
 
-/// Inserts rows in order, many per statement, because each statement has a fixed cost as large as a row's.
+/// Inserts rows in order, with many rows per statement, because a statement has a fixed cost as large as the cost of a
+/// row.
 template <typename Row>
 class RowsInto {
  public:
@@ -84,7 +85,7 @@ class RowsInto {
     rows_.push_back(row);
     if (rows_.size() == kMany) flush();
   }
-  /// Must be called before the rows are read.
+  /// Writes waiting rows; must be called before the rows are read.
   void flush() {
     if (rows_.size() == kMany) {
       for (std::size_t i = 0; i < kMany; ++i) rows_[i].bind(many_, static_cast<int>(i) * Row::kColumns);

@@ -16,7 +16,7 @@
 
 namespace tumble::scenarios {
 
-/// Results of one situation: the recording, and each method's estimate and outcome.
+/// Results of one situation: the recording, and the estimate and outcome of each method.
 struct RunResult {
   std::string scenario;
   std::uint64_t seed = 0;
@@ -31,8 +31,8 @@ struct RunResult {
 };
 
 /// Draws, simulates, estimates and scores one situation in this process. Skips methods that do not apply to the robot.
-/// With a `setting` the run is that point of a sweep's curve (variation.hpp), and the recording is the methods' input.
-/// Throws BadInput, sim::InvalidSituation, sim::SimulationFailure.
+/// With a `setting`, the run is that point of a sweep's curve (variation.hpp), and the recording contains the sensor
+/// data that the methods receive. Throws BadInput, sim::InvalidSituation, sim::SimulationFailure.
 RunResult run_situation(const DataRoot& data, const Scenario& scenario, std::uint64_t seed,
                         std::span<const MethodPointer> methods, int threads, Lidars lidars = Lidars::simulated,
                         const Setting& setting = {});

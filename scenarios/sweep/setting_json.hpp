@@ -7,7 +7,7 @@
 
 namespace tumble::scenarios {
 
-/// Converts a setting to a JSON pair of key and value. Private to scenarios/sweep.
+/// Converts a setting to a JSON pair of key and value. Used only within scenarios/sweep.
 nlohmann::json to_json(const Setting& setting);
 Setting setting_from(const nlohmann::json& pair);
 

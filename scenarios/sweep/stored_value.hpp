@@ -11,8 +11,8 @@
 
 namespace tumble::scenarios {
 
-/// Reads a number from a results database; null is NaN. SQLite columns may also contain text and blobs, which SQLite
-/// would convert to 0: throws BadInput with the path and `row()`, a description of the row.
+/// Reads a number from a results database; null becomes NaN. Throws BadInput with the path and `row()`, a description
+/// of the row, if the column contains text or a blob, because SQLite would convert text and blobs to 0.
 template <typename Row>
 double stored_value(const SQLite::Column& column, const std::filesystem::path& path, const Row& row) {
   const int type = column.getType();

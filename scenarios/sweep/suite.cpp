@@ -36,7 +36,7 @@ void read_seeds(const YamlNode& node, Suite& suite) {
   if (suite.last_seed < suite.first_seed) node.fail("the last seed is below the first");
 }
 
-/// Splits "a + b" into its keys.
+/// Splits a text such as "a + b" into its keys.
 std::vector<std::string> keys_of(const std::string& text, const YamlNode& node) {
   std::vector<std::string> keys;
   std::stringstream stream(text + "+");  // a trailing separator must give an empty key, which is rejected later
@@ -96,7 +96,7 @@ void read_scenarios(const DataRoot& data, const YamlNode& node, Suite& suite) {
   if (suite.scenarios.empty()) node.fail("needs at least one scenario");
 }
 
-/// Reads `draws: {mild: {hill: [3, 8]}}`: scenarios with their seeds.
+/// Reads `draws: {mild: {hill: [3, 8]}}`: classes of scenarios with their seeds.
 void read_classes(const DataRoot& data, const YamlNode& node, Suite& suite) {
   const std::vector<std::string> known = scenario_names(data);
   std::set<std::pair<std::string, std::uint64_t>> seen;
@@ -140,7 +140,7 @@ void read_recordings(const YamlNode& node, Suite& suite) {
   if (suite.recordings.empty()) node.fail("needs at least one recording");
 }
 
-/// Reads the suite's content: recordings, named draws, or scenarios with seeds.
+/// Reads the content of the suite: recordings, named runs, or scenarios with seeds.
 void read_draws(const DataRoot& data, const YamlNode& root, const std::map<std::string, YamlNode>& fields,
                 Suite& suite) {
   if (fields.contains("recordings")) {
@@ -169,7 +169,7 @@ std::string method_name(const std::string& text, const std::filesystem::path& fo
   return is_method_file(text) ? (folder / text).string() : text;
 }
 
-// Check names early, so that a misspelt suite does not start.
+// Names are checked early, so that a suite with a misspelt name does not start.
 void require_no_scenario(const YamlNode& root) {
   if (!root.is_map()) return;
   for (const auto& [key, value] : root.entries()) {

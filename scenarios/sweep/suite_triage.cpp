@@ -21,7 +21,7 @@ namespace {
 
 constexpr char kBetween = '\t';  // separates the input's name from its outcome; no name contains a tab
 
-/// Runs in the draw's process: writes each row as a line, then an empty line or an error.
+/// Runs in the process of a simulated run: writes each triage row as a line, then an empty line or an error.
 void report_rows(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, const Method& method,
                  const SuiteTriageOptions& options, int fd) {
   const auto report_trouble = [&](const std::string& why) {
@@ -48,7 +48,7 @@ std::string doc_of(const std::string& input) {
   return "unchanged recording";
 }
 
-/// Reads the rows of a process. Returns false if it did not complete.
+/// Reads the triage rows that a process wrote. Returns false if the process did not complete.
 bool read_rows(const std::string& text, const Failure& failure, DrawTriage& out) {
   std::size_t begin = 0;
   for (std::size_t end; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
@@ -75,7 +75,7 @@ struct Worker {
   std::string said;
 };
 
-/// Finishes a draw whose process has ended or timed out.
+/// Finishes a simulated run whose process has ended or timed out.
 void conclude(Worker& worker, bool late, const Failure& failure, DrawTriage& draw) {
   if (late) worker.process.kill();
   const Process::End end = worker.process.wait();
@@ -83,7 +83,7 @@ void conclude(Worker& worker, bool late, const Failure& failure, DrawTriage& dra
   draw.trouble = late ? "the draw did not finish within its time limit" : "the draw's process " + end.describe();
 }
 
-/// Starts the process of a draw. Returns false if another process must end first.
+/// Starts the process of a simulated run. Returns false if another process must end first.
 bool begin(std::list<Worker>& workers, std::size_t index, double deadline_s, const std::function<void(int)>& work) {
   try {
     workers.push_back({index, deadline_s, Process(work, true), {}});

@@ -13,21 +13,21 @@
 #include "scenarios/sweep/sweep.hpp"
 #include "scenarios/sweep/triage.hpp"
 
-/// Triage of many draws: finds which true input helps most over a suite.
+/// Runs the triage for many simulated runs and finds which true input helps most over a suite.
 namespace tumble::scenarios {
 
-/// Triage result of one draw.
+/// Triage result of one simulated run.
 struct DrawTriage {
   DrawName draw;
   std::vector<TriageRow> rows;  ///< as returned by triage(); the first is the unmodified draw
   std::string trouble;          ///< why rows are missing: simulation impossible, process died or timed out
 };
 
-/// Returns the suite's draws for the method's robots, in a sweep's order with seeds outermost. Throws BadInput if the
-/// seeds are invalid.
+/// Returns scenarios and seeds of the suite for the method's robots, in the order of a sweep with seeds as the outer
+/// loop. Throws BadInput if the seeds are invalid.
 std::vector<DrawName> draws_of(const DataRoot& data, const Suite& suite, const Method& method);
 
-/// Returns the plain draws on which the method failed in `results`.
+/// Returns the unmodified simulated runs on which the method failed in `results`.
 std::set<DrawName> failed_draws(const Results& results, const Method& method, const Failure& failure);
 
 struct SuiteTriageOptions {
@@ -38,10 +38,10 @@ struct SuiteTriageOptions {
   std::function<void(const DrawTriage&)> on_draw;  ///< called after each draw
 };
 
-/// Runs triage for each draw in a separate process, limited to `memory_mib` and to the time of its runs plus two. A
-/// process that dies or times out leaves its completed rows and an error. The order is that of `draws`; the list is
-/// shorter if stopped. Throws BadInput for an unreadable scenario, an invalid memory limit, or if no process can be
-/// started.
+/// Runs the triage of each simulated run in a separate process, limited to `memory_mib` and to the time of its method
+/// runs plus two. If a process dies or times out, its completed rows remain, with an error. The order is that of
+/// `draws`; the list is shorter if the triage was stopped. Throws BadInput for an unreadable scenario, an invalid
+/// memory limit, or if no process can be started.
 std::vector<DrawTriage> triage_draws(const DataRoot& data, std::span<const DrawName> draws, const Method& method,
                                      const SuiteTriageOptions& options);
 

@@ -40,7 +40,7 @@ void claim(Results& results, const DataRoot& data, const Suite& suite, const std
   if (!suite.recordings.empty()) results.set_note("source", kRecordingsSource);
 }
 
-/// Stores absolute paths, so that each run can be repeated from any folder (run_again.hpp).
+/// Stores absolute paths, so that each method run can be repeated from any folder (run_again.hpp).
 void note_descriptions(Results& results, const Suite& suite) {
   for (const std::string& name : suite.methods) {
     if (!is_method_file(name)) continue;
@@ -50,7 +50,7 @@ void note_descriptions(Results& results, const Suite& suite) {
   }
 }
 
-/// Rejects rows of two versions of an external method under one name.
+/// Throws BadInput for rows of two versions of an external method under one name.
 void claim_methods(Results& results, std::span<const MethodPointer> methods) {
   for (const MethodPointer& method : methods) {
     if (method->info.version.empty()) continue;
@@ -95,7 +95,7 @@ class Sweep {
 
   bool stopped() const { return options_.stop != nullptr && options_.stop->load(); }
 
-  /// Runs until all draws are complete, or stopped.
+  /// Runs until all tasks are complete, or until the sweep is stopped.
   void work(const NextDraw& next) {
     std::optional<DrawTask> waiting = next();
     while (!stopped()) {
@@ -108,7 +108,7 @@ class Sweep {
       }
       report();
     }
-    // Store the messages that stopped workers had sent.
+    // Messages that stopped workers had sent are still stored.
     for (DrawWorker& worker : workers_) {
       const bool busy = worker.is_busy();
       hear(worker);
@@ -122,7 +122,7 @@ class Sweep {
         std::count_if(workers_.begin(), workers_.end(), [](const DrawWorker& worker) { return worker.is_busy(); }));
   }
 
-  /// Returns the next draw with something to run.
+  /// Returns the next task with a method to run.
   std::optional<DrawTask> next_draw() {
     for (; !plan_.at_end() && !stopped(); plan_.advance()) {
       DrawTask task = plan_.next(results_);
@@ -136,7 +136,7 @@ class Sweep {
     return std::nullopt;
   }
 
-  /// Gives the draw to an idle or new worker; false if none is available.
+  /// Passes the task to an idle or new worker; returns false if no worker is available.
   bool give(const DrawTask& task) {
     if (busy() >= options_.jobs) return false;
     const double deadline_s = now_s() + suite_.timeout_s * (static_cast<double>(task.runs.size()) + kSimulateTimeouts);
@@ -168,7 +168,7 @@ class Sweep {
     poll(waiting.data(), waiting.size(), kPollMs);
   }
 
-  /// Stores a worker's messages. Returns true if the worker died during a draw.
+  /// Stores a worker's messages. Returns true if the worker died during a task.
   bool serve(DrawWorker& worker) {
     if (!worker.is_busy()) return false;
     const bool open = hear(worker);
@@ -200,7 +200,7 @@ class Sweep {
     return open;
   }
 
-  // The process of a draw died: its remaining runs have no answer.
+  // The process of a task died, so the remaining method runs of the task have no result.
   void account_for_death(const DrawTask& draw, bool late, const Process::End& end) {
     const std::string what =
         late ? "the draw did not finish within its time limit" : "the draw's process " + end.describe();
@@ -218,8 +218,8 @@ class Sweep {
     if (outcome.status != OutcomeStatus::ok) ++progress_.failures[outcome.status];
   }
 
-  /// Updates the kept draws to match the results: reproduces missing ones, removes obsolete ones. File system errors do
-  /// not fail the sweep.
+  /// Updates the kept runs to match the results: reproduces missing runs and removes obsolete runs. File system errors
+  /// do not fail the sweep.
   void update_kept() {
     updating_kept_ = true;
     const std::set<DrawName> wanted = draws_to_keep(results_, options_.keep);

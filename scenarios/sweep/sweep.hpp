@@ -21,14 +21,14 @@
 
 namespace tumble::scenarios {
 
-/// A class of draws ("mild"), each with scenario and seed.
+/// A class of simulated runs ("mild"); each run is a scenario and a seed.
 struct DrawClass {
   std::string name;
   std::vector<std::pair<std::string, std::uint64_t>> draws;
 };
 
-/// A suite file, scenarios/suites/NAME.yaml: scenarios x seeds x methods, repeated for each point of each curve; or
-/// recordings x methods, with each recording as one draw (recorded_draw.hpp).
+/// A suite file, scenarios/suites/NAME.yaml: scenarios x seeds x methods, repeated for each point of each curve, or
+/// recordings x methods (recorded_draw.hpp).
 struct Suite {
   std::string name;
   std::string doc;
@@ -44,16 +44,17 @@ struct Suite {
                                             ///< "+"
 
   bool has_draw(const std::string& scenario, std::uint64_t seed) const;
-  /// Returns the number of plain draws from `first_seed` to `last_seed`, which may be a shard's.
+  /// Returns the number of unmodified simulated runs from `first_seed` to `last_seed`, which may be the seeds of a
+  /// shard.
   std::uint64_t draw_count() const;
 };
 
-/// Throws BadInput if the last seed is below the first, or the range exceeds the limit of a sweep.
+/// Throws BadInput if the last seed is below the first seed, or if the range exceeds the limit of a sweep.
 void require_seeds(const Suite& suite);
 
 std::vector<std::string> suite_names(const DataRoot& data);
-/// Loads a suite by name, a suite file, or a scenario's name (all methods on this scenario; for a named case its own
-/// seed). Throws BadInput.
+/// Loads a suite by name, from a suite file, or from a scenario's name. A scenario's name gives a suite of all methods
+/// on this scenario; a named case uses its own seed. Throws BadInput if the name is unknown or the file is invalid.
 Suite load_suite(const DataRoot& data, const std::string& name);
 
 struct SweepProgress {
@@ -67,7 +68,7 @@ struct SweepProgress {
   std::uint64_t not_ok() const;
 };
 
-/// Default memory limit of a worker, equal to that of an external command (processes/command.hpp).
+/// Default memory limit of a worker, equal to the limit of an external command (processes/command.hpp).
 inline constexpr double kWorkerMemoryMib = 8192.0;
 /// Throws BadInput if a worker's memory limit is too small or too large.
 void require_worker_memory(double mib);
@@ -80,27 +81,29 @@ struct SweepOptions {
   std::vector<OutcomeStatus> again;  ///< repeat rows with these statuses: crashed, timeout, killed
   Keep keep;                         ///< which draws are kept next to the database; none: kept files are unchanged
   RecordingInfo versions;            ///< versions of program and engine, for kept recordings
-  /// Simulates draws without lidars if their built-in methods read none. Estimates and scores are the same, but the
-  /// recording's digest differs. Not with `keep`.
+  /// Simulates without lidars if the built-in methods of the suite read no lidar. Estimates and scores are unchanged
+  /// without lidars, but the recording's digest differs. The option cannot be combined with `keep`.
   bool recordings_unseen = false;
 };
 
 /// Throws BadInput for invalid options: jobs, seeds, statuses to repeat, keep rule, memory.
 void require_sound(const Suite& suite, const SweepOptions& options);
 
-/// Opens or creates the database for this suite, build, models and scenarios. Throws BadInput if it belongs to others.
+/// Opens or creates the database for this suite, build, models and scenarios. Throws BadInput if the database belongs
+/// to another suite, build, models or scenarios.
 Results open_results(const DataRoot& data, const Suite& suite, const std::filesystem::path& database);
 
-/// Runs what the database does not contain yet. Workers (draw_worker.hpp) run each method in a separate process. A
-/// crash, time-out or memory failure becomes an outcome (crashed, timeout, killed) and never stops the sweep. Outcomes
-/// are stored as they complete. Draws are planned one at a time, so memory does not grow with their number.
+/// Executes the runs that the database does not contain yet. Workers (draw_worker.hpp) run each method in a separate
+/// process. A crash, time-out or memory failure becomes an outcome (crashed, timeout, killed) and never stops the
+/// sweep. Outcomes are stored as they complete. Simulated runs are planned one at a time, so memory does not grow with
+/// their number.
 ///
-/// At the end, the kept draws match the keep rule. Rejects a recording whose rows were made from other data (another
-/// digest). Returns the final progress; draws_done < draws_total if stopped. Throws BadInput if no method applies to
-/// any scenario.
+/// At the end, the kept runs match the keep rule. Throws BadInput for a recording whose rows were made from other data
+/// (another digest). Returns the final progress; draws_done < draws_total if stopped. Throws BadInput if no method
+/// applies to any scenario.
 SweepProgress sweep(const DataRoot& data, const Suite& suite, const DatabaseOwner& database,
                     const SweepOptions& options);
-/// The same; owns the database while it runs. Throws BadInput if another process owns it.
+/// Executes the sweep and owns the database during the sweep. Throws BadInput if another process owns the database.
 SweepProgress sweep(const DataRoot& data, const Suite& suite, const std::filesystem::path& database,
                     const SweepOptions& options);
 

@@ -15,7 +15,8 @@ namespace {
 
 using nlohmann::json;
 
-// Fraction of a method's time-out for an external command, so that the process that knows its children ends it first.
+// Fraction of a method's time limit that an external command receives, so that the process that started the command
+// ends it first.
 constexpr double kOwnShare = 0.9;
 
 }  // namespace
@@ -46,7 +47,7 @@ SweepPlan::SweepPlan(const DataRoot& data, const Suite& suite, const SweepOption
       std::all_of(recordings_.begin(), recordings_.end(), idle)) {
     throw BadInput("suite " + suite.name + ": none of its methods applies to its scenarios");
   }
-  // A catalogue that cannot be drawn from is the caller's error, not an outcome.
+  // If no situation can be drawn from a scenario of the catalogue, this is an error of the caller, not an outcome.
   for (const Planned& each : scenarios_) draw(data, each.scenario, suite.first_seed);
   next_.seed = suite.first_seed;
   next_.past_seeds = scenarios_.empty();
@@ -102,7 +103,7 @@ DrawTask SweepPlan::next(const Results& results) const {
   return next_.recording < recordings_.size() ? of_recording(results) : of_scenario(results);
 }
 
-/// Adds runs without a row for `setting`, or with a row to be repeated.
+/// Adds method runs without a row for `setting`, or with a row to be repeated.
 void SweepPlan::add_missing(const std::vector<MethodPointer>& methods, const std::vector<Outcome>& held,
                             const Setting& setting, DrawTask& task) const {
   const auto stands = [&](const MethodInfo& info) {
@@ -165,8 +166,8 @@ DrawTask SweepPlan::again(const DrawName& draw, const Results& results) const {
   return task;
 }
 
-/// Returns true if any method of a draw reads lidars, in this sweep or an earlier one. Remaining and completed runs
-/// alone do not show this.
+/// Returns true if any method reads lidars on the scenario and seed, in this sweep or in an earlier sweep. Neither the
+/// remaining nor the completed method runs alone reveal whether lidars are read.
 bool SweepPlan::read_lidars(const Planned& planned, const std::vector<Outcome>& held) const {
   const auto reads = [](Kind kind) { return kind != Kind::rate; };
   return std::any_of(planned.methods.begin(), planned.methods.end(),

@@ -14,12 +14,12 @@
 
 namespace tumble::scenarios {
 
-/// Iterates over the draws of a suite with the runs on each, in constant memory. Workers forked later can parse the
-/// tasks that it writes as lines.
+/// Iterates over the scenarios and seeds of a suite, with the method runs on each, in constant memory. Workers that are
+/// forked later can parse the tasks that the plan writes as lines.
 class SweepPlan {
  public:
-  /// Throws BadInput: unknown method, scenario or recording, a catalogue that cannot be drawn from, or no method that
-  /// applies.
+  /// Throws BadInput for an unknown method, scenario or recording, a catalogue from which no situation can be drawn, or
+  /// if no method applies.
   SweepPlan(const DataRoot& data, const Suite& suite, const SweepOptions& options,
             const std::filesystem::path& database);
 
@@ -30,19 +30,20 @@ class SweepPlan {
   const std::vector<MethodPointer>& methods() const { return methods_; }
   /// Throws BadInput if the results contain rows of an older import of a recording.
   void require_same_recordings(const Results& results) const;
-  /// Stores the paths of the recordings, so that their runs can be repeated (run_again.hpp).
+  /// Stores the paths of the recordings, so that the method runs can be repeated (run_again.hpp).
   void note_recordings(Results& results) const;
 
   /// Recordings come first, then seeds as the outer loop, so that a stopped sweep covers all scenarios and curve
   /// points.
   bool at_end() const { return next_.recording == recordings_.size() && next_.past_seeds; }
   void advance();
-  /// Returns the next draw with the runs that have no row yet or are to be repeated.
+  /// Returns the next task, with the method runs that have no row yet or that are to be repeated.
   DrawTask next(const Results& results) const;
 
-  /// Returns true for a draw of the suite's scenarios, for any seed.
+  /// Returns true if the scenario belongs to the suite, for any seed.
   bool has(const DrawName& draw) const;
-  /// Returns a draw that the suite `has` with its completed runs, to be kept.
+  /// Returns a task that repeats the completed method runs of a scenario and seed of the suite, so that their files are
+  /// kept.
   DrawTask again(const DrawName& draw, const Results& results) const;
 
   std::string to_line(const DrawTask& task) const;
@@ -66,7 +67,7 @@ class SweepPlan {
     bool past_seeds = false;
   };
 
-  /// Returns true if the next draw is one of the suite's named draws, or none are named.
+  /// Returns true if the next scenario and seed belong to the suite's named runs, or if the suite names no runs.
   bool is_wanted() const;
   void step();
   void add_missing(const std::vector<MethodPointer>& methods, const std::vector<Outcome>& held, const Setting& setting,

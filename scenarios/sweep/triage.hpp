@@ -10,16 +10,17 @@
 
 namespace tumble::scenarios {
 
-/// One input of a method and how to replace it by its truth. Registered in one line each.
+/// One input of a method, and a function that replaces the input by its truth. An input is registered in one line of
+/// true_inputs.cpp.
 struct TrueInput {
   std::string name;
   std::string doc;
-  /// Replaces the input in `sensors`, which belong to `truth`. Returns false if the recording has no such input or it
-  /// is exact already.
+  /// Replaces the input in `sensors`, which belong to `truth`. Returns false if the recording has no such input or if
+  /// the input is already exact.
   bool (*replace)(sim::Sensors& sensors, const sim::Truth& truth);
 };
 
-/// Returns all inputs; the last is all of them at once.
+/// Returns all inputs; the last entry replaces all inputs at once.
 std::span<const TrueInput> true_inputs();
 
 /// Criteria of a failure: a status other than ok, a failing verdict (`map_failed`), or a metric beyond a limit.
@@ -43,10 +44,10 @@ struct TriageOptions {
   std::function<void(const TriageRow&)> on_row;  ///< called after each row
 };
 
-/// Runs a method on the unmodified draw, then with each input replaced by its truth, in separate processes. All runs
-/// are scored against the same truth and the original sensors. The first row is the unmodified draw. Errors that no
-/// true input removes come from the method or the scenario. Throws what simulate_draw throws; BadInput if the method
-/// does not apply to the scenario.
+/// Runs a method on the unmodified sensor data, then with each input replaced by its truth, in separate processes. All
+/// runs are scored against one truth and the original sensor data. The first row belongs to the unmodified sensor data.
+/// Errors that no true input removes come from the method or the scenario. Throws the exceptions of simulate_draw for
+/// the simulation, and BadInput if the method does not apply to the scenario.
 std::vector<TriageRow> triage(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, const Method& method,
                               const TriageOptions& options);
 

@@ -5,11 +5,12 @@
 
 namespace tumble::scenarios {
 
-/// Subfolder for incomplete folders, next to the complete ones.
+/// Subfolder for incomplete folders, next to the complete folders.
 inline constexpr const char* kUnfinished = ".unfinished";
 
-/// A folder under construction, WITHIN/.unfinished/NAME, until it is moved to its final path; else removed. Only one
-/// process may build a given folder at a time. Throws std::filesystem::filesystem_error.
+/// A folder under construction, WITHIN/.unfinished/NAME, until it is moved to its final path; otherwise the folder is
+/// removed. Only one process at a time may build a folder with a name. Throws std::filesystem::filesystem_error on
+/// failure.
 class UnfinishedFolder {
  public:
   UnfinishedFolder(const std::filesystem::path& place, const std::filesystem::path& within);

@@ -16,7 +16,7 @@ namespace {
 using Eigen::Vector3d;
 
 /// One cell of a field below a part of a strut's axis, relative to the cell's first corner. The engine divides a cell
-/// along the diagonal from its first to its last corner.
+/// along the diagonal from the cell's first to its last corner.
 class Cell {
  public:
   Cell(const Field& field, int row, int column, const Strut& strut, const Part& over)
@@ -49,11 +49,11 @@ class Cell {
  private:
   Vector3d first() const { return {0, 0, heights_m_[0]}; }
   Vector3d last() const { return {dx_, dy_, heights_m_[2]}; }
-  /// Distance from the diagonal; positive below it.
+  /// Returns the distance from the diagonal; positive below the diagonal.
   double beside_diagonal_m(const Vector3d& p_m) const {
     return (p_m.x() * dy_ - p_m.y() * dx_) / std::sqrt(dx_ * dx_ + dy_ * dy_);
   }
-  /// True if the axis is out of reach above the plane through the first corner with these slopes.
+  /// Returns true if the axis is out of reach above the plane through the first corner with these slopes.
   bool above_plane(double slope_x, double slope_y) const {
     const auto above_m = [&](const Vector3d& p_m) {
       return p_m.z() - heights_m_[0] - slope_x * p_m.x() - slope_y * p_m.y();
@@ -102,7 +102,8 @@ bool turned(const mjData& data, int geom) {
   return turn[0] != 1.0 || turn[4] != 1.0 || turn[8] != 1.0;
 }
 
-/// The engine's own function. The first call reads it from the table, before it is replaced.
+/// Returns the collision function of the engine. The first call reads the function from the engine's table, before the
+/// function is replaced.
 mjfCollision engines_own() {
   static const mjfCollision kOwn = mjCOLLISIONFUNC[mjGEOM_HFIELD][mjGEOM_CAPSULE];
   return kOwn;

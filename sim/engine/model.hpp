@@ -10,7 +10,8 @@
 
 #include "sim/situation.hpp"
 
-/// Private to sim: mujoco.h is included only by headers in this folder and headers next to the sources that need them.
+/// Used only within sim: mujoco.h is included only by headers in this folder and by headers next to the sources that
+/// need mujoco.h.
 namespace tumble::sim::engine {
 
 struct ModelDeleter {
@@ -22,7 +23,8 @@ struct DataDeleter {
 using ModelPtr = std::unique_ptr<mjModel, ModelDeleter>;
 using DataPtr = std::unique_ptr<mjData, DataDeleter>;
 
-/// A rectangle of floor with its own sliding friction, which applies while the robot touches inside it.
+/// A rectangle of floor with its own sliding friction, which applies while the robot touches the floor inside the
+/// rectangle.
 struct FrictionPatch {
   double centre_x_m, centre_y_m, half_x_m, half_y_m, yaw_rad, friction;
   bool contains(double x_m, double y_m) const;

@@ -35,7 +35,7 @@ double distance_m(const Box& box, const Vector3d& p_m) {
   return ((p_m - box.head<3>()).cwiseAbs() - box.tail<3>()).cwiseMax(0.0).norm();
 }
 
-/// Largest distance of a robot geom from its body's origin; negative if a geom is unbounded.
+/// Returns the largest distance of a robot geom from the origin of its body; negative if a geom is unbounded.
 double reach_of_robot_m(const mjModel& model) {
   double reach_m = 0.0;
   for (int i = 0; i < model.ngeom; ++i) {
@@ -87,7 +87,7 @@ void NearGeoms::around(const Vector3d& p_WB_m) {
     if (leaf.always || distance_m(leaf.box, p_WB_m) <= reach_m_ + kMargin_m) near_.push_back(leaf);
   }
   if (near_.empty()) near_.push_back(leaves_.front());  // a tree needs at least one leaf
-  // unbounded geoms first, so that they do not widen the boxes of the others
+  // unbounded geoms come first, so that they do not widen the boxes of the bounded geoms
   std::stable_partition(near_.begin(), near_.end(), [](const Leaf& leaf) { return leaf.always; });
   planted_ = 0;
   plant(near_.begin(), near_.end());

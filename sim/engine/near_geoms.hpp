@@ -8,22 +8,23 @@
 
 namespace tumble::sim::engine {
 
-/// Restricts the engine's tree over the world's geoms to those that a floating robot may touch soon, and restores the
-/// compiler's tree at the end. The engine tests the remaining pairs as before and sorts contacts by geom, so that the
-/// motion stays bit-identical. Planes and height fields are always in the tree, with unbounded boxes, because testing
-/// their boxes is not worthwhile. Models with other moving bodies, or without a tree, are unchanged.
+/// Restricts the engine's tree over the world's geoms to geoms that a floating robot may touch soon; the destructor
+/// restores the compiler's tree. The engine tests the remaining pairs as without the restriction and sorts contacts by
+/// geom, so the motion stays bit-identical. Planes and height fields are always in the tree, with unbounded boxes,
+/// because testing their boxes saves no time. Models with other moving bodies, or without a tree, are unchanged.
 class NearGeoms {
  public:
-  /// `model` must outlive this object, and must not be copied while it exists.
+  /// `model` must outlive this object, and must not be copied while this object exists.
   explicit NearGeoms(mjModel& model);
   ~NearGeoms();
   NearGeoms(const NearGeoms&) = delete;
   NearGeoms& operator=(const NearGeoms&) = delete;
 
-  /// True if a single floating body is the only moving one.
+  /// Returns true if a single floating body is the only moving body.
   static bool serves(const mjModel& model);
 
-  /// Call before each step with the position of the robot's body. Valid for a step of at most 0.2 m.
+  /// Selects the geoms near the robot; must be called before each step with the position of the robot's body. The
+  /// selection is valid for a step of at most 0.2 m.
   void around(const Eigen::Vector3d& p_WB_m);
 
  private:

@@ -12,20 +12,20 @@
 
 namespace tumble::sim::engine {
 
-/// Simulates one robot in one world step by step (RK4). Its state is that of the body that carries the sensors. Any
+/// Simulates one robot in one world step by step (RK4). The state is that of the body that carries the sensors. Any
 /// warning of the engine ends the run, because lost contacts or invalid numbers would make the data worthless.
 class Physics {
  public:
-  /// Modifies `world`'s model: the floor's friction follows the contact's position, and the tree over the world's geoms
-  /// follows the robot until this object is destroyed. `world` must outlive this object.
+  /// Modifies `world`'s model until this object is destroyed: the floor's friction follows the contact's position, and
+  /// the tree over the world's geoms follows the robot. `world` must outlive this object.
   explicit Physics(World& world);
 
   double step_s() const { return world_.model->opt.timestep; }
   BodyState state() const;
-  /// Throws InvalidSituation for a robot on joints, unless its pose is unchanged; then only the time is set.
+  /// Throws InvalidSituation for a robot on joints, unless its pose is unchanged; in this case only the time is set.
   void set_state(const BodyState& state);
 
-  /// Returns angle and angular velocity of a hinge by name. Throws InvalidSituation if the robot has no hinge of that
+  /// Returns angle and angular velocity of a hinge by name. Throws InvalidSituation if the robot has no hinge of this
   /// name.
   double joint_rad(const std::string& name) const;
   double joint_rate_rad_s(const std::string& name) const;
@@ -36,9 +36,9 @@ class Physics {
   /// robot that left its world.
   void step(const Wrench& wrench);
 
-  /// Appends the robot's contacts with the world at the end of the last step, in arbitrary order. They belong to the
-  /// last stage of RK4, whose position differs from the state by a second-order error in the step. `time_ns` is stored
-  /// with each contact.
+  /// Appends the robot's contacts with the world at the end of the last step, in arbitrary order. The contacts belong
+  /// to the last stage of RK4, whose position differs from the state by a second-order error in the step. `time_ns` is
+  /// stored with each contact.
   void append_contacts(std::int64_t time_ns, std::vector<ContactTruth>& contacts) const;
 
  private:

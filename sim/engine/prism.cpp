@@ -24,12 +24,13 @@ struct Pair {
   }
 };
 
-/// Signed distance of a point to the left of the edge, seen from above, times the edge's horizontal length.
+/// Returns the signed distance of a point to the left of the edge, seen from above, times the horizontal length of the
+/// edge.
 double left_of(const Vector3d& edge_m, const Vector3d& beside_m) {
   return edge_m.x() * beside_m.y() - edge_m.y() * beside_m.x();
 }
 
-/// Bounding box of the axis: quickly rejects what is farther than the closest pair found so far.
+/// Bounding box of the axis, which quickly rejects geometry that is farther away than the closest pair found so far.
 class AxisBox {
  public:
   AxisBox(const Vector3d& a_m, const Vector3d& b_m)
@@ -42,7 +43,7 @@ class AxisBox {
     const double z = apart_m(2, std::min(from_m.z(), to_m.z()), std::max(from_m.z(), to_m.z()));
     return x * x + y * y + z * z > closest.distance2_m2;
   }
-  /// True if everything below `top_m` is farther away than the closest pair.
+  /// Returns true if everything below `top_m` is farther away than the closest pair.
   bool is_beyond_below(const Vector3d& top_m, const Pair& closest) const {
     const double x = apart_m(0, top_m.x(), top_m.x()), y = apart_m(1, top_m.y(), top_m.y());
     const double z = std::max(low_m_.z() - top_m.z(), 0.0);
@@ -59,8 +60,8 @@ class AxisBox {
   Vector3d low_m_, high_m_;
 };
 
-/// Closest points of the axis p + s u and an edge q + t v, with s and t in [0, 1] (Ericson, Real-Time Collision
-/// Detection, 5.1.9).
+/// Finds the closest points of the axis p + s u and an edge q + t v, with s and t in [0, 1] (Ericson, Real-Time
+/// Collision Detection, 5.1.9).
 void meet_edge(const Vector3d& p, const Vector3d& u, const Vector3d& q, const Vector3d& v, Pair& closest) {
   const Vector3d r = p - q;
   const double a = u.squaredNorm(), e = v.squaredNorm(), b = u.dot(v), c = u.dot(r), f = v.dot(r);
@@ -71,7 +72,7 @@ void meet_edge(const Vector3d& p, const Vector3d& u, const Vector3d& q, const Ve
   closest.take(p + s * u, q + t * v);
 }
 
-/// Closest points of an end of the axis and the inside of the top.
+/// Finds the closest points of an end of the axis and the inside of the top.
 void meet_top(const Vector3d& end_m, const Prism& prism, const Vector3d& normal, Pair& closest) {
   const double above_m = normal.dot(end_m - prism.top_m[0]);
   if (above_m < 0.0 || above_m * above_m >= closest.distance2_m2) return;
@@ -82,7 +83,7 @@ void meet_top(const Vector3d& end_m, const Prism& prism, const Vector3d& normal,
   closest.take(end_m, on_top_m);
 }
 
-/// Closest points of an end of the axis and the inside of the vertical face below edge `i`.
+/// Finds the closest points of an end of the axis and the inside of the vertical face below edge `i`.
 void meet_side(const Vector3d& end_m, const Prism& prism, int i, Pair& closest) {
   const Vector3d& from_m = prism.top_m[i];
   const Vector3d edge_m = prism.top_m[(i + 1) % 3] - from_m, beside_m = end_m - from_m;
@@ -94,7 +95,7 @@ void meet_side(const Vector3d& end_m, const Prism& prism, int i, Pair& closest) 
   closest.take(end_m, on_face_m);
 }
 
-/// True if the part of the axis above the triangle reaches below its plane.
+/// Returns true if the part of the axis above the triangle reaches below the plane of the triangle.
 bool pierces(const Vector3d& a_m, const Vector3d& along_m, const Prism& prism, const Vector3d& normal) {
   double first = 0.0, last = 1.0;
   for (int i = 0; i < 3; ++i) {

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kLeastClusters = 9;
 
-/// Integrates the samples minus their mean, so that a slowly drifting rate keeps small numbers.
+/// Integrates the samples minus their mean, so that the numbers stay small for a slowly drifting rate.
 std::vector<double> integrate(std::span<const double> samples) {
   double mean = 0.0;
   for (const double sample : samples) mean += sample;
@@ -121,7 +121,7 @@ double walk_deviation(double walk_sqrt_s, double tau_s) {
 
 double gauss_markov_deviation(double sigma, double time_s, double tau_s) {
   const double x = tau_s / time_s;
-  // for small x the bracket suffers from cancellation and is x^2 / 3 - x^3 / 4
+  // for small x, the bracket suffers from cancellation; x^2 / 3 - x^3 / 4 is its series
   const double bracket =
       x < 1e-3 ? x * x / 3.0 - x * x * x / 4.0 : 1.0 - (3.0 - 4.0 * std::exp(-x) + std::exp(-2.0 * x)) / (2.0 * x);
   return sigma * std::sqrt(2.0 / x * bracket);

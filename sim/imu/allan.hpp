@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
-/// Overlapping Allan deviation of a stationary sensor, with confidence intervals. Pure functions that do not depend on
-/// the simulation. Source: Riley, "Handbook of Frequency Stability Analysis", NIST Special Publication 1065 (2008),
-/// sections 5.2.5 (overlapping Allan variance), 5.3.2 (confidence), table 5 (degrees of freedom); IEEE Std 952-1997,
-/// annex C, for the names of the noises of a gyroscope.
+/// Overlapping Allan deviation of a stationary sensor, with confidence intervals. These pure functions do not depend on
+/// the simulation. The sources are Riley, "Handbook of Frequency Stability Analysis", NIST Special Publication 1065
+/// (2008), sections 5.2.5 (overlapping Allan variance), 5.3.2 (confidence), table 5 (degrees of freedom), and IEEE Std
+/// 952-1997, annex C, for the names of the noises of a gyroscope.
 namespace tumble::sim {
 
 /// Allan deviation at one averaging time.
@@ -20,7 +20,7 @@ struct AllanPoint {
   std::size_t series = 1;   ///< number of independent series in the mean
 };
 
-/// Dominant noise at an averaging time. It determines the degrees of freedom of the average.
+/// Dominant noise at an averaging time. The dominant noise determines the degrees of freedom of the average.
 enum class AllanNoise {
   white,    ///< N / sqrt(tau): angle (velocity) random walk
   flicker,  ///< the floor: bias instability
@@ -29,9 +29,9 @@ enum class AllanNoise {
 
 /// Computes the overlapping Allan deviation of `samples`, which are means over consecutive periods (rates, not angles).
 /// There are `per_decade` averaging times per decade, from one period to a ninth of the series. The mean of the series
-/// has no effect. The result is empty if the series has fewer than nine samples. O(samples) per averaging time. Throws
-/// std::invalid_argument for a period that is not positive and finite, `per_decade` outside of [1, 100], or a sample
-/// that is not finite.
+/// has no effect. The result is empty if the series has fewer than nine samples. The cost is O(samples) per averaging
+/// time. Throws std::invalid_argument for a period that is not positive and finite, `per_decade` outside [1, 100], or a
+/// sample that is not finite.
 std::vector<AllanPoint> allan_deviation(std::span<const double> samples, double period_s, int per_decade = 5);
 
 /// Returns the root of the mean variance of several independent series of equal length and period, for example the axes
@@ -51,8 +51,9 @@ struct AllanInterval {
 };
 
 /// Returns the confidence interval of the true deviation, with the probability of `sigmas` standard deviations of a
-/// normal distribution (3: 99.73 %). Uses the chi-squared distribution with the degrees of freedom above; quantiles by
-/// Wilson and Hilferty (1931; within 1 % for 3 degrees or more). Throws std::invalid_argument unless 0 < sigmas <= 6.
+/// normal distribution (3: 99.73 %). Uses the chi-squared distribution with the degrees of freedom of
+/// degrees_of_freedom; quantiles are approximated by Wilson and Hilferty (1931; within 1 % for 3 degrees or more).
+/// Throws std::invalid_argument unless 0 < sigmas <= 6.
 AllanInterval confidence_interval(const AllanPoint& point, AllanNoise noise, double sigmas = 3.0);
 
 /// Returns the Allan deviation of white noise of density N [unit / sqrt(Hz)] at averaging time `tau_s`, in closed form.

@@ -9,19 +9,20 @@
 
 namespace tumble::sim {
 
-/// Sensing elements of a triad. Each has its own axis, scale, zero offset and saturation limit. Let u be the signal in
-/// the device's axes with all errors except saturation. Element i senses s_i = m_i . u + o_i, with row i of M.
-/// Saturation maps s to c(s). The device subtracts the offset and inverts the matrix: y = M^-1 (c(s) - o).
-/// Consequences:
-///   - While no element saturates, the reading is u, bit for bit: neither M nor o is observable.
-///   - While only element j is at its limit r, m_j . y = +r - o_j or -r - o_j. The limit is a plane in the readings,
-///     tilted against the axes, and different for the two signs.
-///   - The other axes are then also wrong, by entries of M^-1 times the saturation deficit. For the free elements, m_i
-///     . y = m_i . u still holds.
+/// Sensing elements of a triad. Each sensing element has its own axis, scale, zero offset and saturation level. Let u
+/// be the signal in the device's axes with all errors except saturation. Sensing element i measures s_i = m_i . u +
+/// o_i, with row i of the misalignment matrix M and the zero offset o_i. Saturation maps the vector s to c(s). The
+/// device subtracts the offset and inverts the matrix, so the reading is y = M^-1 (c(s) - o). Consequences:
+/// - While no element saturates, the reading is u, bit for bit: neither M nor o is observable.
+/// - While only element j is at its limit r, m_j . y = +r - o_j or -r - o_j. The limit is a plane in the readings,
+///   tilted against the axes, and different for the two signs.
+/// - The other axes are then also wrong, by entries of M^-1 times the saturation deficit of element j. For the
+///   unsaturated elements, m_i . y = m_i . u still holds.
+///
 /// Real devices show planes tilted by 0.02 and 0.05, and offsets of 0.05 and 0.14 rad/s (wand and pendulum of RepoIMU;
-/// scenarios/certificate/real_rails.cpp has the values).
-/// Not modelled: noise and quantum along the elements' own axes (both are in the device's axes), compensation errors
-/// that differ at saturation (its errors are in u), and offsets that drift within a recording.
+/// scenarios/certificate/real_rails.cpp has the values). Not modelled: noise and quantum along the axes of the elements
+/// (noise and quantum act in the device's axes), compensation errors that differ at saturation, and offsets that drift
+/// within a recording.
 class Elements {
  public:
   struct Params {
@@ -32,7 +33,7 @@ class Elements {
   };
   static constexpr double kMostMisalignment = 0.1;  ///< upper bound of both spreads, for which M is always invertible
 
-  /// Upright elements: M is the identity, and there is no offset.
+  /// Creates aligned elements: M is the identity, and there is no offset.
   Elements() = default;
   /// Draws the elements; parameters of 0 draw no random numbers.
   Elements(const Params& params, Stream stream);
@@ -41,11 +42,12 @@ class Elements {
 
   const Eigen::Matrix3d& axes() const { return axes_; }
   const Eigen::Vector3d& offset() const { return offset_; }
-  /// True if M is the identity and there is no offset.
+  /// Returns true if M is the identity and there is no offset.
   bool upright() const { return upright_; }
 
-  /// Returns the device's reading of `signal` after saturation by `rail`, both in the device's axes. Sets bit
-  /// `first_bit + i` of `flags` if element i saturated. For upright elements it is the rail's own output.
+  /// Returns the device's reading of `signal` after saturation by `rail`; signal and reading are in the device's axes.
+  /// Sets bit `first_bit + i` of `flags` if element i saturated. For aligned elements, the reading is the output of
+  /// `rail`.
   Eigen::Vector3d clip(const Eigen::Vector3d& signal, Rail& rail, int first_bit, std::uint8_t& flags) const;
 
   /// Returns `reading` with the components of the elements in `mask` (bit i) replaced by those of `other`.

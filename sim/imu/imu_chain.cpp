@@ -8,7 +8,7 @@ namespace tumble::sim {
 
 namespace {
 
-/// The bias varies slowly: steps of 10 ms, constant in between, save four fifths of the random numbers.
+/// The bias varies slowly, so it is updated every 10 ms, which saves four fifths of the random numbers.
 constexpr double kBiasPeriod_s = 0.01;
 
 int steps_of_bias(double rate_hz) {

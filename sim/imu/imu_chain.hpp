@@ -14,7 +14,7 @@
 
 namespace tumble::sim {
 
-/// Output of a triad for one window.
+/// Output of a triad for one averaging window.
 struct TriadReading {
   Eigen::Vector3d delivered;  ///< reading as delivered by the device
   Eigen::Vector3d unclipped;  ///< reading with the same errors, but without saturation
@@ -24,14 +24,15 @@ struct TriadReading {
 /// Error chain of one triad (gyroscope or accelerometer), updated at the physics rate and read once per output window.
 /// Stages in order: analogue low-pass, scale and misalignment, bias, external additions (g-sensitivity), white noise of
 /// the active range, sensing elements with saturation, the device's compensation of the elements, quantum, digital
-/// low-pass, mean over the window. With `clip_after_low_pass`, elements and saturation act on that mean instead.
+/// low-pass, mean over the window. With `clip_after_low_pass`, elements and saturation act on the mean over the window
+/// instead.
 ///
-/// The mean of a rotating triad's readings is not the increment of its motion (coning, sculling). The caller therefore
-/// passes the exact ideal reading of the window, and the chain adds the mean of its errors. An element that saturated
-/// in the window reports the plain mean of the chain's output. With every stage off, the reading is the exact one, bit
-/// for bit. The unclipped twin passes the same stages with the same noise.
-/// A device with its own window or update rate (sampling.hpp) does not integrate: its reading is the plain mean over
-/// that window.
+/// For a rotating triad, the mean of the readings differs from the increment of the motion (coning, sculling). The
+/// caller therefore passes the exact ideal reading of the window, and the chain adds the mean of the chain's errors. An
+/// element that saturated in the window reports the plain mean of the chain's output. If every stage is off, the
+/// reading equals the exact reading, bit for bit. The unclipped reading is computed by equal stages with equal noise,
+/// but without saturation. A device with its own window or update rate (sampling.hpp) does not integrate; its reading
+/// is the plain mean over its window.
 class TriadChain {
  public:
   /// `prefix` and `unit` select the parameters: "gyro", "rad_s" or "accel", "m_s2". Random streams are named after
@@ -39,7 +40,7 @@ class TriadChain {
   TriadChain(const Values& values, const std::string& prefix, const std::string& unit, double rate_hz, int steps,
              std::uint64_t seed, const std::string& stream_name);
 
-  /// Processes one physics step: `ideal` is the ideal mean over the step, and `added` is added to the signal before its
+  /// Processes one physics step: `ideal` is the ideal mean over the step, and `added` is added to the signal before the
   /// noise.
   void step(const Eigen::Vector3d& ideal, const Eigen::Vector3d& added);
   /// Ends the window with the exact reading `exact`. Sets bit `first_bit + i` of `flags` for each element i that
@@ -47,7 +48,7 @@ class TriadChain {
   TriadReading take(const Eigen::Vector3d& exact, int first_bit, std::uint8_t& flags);
 
   const Elements& elements() const { return elements_; }
-  /// Replaces the drawn elements; call before the first step.
+  /// Replaces the drawn elements; must be called before the first step.
   void set_elements(const Elements& elements) { elements_ = elements; }
 
  private:
@@ -59,7 +60,7 @@ class TriadChain {
     Eigen::Vector3d add(const Eigen::Vector3d& signal, const Eigen::Vector3d& ideal);
   };
 
-  /// Reading of a device that integrates between outputs.
+  /// Returns the reading of a device that integrates between outputs.
   TriadReading integrated(const Eigen::Vector3d& exact) const;
 
   double rate_hz_, noise_, precise_noise_, quantum_, precise_quantum_;

@@ -56,7 +56,7 @@ class Device {
     accel_.step(ideal.force_m_s2, Eigen::Vector3d::Zero());
   }
 
-  /// Ends a window; returns false if its sample is lost.
+  /// Ends a window; returns false if the sample of the window is lost.
   bool take(const Ideal& exact, std::int64_t end_ns) {
     std::uint8_t flags = 0;
     const TriadReading gyro = gyro_.take(exact.rate_rad_s, 0, flags);
@@ -96,7 +96,7 @@ class Device {
   bool flagged_;
 };
 
-/// Optional magnetometer of a device: the true field, averaged over each window.
+/// Optional magnetometer of a device, which averages the true field over each window.
 class Compass {
  public:
   Compass(const Truth& truth, const SensorSpec& sensor, const Eigen::Isometry3d& T_BI, std::uint64_t seed)
@@ -129,7 +129,7 @@ class Compass {
   int count_ = 0;
 };
 
-/// Relation between the samples of a device and the steps of its chain.
+/// Relation between the samples of a device and the steps of its error chain.
 struct Pace {
   int steps = 1;   ///< chain steps per sample
   int shares = 1;  ///< chain steps per physics step; above 1 for devices faster than the physics
@@ -153,15 +153,15 @@ BodyState state_at(const Truth& truth, std::size_t k) {
           truth.v_WB_m_s[k], truth.w_WB_B_rad_s[k]};
 }
 
-/// Ideal reading of a device mounted at T_BI for the motion between two states, including the lever arm.
+/// Returns the ideal reading of a device mounted at T_BI for the motion between two states, including the lever arm.
 Ideal ideal_between(const BodyState& before, const BodyState& after, const Eigen::Isometry3d& T_BI,
                     double gravity_m_s2) {
   const Eigen::Matrix3d R_IB = T_BI.linear().transpose();
   return {R_IB * mean_rate_B(before, after), R_IB * specific_force_B(before, after, T_BI.translation(), gravity_m_s2)};
 }
 
-/// A rotation between two attitudes has several rotation vectors, which differ by full turns. Selects the one that
-/// agrees with the steps of the window. Below half a turn per window it is the unchanged vector.
+/// A rotation between two attitudes has several rotation vectors, which differ by full turns. Selects the rotation
+/// vector that agrees with the steps of the window. Below half a turn per window, the rotation vector is unchanged.
 Eigen::Vector3d unwound(const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& mean_of_steps_rad_s, double time_s) {
   constexpr double kRevolution_rad = 6.283185307179586;
   const double norm = rate_rad_s.norm();

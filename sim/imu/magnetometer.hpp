@@ -27,11 +27,12 @@ struct MagneticField {
   Eigen::Vector3d at(const Eigen::Vector3d& p_W_m) const;
 };
 
-/// Draws the field of one situation. The Earth's field is earth_field_t with dip earth_inclination_rad; its horizontal
-/// part points earth_north_rad from the world's x axis towards y. There are magnetic_sources dipoles around the path
-/// `p_W_m`, at least magnetic_source_nearest_m away from it. Each is within magnetic_source_farthest_m of a random
-/// position of the path. Their moments are log-uniform within a factor of 3 of magnetic_source_moment_a_m2, in random
-/// directions. Equal numbers and seed give the same field to every magnetometer.
+/// Draws the magnetic field of one situation. The Earth's field has strength earth_field_t and dip
+/// earth_inclination_rad; the horizontal part of the field points earth_north_rad from the world's x axis towards y.
+/// There are magnetic_sources dipoles around the path `p_W_m`, at least magnetic_source_nearest_m away from the path.
+/// Each dipole is within magnetic_source_farthest_m of a random position of the path. The moments of the dipoles are
+/// log-uniform within a factor of 3 of magnetic_source_moment_a_m2, in random directions. Equal numbers and seed give
+/// equal fields for every magnetometer.
 MagneticField draw_magnetic_field(const Values& values, std::span<const Eigen::Vector3d> p_W_m, std::uint64_t seed);
 
 /// Error model of a magnetometer triad: soft iron (scale and misalignment), hard iron (an offset in the sensor's axes,

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kEventEnds_share = 0.9;
 
-/// Value after overflow of a word whose range is -level to level.
+/// Returns a value after the overflow of a binary word whose range is -level to level.
 double wrapped(double value, double level) {
   return value - 2.0 * level * std::round(value / (2.0 * level));
 }

@@ -11,12 +11,13 @@ namespace tumble::sim {
 
 /// Saturation of a triad's output, in the forms seen on real devices.
 /// - `clamp`: the output stops at `level`, which may exceed the stated range.
-/// - `plateau`: the level differs between axes and signs (drawn once) and between clipping events (drawn again after
-///   the signal fell below 90 % of the level).
+/// - `plateau`: the level differs between axes and signs (drawn once) and between clipping events. A new level is drawn
+///   after the signal fell below 90 % of the level.
 /// - `wrap`: a reading beyond the level appears with the opposite sign, as when a 16-bit word overflows.
-/// - `slow_recovery`: a clipped axis accumulates an offset of its sign, up to `recovery_share` of the level, with time
-///   constant `recovery_s`. The offset decays with the same time constant afterwards.
-/// Not modelled: a limit that depends on temperature, and a device that stops permanently.
+/// - `slow_recovery`: a clipped axis accumulates an offset with the sign of the signal, up to `recovery_share` of the
+///   level, with time constant `recovery_s`. After clipping, the offset decays with the time constant `recovery_s`.
+///
+/// Not modelled: a level that depends on temperature, and a device that stops permanently.
 class Rail {
  public:
   struct Params {

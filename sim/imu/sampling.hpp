@@ -11,8 +11,8 @@ namespace tumble::sim {
 
 /// Sampling of a device that does not integrate between outputs. Each reading is the plain mean of the signal over the
 /// device's own window. The device may have its own update rate, slower or faster than the outputs and not synchronous
-/// with them. Outputs repeat the last reading until a new one is available (sample and hold). Not modelled: drift or
-/// jitter of the device's clock, weighted windows.
+/// with the outputs. Outputs repeat the last reading until a new reading is available (sample and hold). Not modelled:
+/// drift or jitter of the device's clock, weighted windows.
 class Sampling {
  public:
   struct Params {
@@ -28,10 +28,10 @@ class Sampling {
   /// update rate.
   Sampling(const Params& params, double rate_hz, Stream stream);
 
-  /// False: the device integrates between outputs, and no other member may be used.
+  /// Returns false if the device integrates between outputs; in this case no other member may be used.
   bool on() const { return !ring_.empty(); }
   void add(const Reading& step);
-  /// Returns the current output. O(window) without an own update rate.
+  /// Returns the current output. The cost is O(window) for a device without its own update rate.
   Reading output() const;
 
  private:

@@ -19,7 +19,7 @@ struct ChannelFirings {
 };
 
 /// Firings of up to kLanes consecutive slots. Neighbouring lanes have similar directions, which makes a packet of rays
-/// cheap to cast. All kLanes lanes are filled, also those beyond `slots`.
+/// fast to cast. All kLanes lanes are filled, including lanes beyond `slots`.
 struct FiringBlock {
   std::int64_t first_slot = 0;  ///< counted from the start of the recording; the unique key of the random numbers
   int slots = 0;
@@ -30,7 +30,7 @@ struct FiringBlock {
 };
 
 /// The firings of a lidar. A slot is a sequence of all channels (spinning), or an instant at which all units fire
-/// (rosette). Slot k starts at k times the slot period, also across sweeps, and belongs to the sweep in which it
+/// (rosette). Slot k starts at k times the slot period, also across sweeps, and belongs to the sweep in which the slot
 /// starts.
 class BeamPattern {
  public:
@@ -41,9 +41,9 @@ class BeamPattern {
     return (sweep * sweep_period_ns_ + slot_period_ns_ - 1) / slot_period_ns_;
   }
   int channels() const { return channels_; }
-  /// True and reported time from the start of a slot to the firing of a channel.
+  /// Returns the true and reported time from the start of a slot to the firing of a channel.
   std::int64_t lag_ns(int channel) const { return channel * firing_period_ns_; }
-  /// Longest time from the start of a slot to its last firing.
+  /// Returns the longest time from the start of a slot to the last firing of the slot.
   std::int64_t slot_length_ns() const { return lag_ns(channels_ - 1); }
   std::uint16_t ring(int channel) const { return ring_[channel]; }
 
@@ -65,10 +65,11 @@ class BeamPattern {
   std::array<std::uint16_t, kMaxChannels> ring_{};
 };
 
-/// A column of lasers that rotates about the z axis. The azimuth is zero (along x of L) at the start of each sweep and
-/// increases clockwise seen from above. Channel c of sequence k fires at k P + c p. Its beam leaves the mirror at R1
-/// from the axis and R2 below the origin. Rings are counted from the lowest elevation. (RoboSense RS-16 User's Guide
-/// v4.0 and the published driver.)
+/// Spinning lidar: a column of lasers that rotates about the z axis. The azimuth is zero (along x of L) at the start of
+/// each sweep and increases clockwise seen from above. Channel c of sequence k fires at the time k P + c p, with the
+/// sequence period P and the firing period p. The beam of the channel leaves the mirror at the distance R1 from the
+/// axis and R2 below the origin. Rings are counted from the lowest elevation. The values are from the RoboSense RS-16
+/// User's Guide v4.0 and the published driver.
 class SpinningPattern final : public BeamPattern {
  public:
   explicit SpinningPattern(const Values& values);
@@ -88,10 +89,10 @@ class SpinningPattern final : public BeamPattern {
       sin_lag_;  ///< lag: azimuth since the start of the sequence
 };
 
-/// A beam that is refracted by two prisms rotating at constant rates, for one or several units with different yaw. With
-/// y/x and z/x of the beam, y/x + i z/x = A exp(i w1 t) + B exp(i w2 t) + C exp(i (2 w1 - w2) t), where t is the time
-/// since the start of the recording. Rings are the units from right (negative yaw) to left. All units share the origin
-/// of L.
+/// Rosette lidar: a beam that is refracted by two prisms rotating at constant rates, for one or several units with
+/// different yaw. With y/x and z/x of the beam, y/x + i z/x = A exp(i w1 t) + B exp(i w2 t) + C exp(i (2 w1 - w2) t),
+/// where t is the time since the start of the recording. Ring numbers are the units from right (negative yaw) to left.
+/// All units share the origin of L.
 class RosettePattern final : public BeamPattern {
  public:
   explicit RosettePattern(const Values& values);

@@ -13,7 +13,8 @@ struct Share {
   int ray;
 };
 
-/// The echo [first, last) of the energy shares, sorted by range, that has the most energy; of equals the nearest.
+/// The echo with the most energy: the rays `first` to `last` - 1, sorted by range. Among echoes of equal energy, the
+/// nearest is chosen.
 struct Echo {
   int first = 0, last = 0;
   float energy = 0.0f;

@@ -11,24 +11,24 @@ namespace tumble::sim {
 /// Maximum number of rays per beam.
 inline constexpr int kMaxBeamRays = 16;
 
-/// The echo on which the device ranges for beams of finite width, one lane per firing.
+/// The echoes to which the device measures ranges with beams of finite width, one lane per firing.
 struct Echoes {
   RayPacket packet;  ///< range of the echo; reflectivity and cosine as for a single surface with that echo
   alignas(64) float hit_x[kLanes], hit_y[kLanes], hit_z[kLanes];  ///< hit of the ray with the most energy, world axes
 };
 
-/// Finite beam width, sampled by a fixed pattern of rays with equal shares of the ellipse's area (H. Vogel, Math.
-/// Biosci. 44, 1979). Each ray returns an energy of reflectivity times cosine over range squared. Hits whose ranges
-/// differ by less than the length of the echo are merged. The strongest echo counts, with the energy-weighted mean of
-/// its ranges. A beam across an edge therefore returns a range between the two surfaces, or a jump if they are farther
-/// apart. Surface id and exact hit are those of the ray with the most energy. Not modelled: an intensity profile over
-/// the beam, several returns per firing.
+/// Models a finite beam width by a fixed pattern of rays, each with an equal part of the ellipse's area (Vogel,
+/// Mathematical Biosciences 44, 1979). Each ray returns an energy of reflectivity times cosine over range squared. Hits
+/// whose ranges differ by less than the length of the echo are merged. The strongest echo determines the range, as the
+/// energy-weighted mean of the ranges of its hits. A beam across an edge therefore returns a range between the two
+/// surfaces, or the range of one surface if the surfaces are farther apart. Surface id and exact hit are those of the
+/// ray with the most energy. Not modelled: an intensity profile over the beam, several returns per firing.
 class BeamSpread {
  public:
   explicit BeamSpread(const Values& values);
 
   int rays() const { return rays_; }  ///< 1: off
-  /// Returns the firings along ray `k` of the beams, given the beam axes.
+  /// Returns the firings along ray `k` of the beams whose axes are `axis`.
   void bend(const ChannelFirings& axis, int k, ChannelFirings& firings) const;
   /// Merges the hits of all rays into one echo per lane.
   void merge(const std::array<RayPacket, kMaxBeamRays>& rays, Echoes& echoes) const;

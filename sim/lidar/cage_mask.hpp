@@ -9,15 +9,16 @@
 
 namespace tumble::sim {
 
-/// Precomputes which firings of a repeating pattern may hit the robot's own cage. The cage is rigidly attached to the
-/// lidar, and most firings miss it. The mask has no false negatives: the middle of each cell is cast against shapes
-/// that are widened by the largest distance of a beam of the cell from the middle.
+/// Precomputes which firings of a repeating pattern may hit the robot's own cage. The mask saves time because the cage
+/// is rigidly attached to the lidar and most firings miss the cage. The mask has no false negatives. The middle of each
+/// cell is cast against shapes that are widened by the largest distance between a beam of the cell and the beam at the
+/// middle.
 class CageMask {
  public:
   /// `cage` is in the axes of L. For a pattern that does not repeat, every firing may hit.
   CageMask(const SceneGeometry& cage, const BeamPattern& pattern);
 
-  /// True if any firing of a channel in the block may hit the cage.
+  /// Returns true if any firing of a channel in the block may hit the cage.
   bool may_hit(const FiringBlock& block, int channel) const {
     if (cells_ == 0) return !is_empty_;
     bool may = false;

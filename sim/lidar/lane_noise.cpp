@@ -36,13 +36,13 @@ struct Words {
   }
 }
 
-/// Maps a word to (0, 1]. Small results keep float's relative precision, which the logarithm needs.
+/// Maps a 32-bit word to (0, 1]. Small results keep the relative precision of float, which the logarithm needs.
 float unit_of(std::uint32_t word) {
   return (static_cast<float>(static_cast<std::int32_t>(word >> 1)) + 0.5f) * 0x1p-31f;
 }
 
-/// Natural logarithm of x in (0, 1]: x = 2^e m with m in [0.71, 1.41], and the series of 2 atanh((m - 1) / (m + 1)).
-/// Relative error 2e-7.
+/// Computes the natural logarithm of x in (0, 1] with x = 2^e m, m in [0.71, 1.41], and the series of 2 atanh((m - 1) /
+/// (m + 1)). The relative error is 2e-7.
 float log_of(float x) {
   const std::int32_t bits = std::bit_cast<std::int32_t>(x) - 0x3f3504f3;
   const std::int32_t exponent = bits >> 23;
@@ -52,7 +52,8 @@ float log_of(float x) {
   return static_cast<float>(exponent) * 0.693147181f + series;
 }
 
-/// Cosine and sine of a full turn times word / 2^32: quadrant, then Taylor series within +-pi/4. Error 1e-7.
+/// Computes cosine and sine of the angle 2 pi word / 2^32 by quadrant and Taylor series within +-pi/4. The error is
+/// 1e-7.
 void cos_sin_of(std::uint32_t word, float& cosine, float& sine) {
   const std::uint32_t quadrant = (word + 0x20000000u) >> 30;
   const auto rest = static_cast<std::int32_t>(word - (quadrant << 30));
@@ -83,7 +84,7 @@ LaneNoiseSource::LaneNoiseSource(const Stream& stream) {
     noise.normal[i + kBlocks] = radius * sine;
   }
   for (int i = 0; i < kBlocks; ++i) {
-    // with 23 bits, the middle of the last cell is below one in float
+    // with 23 bits, the middle of the last cell is below 1 in float
     noise.uniform[i] = (static_cast<float>(static_cast<std::int32_t>(words.word[2][i] >> 9)) + 0.5f) * 0x1p-23f;
     noise.uniform[i + kBlocks] =
         (static_cast<float>(static_cast<std::int32_t>(words.word[3][i] >> 9)) + 0.5f) * 0x1p-23f;

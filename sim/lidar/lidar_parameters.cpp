@@ -14,7 +14,7 @@ constexpr Parameter elevation(std::string_view name, double value_rad) {
   return {name, value_rad, -kRightAngle_rad, kRightAngle_rad, "rad", "elevation of this channel, in firing order"};
 }
 
-// Both kinds of lidar have the same range errors. The values are those of the RS-16 and the Mid-100.
+// Both kinds of lidar have these range errors. The values are those of the RS-16 and the Mid-100.
 constexpr Parameter kRangeNoise{
     "range_noise_m", 0.02, 0.0, 10.0, "m", "standard deviation of a range, white from point to point; 0: off"};
 constexpr Parameter kReferenceReflectivity{
@@ -46,7 +46,7 @@ constexpr Parameter divergence(std::string_view name, double value_rad) {
 constexpr Parameter kCage{
     "sees_own_cage", 1.0, 0.0, 1.0, "1", "1: the robot's own struts give returns; 0: transparent"};
 
-// Elevations [rad] are the calibrated ones of the published rig.
+// The elevations [rad] are the calibrated elevations of the published rig.
 constexpr std::array kSpinning = {
     Parameter{"spin_rate_hz", 10.0, 1.0, 50.0, "Hz", "turns per second; one turn is one sweep"},
     Parameter{"clockwise", 1.0, 0.0, 1.0, "1", "1: the azimuth turns from x towards -y; 0: towards +y"},

@@ -7,7 +7,7 @@
 
 namespace tumble::sim {
 
-/// Number of channels of a spinning lidar; elevation_01_rad fires first.
+/// Number of channels of a spinning lidar; elevation_01_rad is the elevation of the channel that fires first.
 inline constexpr int kSpinningChannels = 16;
 
 /// Parameters of a lidar whose column of lasers rotates about the z axis of L (RoboSense RS-16).

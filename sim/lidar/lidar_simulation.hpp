@@ -19,10 +19,10 @@ struct MotionTrack {
   std::span<const Eigen::Quaterniond> q_WB;
 };
 
-/// Casts all sweeps of one lidar over a motion, each point from the true sensor pose at its firing. Rays hit the static
-/// world and the robot's own cage (Embree); rays without a hit give no point. Then the device's errors are applied:
-/// range noise and quantum, drop-outs. Results do not depend on `threads`. `T_BL` is the true mounting. `record` and
-/// `truth` are complete afterwards, except for the calibration in `record.T_BL`.
+/// Casts all sweeps of one lidar over a motion; each point is cast from the true sensor pose at its firing time. Rays
+/// hit the static world and the robot's own cage (Embree); rays without a hit give no point. After the casting, the
+/// errors of the device are applied: range noise and quantum, drop-outs. Results do not depend on `threads`. `T_BL` is
+/// the true mounting. On return, `record` and `truth` are complete, except for the calibration in `record.T_BL`.
 void simulate_lidar(const engine::World& world, const SensorSpec& sensor, const Eigen::Isometry3d& T_BL,
                     const MotionTrack& motion, std::uint64_t seed, int threads, LidarRecord& record, LidarTruth& truth);
 

@@ -5,11 +5,11 @@
 
 #include "sim/lidar/ray_scene.hpp"
 
-/// Private to sim: the nearest hits found so far for a packet of rays.
+/// Used only within sim: the nearest hits found so far for a packet of rays.
 namespace tumble::sim {
 
-/// Nearest hit of each lane, computed with our own arithmetic. Of hits at the same range, the lowest geometry number
-/// counts, so that the result does not depend on the order of calls.
+/// Nearest hit of each lane, computed with our own arithmetic. Among hits at equal ranges, the hit with the lowest
+/// geometry number is kept, so that the result does not depend on the order of calls.
 class NearestHits {
  public:
   static constexpr unsigned int kNone = ~0u;
@@ -36,7 +36,7 @@ class NearestHits {
 
   unsigned int geometry(int lane) const { return geometry_[static_cast<std::size_t>(lane)]; }  ///< kNone: no hit
   unsigned int primitive(int lane) const { return primitive_[static_cast<std::size_t>(lane)]; }
-  /// Writes ranges and cosines of lanes with hits; other lanes are unchanged.
+  /// Writes ranges and cosines of lanes with hits; lanes without a hit are unchanged.
   void write(RayPacket& packet) const;
 
  private:

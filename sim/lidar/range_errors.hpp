@@ -16,10 +16,10 @@ struct Returns {
   alignas(64) float intensity[kLanes];  ///< 0..1
 };
 
-/// Range errors in this order: loss of weak returns (by range, incidence, reflectivity), random loss, white noise,
-/// range limits, quantum. Intensity is reflectivity times the cosine of incidence, rounded down to its quantum, as
-/// reported by devices that compensate for range. Not modelled: range bias by incidence or intensity, cross-talk,
-/// several returns per firing. Divergence and mixed returns are modelled before this stage by BeamSpread.
+/// Applies range errors in this order: loss of weak returns (by range, incidence, reflectivity), random loss, white
+/// noise, range limits, quantum. Intensity is reflectivity times the cosine of incidence, rounded down to the intensity
+/// quantum, as reported by devices that compensate for range. Not modelled: range bias by incidence or intensity,
+/// cross-talk, several returns per firing. BeamSpread models beam divergence and mixed returns before this stage.
 class RangeErrors {
  public:
   RangeErrors(const Values& values, std::uint64_t seed, std::string_view stream_name);

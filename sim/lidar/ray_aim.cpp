@@ -9,7 +9,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Elapsed share of an interval at each lane, and the resulting weights of its rotations.
+/// Elapsed fraction of an interval at each lane, and the resulting weights of the interval's rotations.
 struct Shares {
   alignas(64) double share[kLanes], first[kLanes], second[kLanes];
   alignas(64) double within[kLanes];  ///< 1 from the interval's first lane on, 0 before
@@ -35,7 +35,7 @@ struct Shares {
   }
 }
 
-/// Computes one number of the pose and its rate per second, for the lanes of the interval.
+/// Computes one number of the pose and its rate per second, for the lanes within the interval.
 [[gnu::target("avx2")]] void follow_number(const TrackCursor::Interval& now, const Shares& shares, int row, int column,
                                            double (&pose)[kLanes], double (&rate)[kLanes]) {
   const double start = now.start(row, column), turned = now.turned(row, column), twice = now.rotated_twice(row, column);
@@ -58,7 +58,7 @@ struct Shares {
   }
 }
 
-/// Computes one world coordinate for all lanes: `row` of the rotation and the same coordinate of the position.
+/// Computes one world coordinate for all lanes from `row` of the rotation and the matching coordinate of the position.
 [[gnu::target("avx2")]] void aim_coordinate(const double (*pose)[kLanes], const double (*rate)[kLanes], int row,
                                             double after_s, const ChannelFirings& firings, float* origin,
                                             float* direction) {

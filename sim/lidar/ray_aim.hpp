@@ -6,15 +6,15 @@
 
 namespace tumble::sim {
 
-/// Poses of the lidar for a block of firings; converts firings to rays in world axes, each at its own firing time.
-/// Within a slot (50 us) the pose is extrapolated with the rate at the middle of the slot. At 20 rad/s the error is
-/// (rate dt)^2 / 2 = 1e-7 rad. A slot that contains a sample of the track, where the rate changes, gets one pose per
-/// firing.
+/// Computes poses of the lidar for a block of firings and converts firings to rays in world axes, each at its own
+/// firing time. Within a slot (50 us) the pose is extrapolated with the rate at the middle of the slot. At 20 rad/s,
+/// the extrapolation error is (rate dt)^2 / 2 = 1e-7 rad. A slot that contains a sample of the track, where the rate
+/// changes, has one pose per firing.
 class BlockPoses {
  public:
   void follow(const BeamPattern& pattern, const FiringBlock& block, TrackCursor& track);
 
-  /// Sets origins and directions of `rays` for one channel; other members are unchanged.
+  /// Sets origins and directions of `rays` for one channel; the other members of `rays` are unchanged.
   void aim(const BeamPattern& pattern, const FiringBlock& block, const ChannelFirings& firings, int channel,
            RayPacket& rays) const;
 

@@ -30,15 +30,15 @@ struct SceneDeleter {
 using DevicePtr = std::unique_ptr<RTCDeviceTy, DeviceDeleter>;
 using ScenePtr = std::unique_ptr<RTCSceneTy, SceneDeleter>;
 
-/// Selects the same kernel on every CPU: AVX2 with its native packet width. Embree would choose by CPU, and its kernels
-/// differ in the last bits.
+/// The options select one Embree kernel on every CPU: AVX2 with its native packet width. By default, Embree chooses the
+/// kernel by CPU, and the results of different kernels differ in the last bits.
 constexpr const char* kDevice =
     // "threads=1" would limit oneTBB in the whole process during the device's life
     "start_threads=0,set_affinity=0,isa=avx2,frequency_level=simd256,ignore_config_files=1";
 constexpr int kKernelLanes = 8;
 static_assert(kKernelLanes == kShapeLanes && NearestHits::kNone == RTC_INVALID_GEOMETRY_ID);
-/// Embree divides with an approximate reciprocal that differs between CPU vendors. Its ranges only select candidates:
-/// everything within this factor of the nearest hit is examined.
+/// Embree divides with an approximate reciprocal that differs between CPU vendors. The ranges of Embree only select
+/// candidates: all faces within this factor of the nearest hit are examined.
 constexpr float kReach = 1.0f + 4e-6f;
 
 struct MeshLabel {
@@ -53,7 +53,7 @@ struct MeshLabel {
   }
 };
 
-/// Data of the callbacks; Embree passes its first member. The lane's index is in the ray's id.
+/// Data of the callbacks; Embree passes the address of the first member. The id of the ray contains the lane's index.
 struct CastContext {
   RTCIntersectContext embree;
   const std::vector<MeshLabel>* meshes;
@@ -69,8 +69,8 @@ float searched_to(double range_m) {
 }
 
 /// Combines pairs of triangles (a, b, c), (a, c, d), as in a height field, to quads (b, c, d, a), which Embree cuts
-/// along the same diagonal. Building takes half the time, and casting 10 % less. Empty if the triangles do not form
-/// pairs.
+/// along the diagonal of the pair. With quads, building takes half the time, and casting takes 10 % less. Returns an
+/// empty list if the triangles do not form pairs.
 std::vector<std::array<std::uint32_t, 4>> paired(const std::vector<std::array<std::uint32_t, 3>>& triangles) {
   std::vector<std::array<std::uint32_t, 4>> quads;
   if (triangles.size() % 2 != 0) return quads;
@@ -84,7 +84,7 @@ std::vector<std::array<std::uint32_t, 4>> paired(const std::vector<std::array<st
   return quads;
 }
 
-/// Axis-aligned box of a bounded shape, slightly widened because Embree rounds to float.
+/// Computes the axis-aligned box of a bounded shape, slightly widened because Embree rounds to float.
 void shape_bounds(const RTCBoundsFunctionArguments* args) {
   const Shape& shape = static_cast<const SceneShape*>(args->geometryUserPtr)[args->primID].shape;
   const Vector3d half = shape.R_FS.cwiseAbs() * half_extent(shape);
@@ -104,8 +104,8 @@ Ray ray_at(RTCRayN* rays, unsigned int count, unsigned int i) {
 }
 
 /// Computes the range at which a ray meets the plane of a face that Embree reported, and the normal of the plane (any
-/// length). For a quad, `second_half` selects the half that the ray passes. It comes from Embree's approximate
-/// reciprocal, which is accurate enough because the two halves are adjacent.
+/// length). For a quad, `second_half` selects the half through which the ray passes. The selection comes from Embree's
+/// approximate reciprocal, which is accurate enough because the two halves are adjacent.
 double meet_face(const MeshLabel& mesh, unsigned int face, const Ray& ray, bool second_half, Vector3d& normal) {
   // relative to the origin; double represents the float differences exactly
   const auto corner = [&](std::uint32_t i) -> Vector3d { return mesh.corner(face, i).cast<double>() - ray.origin; };
@@ -244,7 +244,7 @@ RayScene::RayScene(const SceneGeometry& geometry) : impl_(std::make_unique<Impl>
   }
   for (const SceneMesh& part : geometry.meshes) impl_->add_mesh(part);
   impl_->add_shapes();
-  // an arena of one thread: building must not use threads that the caller did not provide
+  // an arena with one thread, because building must not use threads that the caller did not provide
   tbb::task_arena(1).execute([this] { rtcCommitScene(impl_->scene.get()); });
   const RTCError error = rtcGetDeviceError(impl_->device.get());
   if (error != RTC_ERROR_NONE) throw std::runtime_error("lidar: Embree error " + std::to_string(error));
@@ -278,7 +278,7 @@ void RayScene::Impl::cast_lanes(const RayPacket& packet, int first, CastContext&
   RTCRayHit8 rays;
   alignas(32) int valid[kKernelLanes];
   for (int i = 0; i < kKernelLanes; ++i) {
-    // an unused lane repeats the first one with an empty range, so that its input is defined
+    // an unused lane repeats the first lane with an empty range, so that its input is defined
     const bool used = first + i < packet.count;
     const int lane = used ? first + i : first;
     valid[i] = used ? -1 : 0;

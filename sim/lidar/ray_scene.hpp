@@ -9,15 +9,15 @@
 
 namespace tumble::sim {
 
-/// Rays are cast sixteen at a time: one channel in consecutive slots, with similar directions.
+/// Number of rays that are cast at a time: one channel in consecutive slots, with similar directions.
 inline constexpr int kLanes = 16;
 
-/// Sixteen rays and their hits. Lanes from `count` on are not cast.
+/// Sixteen rays and their hits. Lanes with index `count` or above are not cast.
 struct RayPacket {
   int count = kLanes;
   alignas(64) float origin_x[kLanes], origin_y[kLanes], origin_z[kLanes];
   alignas(64) float direction_x[kLanes], direction_y[kLanes], direction_z[kLanes];  ///< unit vectors
-  /// Input: maximum range. Output: range of the hit, or unchanged without a hit.
+  /// Input: maximum range of the ray. Output: range of the hit; unchanged without a hit.
   alignas(64) float range[kLanes];
   alignas(64) float cosine[kLanes];  ///< cosine of the angle of incidence, 0..1
   alignas(64) float reflectivity[kLanes];
@@ -29,8 +29,8 @@ inline constexpr std::int32_t kNothing = -1;
 /// Casts rays and finds nearest points on a fixed geometry (Embree, plus infinite planes). Building takes about 0.07 s
 /// for 320 000 triangles; the cost of a cast is logarithmic in the geometry. Const members may be called from several
 /// threads. Coordinates are float: at 50 m from the origin a hit is accurate to about 1e-5 m. Embree selects the
-/// surface with its AVX2 kernel on every CPU, and the hit is then computed in double. Results are therefore
-/// bit-identical on every x86-64 CPU with AVX2 and FMA. Throws std::runtime_error on other CPUs.
+/// surface with its AVX2 kernel on every CPU; the hit on this surface is then computed in double precision. Results are
+/// therefore bit-identical on every x86-64 CPU with AVX2 and FMA. Throws std::runtime_error on other CPUs.
 class RayScene {
  public:
   explicit RayScene(const SceneGeometry& geometry);

@@ -10,7 +10,7 @@
 #include "sim/engine/model.hpp"
 #include "sim/lidar/shape.hpp"
 
-/// Private to sim: extracts the surfaces that rays can hit from a compiled model.
+/// Used only within sim: extracts the surfaces that rays can hit from a compiled model.
 namespace tumble::sim {
 
 /// Surface id of a return from the robot's own struts. Non-negative ids are indices of engine::World::surfaces.
@@ -21,7 +21,7 @@ struct TriangleMesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// A primitive with its surface id and diffuse reflectivity (0..1).
+/// A primitive shape with its surface id and diffuse reflectivity (0..1).
 struct SceneShape {
   Shape shape;
   std::int32_t surface_id;
@@ -38,12 +38,12 @@ struct SceneGeometry {
   std::vector<SceneMesh> meshes;
 };
 
-/// Conversion of a height field to triangles: only its top, or closed by the side walls and base box that mj_ray also
+/// Conversion of a height field to triangles: only the top, or closed by the side walls and base box that mj_ray also
 /// hits.
 enum class HeightFieldSides { open, closed };
 
 /// Returns the geoms of engine::World::surface_geom in world axes; the surface id is the index there. Visual geoms
-/// (contype and conaffinity zero) and invisible ones (alpha zero, as in mj_ray) are left out. Throws InvalidSituation
+/// (contype and conaffinity zero) and invisible geoms (alpha zero, as in mj_ray) are left out. Throws InvalidSituation
 /// for a geom type without a surface here (SDF).
 SceneGeometry static_geometry(const engine::World& world, HeightFieldSides sides);
 
@@ -54,14 +54,14 @@ SceneGeometry cage_geometry(const engine::World& world, const Eigen::Isometry3d&
 /// Returns the pose of a geom in W by the current kinematics of the data.
 Eigen::Isometry3d geom_pose(const mjData& data, int geom);
 
-/// Adds one geom of any purpose; `T_FS` maps its axes to F. Throws InvalidSituation for a type without a surface here
-/// (SDF).
+/// Adds one geom of any purpose; `T_FS` converts geom axes S to the frame F. Throws InvalidSituation for a type without
+/// a surface here (SDF).
 void append_geom(const mjModel& model, int geom, const Eigen::Isometry3d& T_FS, std::int32_t surface_id,
                  HeightFieldSides sides, SceneGeometry& scene);
 
-/// Returns the diffuse reflectivity of a geom: the luminance (ITU-R BT.709) of its colour times the mean colour of its
-/// texture, clamped to 0.05..0.95. The visible colour approximates the reflectivity at 905 nm, which differs for real
-/// surfaces.
+/// Returns the diffuse reflectivity of a geom: the luminance (ITU-R BT.709) of the geom's colour times the mean colour
+/// of its texture, limited to 0.05..0.95. The visible colour approximates the reflectivity at 905 nm, which differs for
+/// real surfaces.
 float geom_reflectivity(const mjModel& model, int geom);
 
 }  // namespace tumble::sim

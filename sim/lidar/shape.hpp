@@ -4,14 +4,14 @@
 #include <Eigen/Core>
 #include <cstdint>
 
-/// Private to sim: analytic surfaces of MuJoCo's primitive geoms.
+/// Used only within sim: analytic surfaces of MuJoCo's primitive geoms.
 namespace tumble::sim {
 
 enum class ShapeKind : std::uint8_t { plane, sphere, capsule, ellipsoid, cylinder, box };
 
-/// A primitive with its pose in a frame F (world or body). Its axes S and `size_m` are as in MuJoCo: plane half sizes
-/// x, y about the z axis (0: infinite); sphere radius; capsule and cylinder radius and half length along z; ellipsoid
-/// semi-axes; box half sizes.
+/// A primitive with its pose in a frame F (world or body). The shape's axes S and `size_m` are as in MuJoCo. A plane
+/// has half sizes x, y about the z axis (0: infinite); a sphere has a radius; a capsule and a cylinder have a radius
+/// and a half length along z; an ellipsoid has semi-axes; a box has half sizes.
 struct Shape {
   ShapeKind kind = ShapeKind::sphere;
   Eigen::Vector3d size_m = Eigen::Vector3d::Zero();
@@ -28,10 +28,10 @@ double cast_ray(const Shape& shape, const Eigen::Vector3d& origin_F_m, const Eig
 /// Returns the distance of a point on either side to the surface [m]; exact except for the ellipsoid (1e-9 relative).
 double surface_distance(const Shape& shape, const Eigen::Vector3d& point_F_m);
 
-/// True if a point is inside; always false for a plane.
+/// Returns true if a point is inside; always false for a plane.
 bool contains(const Shape& shape, const Eigen::Vector3d& point_F_m);
 
-/// Returns the half sizes along S of the box that contains the shape; infinite along an unbounded plane.
+/// Returns the half sizes of the shape's bounding box along S; infinite along an unbounded plane.
 Eigen::Vector3d half_extent(const Shape& shape);
 
 }  // namespace tumble::sim

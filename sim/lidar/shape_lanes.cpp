@@ -19,7 +19,7 @@ struct LocalRays {
 [[gnu::target("avx2")]] void to_shape_axes(const Shape& shape, const ShapeRays& rays, LocalRays& local) {
   const double px = shape.p_FS_m.x(), py = shape.p_FS_m.y(), pz = shape.p_FS_m.z();
   for (int axis = 0; axis < 3; ++axis) {
-    // in the same order as Eigen, for identical bits
+    // the order of operations is that of Eigen, for identical bits
     const double x = shape.R_FS(0, axis), y = shape.R_FS(1, axis), z = shape.R_FS(2, axis);
     for (int i = 0; i < kShapeLanes; ++i) {
       local.origin[axis][i] =
@@ -45,10 +45,10 @@ struct LocalRays {
   }
 }
 
-/// Slab method (T. L. Kay, J. T. Kajiya, SIGGRAPH 1986): the last side that is entered, or, from inside, the first side
-/// that is left.
+/// Computes the hit by the slab method (Kay and Kajiya, SIGGRAPH 1986): the last side through which the ray enters, or,
+/// from inside, the first side through which the ray leaves. L. T.
 [[gnu::target("avx2")]] void cast_on_box(const Shape& shape, const LocalRays& rays, ShapeHits& hits) {
-  // axis numbers have the lanes' width, so that the compiler selects them with the same masks
+  // axis numbers have the lanes' width, so that the compiler selects ranges and axis numbers with equal masks
   alignas(64) double enter[kShapeLanes], enter_axis[kShapeLanes], enter_sign[kShapeLanes];
   alignas(64) double leave[kShapeLanes], leave_axis[kShapeLanes], leave_sign[kShapeLanes], misses[kShapeLanes];
   for (int i = 0; i < kShapeLanes; ++i) {

@@ -3,10 +3,10 @@
 
 #include "sim/lidar/shape.hpp"
 
-/// Private to sim: intersection of eight rays with one shape.
+/// Used only within sim: intersection of eight rays with one shape.
 namespace tumble::sim {
 
-/// Number of rays that Embree passes at once.
+/// Number of rays that Embree passes in one call.
 inline constexpr int kShapeLanes = 8;
 
 /// Hits of eight rays on a shape, as computed by cast_ray().
@@ -22,8 +22,8 @@ struct ShapeRays {
   const float *direction_x, *direction_y, *direction_z;  ///< unit vectors
 };
 
-/// Computes cast_ray() for eight rays, bit-identically. Planes and boxes, which make up rooms, are computed for all
-/// rays at once. Hits of rays that are not `wanted` (0) are undefined.
+/// Computes cast_ray() for eight rays, bit-identically. Planes and boxes, which form the walls of rooms, are computed
+/// for all rays at once. Hits of rays whose `wanted` is 0 are undefined.
 void cast_rays(const Shape& shape, const ShapeRays& rays, const int* wanted, ShapeHits& hits);
 
 }  // namespace tumble::sim

@@ -10,7 +10,7 @@
 
 namespace tumble::sim {
 
-/// The true surface of a situation's static world: returns distances for the scoring of maps.
+/// The true surface of a situation's static world, which returns distances for the scoring of maps.
 class Surface {
  public:
   /// Copies the world's static geoms to a scene for rays; the world is not composed again. Throws InvalidSituation for

@@ -119,7 +119,7 @@ void SweepCaster::cast_block(Workspace& work) const {
     } else {
       for (int k = 0; k < spread_.rays(); ++k) {
         spread_.bend(firings, k, work.bent);
-        // the mask knows only the axes of beams
+        // the mask only contains the axes of beams
         cast_channel(work.block, work.poses, c, !cage_.empty(), work.bent, work.beam[k]);
       }
       spread_.merge(work.beam, out.echoes);

@@ -16,7 +16,7 @@
 
 namespace tumble::sim {
 
-/// The returns of one sweep in order of time. Sized once for all firings, then reused.
+/// The returns of one sweep in order of time. The buffers are sized once for all firings and then reused.
 struct SweepPoints {
   std::vector<Eigen::Vector3f> position_L_m, hit_W_m;
   std::vector<float> range_m, intensity;
@@ -29,7 +29,7 @@ struct SweepPoints {
 };
 
 /// Casts the sweeps of one lidar: one block of slots at a time, one packet of rays per channel. All members are const,
-/// so that sweeps may run in several threads.
+/// so that several threads may cast sweeps.
 class SweepCaster {
  public:
   /// Builds the ray scene of the world (about 0.07 s for a height field of 400 x 400 cells). Throws InvalidSituation.
@@ -38,12 +38,12 @@ class SweepCaster {
 
   const BeamPattern& pattern() const { return *pattern_; }
   std::size_t firings(std::int64_t sweep) const;
-  /// Casts sweep `number` of the recording; it depends only on the motion and the seed. Allocates no memory once
-  /// `points` has room.
+  /// Casts sweep `number` of the recording; the result depends only on the motion and the seed. Allocates no memory
+  /// once `points` has room.
   void cast_sweep(std::int64_t number, SweepPoints& points) const;
 
  private:
-  /// Buffers for a block, so that lanes allocate no memory.
+  /// Buffers for a block, so that casting allocates no memory.
   struct Workspace;
 
   void cast_channel(const FiringBlock& block, const BlockPoses& poses, int channel, bool meets_cage,

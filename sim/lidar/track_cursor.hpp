@@ -11,18 +11,18 @@
 
 namespace tumble::sim {
 
-/// Rotation and position side by side: T_WL is (R_WL, p_WL).
+/// Rotation and position as one matrix: T_WL is [R_WL, p_WL].
 using Pose34 = Eigen::Matrix<double, 3, 4>;
 
-/// Interpolates the true pose of a lidar between the samples of its body's motion. The body's position is linear in
-/// time, and its attitude rotates at a constant rate about a fixed axis. With samples 0.5 ms apart, the error is a dt^2
-/// / 8 = 3e-8 s^2 times the acceleration: 13 um at 400 m/s^2. Beyond the last sample, the last interval is
-/// extrapolated. The current interval is cached, so that ascending times are cheap.
+/// Interpolates the true pose of a lidar between the samples of the body's motion. Between samples, the body's position
+/// is linear in time, and the attitude rotates at a constant rate about a fixed axis. With samples 0.5 ms apart, the
+/// error is a dt^2 / 8 = 3e-8 s^2 times the acceleration: 13 um at 400 m/s^2. Beyond the last sample, the last interval
+/// is extrapolated. The current interval is cached, so that ascending times are fast.
 class TrackCursor {
  public:
-  /// Interval between two samples. At share `x` the body has rotated by a = x |turn| [rad]. With first = x sin(a)/a and
-  /// second = x^2 (1 - cos(a))/a^2, the pose is start + first turned + second rotated_twice, plus x step_m (Rodrigues:
-  /// exp(x K) = I + first K + second K^2).
+  /// Interval between two samples. At the fraction `x` of the interval, the body has rotated by the angle a = x |turn|
+  /// [rad]. With first = x sin(a)/a and second = x^2 (1 - cos(a))/a^2, the pose is start + first turned + second
+  /// rotated_twice + x step_m (Rodrigues: exp(x K) = I + first K + second K^2).
   struct Interval {
     std::int64_t start_ns = 0, end_ns = 0;
     double per_ns = 0.0, per_s = 0.0;
@@ -34,8 +34,8 @@ class TrackCursor {
     double share(std::int64_t time_ns) const { return static_cast<double>(time_ns - start_ns) * per_ns; }
   };
 
-  /// Below this square of an angle, the series of sin(a)/a and (1 - cos(a))/a^2 are accurate to 1e-16. It is 0.02 rad,
-  /// or 40 rad/s over 0.5 ms.
+  /// Below this squared angle, the series of sin(a)/a and (1 - cos(a))/a^2 are accurate to 1e-16. The limit corresponds
+  /// to 0.02 rad, or 40 rad/s over 0.5 ms.
   static constexpr double kSmall2 = 4e-4;
   static double sinc_of_small(double angle2) {
     return 1.0 - angle2 / 6.0 * (1.0 - angle2 / 20.0 * (1.0 - angle2 / 42.0));
@@ -51,7 +51,7 @@ class TrackCursor {
     T_BL_ << T_BL.linear(), T_BL.translation();
   }
 
-  /// Returns the interval that contains a time; valid until the next call.
+  /// Returns the interval that contains a time; the reference is valid until the next call.
   const Interval& interval(std::int64_t time_ns) {
     if (!now_.holds(time_ns)) enter_interval(time_ns);
     return now_;

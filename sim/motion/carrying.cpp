@@ -7,7 +7,8 @@ namespace tumble::sim {
 
 namespace {
 
-/// Returns the rotation vector from one attitude to another, in the axes of either.
+/// Returns the rotation vector from one attitude to another attitude; its coordinates are equal in the axes of both
+/// attitudes.
 Eigen::Vector3d turn(const Eigen::Quaterniond& from, const Eigen::Quaterniond& to) {
   const Eigen::AngleAxisd turned(from.conjugate() * to);
   return turned.angle() * turned.axis();

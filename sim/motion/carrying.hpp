@@ -15,8 +15,8 @@ struct CarriedPose {
   Eigen::Quaterniond q;
 };
 
-/// Smooth path over time, defined at any time, also before 0. It is differentiated twice numerically, so velocities
-/// must be continuous.
+/// Smooth path over time, defined at any time, also before 0. The path is differentiated twice numerically, so
+/// velocities must be continuous.
 using CarriedPath = std::function<CarriedPose(double time_s)>;
 
 /// Returns the wrench of a hand that carries a robot along a path: the feed-forward force of the path, plus a spring
@@ -24,7 +24,7 @@ using CarriedPath = std::function<CarriedPose(double time_s)>;
 Wrench carry_along(const HoldingHand& hand, const Eigen::Matrix3d& inertia_B_kg_m2, const BodyState& state,
                    const CarriedPath& path);
 
-/// Returns the moment of inertia of the robot that `hand` holds, about its centre of mass in B axes [kg m^2].
+/// Returns the moment of inertia of the robot that `hand` carries, about the robot's centre of mass in B axes [kg m^2].
 Eigen::Matrix3d carried_inertia_B_kg_m2(const HoldingHand& hand);
 
 /// Smooth step from 0 at u = 0 to 1 at u = 1 with continuous acceleration: 10 u^3 - 15 u^4 + 6 u^5; constant outside.

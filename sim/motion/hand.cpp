@@ -13,9 +13,9 @@ constexpr double kTremorLow_hz = 0.7, kTremorHigh_hz = 9.0;
 constexpr double kFullTremor_m_s = 0.1;  // a waiting hand is steady; the tremor has its full amplitude from this speed
                                          // on
 
-/// Returns the smallest rotation that turns the unit vector `from` up; a half turn about x if it points straight down.
-/// It is written out because Eigen's setFromTwoVectors compiles a singular value decomposition for that last case,
-/// which takes 6 s.
+/// Returns the smallest rotation that turns the unit vector `from` up; a half turn about x if `from` points straight
+/// down. The rotation is computed here because Eigen's setFromTwoVectors compiles a singular value decomposition for a
+/// vector that points down, which takes 6 s.
 Eigen::Quaterniond turn_up(const Eigen::Vector3d& from) {
   const double cosine = from.z();
   if (cosine < -1.0 + 1e-12) return {0.0, 1.0, 0.0, 0.0};
@@ -58,7 +58,7 @@ Wrench Hand::wrench(const BodyState& state, const Reference& reference) {
   const double unsteady = std::min(reference.v_m_s.norm() / kFullTremor_m_s, 1.0);
 
   Wrench out;
-  // a rolling sphere resists with mass + inertia / radius^2; the hand's stiffness corrects the rest
+  // a rolling sphere resists with mass + inertia / radius^2; the hand's stiffness corrects the remaining error
   const double rolling_mass_kg = mass_kg_ + inertia_kg_m2_ / (radius_m_ * radius_m_);
   out.force_W_n = values_.at("stiffness_n_m") * (reference.p_m - p_G) +
                   values_.at("damping_n_s_m") * (reference.v_m_s - v_G) + rolling_mass_kg * reference.a_m_s2;
@@ -71,7 +71,7 @@ Wrench Hand::wrench(const BodyState& state, const Reference& reference) {
   return out;
 }
 
-/// Torque that drives the rate away from rolling while the sphere touches a patch.
+/// Returns the torque that moves the rate away from rolling while the sphere touches a patch.
 Eigen::Vector3d Hand::burst(double time_s, const Eigen::Vector3d& p_G_m, const Eigen::Vector3d& v_m_s,
                             const Eigen::Vector3d& w_W_rad_s) {
   for (std::size_t i = 0; i < std::min(world_.patches.size(), kHandPatches); ++i) {

@@ -10,7 +10,7 @@
 
 namespace tumble::sim {
 
-/// Target of the hand for the geometric centre of a sphere.
+/// Target position of the hand for the geometric centre of a sphere.
 struct Reference {
   Eigen::Vector3d p_m = Eigen::Vector3d::Zero(), v_m_s = Eigen::Vector3d::Zero(), a_m_s2 = Eigen::Vector3d::Zero();
 };
@@ -41,7 +41,7 @@ inline constexpr std::array kHandParameters = {
 };
 inline constexpr std::size_t kHandPatches = 3;
 
-/// Combines the hand's parameters with those of a motion in one table.
+/// Combines the parameters of the hand and of a motion in one table.
 template <std::size_t N>
 constexpr std::array<Parameter, kHandParameters.size() + N> with_hand(const std::array<Parameter, N>& own) {
   std::array<Parameter, kHandParameters.size() + N> all{};
@@ -50,19 +50,21 @@ constexpr std::array<Parameter, kHandParameters.size() + N> with_hand(const std:
   return all;
 }
 
-/// A hand on a sphere: a horizontal force at its centre that follows a reference (spring, damper, and the feed-forward
-/// force of rolling), with tremor, and bursts of torque on patches of other friction. The hand applies no vertical
-/// force and has no body in the simulation.
+/// A hand that moves a sphere with a horizontal force at the sphere's centre. The force follows a reference position
+/// (spring, damper, and the feed-forward force of rolling) with tremor; on patches of other friction, bursts of torque
+/// are added. The hand applies no vertical force and has no body in the simulation.
 class Hand {
  public:
-  /// Messages start with `motion`. Throws InvalidSituation if the robot is not a sphere. `world` must outlive the hand.
+  /// Error messages start with `motion`. Throws InvalidSituation if the robot is not a sphere. `world` must outlive the
+  /// hand.
   Hand(const std::string& motion, const Values& values, const engine::World& world);
 
   double radius_m() const { return radius_m_; }
   /// Returns the state at rest with the centre at `p_G_m`; the heavy side points down, so that the sphere is in
   /// equilibrium.
   BodyState at_rest(const Eigen::Vector3d& p_G_m) const;
-  /// Returns the current wrench. It stores when a burst began, so times must increase between calls.
+  /// Returns the wrench that the hand applies in `state`. The function stores when a burst began, so times must
+  /// increase between calls.
   Wrench wrench(const BodyState& state, const Reference& reference);
 
  private:

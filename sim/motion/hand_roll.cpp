@@ -20,8 +20,8 @@ constexpr std::array kHandRollParameters = with_hand(std::array{
     Parameter{"pause_s", 0.3, 0.0, 30.0, "s", "stop between the legs"},
 });
 
-/// Straight path of minimum jerk from rest to rest: s = L (10 u^3 - 15 u^4 + 6 u^5); the peak speed is 15/8 of the
-/// mean.
+/// Straight path of minimum jerk from rest to rest with length L and time fraction u: s = L (10 u^3 - 15 u^4 + 6 u^5);
+/// the peak speed is 15/8 of the mean speed.
 class Leg {
  public:
   Leg(const Eigen::Vector3d& along_m, double speed_m_s, double start_s)

@@ -10,8 +10,8 @@
 
 namespace tumble::sim {
 
-/// Cause of a robot's motion: its start pose and the wrench that acts on it. Velocities are never set directly, because
-/// accelerometers would not measure such a jump.
+/// Cause of a robot's motion: the robot's start pose and the wrench that acts on the robot. Velocities are never set
+/// directly, because accelerometers would not measure a jump of the velocity.
 class Motion {
  public:
   virtual ~Motion() = default;
@@ -30,24 +30,25 @@ struct MotionType {
 
 /// A push by force and torque for a short time, then free motion.
 const MotionType& push_motion();
-/// A hand holds the robot above the ground, swings it and releases it.
+/// A hand holds the robot above the ground, swings the robot and releases it.
 const MotionType& throw_motion();
-/// A hand holds the robot above the ground and releases it.
+/// A hand holds the robot above the ground and releases the robot.
 const MotionType& drop_motion();
 /// A hand leads a sphere along two straight legs.
 const MotionType& hand_roll_motion();
 /// A hand leads a sphere along a path of selectable shape.
 const MotionType& hand_path_motion();
-/// A hand carries a robot and twirls it about its x axis.
+/// A hand carries a robot and twirls the robot about its x axis.
 const MotionType& twirl_motion();
 /// A walker carries a robot along a horizontal figure of eight.
 const MotionType& stroll_motion();
-/// A hand repeatedly leads a hanging robot aside and releases it.
+/// A hand repeatedly leads a hanging robot aside and releases the robot.
 const MotionType& swing_motion();
 
-/// All kinds in the order of registration. A new kind is a file and a line in motion_type.cpp.
+/// Returns all kinds of motion in the order of registration. A new kind of motion needs a source file and a line in
+/// motion_type.cpp.
 std::span<const MotionType* const> all_motion_types();
-/// Throws InvalidSituation for an unknown name, with the nearest known type.
+/// Throws InvalidSituation for an unknown name, with the nearest known name.
 const MotionType& find_motion_type(std::string_view name);
 
 }  // namespace tumble::sim

@@ -37,7 +37,7 @@ Nodes corner(const PathPlan& plan, int count) {
   return nodes;
 }
 
-/// Returns Gerono's lemniscate from its crossing point; its length is set afterwards.
+/// Returns Gerono's lemniscate from its crossing point; the caller sets the length afterwards.
 Nodes eight(int count) {
   Nodes nodes;
   for (int i = 0; i <= count; ++i) {

@@ -54,14 +54,14 @@ std::vector<Lift> plan_lifts(const Values& values, Stream& stream) {
   return lifts;
 }
 
-/// Smooth step from 0 to 1 with zero velocity and acceleration at its ends.
+/// Returns a smooth step from 0 to 1 with zero velocity and acceleration at its ends.
 double smooth(double share) {
   const double u = std::clamp(share, 0.0, 1.0);
   return u * u * u * (10.0 + u * (-15.0 + 6.0 * u));
 }
 
-/// A hand that grips the lowest segment at its centre of mass: a spring and a damper to a moving target. It applies no
-/// torque and has no body in the simulation.
+/// A hand that grips the lowest segment at the segment's centre of mass with a spring and a damper to a moving target.
+/// The hand applies no torque and has no body in the simulation.
 class Swing : public Motion {
  public:
   Swing(const Values& values, const engine::World& world)

@@ -21,7 +21,7 @@ constexpr std::array kOwnThrowParameters = {
 };
 constexpr std::array kThrowParameters = joined(kOwnThrowParameters, kImpulseParameters);
 
-/// A stiff hand holds the robot, swings it and releases it.
+/// A stiff hand holds the robot, swings the robot and releases the robot.
 class Throw : public Motion {
  public:
   Throw(const Values& values, const engine::World& world)

@@ -8,8 +8,8 @@
 namespace tumble::sim {
 
 /// Smooth random unsteadiness as a pure function of time: a sum of sinusoids of random phase. Frequencies are
-/// log-uniform between the two given limits; amplitudes are inversely proportional to frequency. The root mean square
-/// over a long time has the given value.
+/// log-uniform between two limits that the caller states; amplitudes are inversely proportional to frequency. The root
+/// mean square over a long time equals the value that the caller states.
 class Tremor {
  public:
   Tremor(Stream& stream, double rms, double lowest_hz, double highest_hz);

@@ -40,7 +40,7 @@ constexpr std::array kTwirlParameters = {
 constexpr double kTwirlSwayLow_hz = 0.3, kTwirlSwayHigh_hz = 4.0;
 constexpr double kTwirlLongest_s = 120.0;
 
-/// One twist of the wrist or the fingers, from rest to rest; its rate is a sin^2 pulse.
+/// One twist of the wrist or the fingers, from rest to rest; the rate is a sin^2 pulse.
 struct Stroke {
   static constexpr double kRise = 1.0 / 3.0;
   double start_s, length_s, peak_rad_s;
@@ -69,8 +69,9 @@ std::vector<Stroke> plan_strokes(const Values& values, Stream& stream) {
   return strokes;
 }
 
-/// A hand carries the robot by one of its points and twirls it about x, stroke by stroke. A spring and a damper keep
-/// the robot on the intended path, with the path's feed-forward forces. The hand has no body in the simulation.
+/// A hand carries the robot by a point of the robot and twirls the robot about x, stroke by stroke. A spring and a
+/// damper keep the robot on the intended path, with the path's feed-forward forces. The hand has no body in the
+/// simulation.
 class Twirl : public Motion {
  public:
   Twirl(const Values& values, const engine::World& world)

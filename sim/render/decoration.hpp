@@ -4,11 +4,11 @@
 #include "sim/engine/model.hpp"
 #include "sim/render/renderer.hpp"
 
-/// Private to sim: additions of a picture to the engine's scene. Callers must count first, because a full scene is a
-/// defect.
+/// Used only within sim: adds the decoration of a picture to the engine's scene. Callers must count the decoration's
+/// geoms first, because adding to a full scene is a programming error.
 namespace tumble::sim {
 
-/// Maximum number of engine geoms that the decoration of a view uses.
+/// Returns the maximum number of engine geoms that the decoration of a view uses.
 int decoration_size(const engine::World& world, const View& view);
 
 /// Adds lines 1 m apart over height fields and 0.5 m apart over planes, which show slope and scale.

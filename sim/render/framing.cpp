@@ -35,7 +35,7 @@ std::vector<Ball> content(const View& view, double robot_radius_m) {
       if (near.isEmpty() || near.contains(p)) balls.push_back({p, path.width_m});
     }
   }
-  // points are maps, which are much larger than the motion: they count only if nothing else is shown
+  // points are maps, which are much larger than the motion, so points only count if the view has no robot or path
   if (balls.empty()) {
     for (const DrawnPoints& cloud : view.points) {
       for (const Vector3d& p : cloud.points_W_m) balls.push_back({p, cloud.radius_m});

@@ -13,8 +13,8 @@ struct Framing {
   double distance_m;
 };
 
-/// Returns the view's own framing, or one that keeps its paths and robots within the picture. `robot_radius_m` is the
-/// room around a robot's origin, `fovy_rad` the vertical field of view.
+/// Returns the framing that the view states, or a framing that keeps the view's paths and robots within the picture.
+/// `robot_radius_m` is the space around a robot's origin; `fovy_rad` is the vertical field of view.
 Framing frame(const View& view, double robot_radius_m, double fovy_rad);
 
 }  // namespace tumble::sim

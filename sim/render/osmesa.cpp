@@ -10,7 +10,7 @@ namespace tumble::sim {
 
 namespace {
 
-/// Programs that link with OSMesa request this name, which identifies the binary interface of its header.
+/// Programs that link with OSMesa request this library name, which identifies the binary interface of OSMesa's header.
 constexpr const char* kLibrary = "libOSMesa.so.8";
 
 [[noreturn]] void fail() {

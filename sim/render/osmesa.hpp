@@ -5,16 +5,17 @@
 
 namespace tumble::sim {
 
-/// Private to sim: functions of OSMesa, which is loaded when the first picture is drawn. OSMesa loads LLVM, which makes
-/// the start of every program a third longer (docs/figures.md).
+/// Used only within sim: functions of OSMesa, which is loaded when the first picture is rendered. OSMesa loads LLVM,
+/// which makes the start of every program a third longer (docs/figures.md).
 struct OsMesa {
   decltype(&::OSMesaCreateContextExt) create_context;
   decltype(&::OSMesaDestroyContext) destroy_context;
   decltype(&::OSMesaMakeCurrent) make_current;
 };
 
-/// Loads OSMesa once for the life of the process and returns its functions. Its symbols are then visible to the engine,
-/// which looks up OpenGL by name. Throws std::runtime_error if loading fails. May be called from any thread.
+/// Loads OSMesa once for the life of the process and returns its functions. The symbols of OSMesa are then visible to
+/// the engine, which looks up OpenGL functions by name. Throws std::runtime_error if loading fails. The function may be
+/// called from any thread.
 const OsMesa& osmesa();
 
 }  // namespace tumble::sim

@@ -35,8 +35,8 @@ struct DrawnPoints {
   double radius_m = 0.02;
 };
 
-/// Content of a picture. The camera looks at `look_at_W_m`. If it is NaN, the robots and nearby paths are framed
-/// automatically (all paths if there is no robot).
+/// Content of a picture. The camera looks at `look_at_W_m`. If `look_at_W_m` is NaN, the robots and nearby paths are
+/// framed automatically (all paths if there is no robot).
 struct View {
   std::vector<Eigen::Isometry3d> robots_T_WB;  ///< poses at which the robot is drawn
   std::vector<DrawnPath> paths;
@@ -52,8 +52,8 @@ struct View {
 /// Renders pictures of a situation's world without a display (OSMesa).
 class Renderer {
  public:
-  /// Prepares a copy of the world. The shadow map has `shadow_pixels` per side; its cost grows with the square. Throws
-  /// std::runtime_error if no OSMesa context can be created.
+  /// Prepares a copy of the world. The shadow map has `shadow_pixels` per side; the rendering cost grows with the
+  /// square of `shadow_pixels`. Throws std::runtime_error if no OSMesa context can be created.
   explicit Renderer(const BuiltSituation& built, int shadow_pixels = 4096);
   ~Renderer();
   Renderer(Renderer&&) noexcept;

@@ -23,7 +23,7 @@ struct ContextDeleter {
 };
 using ContextPtr = std::unique_ptr<osmesa_context, ContextDeleter>;
 
-/// Makes a context current during its lifetime.
+/// Makes a context current during the object's lifetime.
 class Current {
  public:
   explicit Current(OSMesaContext context) {
@@ -36,7 +36,7 @@ class Current {
   Current& operator=(const Current&) = delete;
 
  private:
-  // pictures are drawn into a frame buffer object; the context's own buffer is not used
+  // pictures are drawn into a frame buffer object, so the context's own buffer is not used
   static constexpr int kSide = 16;
   unsigned char pixels_[4 * kSide * kSide];
 };
@@ -94,8 +94,8 @@ void set_look(mjModel& model, int shadow_pixels) {
   }
 }
 
-/// Restricts the shadow map to the visible area, because its size determines the sharpness of shadows. The engine would
-/// spread it over the whole world.
+/// Restricts the shadow map to the visible area, because the area of the map determines the sharpness of shadows. The
+/// engine would spread the shadow map over the whole world.
 void aim_sun(const Framing& framing, mjvScene& scene, mjrContext& engine) {
   const double reach_m = 2.0 + framing.distance_m;
   engine.shadowClip = static_cast<float>(reach_m);

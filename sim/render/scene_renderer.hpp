@@ -8,14 +8,14 @@
 
 namespace tumble::sim {
 
-/// Private to sim: renders pictures of a compiled world (OSMesa, MuJoCo's renderer).
+/// Used only within sim: renders pictures of a compiled world (OSMesa, MuJoCo's renderer).
 ///
-/// Threads: an OSMesa context is current in one thread at a time. The renderer makes its context current during each
-/// call, so it may be used from any thread, but only by one at a time. Several renderers may exist in one process. No
+/// An OSMesa context is current in one thread at a time. The renderer makes its context current during each call, so
+/// any thread may use the renderer, but only one thread at a time. Several renderers may exist in one process. No
 /// display is needed.
 class SceneRenderer {
  public:
-  /// Takes ownership of the world and changes its colours of sky, light and shadow settings.
+  /// Takes ownership of the world and changes its settings of sky, light and shadow.
   SceneRenderer(engine::World world, int shadow_pixels);
   ~SceneRenderer();
   SceneRenderer(const SceneRenderer&) = delete;

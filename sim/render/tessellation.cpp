@@ -26,7 +26,7 @@ std::uint32_t add_ring(const Shape& shape, const Ring& ring, int segments, Tesse
   return first;
 }
 
-/// Adds the band between two rings, the lower ring first.
+/// Adds the band of triangles between two rings, the lower ring first.
 void add_band(std::uint32_t low, bool low_is_pole, std::uint32_t high, bool high_is_pole, int segments,
               Tessellation& out) {
   const auto count = static_cast<std::uint32_t>(segments);
@@ -37,7 +37,7 @@ void add_band(std::uint32_t low, bool low_is_pole, std::uint32_t high, bool high
   }
 }
 
-/// Adds rings from the lower pole to the upper one as one smooth surface.
+/// Adds rings from the lower pole to the upper pole as one smooth surface.
 void add_round(const Shape& shape, const std::vector<Ring>& rings, int segments, Tessellation& out) {
   std::uint32_t below = add_ring(shape, rings.front(), segments, out);
   for (std::size_t k = 1; k < rings.size(); ++k) {
@@ -47,7 +47,8 @@ void add_round(const Shape& shape, const std::vector<Ring>& rings, int segments,
   }
 }
 
-/// `semi_m` are the semi-axes of an ellipsoid; `half_m` is half the length of the tube between its halves (capsule).
+/// `semi_m` are the semi-axes of an ellipsoid; `half_m` is half the length of the tube between the ellipsoid's halves
+/// (capsule).
 void add_ellipsoid(const Shape& shape, const Vector3d& semi_m, double half_m, int segments, Tessellation& out) {
   const int steps = segments / 2;
   std::vector<Ring> rings;
@@ -70,7 +71,7 @@ void add_cylinder(const Shape& shape, double radius_m, double half_m, int segmen
   add_round(shape, {high, {0.0, 0.0, half_m}}, segments, out);
 }
 
-/// Adds a quadrilateral; its corners are anticlockwise seen from outside.
+/// Adds a quadrilateral whose corners are anticlockwise seen from outside.
 void add_face(const Shape& shape, const std::array<Vector3d, 4>& corners_S_m, Tessellation& out) {
   const auto first = static_cast<std::uint32_t>(out.vertices_F_m.size());
   for (const Vector3d& corner : corners_S_m)

@@ -9,15 +9,15 @@
 
 namespace tumble::sim {
 
-/// A kind of robot: its parameters, its MJCF file, and the changes of a draw.
+/// A kind of robot: its parameters, its MJCF file, and the changes that a situation makes to the file.
 struct RobotType {
   ComponentType component;
   std::string_view file;  ///< in the folder of models
   /// Sets mass, inertia, contact and centre of mass of the parsed robot; fills com_offset_m and sphere_radius_m of
   /// `world`.
   void (*shape)(mjSpec* spec, const Values& values, engine::World& world);
-  /// Body of the file that carries all sensor sites, with its origin at its centre of mass. It is a free body, or it is
-  /// attached by joints below `anchor`.
+  /// Body of the file that carries all sensor sites, with its origin at its centre of mass. The sensor body is a free
+  /// body, or is attached by joints below `anchor`.
   std::string_view sensor_body = "robot";
   std::string_view anchor = "";  ///< static body that is moved to the world's start; empty: the robot is free
 };
@@ -26,12 +26,13 @@ struct RobotType {
 const RobotType& rig_robot();
 /// A sphere with an eccentric inner mass.
 const RobotType& sphere_robot();
-/// Three segments in a row on hinges, with an IMU on the lowest.
+/// Three segments in a row on hinges, with an IMU on the lowest segment.
 const RobotType& pendulum_robot();
 
-/// All kinds in the order of registration. A new kind is a file and a line in robot_type.cpp.
+/// Returns all kinds of robot in the order of registration. A new kind of robot needs a source file and a line in
+/// robot_type.cpp.
 std::span<const RobotType* const> all_robot_types();
-/// Throws InvalidSituation for an unknown name, with the nearest known type.
+/// Throws InvalidSituation for an unknown name, with the nearest known name.
 const RobotType& find_robot_type(std::string_view name);
 
 /// Moves every geom and site of `body` by `shift_m` in the body's own frame.

@@ -23,7 +23,8 @@ constexpr std::array kSphereParameters = {
     Parameter{"contact_damping_ratio", 1.0, 0.05, 1.5, "1", "damping ratio of a contact (MuJoCo solref[1])"},
 };
 
-/// Inertia of shell and ball about their common centre of mass: parallel axes with the reduced mass (Steiner).
+/// Returns the inertia of shell and ball about their common centre of mass, from parallel axes with the reduced mass
+/// (Steiner).
 Eigen::Matrix3d inertia(double shell_kg, double radius_m, double inner_kg, double inner_radius_m,
                         const Eigen::Vector3d& d_m) {
   const double own =

@@ -3,7 +3,7 @@
 
 #include "sim/sensor_type.hpp"
 
-/// Sensors that deliver series of numbers, one source file each.
+/// Declares sensors that deliver series of numbers; each sensor has one source file.
 namespace tumble::sim {
 
 /// Air pressure, which decreases with height.

@@ -15,7 +15,7 @@ namespace tumble::sim {
 
 namespace {
 
-/// Number of physics steps per window.
+/// Returns the number of physics steps per window.
 std::size_t steps_in_window(const SensorSpec& sensor, std::int64_t step_ns) {
   const double steps = 1e9 / (sensor.values.at("output_rate_hz") * static_cast<double>(step_ns));
   const double whole = std::round(steps);

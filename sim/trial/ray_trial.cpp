@@ -16,7 +16,8 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kReach_m = 1e4;
-/// Surfaces with coincident faces (the end of a wall within a door's reveal) are both hit: either name is correct.
+/// If two surfaces have coincident faces (the end of a wall within a door's reveal), both are hit and either surface is
+/// correct.
 constexpr double kCoincident_m = 1e-4;
 
 /// Rays of the engine against the static part of a world.
@@ -37,7 +38,7 @@ class EngineRays {
     return {range_m, geom};
   }
 
-  /// Returns the range to this geom; negative if the ray misses it.
+  /// Returns the range to this geom; negative if the ray misses the geom.
   double range_to(int geom, const Vector3d& origin_m, const Vector3d& direction) const {
     const mjModel* model = world_.model.get();
     const int type = model->geom_type[geom];
@@ -75,7 +76,7 @@ Vector3d origin_above_ground(const EngineRays& rays, double half_extent_m, Strea
   return as_float(origin);
 }
 
-/// Returns an origin near the robot's start, below the ceiling if there is one.
+/// Returns an origin near the robot's start, below the ceiling if the world has a ceiling.
 Vector3d origin_near_start(const Vector3d& start_W_m, Stream& stream) {
   const double z_m = stream.uniform(0.1, 1.5), y_m = stream.uniform(-1.5, 1.5), x_m = stream.uniform(-1.5, 1.5);
   return as_float(start_W_m + Vector3d(x_m, y_m, z_m));

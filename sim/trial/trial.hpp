@@ -12,7 +12,8 @@
 
 namespace tumble::sim {
 
-/// Integrator of the engine. The simulation uses `runge_kutta_4`; the others serve to demonstrate their errors.
+/// Integrator of the engine. The simulation uses `runge_kutta_4`; the other integrators serve to demonstrate their
+/// errors.
 enum class Integrator { runge_kutta_4, euler, implicit };
 
 struct TrialOptions {
@@ -20,11 +21,11 @@ struct TrialOptions {
   Integrator integrator = Integrator::runge_kutta_4;
 };
 
-/// A robot in its world, set and advanced step by step with the model and engine of `simulate`, for measurements. It
-/// has no settling, and ignores the motion and sensors of the situation.
+/// A robot in its world that is set and advanced step by step with the model and engine of `simulate`, for
+/// measurements. A trial has no settling, and ignores the motion and sensors of the situation.
 class Trial {
  public:
-  /// Uses a copy of the world. Throws InvalidSituation if the step is out of its bounds.
+  /// Uses a copy of the world. Throws InvalidSituation if the time step is outside its limits.
   explicit Trial(const BuiltSituation& built, const TrialOptions& options = {});
   ~Trial();
   Trial(Trial&&) noexcept;
@@ -40,13 +41,14 @@ class Trial {
   BodyState state() const;  ///< state of the body that carries the sensors
   /// Throws InvalidSituation for a robot on joints.
   void set_state(const BodyState& state);
-  /// Hinges by name, for a robot on joints. These members throw InvalidSituation if there is no hinge of that name.
+  /// Return angle and angular velocity of a hinge by name, for a robot on joints. These members throw InvalidSituation
+  /// if there is no hinge of this name.
   double joint_rad(const std::string& name) const;
   double joint_rate_rad_s(const std::string& name) const;
   void set_joint(const std::string& name, double angle_rad, double rate_rad_s);
   /// Advances by one step under gravity, contacts and `wrench`. Throws SimulationFailure.
   void step(const Wrench& wrench = {});
-  /// Returns the contacts at the end of the last step; their time is the state's, rounded to nanoseconds.
+  /// Returns the contacts at the end of the last step; their time is the time of the state, rounded to nanoseconds.
   std::vector<ContactTruth> contacts() const;
 
  private:

@@ -13,9 +13,9 @@ namespace tumble::sim {
 
 using Colour = std::array<float, 4>;
 
-/// Adds a static geom that a robot touches and a lidar sees, and registers it as a surface of `world`. `size` is
-/// MuJoCo's for the type (half widths, radius and half height); `yaw_rad` is about z. The caller may set further
-/// properties of the result.
+/// Adds a static geom that a robot touches and a lidar sees, and registers the geom as a surface of `world`. `size` is
+/// MuJoCo's size for the geom type (half widths, radius and half height); `yaw_rad` is about z. The caller may set
+/// further properties of the returned geom.
 mjsGeom* add_surface(mjSpec* spec, engine::World& world, const std::string& name, mjtGeom type,
                      const Eigen::Vector3d& position_W_m, const Eigen::Vector3d& size_m, double yaw_rad,
                      const Colour& colour);
@@ -27,12 +27,12 @@ struct HeightGrid {
   std::span<const double> heights_m;  ///< rows * columns values
 };
 
-/// Adds a height field as the surface `name`, solid down to `base_m` below its lowest node. The engine requires a field
-/// with some relief, so its height range is at least `least_span_m`.
+/// Adds a height field as the surface `name`, solid down to `base_m` below the lowest node of the field. The engine
+/// requires a field with some relief, so the height range of the field is at least `least_span_m`.
 mjsGeom* add_height_field(mjSpec* spec, engine::World& world, const std::string& name, const HeightGrid& grid,
                           double base_m, double least_span_m, const Colour& colour);
 
-/// Adds a flat mark on the floor for pictures only: it has no contact and is not a surface.
+/// Adds a flat mark on the floor for pictures only; the mark has no contact and is not a surface.
 void add_mark(mjSpec* spec, const engine::FrictionPatch& patch, const Colour& colour);
 
 /// Adds the sun, and the sky of pictures.

@@ -13,14 +13,14 @@
 namespace tumble::sim::hillside {
 
 inline constexpr double kHalfExtent_m = 20.0;
-/// Nodes per side: cells of 20 cm. In cells of 10 cm, a strut that an impact drives in by some centimetres is pushed
-/// out sideways and stays wedged for seconds.
+/// Nodes per side: cells of 20 cm. In cells of 10 cm, a strut that an impact pushes into the ground by some centimetres
+/// is moved out sideways and stays wedged for seconds.
 inline constexpr int kSide = 201;
 inline constexpr double kEdge_m = -8.0;    ///< x of the upper edge
 inline constexpr double kSetBack_m = 0.8;  ///< distance of the robot's start behind the edge
 inline constexpr double kStart_x_m = kEdge_m - kSetBack_m;
 
-/// Parameters of relief and cover, which follow a world's own parameters.
+/// Parameters of relief and cover, which follow the parameters of a world in its table.
 inline constexpr std::array kCoverParameters = {
     Parameter{"relief_m", 0.12, 0.0, 1.0, "m", "root mean square of the relief; 0: none"},
     Parameter{"relief_shortest_m", 2.5, 0.5, 20.0, "m", "shortest wavelength of the relief"},
@@ -40,15 +40,15 @@ inline constexpr std::array kCoverParameters = {
     Parameter{"buildings", 1, 0, 1, "1", "1: a building below and a wall beside the slope, out of reach"},
 };
 
-/// Share of the relief that applies at a position, within [0, 1].
+/// Fraction of the relief that applies at a position, within [0, 1].
 using Share = std::function<double(double x_m, double y_m)>;
 
-/// Adds relief and bumps (streams "terrain.relief" and "terrain.bumps"). They fade around the start, so that the robot
-/// can rest there, and according to `share`.
+/// Adds relief and bumps (streams "terrain.relief" and "terrain.bumps"). Relief and bumps fade around the start, so
+/// that the robot can rest there, and according to `share`.
 void roughen(Ground& ground, const Values& values, std::uint64_t seed, const Share& share);
 
-/// Adds the ground, rocks, trunks and blocks to the world, and sets its start and extent (streams "terrain.rocks" and
-/// "terrain.trunks"). Rocks are between `rocks_from_x_m` and `rocks_to_x_m` along the fall line.
+/// Adds the ground, rocks, trunks and blocks to the world, and sets the world's start and extent (streams
+/// "terrain.rocks" and "terrain.trunks"). Rocks are between `rocks_from_x_m` and `rocks_to_x_m` along the fall line.
 void cover(mjSpec* spec, engine::World& world, const Ground& ground, const Values& values, std::uint64_t seed,
            double rocks_from_x_m, double rocks_to_x_m);
 

@@ -28,7 +28,7 @@ void add_walls(mjSpec* spec, engine::World& world, const Values& values) {
 
 void add_furniture(mjSpec* spec, engine::World& world, const Values& values, Stream& stream) {
   const double reach_m = values.at("room_half_m") - 0.5;
-  // a clear disc as wide as the room still leaves its corners, so a position is always found
+  // a clear disc as wide as the room still leaves the room's corners, so a position is always found
   const auto place = [&] {
     Eigen::Vector2d at;
     do {
@@ -51,7 +51,7 @@ void add_furniture(mjSpec* spec, engine::World& world, const Values& values, Str
   }
 }
 
-/// Adds cupboards with their backs against the walls in turn.
+/// Adds cupboards with their backs against the walls, wall after wall.
 void add_shelves(mjSpec* spec, engine::World& world, const Values& values, Stream& stream) {
   const double half_m = values.at("room_half_m");
   for (int i = 0; i < static_cast<int>(values.at("shelf_count")); ++i) {

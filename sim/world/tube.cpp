@@ -31,7 +31,7 @@ constexpr std::array kTubeParameters = joined(kGroundParameters, kOwnTubeParamet
 constexpr Colour kRock = {0.42f, 0.36f, 0.33f, 1.0f};
 constexpr double kOver_m = 0.5;  // the ground extends beyond the walls, so that there is no gap
 
-/// Position of the tube's middle.
+/// Returns the position of the tube's middle.
 double middle_m(const Values& values, double x_m) {
   return values.at("bend_m") * std::sin(2.0 * std::numbers::pi * x_m / values.at("bend_length_m"));
 }
@@ -41,8 +41,8 @@ double ground_m(const Values& values, double x_m, double y_m) {
   return values.at("gutter_m") * u * u;
 }
 
-/// Adds half of the shell: rings along x, from the foot of one wall to the crown. It has no contact, because the engine
-/// would use the convex hull of the mesh; the ground and the ends hold the robot.
+/// Adds half of the shell: rings along x, from the foot of one wall to the crown. The shell has no contact, because the
+/// engine would use the convex hull of the mesh; the ground and the ends hold the robot.
 void add_shell(mjSpec* spec, engine::World& world, const Values& values, int side, const Relief& rough) {
   constexpr double kRing_m = 0.1;
   constexpr int kSteps = 28;
@@ -53,7 +53,7 @@ void add_shell(mjSpec* spec, engine::World& world, const Values& values, int sid
     const double x_m = values.at("length_m") * (static_cast<double>(ring) / rings - 0.5);
     for (int step = 0; step <= kSteps; ++step) {
       const double angle = -kBelow_rad + (std::numbers::pi / 2 + kBelow_rad) * step / kSteps;
-      // arc length is the second coordinate of the unevenness; both halves meet at the crown, where it is 0
+      // arc length is the second coordinate of the unevenness; both halves meet at the crown, where the arc length is 0
       const double arc_m = side * (std::numbers::pi / 2 - angle) * values.at("half_width_m");
       const double scale = 1.0 + rough.height_m(x_m, arc_m) / values.at("half_width_m");
       vertices.push_back(static_cast<float>(x_m));

@@ -15,7 +15,8 @@ using scenarios::Kind;
 
 constexpr std::size_t kPathPointsMax = 600;
 
-/// Index of the gyro axis with the most samples that the estimates flag as clipped; -1 if no sample is flagged.
+/// Returns the index of the gyro axis with the most samples that the estimates flag as clipped; -1 if no sample is
+/// flagged.
 int most_clipped_axis(const std::vector<RateState>& rates) {
   std::array<int, 3> count = {0, 0, 0};
   for (const RateState& rate : rates) {
@@ -136,7 +137,7 @@ Plot rate_plot(const scenarios::RunResult& run) {
     plot.lines.push_back(estimated_rate(run.methods[i]->info, run.estimates[i].rates, axis, span));
     plot.lines.back().colour = colour++;
   }
-  // Draws the recorded gyro if the run has no baseline of kind rate, because the gyro shows the clipping.
+  // Plots the recorded gyro if the run has no baseline of kind rate, because the gyro shows the clipping.
   if (!gyro) {
     plot.lines.push_back(sampled_rate("gyro reading", 1.6, imu.time_ns, imu.gyro_rad_s, axis, span));
     plot.lines.back().colour = colour;

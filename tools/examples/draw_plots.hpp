@@ -9,15 +9,15 @@
 #include "tools/examples/example.hpp"
 #include "tools/pictures/paths.hpp"
 
-/// Plots of one draw that apply to every robot.
+/// Plots of one simulated run that apply to every robot.
 namespace tumble::tools {
 
-/// Returns the indices of the methods to draw, in increasing order. If there are more methods than colours, methods
-/// marked `first` are chosen before others, each group in order, until the colours are used up.
+/// Returns the indices of the methods to plot, in increasing order. If there are more methods than colours, methods
+/// marked `first` are chosen before other methods, each group in order, until the colours are used up.
 std::vector<std::size_t> drawn_of(const std::vector<bool>& first);
 
-/// The estimated paths that a run's pictures show. Methods that receive the truth are left out: their path would cover
-/// the true one. If there are more paths than colours, the baseline and our methods are chosen first.
+/// The estimated paths that the pictures of a run show. Methods that receive the truth are left out, because their path
+/// would cover the true path. If there are more paths than colours, the baseline and our methods are chosen first.
 struct RunPaths {
   std::vector<std::string> methods;  ///< for example "slam/icp"
   std::vector<Path> paths;           ///< parallel to `methods`

@@ -7,11 +7,11 @@
 #include <utility>
 #include <vector>
 
-/// An example is one draw with pictures and plots. A sweep creates examples and stores them next to its results
-/// database; the report displays them without further computation.
+/// An example is one simulated run with pictures and plots. A sweep creates examples and stores them next to its
+/// results database; the report displays the examples without further computation.
 namespace tumble::tools {
 
-/// Colour index of the truth. Other indices select the colour of a method (pictures/colours.hpp).
+/// Colour index of the truth. All other indices select the colour of a method (pictures/colours.hpp).
 inline constexpr int kTruthColour = -1;
 
 /// One line of a plot. `x` and `y` are parallel; NaN marks a gap.
@@ -62,7 +62,7 @@ struct Example {
 /// Returns the folder for the examples of a results database: FILE.db.files.
 std::filesystem::path examples_folder(const std::filesystem::path& database);
 
-/// Returns the example as JSON. Pictures are named by their files (README.md).
+/// Returns the example as JSON. README.md describes the file names of the pictures.
 std::string to_json(const Example& example);
 
 /// Writes the files of an example to FOLDER/.unfinished: pictures SCENARIO-SEED-NAME.png, the animation
@@ -86,12 +86,12 @@ struct FoundExamples {
   std::vector<std::string> unreadable;  ///< path and reason for each part of the list that cannot be read
 };
 /// Reads the examples of a folder; the result is empty if the folder has no list. An unreadable example does not affect
-/// the others. Reported errors: the list has the wrong format or is truncated (examples that end before the cut are
+/// other examples. Reported errors: the list has the wrong format or is truncated (examples that end before the cut are
 /// returned), a picture is missing, or a name leads out of the folder.
 FoundExamples read_examples(const std::filesystem::path& folder, Pictures pictures);
 
-/// Copies a list that is damaged or truncated to examples.json.damaged, so that the next list does not overwrite it.
-/// Returns the path of the copy.
+/// Copies a list that is damaged or truncated to examples.json.damaged, so that the next list does not overwrite the
+/// damaged list. Returns the path of the copy.
 std::filesystem::path set_damaged_aside(const std::filesystem::path& folder);
 
 }  // namespace tumble::tools

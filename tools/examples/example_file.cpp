@@ -75,7 +75,7 @@ std::string picture_file(const Example& example, const ExamplePicture& picture) 
   return file_of(example, picture.name + ".png");
 }
 
-/// Folder for files that no list names yet.
+/// Returns the folder for files that no list names yet.
 fs::path unfinished(const fs::path& folder) {
   return folder / ".unfinished";
 }
@@ -90,7 +90,7 @@ std::vector<std::uint8_t> read_bytes(const fs::path& path) {
   }
 }
 
-/// The list may come from an untrusted source, so only files in its own folder are read or removed.
+/// The list may come from an untrusted source, so only files in the list's folder are read or removed.
 std::string file_name(const std::string& name, const char* ending, const char* what) {
   if (name.empty() || fs::path(name).filename() != name || name.starts_with('.') || !name.ends_with(ending))
     throw BadInput("'" + name + "' is not the name of a " + what + " in the same folder");
@@ -169,7 +169,7 @@ json whole_examples(const fs::path& folder) {
       if (depth == kDepth && event == json::parse_event_t::object_end) whole.push_back(parsed);
       return true;
     };
-    // the JSON is complete, so the list was refused because its content is not ours
+    // the JSON is complete, so the list was rejected because its content has another format
     if (!json::parse(read_bytes(list_file(folder)), keep, false).is_discarded()) return json::array();
   } catch (const BadInput&) {  // the path is a folder
   }
@@ -187,8 +187,8 @@ std::set<std::string> files_of(const json& examples) {
   return files;
 }
 
-/// Files that a list names. If the list is unreadable or truncated, its files are kept, because the copied list still
-/// names them.
+/// Returns the files that a list names. If the list is unreadable or truncated, the files are kept, because the copied
+/// list still names them.
 std::set<std::string> files_before(const fs::path& folder) {
   try {
     const json list = read_list(folder);

@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kPollMs = 200;
-/// Time limit for simulation and drawing in addition to the methods, in units of one method's time limit.
+/// Time limit for simulation and rendering in addition to the methods, in units of one method's time limit.
 constexpr double kOtherTimeouts = 3.0;
 constexpr const char* kTypical = "The draw with the median score of its scenario";
 constexpr const char* kFailed = "The draw on which most methods failed";
@@ -30,8 +30,8 @@ constexpr const char* kAlsoFailed = "A draw on which methods failed";
 
 enum class Extent { whole, of_failure };
 
-/// An example that a process is generating. Only the first example has an animation, because a report shows only one.
-/// `text` is what the process has printed so far, or the text of an existing example.
+/// An example that a process is generating. Only the first example has an animation, because a report shows only one
+/// animation. `text` is what the process has printed so far, or the text of an existing example.
 struct Making {
   scenarios::ExampleDraw draw;
   scenarios::Scenario scenario;
@@ -62,7 +62,7 @@ std::vector<scenarios::MethodPointer> methods_of(const std::vector<scenarios::Ou
   return found;
 }
 
-/// Returns the rows to show for a draw with failures: the failed methods, and our methods of the same kinds.
+/// Returns the rows to show for a run with failures: the failed methods, and our methods of these kinds.
 std::vector<scenarios::Outcome> rows_of_failure(std::vector<scenarios::Outcome> rows) {
   std::set<scenarios::Kind> kinds;
   for (const scenarios::Outcome& row : rows) {
@@ -88,7 +88,7 @@ std::vector<Making> plan(const scenarios::DataRoot& data, const scenarios::Suite
   const auto add = [&](const scenarios::ExampleDraw& draw, const char* choice, Extent extent) {
     if (std::any_of(makings.begin(), makings.end(), [&](const Making& making) { return making.draw == draw; })) return;
     std::vector<scenarios::Outcome> rows = scenarios::rows_to_show(results, draw);
-    // simulate lidars only if the sweep did, so that the digest of the recording agrees with the rows
+    // simulate lidars only if the sweep simulated lidars, so that the digest of the recording agrees with the rows
     const bool lidars = std::ranges::any_of(rows, [](const auto& row) { return row.kind != scenarios::Kind::rate; });
     if (extent == Extent::of_failure) rows = rows_of_failure(std::move(rows));
     const auto scenario = std::find_if(all.begin(), all.end(), [&](const auto& s) { return s.name == draw.scenario; });
@@ -113,9 +113,9 @@ std::vector<Making> plan(const scenarios::DataRoot& data, const scenarios::Suite
   return makings;
 }
 
-/// Keeps existing examples that show the same rows. Returns the text of examples of scenarios outside the suite, which
-/// other sweeps stored in the same database. Reports examples that cannot be read; those of the suite are generated
-/// again.
+/// Keeps existing examples that show the rows of the results. Returns the text of examples of scenarios outside the
+/// suite, which other sweeps stored in this database. Reports examples that cannot be read; unreadable examples of the
+/// suite are generated again.
 std::vector<std::string> keep_known(const scenarios::DataRoot& data, const fs::path& folder,
                                     const scenarios::Suite& suite, const LeaveOptions& options,
                                     std::vector<Making>& makings) {
@@ -143,8 +143,8 @@ std::vector<std::string> keep_known(const scenarios::DataRoot& data, const fs::p
   return others;
 }
 
-/// Runs in its own process, so that a crash affects only this example. Writes the example, or the reason why there is
-/// none, to `fd`.
+/// Generates the example in its own process, so that a crash affects only this example. The process writes the example,
+/// or the reason why there is no example, to `fd`.
 void make(const scenarios::DataRoot& data, const fs::path& folder, const Making& making, int fd) {
   try {
     const scenarios::RunResult run =
@@ -164,7 +164,7 @@ class Makers {
   Makers(const scenarios::DataRoot& data, const fs::path& folder, double timeout_s, const LeaveOptions& options)
       : data_(data), folder_(folder), timeout_s_(timeout_s), options_(options) {}
 
-  /// Returns false if it was stopped.
+  /// Returns false if the generation was stopped.
   bool run(std::vector<Making>& makings) {
     auto next = makings.begin();
     while (true) {

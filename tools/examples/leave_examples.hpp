@@ -20,12 +20,15 @@ struct LeaveOptions {
 };
 
 /// Generates examples next to the results of a sweep (see `examples_folder`), each in its own process.
-/// - Typical draws of the suite's scenarios (`choose_examples`) are run again with the methods that succeeded on them.
-/// - Of the draws on which methods failed (`choose_failures`), the first is run in the same way. The others show the
-///   failed methods and `tumble` of the same kinds (`failure_example_of`).
-/// Existing examples that show the same rows, or that belong to scenarios outside the suite, are kept. A draw that
-/// cannot be shown is reported in a note. Does nothing for recordings. Returns false if it was stopped. Throws BadInput
-/// if the folder cannot be written.
+/// - Typical runs of the suite's scenarios (`choose_examples`) are repeated with the methods that succeeded on these
+///   runs.
+/// - Among the runs on which methods failed (`choose_failures`), the first run is repeated with all methods that
+///   succeeded. The further failed runs show the failed methods and `tumble` of the kinds of the failed methods
+///   (`failure_example_of`).
+///
+/// Existing examples that show the rows of the results, or that belong to scenarios outside the suite, are kept. A run
+/// that cannot be shown is reported in a note. Does nothing for recordings. Returns false if the generation was
+/// stopped. Throws BadInput if the folder cannot be written.
 bool leave_examples(const scenarios::DataRoot& data, const scenarios::Suite& suite,
                     const std::filesystem::path& database, const LeaveOptions& options);
 

@@ -23,7 +23,7 @@ bool is_sphere(const scenarios::RunResult& run) {
   return run.recording.sensors.sphere_radius_m > 0.0;
 }
 
-/// Adds the map of the first method that has a map and fulfils `wanted`; adds nothing if there is no match.
+/// Adds the map of the first method that has a map and fulfils `wanted`; adds nothing if there is no such method.
 void add_map(const scenarios::RunResult& run, const sim::Surface& surface, bool (*wanted)(const scenarios::MethodInfo&),
              std::vector<ErrorMap>& maps) {
   for (std::size_t i = 0; i < run.methods.size(); ++i) {
@@ -107,7 +107,7 @@ void add_plot(Plot plot, Example& example) {
   if (!plot.lines.empty()) example.plots.push_back(std::move(plot));
 }
 
-/// Fills the fields that every example has, and generates the replay.
+/// Sets the fields that every example has, and generates the replay.
 Example replayed(const scenarios::RunResult& run) {
   Example example;
   example.scenario = run.scenario;

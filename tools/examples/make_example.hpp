@@ -11,14 +11,14 @@ namespace tumble::tools {
 
 enum class Moving { drawn, left_out };
 
-/// Generates the pictures, plots and replay of a draw that has been run: the robot along its path, a film strip, plots,
-/// and two maps coloured by error. The maps are those of the baseline and of our first method. Plots without data are
-/// left out. An animation is added on request, because it costs more than the rest together. `choice` and `made_of`
-/// stay empty. Throws BadInput or std::runtime_error if nothing can be drawn.
+/// Generates the pictures, plots and replay of a completed run: the robot along its path, a film strip, plots, and two
+/// maps coloured by error. The two maps are those of the baseline and of our first method. Plots without data are left
+/// out. An animation is added on request, because an animation costs more than all other parts together. `choice` and
+/// `made_of` stay empty. Throws BadInput or std::runtime_error if nothing can be rendered.
 Example example_of(const scenarios::RunResult& run, Moving moving);
 
-/// Generates only the picture of the robot along its path and the replay: the most informative and cheapest parts for a
-/// draw with failed methods. Errors are as for `example_of`.
+/// Generates only the picture of the robot along its path and the replay: the most informative and fastest parts for a
+/// run with failed methods. Errors are as for `example_of`.
 Example failure_example_of(const scenarios::RunResult& run);
 
 }  // namespace tumble::tools

@@ -41,8 +41,8 @@ struct ShownPath {
   Path path;
 };
 
-/// Returns the truth and, for each value of MethodInfo::source, the first position method that needs no truth. More
-/// paths would hide each other. Each path ends where it leaves the surroundings of the truth.
+/// Returns the truth and, for each value of MethodInfo::source, the first position method that does not need the truth.
+/// Further paths would hide each other. Each path ends where it leaves the surroundings of the truth.
 std::vector<ShownPath> shown_paths(const scenarios::RunResult& run) {
   const sim::Recording& recording = run.recording;
   std::vector<ShownPath> all = {{"truth", kTruthColour, 3.5, true_path(recording.sensors, recording.truth, 4)}};

@@ -12,7 +12,7 @@ namespace tumble::tools::html {
 /// Replaces & < > " ' by entities. The result is safe in text and in quoted attributes.
 std::string escaped(const std::string& text);
 
-/// Escapes each "<" of a JSON text, so that the text can be embedded in a script element without ending it.
+/// Escapes each "<" of a JSON text, so that the text can be embedded in a script element without ending the element.
 std::string script_json(const std::string& json);
 
 /// Returns a path as a file URL, relative or absolute. All characters but letters, digits, "/", "-", ".", "_" and "~"
@@ -29,8 +29,8 @@ std::string base64(std::span<const std::uint8_t> bytes);
 /// Returns a table cell: "<td class='c'>escaped</td>".
 std::string cell(const std::string& text, const std::string& css_class = "");
 
-/// Opens a table that scrolls horizontally, up to its first row. The caller closes it with "</tbody></table></div>".
-/// Columns from `numbers_from` on are right-aligned.
+/// Opens a table that scrolls horizontally, up to the table's first row. The caller closes the table with
+/// "</tbody></table></div>". Columns from `numbers_from` on are right-aligned.
 std::string table_head(const std::vector<std::string>& columns, std::size_t numbers_from);
 
 }  // namespace tumble::tools::html

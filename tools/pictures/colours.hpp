@@ -12,14 +12,14 @@ struct Colour {
   std::array<float, 4> rgba() const;
 };
 
-/// Number of methods with different colours. Further methods use the same colours again.
+/// Number of methods with different colours. Further methods use these colours again.
 inline constexpr std::size_t kMethodColours = 6;
 
-/// Colour of the truth, and of the method with the given index. Colour-blind readers can distinguish them.
+/// Returns the colour of the truth, and of the method with an index. Colour-blind readers can distinguish the colours.
 Colour truth_colour();
 Colour method_colour(std::size_t index);
-/// Returns how often all colours were used before the method with this index. A plot distinguishes methods of the same
-/// colour by dashes, symbols or filling.
+/// Returns how often all colours were used before the method with this index. A plot distinguishes methods with equal
+/// colours by dashes, symbols or filling.
 std::size_t colour_round(std::size_t index);
 
 }  // namespace tumble::tools

@@ -35,9 +35,10 @@ ErrorMap map_by_error(const std::string& name, const scenarios::Estimate& estima
 /// (kMapErrorMax_m).
 std::array<std::uint8_t, 3> error_colour(float error_m);
 
-/// Draws maps next to each other from the same viewpoint: from the side and above, limited to the surroundings of the
-/// true path. Nearer points hide farther ones. A colour scale from 0 to kMapErrorMax_m is below the maps. `width` and
-/// `height` are the size of one map. Throws std::invalid_argument without maps or if the truth is empty.
+/// Draws maps next to each other from one viewpoint: from the side and above, limited to the surroundings of the true
+/// path. Nearer points hide points that are farther away. A colour scale from 0 to kMapErrorMax_m is below the maps.
+/// `width` and `height` are the size of one map. Throws std::invalid_argument if there are no maps or if the truth is
+/// empty.
 sim::Picture map_picture(const std::vector<ErrorMap>& maps, const sim::Truth& truth, int width, int height);
 
 }  // namespace tumble::tools

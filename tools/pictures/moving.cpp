@@ -12,7 +12,8 @@ namespace tumble::tools {
 
 namespace {
 
-/// The camera looks at the mean position of the robot over this time, so that it follows without shaking at impacts.
+/// The camera looks at the mean position of the robot over this time, so that the camera follows without shaking at
+/// impacts.
 constexpr double kFollow_s = 0.4;
 constexpr int kFollowSamples = 9;
 /// Duration of the last frame before the animation restarts.

@@ -22,15 +22,15 @@ struct MovingOptions {
                                                   ///< be empty
 };
 
-/// Returns the interval of `length_s` in which the body rotates most. Returns the whole moving interval if that is
-/// shorter.
+/// Returns the interval of `length_s` in which the body rotates most. Returns the whole moving interval if the moving
+/// interval is shorter than `length_s`.
 Span liveliest_span(const sim::Truth& truth, double length_s);
 
-/// Returns the number of frames of an animation of that interval.
+/// Returns the number of frames of an animation of the interval `span`.
 std::size_t frame_count(const Span& span, const MovingOptions& options);
 
-/// Renders the interval as an animated WebP that repeats, with `frames_per_s` frames per second of playback. Requires
-/// the truth; throws scenarios::BadInput otherwise. The same scene gives the same bytes.
+/// Renders the interval as an animated WebP that repeats, with `frames_per_s` frames per second of playback. Throws
+/// scenarios::BadInput if the scene has no truth. Equal scenes give equal bytes.
 std::vector<std::uint8_t> moving_picture(const Scene& scene, const Span& span, const MovingOptions& options);
 
 }  // namespace tumble::tools

@@ -23,8 +23,9 @@ struct Path {
 /// Returns the pose of frame A in W, with the attitude normalised.
 Eigen::Isometry3d pose_of(const PoseState& state);
 
-/// Finds the mounting, as given to the estimator, of the frame that an estimate's poses refer to. Returns false if the
-/// recording or its truth lacks the sensor. `truth` may be null: the sphere's centre is then the origin of the body.
+/// Finds the mounting of the frame of an estimate's poses, as the estimator received this mounting. Returns false if
+/// the recording or its truth lacks the sensor. `truth` may be null; in this case the sphere's centre is the origin of
+/// the body.
 bool given_mounting(scenarios::Frame frame, const sim::Sensors& sensors, const sim::Truth* truth,
                     Eigen::Isometry3d& T_BA);
 
@@ -32,17 +33,17 @@ bool given_mounting(scenarios::Frame frame, const sim::Sensors& sensors, const s
 Path true_path(const sim::Sensors& sensors, const sim::Truth& truth, std::size_t stride);
 
 /// Returns the path of an estimate, aligned with the truth at the estimate's first pose by position and yaw, as for the
-/// scores. The result is empty if the estimate has no poses, or if its frame belongs to a sensor that the recording
-/// lacks.
+/// scores. The result is empty if the estimate has no poses, or if the frame of the poses belongs to a sensor that the
+/// recording lacks.
 Path estimated_path(const scenarios::Estimate& estimate, const sim::Sensors& sensors, const sim::Truth& truth);
 
-/// Returns `path` up to the first point outside of the surroundings of `truth`. The surroundings are the bounding box,
-/// widened on each side by half of its diagonal and at least 1 m. Otherwise a diverged estimate would fill the whole
-/// picture.
+/// Returns `path` up to the first point outside of the surroundings of `truth`. The surroundings are the bounding box
+/// of `truth`, widened on each side by half of the box's diagonal and at least 1 m. The path is cut because a diverged
+/// estimate would fill the whole picture.
 Path near_truth(const Path& path, const Path& truth);
 
 /// First and last instant at which the body moves (faster than 0.1 m/s or 0.2 rad/s). The interval is widened by
-/// `margin_s` on each side and clipped to the truth. If nothing moves, it is the whole truth.
+/// `margin_s` on each side and limited to the time of the truth. Without motion, the interval is the whole truth.
 struct Span {
   std::int64_t begin_ns = 0, end_ns = 0;
 };

@@ -25,7 +25,8 @@ struct Scene {
 /// the true and estimated paths. Without truth, only the world and the estimates are drawn.
 sim::Picture scene_picture(const Scene& scene, int robots, int width, int height);
 
-/// Draws `frames` close-ups at equal distances along the path, in rows of `columns`. Requires the truth.
+/// Draws `frames` close-ups at equal distances along the path, in picture rows of `columns`. The scene must have a
+/// truth.
 sim::Picture film_picture(const Scene& scene, int frames, int columns, int width, int height);
 
 /// Writes a PNG file. Throws scenarios::BadInput with the path if the file cannot be written.

@@ -10,13 +10,13 @@
 #include "sim/render/renderer.hpp"
 #include "tools/pictures/pictures.hpp"
 
-/// Viewpoints, instants and drawn paths that still pictures and animations share.
+/// Viewpoints, instants and paths that still pictures and animations share.
 namespace tumble::tools {
 
 bool is_sphere(const Scene& scene);
 
-/// Returns instants that divide the moving part of the path into parts of equal length. Rotation also adds a little
-/// length.
+/// Returns instants that divide the moving part of the path into parts of equal length. Rotation also adds a small part
+/// to the length.
 std::vector<std::int64_t> instants_along(const sim::Truth& truth, int count);
 
 /// Returns the true path and the estimated paths with their colours.

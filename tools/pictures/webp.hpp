@@ -9,11 +9,11 @@
 
 namespace tumble::tools {
 
-/// Encodes pictures as an animated WebP file that repeats (libwebp, lossy). The same pictures give the same bytes.
+/// Encodes pictures as an animated WebP file that repeats (libwebp, lossy). Equal pictures give equal bytes.
 class WebpAnimation {
  public:
   /// Takes the size of each picture, from 1 to 16383 pixels per side, and the `quality` from 0 (small) to 100. Throws
-  /// std::invalid_argument outside of these ranges.
+  /// std::invalid_argument for values outside of these ranges.
   WebpAnimation(int width, int height, float quality);
   ~WebpAnimation();
   WebpAnimation(WebpAnimation&&) noexcept;

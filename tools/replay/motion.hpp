@@ -17,13 +17,13 @@ namespace tumble::tools {
 class Motion {
  public:
   Motion() = default;
-  /// Drops poses that are not finite, not later than their predecessor, or farther than 10 km from the first pose.
+  /// Drops poses that are not finite, not later than the preceding pose, or farther than 10 km from the first pose.
   Motion(const std::vector<std::int64_t>& time_ns, const std::vector<Eigen::Isometry3d>& T_WB);
 
   bool empty() const { return time_ns_.empty(); }
   std::int64_t begin_ns() const { return time_ns_.front(); }
   std::int64_t end_ns() const { return time_ns_.back(); }
-  /// Returns the interpolated pose. O(log N).
+  /// Returns the interpolated pose. The cost is O(log N).
   std::optional<Eigen::Isometry3d> at(std::int64_t time_ns) const;
 
  private:
@@ -39,9 +39,9 @@ Motion true_motion(const sim::Truth& truth, std::int64_t step_ns);
 
 /// Converts an estimate to poses of the body, by the mounting that the estimator received. If there is a truth, the
 /// motion is aligned with the truth as for the scores: position and heading at the first pose within the time of the
-/// truth. Otherwise it is aligned with `reference` in the same way. An estimate that shares no time with the reference
-/// is not moved. The result is empty without poses, or if their frame belongs to a sensor that the recording lacks.
-/// `truth` may be null.
+/// truth. Otherwise it is aligned with `reference` in the same way. An estimate that has no common time with the
+/// reference is not moved. The result is empty without poses, or if the frame of the poses belongs to a sensor that the
+/// recording lacks. `truth` may be null.
 Motion estimated_motion(const scenarios::Estimate& estimate, const sim::Sensors& sensors, const sim::Truth* truth,
                         const Motion& reference);
 

@@ -23,7 +23,7 @@ constexpr int kErrorSteps = 254;
 constexpr std::uint8_t kNoError = 255;
 constexpr int kColourLevels = 64;
 
-/// Appends arrays to the bytes and describes each in the head.
+/// Appends arrays to the bytes and describes each array in the head.
 class Arrays {
  public:
   template <typename Number>
@@ -81,7 +81,7 @@ void append(const Vector3d& v, double scale, std::vector<std::int16_t>& out) {
   for (int axis = 0; axis < 3; ++axis) out.push_back(whole(v[axis], scale));
 }
 
-/// Origin of the page's positions: the middle of the first path, so that float32 stays precise.
+/// Returns the origin of the page's positions: the middle of the first path, so that float32 stays precise.
 Vector3d origin_of(const Replay& replay) {
   for (const ReplayActor& actor : replay.actors) {
     for (const Vector3d& p : actor.track.p_WB_m) {
@@ -182,7 +182,8 @@ json pack_points(const ReplayPoints& points, Arrays& arrays) {
   return {{"shown", points.p_B_m.size()}, {"of", points.of}, {"scale_m", scale}};
 }
 
-/// The scale covers the gyro and the truth. Estimates are cut at twice their largest rate.
+/// Returns the scale for the rates of the gyro and the truth. Estimated rates are limited to twice the largest rate of
+/// gyro and truth.
 double rate_scale(const Replay& replay) {
   double largest = 0.0;
   const auto look = [&](const std::vector<Vector3f>& rates) {
@@ -230,7 +231,7 @@ json pack_strip(const ReplayStrip& strip, double scale, Arrays& arrays) {
           {"contacts_known", strip.contacts_known}};
 }
 
-/// Colours of errors from 0 to the largest, the same as in pictures of maps.
+/// Returns the colours of errors from 0 to the largest error, as in pictures of maps.
 json error_colours() {
   json out = json::array();
   for (int k = 0; k < kColourLevels; ++k) {

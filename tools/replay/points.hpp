@@ -6,22 +6,22 @@
 #include "tools/replay/motion.hpp"
 #include "tools/replay/replay.hpp"
 
-/// Lidar returns that a replay shows, and their distance to the true surface when placed by a given motion.
+/// Lidar returns that a replay shows, and their distance to the true surface when a motion is used to transform them.
 namespace tumble::tools {
 
 /// Selects at most `most` returns of the first lidar, spread evenly over its sweeps and beams. Return i is selected if
-/// the fractional part of i times the golden ratio is below the wanted share. This additive recurrence includes every
-/// beam; "every tenth return" would always hit the same beams of a 16-beam lidar. Returns from the robot's own body are
-/// left out: marked by the truth, or nearer than 0.5 m if there is no truth. The result is empty without a lidar.
-/// `truth` may be null.
+/// the fractional part of i times the golden ratio is below the wanted fraction. This additive recurrence includes
+/// every beam, whereas "every tenth return" would always select the same beams of a 16-beam lidar. Returns from the
+/// robot's own body are left out: returns that the truth marks, or returns nearer than 0.5 m if there is no truth. The
+/// result is empty without a lidar. `truth` may be null.
 ReplayPoints shown_points(const sim::Sensors& sensors, const sim::Truth* truth, std::size_t most);
 
-/// Returns the transform from body axes by the given calibration to body axes by the true mounting. It is the identity
-/// if the truth has no lidar.
+/// Returns the transform from body axes by the estimator's calibration to body axes by the true mounting. The transform
+/// is the identity if the truth has no lidar.
 Eigen::Isometry3d true_from_given_body(const sim::Sensors& sensors, const sim::Truth& truth);
 
-/// Returns the distance of each point to the true surface [m], at most kMapErrorMax_m. It is NaN at instants without a
-/// pose.
+/// Returns the distance of each point to the true surface [m], at most kMapErrorMax_m. The distance is NaN at instants
+/// without a pose.
 std::vector<float> errors_of(const ReplayPoints& points, const Motion& motion, const Eigen::Isometry3d& T_BB_given,
                              const sim::Surface& surface);
 

@@ -63,7 +63,8 @@ ReplayTrack sampled(const Motion& motion, std::int64_t end_ns, std::int64_t step
   return track;
 }
 
-/// Finds the interval with motion, by the truth or else by the gyro. Without motion it is the whole recording.
+/// Finds the interval with motion, by the truth or else by the gyro. Without motion, the interval is the whole
+/// recording.
 void find_motion(const ReplayInput& input, Replay& replay) {
   replay.to_ns = replay.end_ns;
   if (input.truth != nullptr && !input.truth->p_WB_m.empty() && input.truth->period_ns > 0) {
@@ -131,7 +132,7 @@ double radius_of(const std::vector<sim::MeshPart>& parts) {
   return radius_m;
 }
 
-/// Bounding box of the first known path, with a margin.
+/// Returns the bounding box of the first known path, with a margin.
 Eigen::AlignedBox3f surroundings(const std::vector<ReplayActor>& actors) {
   Eigen::AlignedBox3f box;
   for (const ReplayActor& actor : actors) {

@@ -49,8 +49,8 @@ struct ReplayActor {
   std::string colour;
   bool is_truth = false;
   ReplayTrack track;  ///< empty if the actor has no positions
-  /// Transform from body axes by the given calibration, which the points use, to the actor's body axes. They differ for
-  /// the truth, which has the true mounting of the lidar.
+  /// Transform from body axes by the estimator's calibration, which the points use, to the actor's body axes. The two
+  /// axes differ for the truth, which has the true mounting of the lidar.
   Eigen::Isometry3d T_BB_given = Eigen::Isometry3d::Identity();
   std::vector<float> error_m;               ///< error of each point as placed by this actor [m]; NaN if unknown; empty
                                             ///< without a true surface
@@ -106,7 +106,8 @@ struct ReplayLimits {
 };
 
 /// Builds a replay. Throws BadInput if neither the truth nor an estimate has positions, or if truth and sensors
-/// contradict each other. O(points of the recording); errors cost some microseconds per point and actor.
+/// contradict each other. The cost is proportional to the number of points in the recording; errors cost some
+/// microseconds per point and actor.
 Replay replay_of(const ReplayInput& input, const ReplayLimits& limits = {});
 
 }  // namespace tumble::tools

@@ -12,12 +12,12 @@ namespace tumble::tools {
 /// Maximum number of methods in a replay of a run: the number of colours.
 inline constexpr std::size_t kRunReplayMethods = kMethodColours;
 
-/// Returns the indices, in increasing order, of the methods that the replay of a run shows. Candidates succeeded with
-/// poses or rates and did not receive the truth. The baseline and `tumble` of each kind have priority, then methods
-/// with poses.
+/// Returns the indices, in increasing order, of the methods that the replay of a run shows. Candidates are methods that
+/// succeeded with poses or rates and that did not receive the truth. The baseline and `tumble` of each kind have
+/// priority, then methods with poses.
 std::vector<std::size_t> shown_methods(const scenarios::RunResult& run);
 
-/// Builds the replay of a draw that has been run, with its truth.
+/// Builds the replay of a completed run, with its truth.
 Replay replay_of_run(const scenarios::RunResult& run);
 
 }  // namespace tumble::tools

@@ -16,7 +16,7 @@ using Eigen::Vector3f;
 
 constexpr std::uint8_t kGyroFlags = 7;
 
-/// Keeps the fastest sample of each group; all groups have the same number of samples.
+/// Keeps the fastest sample of each group; all groups have equal numbers of samples.
 std::vector<std::size_t> kept_samples(const sim::ImuRecord& imu, std::size_t most) {
   const std::size_t count = std::min(imu.time_ns.size(), imu.gyro_rad_s.size());
   const std::size_t run = most == 0 ? count : (count + most - 1) / most;

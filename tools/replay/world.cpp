@@ -14,8 +14,8 @@ using Eigen::AlignedBox3f;
 using Eigen::Vector3f;
 using sim::MeshPart;
 
-/// Selects nodes at increasing `positions`: all from `low` to `high`, and beyond at steps that grow with the distance
-/// (`coarser` times one eighth of it). The first and the last node are kept.
+/// Selects nodes at increasing `positions`: all nodes from `low` to `high`, and beyond at steps that grow with the
+/// distance (`coarser` times one eighth of the distance). The first and the last node are kept.
 std::vector<int> kept_nodes(const std::vector<float>& positions, float low, float high, float coarser) {
   const auto away = [&](float node) { return std::max({0.0f, low - node, node - high}); };
   std::vector<int> kept = {0};

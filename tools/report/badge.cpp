@@ -16,7 +16,8 @@ namespace {
 
 constexpr int kHeight_px = 20, kPad_px = 7;
 
-/// Width of a text in 11 px Verdana or its substitute. The SVG attribute `textLength` fits the letters to this width.
+/// Returns the width of a text in 11 px Verdana or a substitute font. The SVG attribute `textLength` fits the letters
+/// to this width.
 int width_px(const std::string& text) {
   return static_cast<int>(std::lround(6.6 * static_cast<double>(character_count(text))));
 }

@@ -8,11 +8,11 @@
 
 namespace tumble::tools {
 
-/// Returns for example "31 of 31 figures within their bounds"; "none" without entries.
+/// Returns for example "31 of 31 figures within their bounds", or "none" without entries.
 std::string certificate_summary(const scenarios::Certificate& certificate);
 
-/// Returns one table per certificate: what was measured and where, value, bound, verdict, and the law that defines the
-/// bound.
+/// Returns one table per certificate with the measured quantity and object, the value, the accepted range, the verdict,
+/// and the law that defines the range.
 std::string certificates_html(std::span<const scenarios::Certificate> certificates);
 
 }  // namespace tumble::tools

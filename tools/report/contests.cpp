@@ -40,7 +40,8 @@ std::vector<const MetricComparison*> rows_of(const Section& section, const scena
   return rows;
 }
 
-/// Positive if the method is worse than the baseline, whether larger or smaller values are better.
+/// Returns the difference with a sign that is positive if the method is worse than the baseline, whether larger or
+/// smaller values are better.
 double badness(const MetricInfo& info, double difference) {
   return info.sense == Sense::higher ? -difference : difference;
 }
@@ -57,7 +58,7 @@ ContestResult result_of(const MetricComparison& row) {
     out.better = badness(info, row.difference.value) < 0.0;
   }
   const double scale = info.sense == Sense::two_sided ? kNaN : 100.0 / std::abs(row.against_median);
-  // if half of the baseline's runs failed, its median is infinite and a percentage is undefined
+  // if half of the baseline's runs failed, the baseline's median is infinite and a percentage is undefined
   const bool known = std::isfinite(row.against_median) && row.against_median != 0.0;
   const double factor = known ? scale : kNaN;
   out.percent = std::isfinite(row.difference.value) ? row.difference.value * factor : kNaN;
@@ -68,7 +69,7 @@ ContestResult result_of(const MetricComparison& row) {
   return out;
 }
 
-/// Returns the row with the best median; the first of equals.
+/// Returns the row with the best median; the first row among equal medians.
 const MetricComparison* best_of(const std::vector<const MetricComparison*>& rows) {
   const MetricComparison* best = nullptr;
   for (const MetricComparison* row : rows) {
@@ -100,7 +101,7 @@ Tally tally(const std::vector<ContestResult>& results) {
     out.won += result.won();
     out.lost += result.lost();
     out.open += !result.won() && !result.lost();
-    // few draws give no interval, but a difference in the same direction on all draws is still evidence
+    // few runs give no interval, but a difference with one sign on all runs still indicates which method is better
     const bool on_every_draw = result.certainty == Certainty::open && result.row.better == result.row.pairs;
     if (result.better && (on_every_draw || result.certainty == Certainty::interval)) {
       const std::string& method = result.row.contest.method;

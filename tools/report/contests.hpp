@@ -12,31 +12,32 @@
 /// The headline of a report: the best method of each section, its margin, and the statistical certainty.
 namespace tumble::tools {
 
-/// Statistical evidence for a difference.
+/// Statistical significance of a difference.
 enum class Certainty {
   corrected,  ///< significant in the signed-rank test, corrected for all comparisons of the page
   interval,   ///< the BCa interval of the difference excludes 0, but the corrected test is not significant
   open        ///< not significant by either criterion
 };
 
-/// Result of one section: its best method (needs no truth, is not the baseline), paired with the baseline by the first
-/// headline metric that both have.
+/// Result of one section: the best method (needs no truth, is not the baseline), paired with the baseline by the first
+/// headline metric that both methods have.
 struct ContestResult {
   scenarios::MetricComparison row;
   Certainty certainty = Certainty::open;
   bool better = false;  ///< the difference favours the method; may be chance if `certainty` is `open`
   /// Difference as a percentage of the baseline's median, with its interval. NaN if the median is 0 or not finite, or
-  /// if the difference is not finite. A bound is infinite if one run of a pair failed.
+  /// if the difference is not finite. An end of the interval is infinite if one run of a pair failed.
   double percent = 0.0, percent_low = 0.0, percent_high = 0.0;
-  /// Baseline's median divided by the method's, for metrics where less is better; NaN otherwise.
+  /// Baseline's median divided by the method's median, for metrics where a lower value is better; NaN otherwise.
   double times = std::numeric_limits<double>::quiet_NaN();
-  /// The interval alone is not sufficient: the method was chosen as the best of several on the same draws.
+  /// The interval alone is not sufficient, because the method was chosen as the best of several methods on these
+  /// simulated runs.
   bool won() const { return better && certainty == Certainty::corrected; }
   bool lost() const { return !better && certainty == Certainty::corrected; }
 };
 
-/// Returns contests in the order of the summary's sections. Attitude is included only if there is no other kind,
-/// because it describes the motion least. Sections that contain only the baseline are left out.
+/// Returns contests in the order of the summary's sections. Attitude is included only if there is no other kind of
+/// method, because attitude describes the motion least. Sections that contain only the baseline are left out.
 std::vector<ContestResult> contests(const scenarios::Summary& summary, const scenarios::Comparison& comparison);
 
 /// Counts of contests by result.

@@ -37,13 +37,13 @@ std::string transparent(const char* hex) {
   return fmt::format("rgba({:.0f},{:.0f},{:.0f},0.14)", 255 * colour[0], 255 * colour[1], 255 * colour[2]);
 }
 
-/// Properties that all traces of a method share: one legend entry switches all of them.
+/// Returns properties that all traces of a method share: one legend entry switches all traces of the method.
 json trace(const std::string& method, bool in_legend) {
   return {
       {"type", "scatter"}, {"name", plot_text(method)}, {"legendgroup", plot_text(method)}, {"showlegend", in_legend}};
 }
 
-/// Draws the band between the quartiles as one polygon for each range of points where both are finite.
+/// Draws the band between the quartiles as one polygon for each range of points where both quartiles are finite.
 void add_bands(const CurveLine& line, double x_factor, double y_factor, const char* colour, json& data) {
   const auto finite = [](const CurvePoint& p) { return std::isfinite(p.quantile_25) && std::isfinite(p.quantile_75); };
   for (auto begin = line.points.begin(); begin != line.points.end();) {

@@ -16,8 +16,8 @@ using scenarios::Curve;
 using scenarios::CurveLine;
 using scenarios::CurvePoint;
 
-/// Returns one figure per curve: above the median, the band between the quartiles and the worst 5 % (dotted); below the
-/// share of failures.
+/// Returns one figure per curve. The upper plot shows the median, the band between the quartiles and the worst 5 %
+/// (dotted); the lower plot shows the fraction of failures.
 Figure curve_figure(const Curve& curve);
 std::string curves_html(std::span<const Curve> curves, std::vector<Figure>& figures);
 /// Returns a table with one row per method and point of the curve, in SI units.

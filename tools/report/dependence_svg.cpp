@@ -33,7 +33,7 @@ struct Axis {
   }
 };
 
-/// Covers the centres and the finite ends of their intervals.
+/// Returns an axis that covers the centres and the finite ends of their intervals.
 Axis height_axis(std::span<const DependenceClass> classes) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   double least_centre = low, largest_centre = high;

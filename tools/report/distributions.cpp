@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Describes what a histogram leaves out; empty if it shows everything.
+/// Describes the values that a histogram leaves out; empty if the histogram shows all values.
 std::string thinned_text(std::span<const Spread> spreads) {
   const auto is_thinned = [](const Spread& spread) { return spread.of_draws && spread.values.size() > kBoxPoints; };
   if (std::none_of(spreads.begin(), spreads.end(), is_thinned)) return "";
@@ -37,7 +37,7 @@ json shaded(const Spread& spread) {
           {"line", {{"width", is_line ? 2 : 0}, {"color", "rgba(128,128,128,0.8)"}, {"dash", "dash"}}}};
 }
 
-/// Axes of a quantity, with its published range shaded.
+/// Returns the axes of a quantity, with the published range shaded.
 json layout_of(const Spread& spread) {
   json layout = {{"barmode", "overlay"},
                  {"xaxis", {{"title", {{"text", spread.quantity + " [" + spread.unit + "]"}}}}},
@@ -46,7 +46,7 @@ json layout_of(const Spread& spread) {
   return layout;
 }
 
-/// Caption of the histograms of one quantity.
+/// Returns the caption of the histograms of one quantity.
 std::string caption_of(std::span<const Spread> spreads) {
   const Spread& spread = spreads.front();
   std::string out = "Over the draws: " + spread.quantity + ".";
@@ -62,10 +62,10 @@ std::string text(const Spread& spread, double value) {
   return number_text(value * spread.factor);
 }
 
-/// Selected by how often all colours were used (`colour_round`).
+/// Hatchings, selected by how often all colours were used (`colour_round`).
 constexpr std::array kHatchings = {"", "/", "x", "."};
 
-/// Histograms of one quantity, one per scenario.
+/// Returns histograms of one quantity, one per scenario.
 Figure histograms(std::span<const Spread> spreads) {
   Figure figure;
   json traces = json::array();

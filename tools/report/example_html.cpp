@@ -33,7 +33,7 @@ std::string play_html(const ShownExample& shown) {
          "\">Open the replay</a>: the robot, its paths, its lidar points and the gyro over time.";
 }
 
-/// Places wide plots in their own row and the others two per row.
+/// Places each wide plot in its own line and two other plots per line.
 std::string plots_html(const Example& example, std::vector<Figure>& figures) {
   std::string out;
   bool in_pair = false;

@@ -8,18 +8,18 @@
 
 namespace tumble::tools {
 
-/// Shows the animation of a draw with a link to its replay. On paper, and for readers who prefer reduced motion, the
+/// Shows the animation of a run with a link to the replay. On paper, and for readers who prefer reduced motion, the
 /// still picture is shown. The still picture also replaces a missing animation.
 std::string moving_html(const ShownExample& shown);
 
-/// Shows single draws with pictures and plots; appends the plots to `figures`. The first example is open, the others
-/// are folded.
+/// Shows single runs with pictures and plots; appends the plots to `figures`. The first example is open; all others are
+/// folded.
 std::string examples_html(const std::vector<ShownExample>& examples, std::vector<Figure>& figures);
 
-/// Shows the picture of a draw with failed methods, folded. `examples_html` leaves these draws out.
+/// Shows the picture of a run with failed methods, folded. `examples_html` leaves these runs out.
 std::string failure_html(const ShownExample& shown);
 
-/// Id of the element that shows a draw; other parts of the page link to it.
+/// Returns the id of the element that shows a run; other parts of the page link to this element.
 std::string example_id(const std::string& scenario, std::uint64_t seed);
 
 /// Placeholder element of a plot.

@@ -10,10 +10,10 @@
 #include "scenarios/summary/summary.hpp"
 #include "scenarios/sweep/results.hpp"
 
-/// Draws on which methods failed, with commands to reproduce them.
+/// Simulated runs on which methods failed, with commands to reproduce them.
 namespace tumble::tools {
 
-/// Maximum number of failed draws on the page.
+/// Maximum number of failed runs on the page.
 inline constexpr std::size_t kFailedDrawsShown = 60;
 
 struct FailedRun {
@@ -23,7 +23,7 @@ struct FailedRun {
   std::string command;  ///< command that runs it again (run_again.hpp)
 };
 
-/// A draw with the methods that failed on it.
+/// A run with the methods that failed on it.
 struct FailedDraw {
   std::string scenario;
   std::uint64_t seed = 0;
@@ -36,8 +36,8 @@ struct FailedDraws {
   std::vector<FailedDraw> shown;  ///< draws with the most failed methods, at most `kFailedDrawsShown`
 };
 
-/// Finds the failed draws, and reads messages only for the draws that are shown. `database` is the path of the results;
-/// kept data is next to it.
+/// Finds the failed runs, and reads messages only for the runs that are shown. `database` is the path of the results;
+/// kept files are next to the database.
 FailedDraws failed_draws(const scenarios::Results& results, const scenarios::Summary& summary,
                          const std::filesystem::path& database);
 

@@ -21,7 +21,7 @@ using scenarios::Interval;
 using scenarios::Section;
 using scenarios::Summary;
 
-/// This many contests are open; further ones are folded.
+/// This number of contests is open; further contests are folded.
 constexpr std::size_t kShownContests = 6;
 /// Maximum number of scenarios that the first sentence names.
 constexpr std::size_t kNamedScenarios = 4;
@@ -70,7 +70,7 @@ std::string tasks_text(const std::vector<ContestResult>& results) {
   return out;
 }
 
-/// Counts the methods that need no truth.
+/// Counts the methods that do not need the truth.
 std::size_t method_count(const Summary& summary) {
   std::set<std::pair<scenarios::Kind, std::string>> names;
   for (const Section& section : summary.sections) {
@@ -81,7 +81,7 @@ std::size_t method_count(const Summary& summary) {
   return names.size();
 }
 
-/// Draws the interval on an axis from -100 % to +100 %; values beyond are clipped at the border.
+/// Draws the interval on an axis from -100 % to +100 %; values outside are cut at the border.
 std::string bar_html(const ContestResult& result) {
   if (!std::isfinite(result.percent)) return "<span class=\"bar none\"></span>";
   const auto at = [](double percent) { return 50.0 + 0.5 * std::clamp(percent, -100.0, 100.0); };
@@ -131,7 +131,7 @@ std::string contest_html(const ContestResult& result, std::size_t comparisons) {
       escaped(certainty_text(result, comparisons)));
 }
 
-/// Folded descriptions of the methods.
+/// Returns the folded descriptions of the methods.
 std::string methods_html(const std::vector<Fact>& methods) {
   if (methods.empty()) return "";
   std::string out = "<details class=\"methods\"><summary>Descriptions of the methods</summary><dl class=\"facts\">";
@@ -155,7 +155,7 @@ std::string contests_html(const std::vector<ContestResult>& results, std::size_t
   return out + "</section>\n";
 }
 
-/// Chooses an example by priority: typical draws before failed ones, examples of these results before others,
+/// Chooses an example by priority: typical runs before failed runs, examples of these results before other examples,
 /// animations before still pictures.
 const ShownExample* example_to_show(const std::vector<ShownExample>& examples) {
   const ShownExample* best = nullptr;

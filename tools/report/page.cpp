@@ -42,8 +42,8 @@ std::string draws_html(const Summary& summary) {
   return out + "</tbody></table></div>\n";
 }
 
-/// Lists the reasons why draws were rejected. The instant at the end of a reason is removed, so that equal reasons are
-/// counted together.
+/// Lists the reasons why simulated runs were rejected. The instant at the end of a reason is removed, so that equal
+/// reasons are counted together.
 std::string rejected_html(const std::vector<scenarios::RejectedDraw>& rejected) {
   std::map<std::pair<std::string, std::string>, std::vector<std::uint64_t>> reasons;
   for (const scenarios::RejectedDraw& draw : rejected) {
@@ -58,7 +58,7 @@ std::string rejected_html(const std::vector<scenarios::RejectedDraw>& rejected) 
   return out.empty() ? "" : "<p>Reasons for rejected draws:</p><ul>" + out + "</ul>\n";
 }
 
-/// Appends its plots to the figures of the page.
+/// Appends the plots of the motions to the figures of the page.
 std::string motions_html(const PageContent& content, std::vector<Figure>& figures) {
   std::string out;
   Figure map = motion_figure(content.motion_map);
@@ -119,7 +119,7 @@ std::string commands_html(const std::vector<Fact>& commands) {
   return out;
 }
 
-/// Returns the sections in the order of the page, without empty ones.
+/// Returns the sections in the order of the page, without empty sections.
 std::vector<Part> parts_of(const PageContent& content, std::vector<Figure>& figures) {
   std::vector<Part> parts;
   const auto add = [&](const char* id, const char* title, std::string html) {

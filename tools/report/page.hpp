@@ -52,8 +52,9 @@ struct PageContent {
 };
 
 /// Returns one self-contained page with styles, plots, pictures and the Plotly bundle inside. The page needs no
-/// network, and its Content Security Policy forbids access. Order: first screen, motions, errors, paired differences,
-/// failures, sensitivity, cost, certificate, versions, commands. All texts are embedded as data, never as markup.
+/// network, and its Content Security Policy forbids network access. The sections are first screen, motions, errors,
+/// paired differences, failures, sensitivity, cost, certificate, versions, commands. All texts are embedded as data,
+/// never as markup.
 std::string page_html(const PageContent& content, const std::string& plotly_bundle);
 
 }  // namespace tumble::tools

@@ -87,7 +87,7 @@ class Boxes {
   }
 
   /// Uses a logarithmic axis if values are positive and span more than a decade. Otherwise the axis starts at 0 if
-  /// `from_zero` is set, or else at the smallest value.
+  /// `from_zero` is set, or at the smallest value.
   void put_into(Figure& figure, bool from_zero) const {
     json data = json::array();
     for (const auto& [name, trace] : traces_) data.push_back(trace);

@@ -11,7 +11,7 @@
 
 namespace tumble::tools {
 
-/// A Plotly figure as page.js passes it to Plotly. page.js sets the colours of text and grid.
+/// A Plotly figure as page.js passes it to Plotly; page.js sets the colours of text and grid.
 struct Figure {
   std::string id;       ///< id of its HTML element, unique within the page
   std::string caption;  ///< one or two sentences
@@ -23,7 +23,7 @@ struct Figure {
 /// Sets traces and layout of a figure; without traces the figure stays empty. Invalid UTF-8 in texts is replaced.
 void set_plot(const nlohmann::json& traces, const nlohmann::json& layout, Figure& figure);
 
-/// Maximum number of draws of a box that are drawn as points.
+/// Maximum number of runs of a box that are drawn as points.
 inline constexpr std::size_t kBoxPoints = 1000;
 
 /// Rounds to five significant digits: finer than a plot can show, and the page stays small.
@@ -33,10 +33,10 @@ double five_digits(double value);
 std::string plot_text(const std::string& text);
 
 /// Reduces a list to `most` (at least 2) values: the smallest, the largest, and values at equal steps of rank between
-/// them, sorted. Their quantiles are close to those of all values. O(n log n).
+/// them, sorted. The quantiles of the reduced list are close to those of all values. O(n log n).
 std::vector<double> at_most(std::vector<double> values, std::size_t most);
 
-/// Plots every draw as a point next to a box of the quartiles. There is one box per method and scenario, with at most
+/// Plots every run as a point next to a box of the quartiles. There is one box per method and scenario, with at most
 /// `kBoxPoints` points. The axis is logarithmic if values are positive and span more than a decade.
 Figure box_figure(const scenarios::Summary& summary, scenarios::Kind kind, const std::string& metric,
                   const std::string& caption);
@@ -47,10 +47,11 @@ Figure cost_figure(const scenarios::Summary& summary);
 /// Converts a plot of an example to a figure.
 Figure figure_of(const Plot& plot, const std::string& id);
 
-/// Colour of a line in an example's plot, and of its legend entry.
+/// Returns the colour of a line in an example's plot, and of its legend entry.
 Colour colour_of(int colour);
 
-/// Marker, dash and fill opacity that distinguish methods of the same colour. `round` is the result of `colour_round`.
+/// Returns the marker, dash and fill opacity that distinguish methods with equal colours. `round` is the result of
+/// `colour_round`.
 const char* symbol_of_round(std::size_t round);
 const char* dash_of_round(std::size_t round);
 double filling_of_round(std::size_t round);

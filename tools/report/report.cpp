@@ -58,7 +58,7 @@ std::vector<Fact> listed_methods(const Summary& summary) {
   return out;
 }
 
-/// True if a sweep by this build, with the data found on this machine, would continue these results.
+/// Returns true if a sweep by this build, with the data found on this machine, would continue these results.
 bool are_of_here(const scenarios::Results& results, const ReportOptions& options) {
   const std::string made_by = results.note("build"), made_of = results.note("data");
   return (made_by.empty() || made_by == scenarios::build_id()) &&
@@ -82,7 +82,7 @@ std::vector<Fact> commands(const scenarios::Results& results, const ReportOption
   return out;
 }
 
-/// Plots the headline metrics of each kind. Verdicts are left out, because the table shows their share.
+/// Plots the headline metrics of each kind. Verdicts are left out, because the table shows their fraction.
 std::vector<Figure> errors_of_all_draws(const Summary& summary) {
   std::vector<Figure> figures;
   for (const Kind kind : {Kind::rate, Kind::attitude, Kind::position, Kind::slam}) {
@@ -96,9 +96,9 @@ std::vector<Figure> errors_of_all_draws(const Summary& summary) {
   return figures;
 }
 
-/// True if the example belongs to these results: the database holds its rows, and a new simulation of its recording has
-/// the same digest. The digest may be the one without lidars, because sweeps of methods that need no lidar leave them
-/// out.
+/// Returns true if the example belongs to these results: the database contains the rows of the example, and a new
+/// simulation gives a recording with the digest of the rows. The digest may be that of a recording without lidars,
+/// because sweeps of methods that need no lidar leave lidars out.
 bool is_of(const scenarios::Results& results, const Example& example) {
   if (example.made_of != scenarios::digest_of_rows(results, {example.scenario, example.seed})) return false;
   const std::vector<scenarios::Outcome> rows = results.outcomes_of(example.scenario, example.seed);
@@ -108,8 +108,8 @@ bool is_of(const scenarios::Results& results, const Example& example) {
   });
 }
 
-/// States why there are no pictures, and which command creates them. Only a sweep adds pictures, and only to results of
-/// its own build and data.
+/// States why there are no pictures, and which command creates pictures. Only a sweep adds pictures, and only to
+/// results of the sweep's build and data.
 std::string how_to_get_pictures(const scenarios::Results& results, const ReportOptions& options) {
   const std::string none =
       fmt::format("There are no pictures of single draws in {}", examples_folder(options.database).string());

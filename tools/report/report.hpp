@@ -31,9 +31,9 @@ struct ReportOptions {
   std::string made_at;  ///< date and time as shown on the page
 };
 
-/// Computes the content of the page from the results and from the examples that a sweep left next to them. Nothing is
-/// simulated or estimated. Without examples, the page states the command that creates them, or the required build or
-/// data.
+/// Computes the content of the page from the results and from the examples that a sweep stored next to the results.
+/// Nothing is simulated or estimated. Without examples, the page states the command that creates examples, or the
+/// required build or data.
 PageContent report_content(ReportInput input, const ReportOptions& options);
 
 }  // namespace tumble::tools

@@ -31,7 +31,7 @@ std::string plain(double value) {
   return fmt::format("{:.{}f}", value, digits);
 }
 
-/// Returns the method with the best median among those that a real robot can run.
+/// Returns the method with the best median among the methods that a real robot can run.
 const MethodSummary* best_method(const Section& section, const std::string& metric) {
   const MethodSummary* best = nullptr;
   const MetricInfo& info = metric_info(metric);

@@ -33,14 +33,14 @@ class Table {
   std::size_t right_from_;
 };
 
-/// Formats a number with four significant digits; "-" if it is not finite.
+/// Formats a number with four significant digits; "-" if the number is not finite.
 std::string number_text(double value);
 
 /// Formats a p-value with four decimals; "-" for NaN.
 std::string chance_text(double chance);
 
-/// Formats the number of draws that an open test needs in addition. Returns "" if the test is not open, and "no number"
-/// if no number of draws suffices.
+/// Formats the number of runs that an open test needs in addition. Returns "" if the test is not open, and "no number"
+/// if no number of runs suffices.
 std::string more_draws_text(double needed, std::int64_t draws, bool open);
 
 /// Counts the code points of a UTF-8 string; combining marks count separately.

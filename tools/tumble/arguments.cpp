@@ -113,7 +113,7 @@ std::uint64_t seed_of(const scenarios::Scenario& scenario, const std::string& te
   throw BadInput("--seed is missing: give the seed of a draw of scenario '" + scenario.name + "'");
 }
 
-// CLI11 passes BadInput on unchanged.
+// CLI11 does not convert a BadInput that the check throws.
 std::function<void(const std::string&)> a_scenario(const Session& session) {
   return [&session](const std::string& text) { scenarios::load_scenario(session.data(), text); };
 }

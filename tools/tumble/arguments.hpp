@@ -19,54 +19,54 @@ namespace tumble::tools {
 
 /// Parses a seed: an unsigned decimal integer below 2^64.
 std::uint64_t parse_seed(const std::string& text);
-/// Parses "7" or "1..40"; both ends are included.
+/// Parses a range of seeds, "7" or "1..40"; both ends are included.
 std::pair<std::uint64_t, std::uint64_t> parse_seeds(const std::string& text);
 
-/// One of several shares of the work: "2/8" is the second of eight.
+/// One of several parts of the work: "2/8" is the second of eight parts.
 struct Shard {
   std::uint64_t index = 1, count = 1;
 };
 Shard parse_shard(const std::string& text);
-/// Reduces a range of seeds to those of one shard. The range is cut into `count` contiguous parts whose lengths differ
-/// by at most one. Returns false if the part is empty.
+/// Reduces a range of seeds to the seeds of one shard. The range is cut into `count` contiguous parts whose lengths
+/// differ by at most one. Returns false if the part is empty.
 bool shard_seeds(const Shard& shard, std::uint64_t& first, std::uint64_t& last);
 
-/// Throws for an unknown name and suggests the nearest one: "unknown verb 'rnu'; did you mean 'run'?".
+/// Throws BadInput for an unknown name and suggests the nearest name: "unknown verb 'rnu'; did you mean 'run'?".
 void require_known(const std::string& what, const std::string& name, std::span<const std::string> known);
 
 /// Returns the named methods in order, without duplicates; all methods if `names` is empty.
 std::vector<scenarios::MethodPointer> select_methods(const std::vector<std::string>& names);
 
-/// Returns the method of that name. External methods have a time limit of `time_limit_s`.
+/// Returns the method with this name. External methods have a time limit of `time_limit_s`.
 scenarios::MethodPointer one_method(const std::string& name, double time_limit_s);
 
 /// Returns the named metric of the method's kind, or the first metric of the kind if `name` is empty.
 std::string metric_of(const scenarios::Method& method, const std::string& name);
 
-/// Parses the seed. If `text` is empty, returns the seed of a named case; for other scenarios an empty seed is an
+/// Parses the seed. If `text` is empty, returns the seed of a named case; for other scenarios, an empty seed is an
 /// error.
 std::uint64_t seed_of(const scenarios::Scenario& scenario, const std::string& text);
 
-/// Returns a check that refuses names that are neither a scenario of the catalogue nor a scenario file. The check runs
+/// Returns a check that rejects names that are neither a scenario of the catalogue nor a scenario file. The check runs
 /// before CLI11 reports missing options.
 std::function<void(const std::string&)> a_scenario(const Session& session);
-/// Returns the same check for a suite, a suite file or a scenario.
+/// Returns a check that rejects names that are neither a suite, a suite file nor a scenario.
 std::function<void(const std::string&)> a_suite(const Session& session);
 
 /// Refuses a recording whose file does not exist, before CLI11 reports missing options.
 void a_recording(const std::string& file);
 
-/// Number of processors that this process may use.
+/// Returns the number of processors that this process may use.
 int available_processors();
 
-/// Creates a folder and its parents.
+/// Creates a folder and its parent folders.
 void make_folder(const std::filesystem::path& folder);
-/// Creates the folder of an output file. Refuses an output that is one of the inputs. Called before the computation
-/// starts.
+/// Creates the folder of an output file. Throws BadInput if the output is one of the inputs. Called before the
+/// computation starts.
 void prepare_output(const std::filesystem::path& output, std::span<const std::filesystem::path> inputs);
 
-/// Checks that an output file can be written, before the computation starts, and leaves no file behind. Refuses an
-/// output that is one of the inputs.
+/// Checks that an output file can be written, before the computation starts, and leaves no file behind. Throws BadInput
+/// if the output is one of the inputs.
 void prepare_file(const std::filesystem::path& output, std::span<const std::filesystem::path> inputs);
 
 }  // namespace tumble::tools

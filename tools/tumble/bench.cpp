@@ -42,7 +42,7 @@ struct BenchOptions {
   bool store = false;
 };
 
-/// All methods must have the same kind, because a suite has one kind.
+/// All methods must have one kind, because a suite has one kind.
 std::vector<scenarios::MethodPointer> methods_of(const BenchOptions& options) {
   std::vector<scenarios::MethodPointer> methods = scenarios::find_methods(options.methods);
   for (const scenarios::MethodPointer& each : methods)

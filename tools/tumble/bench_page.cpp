@@ -20,7 +20,7 @@ using scenarios::BenchResult;
 constexpr const char* kCost = "estimate_cpu_s";
 constexpr std::size_t kVersionShown = 40;
 
-/// Returns all methods on the page, those of this run first.
+/// Returns all methods on the page, the methods of this run first.
 struct MethodRow {
   const BenchResult* result;
   std::string label;
@@ -33,8 +33,8 @@ std::vector<MethodRow> rows_of(const BenchPage& page) {
   return rows;
 }
 
-/// Returns the method that the others are paired with: the baseline, or the first in the registry if the page has no
-/// baseline.
+/// Returns the method with which all other methods are paired: the baseline, or the first in the registry if the page
+/// has no baseline.
 const BenchResult* baseline_of(const std::vector<MethodRow>& rows) {
   const BenchResult* first = nullptr;
   for (const scenarios::Method& method : scenarios::methods()) {
@@ -79,7 +79,7 @@ Table metric_table(const scenarios::Suite& suite, const std::string& metric, con
   return table;
 }
 
-/// Table of statuses, cost and origin of each result.
+/// Returns the table of statuses, cost and origin of each result.
 Table origin_table(const scenarios::Suite& suite, const std::vector<MethodRow>& rows,
                    const std::vector<BenchResult>& all) {
   Table table(fmt::format("origin of the results; {} {}", suite.name, scenarios::bench_suite_digest(suite)),

@@ -59,7 +59,7 @@ std::string title_of(const Contest& contest, const std::string& what) {
   return fmt::format("{}: {}, {}", contest.scenario, to_string(contest.kind), what);
 }
 
-/// Builds the cells of a row together with their column titles.
+/// Builds the cells of a row together with the column titles.
 struct ComparisonRow {
   std::vector<std::string> heads = {}, cells = {};
 

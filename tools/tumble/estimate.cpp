@@ -33,7 +33,7 @@ struct EstimateOptions {
   std::filesystem::path learnt;
 };
 
-/// Returns why a run failed; sensors are named if the recording lacks them.
+/// Returns why a run failed; names the required sensors if the recording lacks sensors.
 std::string reason(const Status& status, const sim::Sensors& sensors) {
   const std::string field = status.field;
   if (status.trouble == Trouble::empty && field == "imus") return "the method needs an IMU, and the recording has none";
@@ -41,7 +41,7 @@ std::string reason(const Status& status, const sim::Sensors& sensors) {
   return status.message() + (place.empty() ? "" : ": " + place);
 }
 
-/// Returns the method of that name that can run on this recording without the truth.
+/// Returns the method with this name that can run on this recording without the truth.
 scenarios::MethodPointer choose(const std::string& name, const scenarios::Subject& subject) {
   std::vector<scenarios::MethodPointer> fitting;
   std::string refused;

@@ -47,8 +47,8 @@ bool is_of(const scenarios::MethodRun& run, const scenarios::MethodPointer& meth
   return run.kind == method->info.kind && run.method == method->info.name;
 }
 
-/// Without --accept, only external methods may be named: the accepted results determine which methods of this build
-/// run. With --accept, named methods are added to the gate.
+/// Without --accept, only external methods may be named, because the accepted results determine which methods of this
+/// build run. With --accept, named methods are added to the gate.
 std::vector<scenarios::MethodPointer> given_methods(const GateOptions& options) {
   for (const std::string& name : options.methods) {
     if (!options.accept && !scenarios::is_method_file(name))
@@ -83,7 +83,7 @@ void keep_accepted(const scenarios::Gate& gate, const GateOptions& options,
   suite.scenarios = names;
 }
 
-/// Drops results that do not belong to the suite, because a database that the user keeps may hold more.
+/// Drops results that do not belong to the suite, because a database that the user keeps may contain further results.
 scenarios::GateRun of_suite(scenarios::GateRun run, const scenarios::Suite& suite) {
   const std::vector<scenarios::MethodPointer> methods = scenarios::find_methods(suite.methods);
   std::erase_if(run.methods, [&](const scenarios::MethodRun& each) {
@@ -146,7 +146,7 @@ json to_json(const std::vector<GateResult>& results, bool passes) {
   return {{"verdict", passes ? "pass" : "fail"}, {"held", std::move(rows)}};
 }
 
-/// Loads the gate; the result is empty if it does not exist and --accept creates the first one.
+/// Loads the gate; the result is empty if the gate does not exist and --accept creates it.
 std::optional<scenarios::Gate> load(const scenarios::DataRoot& data, const GateOptions& options,
                                     const std::vector<scenarios::MethodPointer>& given, const std::string& suite) {
   const fs::path file = gate_file(data, options, suite);
@@ -168,8 +168,8 @@ void write_accepted(const fs::path& file, const scenarios::Gate& gate) {
   if (!fs::exists(file)) scenarios::replace_file(file, scenarios::to_yaml(gate));
 }
 
-/// Stores the known certificate of this build next to a kept database and describes its state. It is not measured here,
-/// because gates run often.
+/// Stores the known certificate of this build next to a kept database and describes the certificate's state. The
+/// certificate is not measured here, because gates run often.
 std::string certificate_text(const Session& session, const scenarios::DataRoot& data, const fs::path& database) {
   scenarios::Results results(database, scenarios::Results::Mode::create_or_append);
   const auto certificate = scenarios::known_certificate(results, scenarios::CertificateStore(session.cache(), data));

@@ -21,7 +21,8 @@ namespace {
 using nlohmann::json;
 using scenarios::CaseResult;
 
-/// Converts a case to a suite: its single draw, and the methods for which it states expectations.
+/// Converts a case to a suite: the single simulated run of the case, and the methods for which the case states
+/// expectations.
 scenarios::Suite suite_of(const scenarios::Scenario& named) {
   scenarios::Suite suite;
   suite.name = kAllCases;
@@ -106,7 +107,7 @@ void accept(const Session& session, const scenarios::DataRoot& data, scenarios::
   session.note("accepted: " + file.string());
 }
 
-/// Loads the named cases and checks that the methods and metrics of their expectations exist.
+/// Loads the named cases and checks that the methods and metrics of the expectations exist.
 std::vector<scenarios::Scenario> cases_of(const scenarios::DataRoot& data, const std::string& word) {
   std::vector<scenarios::Scenario> out;
   for (const std::string& name : scenarios::case_names(data)) {

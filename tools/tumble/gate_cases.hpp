@@ -11,13 +11,13 @@
 /// Gate of the named cases in scenarios/regressions.
 namespace tumble::tools {
 
-/// Command-line word that selects all cases of the tree.
+/// Command-line word that selects all named cases of the source tree.
 inline constexpr const char* kAllCases = "regressions";
 
-/// True for the word `kAllCases` and for the name of a case.
+/// Returns true for the word `kAllCases` and for the name of a case.
 bool names_cases(const scenarios::DataRoot& data, const std::string& word);
 
-/// Returns a check that refuses names that are neither cases, nor a suite, a suite file or a scenario.
+/// Returns a check that rejects names that are neither cases, nor a suite, a suite file or a scenario.
 std::function<void(const std::string&)> a_suite_or_cases(const Session& session);
 
 struct CaseGate {
@@ -27,7 +27,8 @@ struct CaseGate {
   bool accept = false;             ///< writes the outcomes to the cases' files as new expectations
 };
 
-/// Runs the cases and compares them with their expectations (scenarios/cases/hold_case.hpp). Returns the exit status.
+/// Runs the cases and compares the outcomes with the expectations (scenarios/cases/hold_case.hpp). Returns the exit
+/// status.
 int hold_cases(const Session& session, const scenarios::DataRoot& data, const CaseGate& gate);
 
 }  // namespace tumble::tools

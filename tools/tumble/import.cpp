@@ -65,7 +65,7 @@ nlohmann::json document_of(const ImportOptions& options, const std::string& form
   return document;
 }
 
-/// Returns one row per sensor, and one for the reference.
+/// Returns one row per sensor, and one row for the reference.
 Table table_of(const Imported& imported) {
   Table table("", {"what", "name", "readings", "period [ms]", "seconds", "remark"});
   const auto ms = [](std::int64_t ns) { return number_text(static_cast<double>(ns) * 1e-6); };
@@ -89,7 +89,7 @@ Table table_of(const Imported& imported) {
   return table;
 }
 
-/// Notes the assumptions about an IMU for properties that its file cannot state.
+/// Notes the assumptions about an IMU for properties that the file cannot state.
 void say_what_is_assumed(const ImportOptions& options, const std::string& format, std::vector<std::string>& notes) {
   if (options.lever_arm_m.empty() && (format == "csv" || !options.imu.empty())) {
     notes.push_back(

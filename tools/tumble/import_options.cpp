@@ -23,7 +23,7 @@ using scenarios::BadInput;
 const std::vector<std::string> kFormats = {"airbrakes", "broad",   "csv",     "kitti",   "mcap", "pcd", "odometry",
                                            "ply",       "repoimu", "rosbag1", "rosbag2", "tum",  "vtk"};
 
-/// Suggests the bag's folder if the user named one of its files.
+/// Suggests the bag's folder if the user named one of the files in the folder.
 std::string bag_hint(const std::filesystem::path& folder) {
   std::set<std::string> bags;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
@@ -74,13 +74,13 @@ bool is_sweeps(const std::string& format) {
 void require_numbers(const std::string& option, const std::vector<double>& numbers, double bound) {
   for (const double x : numbers) {
     if (!(std::abs(x) <= bound)) {
-      // NaN is reported with its own message, because in tables it appears as a dash
+      // NaN is reported with a separate message, because NaN appears in tables as a dash
       throw BadInput(fmt::format("{}: {:g} must be within +-{:g}", option, x, bound));
     }
   }
 }
 
-/// Converts x y z qx qy qz qw.
+/// Converts seven numbers x y z qx qy qz qw to a pose.
 Eigen::Isometry3d pose_of(const std::string& option, const std::vector<double>& numbers) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   if (numbers.empty()) return pose;
@@ -210,7 +210,7 @@ std::string format_of(const ImportOptions& options) {
   if (!options.format.empty()) require_known("format", options.format, kFormats);
   std::error_code error;
   const bool folder = std::filesystem::is_directory(options.path, error);
-  // a pipe can be read only once, so it is not opened here
+  // a pipe can be read only once, so a pipe is not opened here
   if (!folder && options.format != "tum" && std::filesystem::exists(options.path, error))
     scenarios::require_regular_file(options.path);
   if (!options.format.empty()) return options.format;

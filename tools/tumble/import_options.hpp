@@ -39,24 +39,24 @@ struct ImportOptions {
 
 void declare(VerbOptions& verb, ImportOptions& options);
 
-/// Returns the requested format, or detects it from the path's extension or content.
+/// Returns the format that the user names, or detects the format from the path's extension or content.
 std::string format_of(const ImportOptions& options);
 
-/// Refuses options that do not apply to the format.
+/// Throws BadInput for options that do not apply to the format.
 void require_fitting(const ImportOptions& options, const std::string& format);
 
 /// Returns name, device, ranges, noise and mounting of an IMU from its data sheet and the options.
 sim::ImuRecord imu_sheet(const Session& session, const ImportOptions& options);
-/// Fills properties that the file does not state from the data sheet.
+/// Sets properties that the file does not state from the data sheet.
 void complete(const sim::ImuRecord& sheet, sim::ImuRecord& imu);
 scenarios::AccelUnit accel_unit(const ImportOptions& options);
 scenarios::GyroUnit gyro_unit(const ImportOptions& options);
 
 scenarios::SweepSource sweep_source(const Session& session, const ImportOptions& options, const std::string& format);
-/// Returns the file of reference poses: the requested file, or one that norlab's mapper left next to the sweeps; empty
-/// if there is none.
+/// Returns the file of reference poses: the file that the user names, or a file that norlab's mapper stored next to the
+/// sweeps; empty if there is none.
 std::filesystem::path reference_file(const ImportOptions& options, const std::string& format);
-/// Reference poses are assumed to be those of the lidar if the recording has one and the user states no frame.
+/// Reference poses are assumed to be those of the lidar if the recording has a lidar and the user states no frame.
 scenarios::ReferenceSource reference_source(const ImportOptions& options, const std::filesystem::path& file,
                                             bool has_lidar);
 scenarios::ReferenceSource trajectory_source(const ImportOptions& options, const std::string& format);

@@ -11,7 +11,7 @@ namespace tumble::tools {
 
 /// Formats the two ends; "[-]" if neither is known.
 std::string interval_text(const scenarios::Interval& interval);
-/// Returns null for values that are not finite, which JSON cannot represent.
+/// Returns null for values that are not finite, because JSON cannot represent such values.
 nlohmann::json finite(double value);
 nlohmann::json interval_json(const scenarios::Interval& interval);
 

@@ -10,32 +10,32 @@
 
 namespace tumble::tools {
 
-/// Option --learnt: a file with the calibration of the rig from earlier runs. After the run it holds the calibration of
-/// this run.
+/// Option --learnt: a file with the calibration of the rig from earlier runs. After the run, the file contains the
+/// calibration of this run.
 class LearntFile {
  public:
-  /// An empty path means that the option is not used. A missing file holds no calibration yet. Throws BadInput if the
-  /// file cannot be read.
+  /// An empty path means that the option is not used. A missing file means that there is no calibration yet. Throws
+  /// BadInput if the file cannot be read.
   explicit LearntFile(std::filesystem::path path);
 
-  /// Throws BadInput if the file cannot be written, and leaves no file behind. It is called before the run, after its
-  /// folder was created.
+  /// Throws BadInput if the file cannot be written, and leaves no file behind. The check runs before the run, after the
+  /// folder of the file was created.
   void require_place() const;
 
-  /// Compares the lever arm in the file with the recording's; returns a warning if it belongs to another rig, else "".
-  /// A rate beyond saturation depends on the lever arm, and a calibrated arm is accepted with an accuracy of
-  /// millimetres.
+  /// Compares the lever arm in the file with the lever arm of the recording; returns a warning if the file belongs to
+  /// another rig, else "". The check matters because a rate beyond saturation depends on the lever arm, and a
+  /// calibrated lever arm is accepted with an accuracy of millimetres.
   std::string caution(const sim::Sensors& sensors) const;
 
   /// Returns the full names of the methods that calibrate the rig.
   static std::string learning_methods();
 
-  /// Returns `method` with the calibration of the file as its start. Returns `method` unchanged if it does not
-  /// calibrate or there is no file. The result refers to this object.
+  /// Returns `method` with a start from the calibration in the file. Returns `method` unchanged if the method does not
+  /// calibrate or if there is no file. The result refers to this object.
   scenarios::Method wrap(const scenarios::Method& method);
 
-  /// Writes the calibration. If the run produced none, the file is unchanged and a note states the reason. Throws
-  /// BadInput if writing fails.
+  /// Writes the calibration. If the run produced no calibration, the file is unchanged and a note states the reason.
+  /// Throws BadInput if writing fails.
   void keep(const Session& session) const;
 
  private:

@@ -27,7 +27,7 @@ namespace {
 
 using scenarios::BadInput;
 
-/// Checks the verb first, because CLI11 would report an unknown verb as a superfluous argument.
+/// Checks the verb before CLI11 does, because CLI11 would report an unknown verb as a superfluous argument.
 void check_verb(int argc, const char* const* argv) {
   std::vector<std::string> known;
   for (const Verb& verb : verbs()) known.emplace_back(verb.name);
@@ -49,13 +49,13 @@ std::vector<const char*> without_help(int argc, const char* const* argv) {
   return words;
 }
 
-/// Returns the verb that is parsed, or the program itself.
+/// Returns the verb that is parsed, or the program itself if there is no verb.
 const CLI::App& parsed(const CLI::App& app) {
   const auto subcommands = app.get_subcommands();
   return subcommands.empty() ? app : *subcommands.front();
 }
 
-/// Returns a one-line hint for a command line that CLI11 refused.
+/// Returns a one-line hint for a command line that CLI11 rejected.
 std::string usage_line(const CLI::App& app, const CLI::ParseError& error) {
   const CLI::App& verb = parsed(app);
   const std::string place = &verb == &app ? "" : verb.get_name() + ": ";

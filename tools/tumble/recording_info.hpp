@@ -13,15 +13,15 @@ namespace tumble::tools {
 /// Returns the versions of program and engine that recordings state.
 scenarios::RecordingInfo recording_versions();
 
-/// Returns the information that the program stores with a recording it has simulated.
+/// Returns the information that the program stores with a recording after a simulation.
 scenarios::RecordingInfo recording_info(const sim::ResolvedSituation& situation, const std::string& digest);
 
 /// Returns a note if the body still moves at the end of the recording (faster than 0.05 m/s or 0.25 rad/s), because the
-/// scenario's `duration_s` may be too short. Empty if the body is at rest.
+/// scenario's `duration_s` may be too short. Returns an empty text if the body is at rest.
 std::string end_in_motion(const sim::Truth& truth);
 
 /// Builds the world in which a recording was simulated, from the numbers that the recording states. Messages start with
-/// `place`. Sensors are left out, so that sensor parameters unknown to this build do no harm. Throws BadInput,
+/// `place`. Sensors are left out, so that sensor parameters unknown to this build cause no error. Throws BadInput,
 /// sim::InvalidSituation.
 sim::BuiltSituation built_from(const scenarios::RecordingInfo& info, const std::string& place,
                                const scenarios::DataRoot& data);

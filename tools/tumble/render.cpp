@@ -39,7 +39,7 @@ struct RenderOptions {
   int width = 1280, height = 720;
 };
 
-/// Owner of all data that a scene refers to.
+/// Owner of all data to which a scene refers.
 struct RenderContent {
   std::optional<sim::BuiltSituation> built;
   sim::Sensors sensors;

@@ -29,7 +29,7 @@ struct ReplayOptions {
   std::size_t points = ReplayLimits{}.points;
 };
 
-/// Owner of all data that a replay refers to.
+/// Owner of all data to which a replay refers.
 struct ReplayContent {
   sim::Sensors sensors;
   std::optional<sim::Truth> truth;
@@ -38,7 +38,7 @@ struct ReplayContent {
   std::list<scenarios::Estimate> estimates;
 };
 
-/// Loads the recording with its truth, for display only; no estimate is computed here.
+/// Loads the recording with the truth, for display only; no estimate is computed here.
 void load_recording(const Session& session, const ReplayOptions& options, const scenarios::RecordingInfo& info,
                     ReplayContent& content) {
   content.sensors = scenarios::read_sensors(options.recording);

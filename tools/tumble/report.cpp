@@ -113,7 +113,8 @@ std::string read_text(const std::filesystem::path& path) {
   return text;
 }
 
-/// Returns the digest of the data that a sweep would use; empty if absent, because a report works without them.
+/// Returns the digest of the data that a sweep would use; empty if the data are absent, because a report works without
+/// data.
 std::string data_found(const Session& session) {
   try {
     return scenarios::data_digest(session.data());
@@ -122,11 +123,11 @@ std::string data_found(const Session& session) {
   }
 }
 
-/// Maximum number of draws per scenario that the sensitivity section of a page uses.
+/// Maximum number of simulated runs per scenario that the sensitivity section of a page uses.
 constexpr std::size_t kSensitivityDraws = 2000;
 
-/// Adds the sensitivity of each method for one score and for failures, with a limited number of draws. The complete
-/// table takes long and belongs to `tumble sensitivity`.
+/// Adds the sensitivity of each method for one score and for failures, with a limited number of simulated runs. The
+/// complete table takes long and belongs to `tumble sensitivity`.
 void add_sensitivity(const Session& session, const std::string& data_found, ReportInput& input) {
   const Summary some = scenarios::at_most_draws(*input.summary, kSensitivityDraws);
   NumbersByScenario numbers;
@@ -210,7 +211,7 @@ int report(const Session& session, const ReportVerbOptions& options) {
   for (const scenarios::Certificate& certificate : results.certificates()) {
     document["certificates"].push_back(json::parse(to_json(certificate)));
   }
-  // write the page first: it must not depend on a reader of standard output
+  // the page is written first, because it must not depend on a reader of standard output
   if (!options.page.empty() || !options.badge.empty())
     write_page(session, options, {&results, &summary, draws, std::move(curves), std::move(motions), {}, {}});
   session.print(tables, document);

@@ -39,7 +39,7 @@ struct RunOptions {
   fs::path learnt;
 };
 
-/// True if only a scenario is given: a first try of the program.
+/// Returns true if the command line states only a scenario, as for a first try of the program.
 bool is_bare(const RunOptions& options) {
   return options.seed.empty() && options.methods.empty() && options.folder.empty() && options.learnt.empty() &&
          options.parameters.empty() && options.vary.empty();
@@ -52,7 +52,8 @@ fs::path free_folder(const std::string& name) {
   return folder;
 }
 
-/// Returns the first method of a kind that needs no truth and fulfils the condition; null if there is no match.
+/// Returns the first method of a kind that does not need the truth and fulfils the condition; null if there is no such
+/// method.
 template <class Is>
 const scenarios::MethodInfo* first_of(scenarios::Kind kind, Is is) {
   for (const scenarios::Method& method : scenarios::methods()) {
@@ -67,7 +68,7 @@ const scenarios::MethodInfo* baseline_of(scenarios::Kind kind) {
   return baseline != nullptr ? baseline : first_of(kind, [](const auto&) { return true; });
 }
 
-/// Selects the baseline and our method for each kind that has both for this scenario.
+/// Selects the baseline and our method for each kind in which both methods apply to this scenario.
 RunOptions first_run(RunOptions options, const scenarios::Scenario& scenario) {
   using scenarios::Kind;
   const scenarios::Subject subject = scenarios::subject_of(scenario);
@@ -147,7 +148,7 @@ scenarios::Setting setting_of(const scenarios::DataRoot& data, const RunOptions&
   return setting;
 }
 
-/// Reports the methods that failed, and the health warnings of the others.
+/// Reports the methods that failed, and the health warnings of all other methods.
 void say_troubles(const Session& session, const scenarios::RunResult& result) {
   for (std::size_t i = 0; i < result.outcomes.size(); ++i) {
     const scenarios::Outcome& outcome = result.outcomes[i];
@@ -164,7 +165,7 @@ std::uint64_t asked_seed(const RunOptions& options, const scenarios::Scenario& s
   return any_draw ? 1 : seed_of(scenario, options.seed);
 }
 
-/// Returns the requested methods; methods that calibrate start from the file of --learnt.
+/// Returns the methods that the user names; methods that calibrate start from the file of --learnt.
 std::vector<scenarios::Method> asked_methods(const RunOptions& options, const scenarios::Scenario& scenario,
                                              LearntFile& learnt) {
   const auto selected = select_methods(options.methods);

@@ -41,8 +41,8 @@ void move_to_clock(std::int64_t origin_ns, scenarios::Estimate& estimate) {
   for (PoseState& pose : estimate.poses) pose.time_ns -= origin_ns;
 }
 
-/// Accepts estimate and recording in either order, because other verbs take the recording first. The extensions of
-/// recordings identify it.
+/// Accepts estimate and recording in either order, because other verbs take the recording first. The file extension
+/// identifies the recording.
 void order(ScoreOptions& options) {
   const auto is_recording = [](const std::filesystem::path& file) {
     return file.extension() == ".h5" || file.extension() == ".hdf5";
@@ -75,7 +75,7 @@ struct Standing {
   std::size_t compared = 0, poses = 0;        ///< number of poses within the time of the truth, and of all poses
   double covered_s = 0;                       ///< covered time, without gaps longer than a fifth of the truth
   scenarios::Alignment alignment;
-  /// share of the truth's time between first and last pose, gaps included
+  /// fraction of the truth's time between first and last pose, gaps included
   double spanned() const { return end_s > 0.0 ? (last_s - first_s) / end_s : 1.0; }
   double share() const { return end_s > 0.0 ? covered_s / end_s : 1.0; }
 };
@@ -98,9 +98,9 @@ Standing standing_of(const scenarios::Estimate& estimate, const sim::Truth& trut
   return out;
 }
 
-/// Detects time stamps in ms, us or ns that were read as seconds. Then only the first few poses, far apart, would
-/// overlap with the recording and be scored. A longer trajectory that contains the recording has denser poses or
-/// another length.
+/// Throws BadInput for time stamps in ms, us or ns that were read as seconds. With wrong stamps, only the first few
+/// poses, far apart, would overlap with the recording and be scored. A trajectory that is longer than the recording and
+/// contains it has denser poses or another length.
 void require_seconds(const ScoreOptions& options, const scenarios::Estimate& estimate, const Standing& standing) {
   constexpr double kNear = 1.5, kLeastStep_s = 0.1;
   if (estimate.poses.size() < 2 || !(standing.end_s > 0.0)) return;
@@ -117,7 +117,7 @@ void require_seconds(const ScoreOptions& options, const scenarios::Estimate& est
   }
 }
 
-/// Refuses a trajectory with nearly no overlap, because all its errors would be zero.
+/// Throws BadInput for a trajectory with nearly no overlap, because all its errors would be zero.
 void require_compared(const ScoreOptions& options, const Standing& standing) {
   if (standing.compared >= kComparedMin && standing.spanned() >= kSpannedShareMin) return;
   throw scenarios::BadInput(
@@ -141,8 +141,9 @@ std::string cover_text(const Standing& standing) {
                      standing.poses);
 }
 
-/// Judges an external trajectory over the part that it covers, and reports the coverage. "partial" means: no divergence
-/// in the covered part, but a gap of more than a fifth of the recording.
+/// Judges an external trajectory over the part of the truth's time in which the trajectory has poses, and reports the
+/// coverage. The verdict "partial" means that there is no divergence in this part, but a gap of more than a fifth of
+/// the recording.
 std::string judge_trajectory(const Session& session, const Standing& standing, const scenarios::ScoredEstimate& scored,
                              scenarios::Outcome& outcome) {
   std::string status = to_string(outcome.status);

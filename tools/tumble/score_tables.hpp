@@ -12,7 +12,7 @@
 namespace tumble::tools {
 
 /// Returns one table per kind: one row per metric in the order of first occurrence, one column per method, the status
-/// first. `status` replaces the outcomes' own status if it has more detail.
+/// first. `status` replaces the status of the outcomes if `status` has more detail.
 std::vector<Table> score_tables(const std::string& title, std::span<const scenarios::Outcome> outcomes,
                                 const std::string& status = "");
 

@@ -31,7 +31,8 @@ struct SensitivityVerbOptions {
   bool motion = false, all = false, dependence = false;
 };
 
-/// Refuses a database made with other models or scenarios, because the numbers of its draws would differ.
+/// Throws BadInput for a database made with other models or scenarios, because the numbers of the simulated runs would
+/// differ.
 void require_same_data(const scenarios::Results& results, const scenarios::DataRoot& data,
                        const std::filesystem::path& database) {
   const std::string made_of = results.note("data"), found = scenarios::data_digest(data);
@@ -51,7 +52,7 @@ std::map<std::string, scenarios::NumbersOfDraws> numbers_of(const Session& sessi
   return numbers_of_catalogue(session, data, summary);
 }
 
-/// Returns the strongest influences that chance does not explain, or all on request.
+/// Returns the strongest influences that chance does not explain, or all influences on request.
 std::vector<Influence> shown(const Sensitivity& row, bool all) {
   std::vector<Influence> out;
   for (const Influence& each : row.influences) {

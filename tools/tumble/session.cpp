@@ -49,7 +49,7 @@ scenarios::DataRoot Session::data() const {
   for (const fs::path& root : candidate_roots()) {
     const scenarios::DataRoot data{root};
     if (fs::is_directory(data.models(), error)) return data;
-    // if the user names a folder, no other folder is tried: it might hold other models
+    // if the user names a folder, no other folder is tried, because another folder might contain other models
     if (given != nullptr && *given != '\0')
       throw scenarios::BadInput("TUMBLE_DATA: there is no folder " + data.models().string());
   }

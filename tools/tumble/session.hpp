@@ -26,13 +26,14 @@ class Session {
   TableFormat format = TableFormat::text;
 
   /// Returns the folder with models, catalogue and suites: $TUMBLE_DATA, else share/tumble next to the program's
-  /// folder, else the source tree of the build. Throws BadInput if none of them holds models.
+  /// folder, else the source tree of the build. Throws BadInput if none of these folders contains models.
   scenarios::DataRoot data() const;
 
-  /// Returns the Plotly bundle next to the data. Throws BadInput with instructions if it is missing.
+  /// Returns the Plotly bundle next to the data. Throws BadInput with instructions if the bundle is missing.
   std::filesystem::path plotly() const;
 
-  /// Returns the program's own file, for starting it again. Throws BadInput if the system cannot provide it.
+  /// Returns the path of the program's executable file, for starting the program again. Throws BadInput if the system
+  /// cannot provide the path.
   std::filesystem::path program() const;
 
   /// Returns the folder for cached measurements: $TUMBLE_CACHE, else $XDG_CACHE_HOME/tumble, else ~/.cache/tumble;

@@ -36,8 +36,8 @@ struct ShrinkVerbOptions {
   std::filesystem::path file;
 };
 
-/// Returns the oracle of the method's kind if it applies to the robot. A draw on which even the oracle fails is not a
-/// useful case.
+/// Returns the oracle of the method's kind if the oracle applies to the robot. A simulated run on which even the oracle
+/// fails is not a useful case.
 scenarios::MethodPointer control_of(const ShrinkVerbOptions& options, const scenarios::Method& method,
                                     const scenarios::Scenario& scenario, double time_limit_s) {
   if (options.control == "none") return nullptr;
@@ -97,7 +97,7 @@ json to_json(const Shrunk& shrunk, const std::string& metric, const ShrinkVerbOp
           {"controlled", shrunk.controlled}, {"lines", std::move(lines)}, {"case", options.file.string()}};
 }
 
-/// Returns the command that shrinks the same draw again.
+/// Returns the command that repeats the shrinking.
 std::string command_of(const ShrinkVerbOptions& options, std::uint64_t seed) {
   using scenarios::shell_word;
   std::string words = "tumble shrink " + shell_word(options.scenario) + " --seed " + std::to_string(seed) +
@@ -108,7 +108,7 @@ std::string command_of(const ShrinkVerbOptions& options, std::uint64_t seed) {
   return words + fmt::format(" --budget {} -o ", options.budget) + shell_word(options.file.filename().string());
 }
 
-/// The case is named after its file, so the file's name must be a valid name.
+/// Returns the name of the case, which is the file's name and must be a valid name.
 std::string name_of(const std::filesystem::path& file) {
   const std::string name = file.stem().string();
   const auto allowed = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; };
@@ -120,7 +120,7 @@ std::string name_of(const std::filesystem::path& file) {
                  "digits and underscores");
 }
 
-/// A case can be named wherever a scenario or a suite can, so their names must differ.
+/// A case can be named wherever a scenario or a suite can, so a case must not have the name of a scenario or suite.
 void require_own_name(const scenarios::DataRoot& data, const std::string& name) {
   for (const std::vector<std::string>& known : {scenarios::scenario_names(data), scenarios::suite_names(data)}) {
     if (std::find(known.begin(), known.end(), name) != known.end())

@@ -26,7 +26,7 @@ namespace tumble::tools {
 
 namespace {
 
-/// Defaults: each example costs one more run of a draw, and its pictures.
+/// Defaults: each example costs one more simulated run, and its pictures.
 constexpr std::uint64_t kExamplesMax = 3, kDrawsPerExample = 8, kFailuresMax = 8, kDrawsPerFailure = 4;
 
 struct SweepVerbOptions {
@@ -52,7 +52,7 @@ void take_scenarios(const std::vector<std::string>& named, scenarios::Suite& sui
   std::erase_if(suite.scenarios, [&](const std::string& name) { return std::ranges::count(named, name) == 0; });
 }
 
-/// Prints the content of the suite, because a scenario and a suite may have the same name.
+/// Prints the content of the suite, because a scenario and a suite may have equal names.
 void say_what_it_holds(const Session& session, const SweepVerbOptions& options, const scenarios::Suite& suite) {
   if (!options.scenarios.empty() || suite.scenarios.size() < 2) return;
   if (std::ranges::count(suite.scenarios, options.suite) == 0) return;
@@ -81,7 +81,8 @@ bool select(const scenarios::DataRoot& data, const SweepVerbOptions& options, sc
   return options.shard.empty() || shard_seeds(parse_shard(options.shard), suite.first_seed, suite.last_seed);
 }
 
-/// Stores the certificate of this build with the results; it is measured at most once per build and machine.
+/// Stores the certificate of this build with the results; the certificate is measured at most once per build and
+/// machine.
 void certify(const Session& session, const scenarios::DataRoot& data, const std::filesystem::path& database,
              const std::atomic<bool>& stop) {
   scenarios::Results results(database, scenarios::Results::Mode::create_or_append);
@@ -100,7 +101,7 @@ void certify(const Session& session, const scenarios::DataRoot& data, const std:
   }
 }
 
-/// Returns the command for the same sweep, without its database.
+/// Returns the command for this sweep, without the database.
 std::string command_of(const SweepVerbOptions& options) {
   using scenarios::shell_word;
   std::string words = shell_word(options.suite);
@@ -111,21 +112,21 @@ std::string command_of(const SweepVerbOptions& options) {
   return words;
 }
 
-/// Appends to the commands of earlier sweeps in the same database.
+/// Appends the command to the commands of earlier sweeps in this database.
 void note_command(scenarios::Results results, const SweepVerbOptions& options) {
   const std::string known = results.note(scenarios::kCommandNote);
   results.set_note(scenarios::kCommandNote, scenarios::with_commands(known, command_of(options)));
 }
 
-/// Generates examples only if the complete suite was swept, because draws that are typical of a shard may not be
-/// typical of the suite. Errors in pictures are reported but do not change the table and the exit status. Returns false
-/// if it was stopped.
+/// Generates examples only if the complete suite was swept, because typical runs of a shard may not be typical of the
+/// suite. Errors in pictures are reported but do not change the table and the exit status. Returns false if the
+/// generation was stopped.
 bool leave_examples(const Session& session, const scenarios::DataRoot& data, const scenarios::Suite& suite,
                     const SweepVerbOptions& options, std::uint64_t draws, const std::atomic<bool>& stop) {
   if (!options.shard.empty()) return true;
   LeaveOptions leave;
   leave.count = options.examples.value_or(std::min(kExamplesMax, draws / kDrawsPerExample));
-  // `--examples 0` also disables pictures of failures; a sweep that is too small for typical draws still shows failures
+  // `--examples 0` also disables pictures of failures; a sweep that is too small for typical runs still shows failures
   const bool wants_none = options.examples && *options.examples == 0;
   leave.failures =
       options.failures.value_or(wants_none ? 0 : std::clamp(draws / kDrawsPerFailure, std::uint64_t{1}, kFailuresMax));
@@ -183,7 +184,7 @@ scenarios::SweepOptions sweep_options(const SweepVerbOptions& options, const std
   return out;
 }
 
-/// Removes a database that a refused sweep created, unless it holds draws.
+/// Removes a database that a rejected sweep created, unless the database contains runs.
 class NewDatabase {
  public:
   explicit NewDatabase(const std::filesystem::path& path) : path_(path), is_new_(!exists_at(path)) {}

@@ -9,8 +9,8 @@ class App;
 class Option;
 }  // namespace CLI
 
-/// Declares the options of a verb. Only verb_options.cpp and program.cpp include CLI11, because its headers add seconds
-/// of compile time to every source.
+/// Declares the options of a verb. Only verb_options.cpp and program.cpp include CLI11, because CLI11's headers add
+/// seconds of compile time to every source.
 namespace tumble::tools {
 
 /// Further properties of an option or argument that was just declared.
@@ -20,19 +20,19 @@ class VerbOption {
 
   /// Makes the option mandatory.
   VerbOption required();
-  /// Accepts numbers from `low` to `high`; refuses NaN.
+  /// Accepts numbers from `low` to `high`; rejects NaN.
   VerbOption within(double low, double high);
   /// Accepts whole numbers from `low` to `high`.
   VerbOption whole(int low, int high);
   /// Adds a check that runs before CLI11 reports missing options. `refuse` throws BadInput with a one-line message.
   VerbOption check(std::function<void(const std::string&)> refuse);
-  /// Refuses an empty word.
+  /// Rejects an empty word.
   VerbOption filled();
   /// Takes exactly `count` words.
   VerbOption words(int count);
-  /// Takes one word each time it is given; the next word belongs to another option.
+  /// The option takes one word each time it occurs; the next word belongs to another option.
   VerbOption one_at_a_time();
-  /// Splits one word into several at `separator`.
+  /// Splits one word into several words at `separator`.
   VerbOption separated_by(char separator);
   /// Shows the current value of the target as the default in `--help`.
   VerbOption shows_default();

@@ -9,10 +9,11 @@
 
 namespace tumble::tools {
 
-/// Runs a verb after its options were parsed; returns the exit status.
+/// Runs a verb after the verb's options were parsed; returns the exit status.
 using Action = std::function<int()>;
 
-/// A verb of the program. It declares its options on `verb` and returns its action. The session outlives the action.
+/// A verb of the program. The declaration adds the verb's options to `verb` and returns the verb's action. The session
+/// outlives the action.
 struct Verb {
   const char* name;
   const char* doc;
@@ -22,7 +23,7 @@ struct Verb {
 /// Returns all verbs, in the order of the data flow.
 std::span<const Verb> verbs();
 
-// Each verb is declared in its own file.
+// Each verb is declared in its own source file.
 Action declare_list(VerbOptions& verb, const Session& session);
 Action declare_run(VerbOptions& verb, const Session& session);
 Action declare_record(VerbOptions& verb, const Session& session);

@@ -18,15 +18,15 @@ namespace tumble::baselines {
 ///
 /// - State: rate and angular acceleration, driven by white jerk.
 /// - Measurements: the difference of the specific force between each auxiliary IMU and the primary, alpha x p + w x (w
-///   x p). It is valid in flight, contact and rest. The unclipped gyro axes are also used (`use_gyro`), so that the
-///   accelerometers only need to supply clipped axes.
-/// - Designed for long fast rotation and widely spaced accelerometers (projectiles, vehicles). Centripetal force grows
-///   with the squared rate, so slow motion is lost in noise and misalignment.
+///   x p). The filter is valid in flight, contact and rest. The unclipped gyro axes are also used (`use_gyro`), so that
+///   the accelerometers only need to supply clipped axes.
+/// - Designed for long fast rotation and widely spaced accelerometers (projectiles, vehicles). Centripetal acceleration
+///   grows with the squared rate, so noise and misalignment hide slow rotation.
 /// - Not modelled: free flight, bias and misalignment of the accelerometers, correlation between the auxiliary IMUs'
 ///   differences.
 ///
-/// With one auxiliary IMU, the rate about the line between both only appears in products with the other axes. Without
-/// any, the filter bridges clipped readings by smoothness only.
+/// With one auxiliary IMU, the rate about the line between the two IMUs is only observable through products with the
+/// other axes' rates. Without auxiliary IMUs, the filter bridges clipped readings by assuming a smooth rate.
 class AccelerometerRate {
  public:
   struct Params {
@@ -42,7 +42,7 @@ class AccelerometerRate {
     double rate_max_rad_s = 50.0;          ///< bound of the result
     double gap_max_s = 1.0;
 
-    /// Describes every parameter once.
+    /// Visits every parameter with its name, unit and limits.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("rails_", p.rails);
@@ -67,11 +67,12 @@ class AccelerometerRate {
     }
   };
 
-  /// Throws InvalidParams for a parameter out of bounds.
+  /// Throws InvalidParams if a parameter is outside its limits.
   explicit AccelerometerRate(const Params& params);
 
   /// Computes one RateState per sample. On error, `out` is unchanged: `empty`, `too_few` (less than two samples, or
-  /// another number in an auxiliary IMU), `non_finite`, `time_order`, `gap`. O(N times auxiliary IMUs).
+  /// another number in an auxiliary IMU), `non_finite`, `time_order`, `gap`. The cost is proportional to the number of
+  /// samples times the number of auxiliary IMUs.
   Status estimate(std::span<const ImuSample> samples, std::span<const AuxiliaryAccelerometer> auxiliary_imus,
                   std::vector<RateState>& out) const;
 

@@ -14,7 +14,7 @@ namespace tumble::baselines {
 
 namespace {
 
-// Input and output of one axis.
+// Input and output of the smoother for one axis.
 struct Axis {
   std::span<const ImuSample> samples;
   std::vector<bool> clipped;    ///< saturated
@@ -30,14 +30,15 @@ struct Value {
   double rate = 0.0, variance = 0.0;
 };
 
-// Cubic Hermite polynomial between two samples with given slopes.
+// Evaluates a cubic Hermite polynomial between two samples with known derivatives.
 double cubic(double share, double span_s, double from, double slope_from, double to, double slope_to) {
   const double u = share, u2 = u * u, u3 = u2 * u;
   return (2.0 * u3 - 3.0 * u2 + 1.0) * from + (u3 - 2.0 * u2 + u) * span_s * slope_from + (3.0 * u2 - 2.0 * u3) * to +
          (u3 - u2) * span_s * slope_to;
 }
 
-// Returns the slope of the unclipped readings that end at k (step -1) or start there (step +1); 0 if there is only one.
+// Returns the derivative of the unclipped readings that end at sample k (step -1) or start at sample k (step +1); 0 if
+// there is only one reading.
 double slope_at(const Axis& axis, std::size_t k, int step) {
   if (step < 0 ? k == 0 : k + 1 == axis.samples.size()) return 0.0;
   const std::size_t other = step < 0 ? k - 1 : k + 1;
@@ -61,7 +62,7 @@ std::vector<Value> interpolate(const Axis& axis) {
       const double span_s = axis.time_s(b) - axis.time_s(a), share = (axis.time_s(k) - axis.time_s(a)) / span_s;
       out[k].rate =
           cubic(share, span_s, axis.reading(a), slope_at(axis, a, -1), axis.reading(b), slope_at(axis, b, +1));
-      // A cubic has no variance: use its distance from the reading as standard deviation.
+      // A cubic has no variance, so the distance from the reading serves as the standard deviation.
       const double departure = out[k].rate - axis.reading(k);
       out[k].variance = axis.variance + departure * departure;
     }
@@ -81,7 +82,7 @@ struct RandomWalk {
   Matrix noise(double dt_s, const Matrix&) const { return Matrix(psd * dt_s); }
 };
 
-// Rate with white snap that is bounded in the long run: the stationary process with Matern 5/2 covariance and state
+// Rate with white snap that is bounded over long times: the stationary process with Matern 5/2 covariance and the state
 // rate, acceleration, jerk (Hartikainen and Saerkkae 2010, section 4).
 struct BoundedJerk {
   static constexpr int kSize = 3;
@@ -106,7 +107,8 @@ struct BoundedJerk {
   Matrix noise(double, const Matrix& F) const { return start() - F * start() * F.transpose(); }
 };
 
-// One axis as a linear process. Uses no clipped readings except `bounds`, one Gaussian factor per sample.
+// Models the rate of one axis as a linear process. The model ignores clipped readings except `bounds`, which add one
+// Gaussian factor per sample.
 template <typename Process>
 class Chain {
  public:
@@ -128,10 +130,10 @@ class Chain {
     }
   }
 
-  // Estimates from all readings up to the sample.
+  // Returns estimates from all readings up to the sample.
   std::vector<Value> filtered() const { return values(after_); }
 
-  // Estimates from all readings (Rauch, Tung and Striebel 1965).
+  // Returns estimates from all readings (Rauch, Tung and Striebel 1965).
   std::vector<Value> smoothed() const {
     std::vector<Moment> out = after_;
     for (std::size_t k = out.size() - 1; k-- > 0;) {
@@ -174,8 +176,9 @@ class Chain {
   std::vector<Moment> after_;
 };
 
-// Computes the most likely curve that respects all clipped readings as bounds. Rounds of smoothing add hard bounds
-// where the curve violates them. The variance is that of the unbounded curve, truncated at the reading.
+// Computes the most likely curve that respects all clipped readings as limits. Each round of smoothing adds hard limits
+// where the curve violates a clipped reading. The variance is the variance of the unlimited curve, truncated at the
+// reading.
 std::vector<Value> smooth_with_bounds(const Axis& axis, const ClippedBaseline::Params& params) {
   constexpr int kRounds = 8;
   const BoundedJerk process(params.snap_psd, params.rate_sigma_rad_s);

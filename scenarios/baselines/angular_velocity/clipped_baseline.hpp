@@ -12,25 +12,26 @@
 
 namespace tumble::baselines {
 
-/// Handles clipped rates with the gyro only, by three models of the unseen rate.
+/// Estimates clipped angular rates from the gyro alone, with one of three models of the hidden rate.
 ///
-/// Each axis is independent. Saturated readings are not used; the result lies between the clipped reading and a maximum
-/// rate. The accelerometer is not used.
+/// Each gyro axis is estimated independently. The filter ignores saturated readings and limits its estimate to the
+/// range from the saturation level to a maximum rate. The filter does not use the accelerometer.
 ///
-/// - `interpolate`: a cubic over each gap that matches value and slope on both sides. For gaps that are short compared
-///   with the motion.
-/// - `reject`: a causal Kalman filter with a random-walk rate, hence constant over a gap. This is how Point-LIO handles
-///   saturated readings between lidar corrections. For gaps shorter than the time between corrections by another
-///   sensor.
-/// - `constant_jerk`: a smoother with white snap over short times and bounded rate in the long run: the stationary
-///   Matern 5/2 process with deviation `rate_sigma_rad_s`. Clipped readings are hard bounds during smoothing instead of
-///   truncating the result. For swings without impacts and gaps up to about 2 / lambda, lambda = (3 psd / (16
-///   sigma^2))^(1/5), 0.15 s. In longer gaps it returns towards the saturation level, with the variance of a curve
-///   beyond it.
+/// - `interpolate`: a cubic over each gap of clipped samples that matches the rate and its derivative at both ends. The
+///   cubic suits gaps that are short compared with the motion.
+/// - `reject`: a causal Kalman filter with a random-walk rate; the estimate is constant over a gap. Point-LIO handles
+///   saturated readings in this way between lidar corrections. The `reject` model suits gaps shorter than the time
+///   between corrections by another sensor.
+/// - `constant_jerk`: a smoother with the stationary Matern 5/2 process of deviation `rate_sigma_rad_s`: white snap
+///   over short times, bounded rate over long times. The smoother uses clipped readings as hard lower limits of the
+///   rate's magnitude; it does not truncate the result afterwards. The `constant_jerk` model suits swings without
+///   impacts and gaps up to about 2 / lambda = 0.15 s, with lambda = (3 snap_psd / (16 rate_sigma^2))^(1/5). In longer
+///   gaps the `constant_jerk` estimate returns towards the saturation level, with the variance of a curve above that
+///   level.
 ///
-/// If a gap starts or ends with an impact, its slope misleads both smooth models: on tumbles of the rig their mean
-/// error exceeds that of the clipped reading. Not modelled: impacts within a gap, and the coupling of a tumbling body's
-/// axes.
+/// An impact at the start or end of a gap gives both smooth models a wrong derivative: on tumbles of the rig their mean
+/// error exceeds the error of the clipped reading. Not modelled: impacts within a gap, and the coupling of a tumbling
+/// body's axes.
 class ClippedBaseline {
  public:
   enum class Kind { interpolate, reject, constant_jerk };
@@ -45,12 +46,12 @@ class ClippedBaseline {
     double acceleration_psd = 1e3;
     /// Density of the white angular snap of `constant_jerk` [rad^2/s^7].
     double snap_psd = 1e9;
-    /// Typical rate of one axis for `constant_jerk` [rad/s].
+    /// Typical rate of one axis that `constant_jerk` assumes [rad/s].
     double rate_sigma_rad_s = 20.0;
     double rate_max_rad_s = 50.0;  ///< bound of the result in a gap
     double gap_max_s = 1.0;        ///< longest accepted time between samples
 
-    /// Describes every parameter once.
+    /// Visits every parameter with its name, unit and limits.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("rails_", p.rails);
@@ -72,7 +73,7 @@ class ClippedBaseline {
     }
   };
 
-  /// Throws InvalidParams for a parameter out of bounds.
+  /// Throws InvalidParams if a parameter is outside its limits.
   explicit ClippedBaseline(const Params& params);
 
   /// Computes one RateState per sample. On error, `out` is unchanged: `empty`, `too_few` (less than two samples),

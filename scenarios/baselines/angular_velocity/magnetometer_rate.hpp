@@ -19,14 +19,15 @@ namespace tumble::baselines {
 /// - State: rate, angular acceleration (white jerk), the field in IMU axes with b' = -w x b, and the sensor's hard
 ///   iron.
 /// - Measurements: unclipped gyro axes and the magnetometer.
-/// - Field changes along the path (nearby iron) are process noise. The noise increases if the field strength differs
-///   from the Earth's: the adaptive part of Tan's method.
-/// - Designed for bodies in the open that spin fast about an axis across the field (shells, balls). The rate about the
-///   field is not observable and follows from smoothness only. Nearby steel resembles rotation.
+/// - Field changes along the path (nearby iron) are process noise. The process noise increases if the measured field
+///   strength differs from the Earth's, as in the adaptive part of Tan's method.
+/// - Designed for bodies outdoors that spin fast about an axis perpendicular to the magnetic field (shells, balls). The
+///   rate about the field direction is not observable; the filter estimates this rate only by assuming smoothness. The
+///   filter mistakes the field of nearby steel for rotation.
 /// - Not modelled: bandwidth and delay of the magnetometer, soft iron, forces, and the loss of field strength by
 ///   averaging over a window ((w dt)^2 / 24, 0.1 % at 15 rad/s and 100 Hz).
 ///
-/// Without magnetometer the filter bridges clipped readings by smoothness only.
+/// Without a magnetometer, the filter bridges clipped readings by assuming a smooth rate.
 class MagnetometerRate {
  public:
   struct Params {
@@ -43,7 +44,7 @@ class MagnetometerRate {
     double rate_max_rad_s = 50.0;          ///< bound of the result
     double gap_max_s = 1.0;
 
-    /// Describes every parameter once.
+    /// Visits every parameter with its name, unit and limits.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("rails_", p.rails);
@@ -69,12 +70,12 @@ class MagnetometerRate {
     }
   };
 
-  /// Throws InvalidParams for a parameter out of bounds.
+  /// Throws InvalidParams if a parameter is outside its limits.
   explicit MagnetometerRate(const Params& params);
 
-  /// Computes one RateState per sample. `field_I_t`: one reading per sample, NaN if missing; empty without
-  /// magnetometer. On error, `out` is unchanged: `empty`, `too_few` (less than two samples, or another number of
-  /// fields), `non_finite`, `time_order`, `gap`. O(N).
+  /// Computes one RateState per sample. `field_I_t` contains one magnetometer reading per sample, NaN if missing; the
+  /// span is empty if there is no magnetometer. On error, `out` is unchanged: `empty`, `too_few` (less than two
+  /// samples, or another number of fields), `non_finite`, `time_order`, `gap`. O(N).
   Status estimate(std::span<const ImuSample> samples, std::span<const Eigen::Vector3d> field_I_t,
                   std::vector<RateState>& out) const;
 

@@ -55,8 +55,8 @@ struct Noise {
   double gyro_variance = 0.0, accel_variance = 0.0;
 };
 
-// Rate of one axis with white jerk over short times, bounded in the long run: the stationary Matern 3/2 process with
-// state rate and acceleration.
+// Rate of one axis with white jerk over short times and bounded over long times: the stationary Matern 3/2 process with
+// the state rate and acceleration.
 struct BoundedAcceleration {
   double lambda = 1.0, variance = 1.0;
 
@@ -113,7 +113,7 @@ void measure_component(int index, double residual, double variance, Belief& beli
   measure(row, residual, variance, belief);
 }
 
-// Applies a clipped reading as a bound, together with the maximum rate.
+// Applies a clipped reading as a limit of the rate, together with the maximum rate.
 void hold(const StandstillSmoother::Params& p, double reading, int axis, Belief& belief) {
   constexpr double kSoftness = 0.05;  // rad/s
   const double side = std::copysign(1.0, reading), rate = side * belief.mean.rate_rad_s[axis];
@@ -122,7 +122,8 @@ void hold(const StandstillSmoother::Params& p, double reading, int axis, Belief&
   if (held != rate) measure_component(6 + axis, side * (held - rate), kSoftness * kSoftness, belief);
 }
 
-// Returns true if tilt or velocity error at rest exceeds what the linear filter can distribute over the motion before.
+// Returns true if the tilt or velocity error at rest exceeds the error that the linear filter can distribute over the
+// preceding motion.
 bool is_lost(const StandstillSmoother::Params& p, const ImuSample& sample, const Belief& belief) {
   const Vector3d up = belief.mean.q_WI * sample.specific_force_m_s2.normalized();
   if (std::atan2(up.head<2>().norm(), up.z()) > p.tilt_max_rad) return true;
@@ -132,7 +133,7 @@ bool is_lost(const StandstillSmoother::Params& p, const ImuSample& sample, const
   return v.dot(spread.ldlt().solve(v)) > p.velocity_gate * p.velocity_gate;
 }
 
-// Restarts attitude and velocity without correlation to the past; the rate continues.
+// Restarts attitude and velocity without correlation to earlier states; the rate continues.
 void restart(const ImuSample& sample, Belief& belief, ErrorCovariance& F) {
   constexpr double kAnyTilt = 10.0, kAnyVelocity = 1e4;  // variances
   Navigation& n = belief.mean;
@@ -170,7 +171,7 @@ std::vector<bool> standstills(const StandstillSmoother::Params& p, std::span<con
   return rest;
 }
 
-// Rauch-Tung-Striebel step from the next sample to this one.
+// Performs a Rauch-Tung-Striebel step from the next sample back to this sample.
 void smooth(const Step& next, Belief& now, const Belief& next_smoothed) {
   const ErrorCovariance& ahead = next.before.covariance;
   const ErrorCovariance gain = ahead.ldlt().solve(next.transition * now.covariance).transpose();

@@ -12,19 +12,21 @@
 
 namespace tumble::baselines {
 
-/// Angular rates between standstills: an inertial navigation filter with zero-velocity and zero-rate updates at rest,
-/// smoothed backwards. The rotation lost to saturation between two rests is distributed over the clipped samples.
+/// Estimates angular rates between standstills with an inertial navigation filter, zero-velocity and zero-rate updates
+/// at rest, and a backward smoothing pass. The rotation lost to saturation between two rests is distributed over the
+/// clipped samples.
 ///
-/// Error state (12): attitude, velocity, rate, angular acceleration. Strapdown integration of the specific force; white
-/// angular jerk over short times with a bounded rate (Matern 3/2). Measurements: unclipped gyro axes, clipped ones as
-/// bounds, and at standstill zero velocity, zero rate and the direction of gravity. Forward extended Kalman filter,
-/// backward Rauch-Tung-Striebel pass.
+/// The error state has 12 elements: attitude, velocity, rate, angular acceleration. The filter integrates the specific
+/// force and models the rate as a Matern 3/2 process: white angular jerk over short times, bounded rate over long
+/// times. Measurements are unclipped gyro axes, limits from clipped gyro axes, and at standstill zero velocity, zero
+/// rate and the direction of gravity. A forward extended Kalman filter is followed by a backward Rauch-Tung-Striebel
+/// pass.
 ///
-/// Based on zero-velocity smoothers for foot-mounted and hand-moved sensors (Dang and Suh). Designed for motions of one
-/// or two seconds between rests with few clipped samples. If tilt or velocity at the next standstill shows a larger
-/// error than a linear filter can distribute, attitude and velocity restart. The rates in between then follow from
-/// bounds and smoothness, as in a tumble of several turns. Not modelled: clipped specific force, a lever arm, sensor
-/// bias.
+/// The method is based on zero-velocity smoothers for foot-mounted and hand-moved sensors (Dang and Suh). Designed for
+/// motions of one or two seconds between rests with few clipped samples. If tilt or velocity at the next standstill has
+/// a larger error than a linear filter can correct, attitude and velocity restart at that standstill. After a restart,
+/// the rates between the standstills follow only from the limits of the clipped readings and from smoothness, as in a
+/// tumble of several turns. Not modelled: clipped specific force, a lever arm, sensor bias.
 class StandstillSmoother {
  public:
   struct Params {
@@ -43,10 +45,10 @@ class StandstillSmoother {
     double rate_sigma_rad_s = 20.0;         ///< typical rate of one axis
     double tilt_max_rad = 0.5;              ///< at a standstill; a larger tilt indicates lost rotation
     double velocity_gate = 5.0;             ///< same for the velocity, in standard deviations
-    double rate_max_rad_s = 50.0;           ///< bound of the result
+    double rate_max_rad_s = 50.0;           ///< Visits every parameter with its name, unit and limits.
     double gap_max_s = 1.0;
 
-    /// Describes every parameter once.
+    /// Throws InvalidParams if a parameter is outside its limits.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("rails_", p.rails);
@@ -81,8 +83,9 @@ class StandstillSmoother {
   /// Throws InvalidParams for a parameter out of bounds.
   explicit StandstillSmoother(const Params& params);
 
-  /// Computes one RateState per sample; unclipped axes are unchanged. On error, `out` is unchanged: `empty`, `too_few`
-  /// (less than two samples), `non_finite`, `time_order`, `gap`. O(N) in time and memory.
+  /// Computes one RateState per sample; the rates of unclipped axes are copied from the gyro. On error, `out` is
+  /// unchanged: `empty`, `too_few` (less than two samples), `non_finite`, `time_order`, `gap`. Time and memory are
+  /// proportional to the number of samples.
   Status estimate(std::span<const ImuSample> samples, std::vector<RateState>& out) const;
 
  private:

@@ -28,8 +28,8 @@ double current_yaw(const Eigen::Quaterniond& q) {
   return std::atan2(2.0 * (q.w() * q.z() + q.x() * q.y()), 1.0 - 2.0 * (q.y() * q.y() + q.z() * q.z()));
 }
 
-/// Published complementary step: rotates along the arc towards the accelerometer's roll and pitch at the current yaw,
-/// attitude.md (A25).
+/// Performs the published complementary step: rotates along the arc towards the accelerometer's roll and pitch at the
+/// current yaw, attitude.md (A25).
 Eigen::Quaterniond towards_roll_and_pitch(const Eigen::Quaterniond& q, const Eigen::Vector3d& f, double share,
                                           bool keep_roll) {
   const double sin_pitch = 2.0 * (q.w() * q.y() - q.x() * q.z());

@@ -10,14 +10,14 @@
 
 namespace tumble::baselines {
 
-/// How Autogain maps a rate to the factor that selects between gyro-led and accelerometer-led correction.
+/// Selects how Autogain converts a rate to the factor that selects between gyro-led and accelerometer-led correction.
 enum class AutogainProfile : std::uint8_t {
   paper,     ///< eq 2: 0 up to `lower`, (|w_k| - lower)^2 / (upper - lower)^2, 1 from `upper`
   code2021,  ///< the authors' code of 2021: min(1, (w_k / 2)^2); below 0.1 the gains, but not the factors, use 0
   smooth,    ///< smoothstep of the rate's norm between the same bounds; continuous and independent of the mounting
 };
 
-/// Factors and gains of one sample.
+/// Correction factors and gains that Autogain uses for one sample.
 struct AutogainGains {
   Eigen::Vector3d factor = Eigen::Vector3d::Zero();  ///< f_x, f_y, f_z (eq 2); all equal in the smooth profile
   double beta = 0.0;                                 ///< eq 3, as used by the gains
@@ -25,9 +25,10 @@ struct AutogainGains {
   double slerp_share = 0.0;                          ///< alpha (eq 5): share of the complementary step
 };
 
-/// Attitude part of the published filter for a rolling sphere (Zevering et al., IEEE MFI 2021, eqs 2-5). Applies a
-/// Madgwick step whose gain grows with the rate, then a complementary step whose share falls with it. During slow
-/// rotation it relies on the accelerometer even if the body accelerates. Estimates neither bias nor heading.
+/// Estimates attitude with the published filter for a rolling sphere (Zevering et al., IEEE MFI 2021, eqs 2-5). Applies
+/// a Madgwick step whose gain grows with the rate, then a complementary step whose weight falls with the rate. During
+/// slow rotation the filter relies on the accelerometer even if the body accelerates. Estimates neither bias nor
+/// heading.
 class Autogain {
  public:
   struct Params {
@@ -37,15 +38,16 @@ class Autogain {
                                ///< Hz
     double lower_rad_s = 0.1;  ///< unused by code2021
     double upper_rad_s = 2.1;  ///< above lower_rad_s; unused by code2021
-    /// Complementary step as in the authors' code, whose check for gimbal lock is always true. The target keeps the
-    /// current roll, so roll is never corrected. For comparison with their recordings.
+    /// Computes the complementary step as the authors' code does, where the check for gimbal lock is always true. As a
+    /// consequence, the target attitude keeps the current roll, and roll is never corrected. The variant serves to
+    /// reproduce the authors' recordings.
     bool roll_error_2021 = false;
-    /// Complementary step as the smallest rotation instead of a target in roll, pitch and yaw; used by the smooth
-    /// profile.
+    /// Computes the complementary step as the smallest rotation instead of a target in roll, pitch and yaw; the smooth
+    /// profile uses this form.
     bool tilt_form = false;
     double gap_max_s = 1.0;
 
-    /// Describes every parameter once.
+    /// Visits every parameter with its name, unit and limits.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.profile,
@@ -77,8 +79,9 @@ class Autogain {
 
   explicit Autogain(const Params& params);
 
-  /// Processes a sample. The first sample levels the attitude (yaw 0); later ones integrate and correct. A force below
-  /// 1e-6 m/s^2 integrates the gyro only. On error the state is unchanged. O(1), no allocation.
+  /// Processes one IMU sample. The first sample sets roll and pitch from gravity and yaw to 0; later samples integrate
+  /// the gyro and correct the tilt. For a specific force below 1e-6 m/s^2, the filter only integrates the gyro. On
+  /// error the state is unchanged. O(1), no allocation.
   Status step(const ImuSample& sample, State& state) const;
 
   /// Returns factors and gains for a rate in sensor axes and a sample period.

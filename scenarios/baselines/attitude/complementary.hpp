@@ -9,16 +9,16 @@
 
 namespace tumble::baselines {
 
-/// Attitude by the complementary filter: integrates the gyro exactly, then applies a share 1 - exp(-dt / tau) of the
-/// smallest rotation that levels the specific force. Steady at rest, but accelerations longer than tau cause errors.
-/// Estimates no bias.
+/// Estimates attitude by a complementary filter: integrates the gyro exactly, then applies the fraction 1 - exp(-dt /
+/// tau) of the smallest rotation that levels the specific force. The attitude is steady at rest, but accelerations that
+/// last longer than tau cause errors. Estimates no bias.
 class Complementary {
  public:
   struct Params {
     double tau_s = 0.396;  ///< 0.02 per sample at 125 Hz, as published for the sphere
     double gap_max_s = 1.0;
 
-    /// Describes every parameter once.
+    /// Visits every parameter with its name, unit and limits.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.tau_s,
@@ -38,8 +38,9 @@ class Complementary {
 
   explicit Complementary(const Params& params);
 
-  /// Processes a sample. The first sample levels the attitude (yaw 0); later ones integrate and correct. A force below
-  /// 1e-6 m/s^2 integrates the gyro only. On error the state is unchanged. O(1), no allocation.
+  /// Processes one IMU sample. The first sample sets roll and pitch from gravity and yaw to 0; later samples integrate
+  /// the gyro and correct the tilt. For a specific force below 1e-6 m/s^2, the filter only integrates the gyro. On
+  /// error the state is unchanged. O(1), no allocation.
   Status step(const ImuSample& sample, State& state) const;
 
  private:

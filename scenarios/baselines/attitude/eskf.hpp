@@ -9,13 +9,13 @@
 
 namespace tumble::baselines {
 
-/// Attitude by an error-state Kalman filter with six states: attitude error (world axes) and gyro bias. The specific
-/// force measures the up direction (textbook form, e.g. J. Sola, arXiv 1711.02508, sections 5-7, with the error in
+/// Estimates attitude by an error-state Kalman filter with six states: attitude error (world axes) and gyro bias. The
+/// specific force measures the up direction (textbook form: J. Sola, arXiv 1711.02508, sections 5-7, with the error in
 /// world axes).
 ///
-/// Body acceleration is modelled as zero-mean white noise on the force. The force is neither normalised nor weighted by
-/// its norm, because both bias the mean (measured for fast translations: 12 deg instead of 0.8). Real accelerations are
-/// not white, and the vertical bias drifts at rest.
+/// Body acceleration is modelled as zero-mean white noise on the force. The filter neither normalises the force nor
+/// weights it by its norm, because normalising or weighting biases the mean: for fast translations the error was 12 deg
+/// instead of 0.8 deg. Real accelerations are not white, and the vertical bias drifts at rest.
 class Eskf {
  public:
   using Covariance = Eigen::Matrix<double, 6, 6>;
@@ -29,7 +29,7 @@ class Eskf {
     double acceleration_noise_m_s2_sqrts = 0.5;  ///< density: sigma of the mean over 1 s
     double gap_max_s = 1.0;
 
-    /// Describes every parameter once.
+    /// Visits every parameter with its name, unit and limits.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-12, 100.0, "strength of gravity"});
@@ -59,8 +59,9 @@ class Eskf {
 
   explicit Eskf(const Params& params);
 
-  /// Processes a sample. The first sample levels the attitude (yaw 0); later ones predict and correct. A force below
-  /// 1e-6 m/s^2 only predicts. On error the state is unchanged. O(1), no allocation.
+  /// Processes one IMU sample. The first sample sets roll and pitch from gravity and yaw to 0; later samples predict
+  /// and correct. For a specific force below 1e-6 m/s^2, the filter only predicts. On error the state is unchanged.
+  /// O(1), no allocation.
   Status step(const ImuSample& sample, State& state) const;
 
  private:

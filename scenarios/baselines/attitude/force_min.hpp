@@ -3,7 +3,7 @@
 
 namespace tumble::baselines {
 
-/// A smaller specific force has no usable direction.
+/// Below this norm, the specific force has no usable direction.
 inline constexpr double kForceMin_m_s2 = 1e-6;
 
 }  // namespace tumble::baselines

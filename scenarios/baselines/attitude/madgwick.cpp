@@ -25,7 +25,8 @@ Eigen::Vector4d tilt_gradient(const Eigen::Quaterniond& q, const Eigen::Vector3d
           2.0 * x * f1 + 2.0 * y * f2, -2.0 * y * f1 + 2.0 * x * f2};
 }
 
-/// Returns the unit gradient; zero without force or tilt error, or if the estimate is exactly upside down.
+/// Returns the unit gradient; zero without a specific force, without a tilt error, or if the estimate is exactly upside
+/// down.
 Eigen::Vector4d correction(const Eigen::Quaterniond& q, const Eigen::Vector3d& f_I) {
   const double force = f_I.norm();
   if (force < kForceMin_m_s2) return Eigen::Vector4d::Zero();

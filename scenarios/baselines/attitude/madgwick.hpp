@@ -9,19 +9,19 @@
 
 namespace tumble::baselines {
 
-/// Attitude by Madgwick's gradient filter from gyro and accelerometer (S. Madgwick, internal report, 2010, eqs 25-33).
-/// q' = q/2 (x) (0, w) - gain * s/|s|, where s is the gradient of the tilt error; explicit step and normalisation, as
-/// published. Without a usable gradient (|s| or |f| ~ 0) only the gyro is integrated.
+/// Estimates attitude by Madgwick's gradient filter from gyro and accelerometer (Madgwick, internal report, 2010, eqs
+/// 25-33). Integrates q' = q/2 (x) (0, w) - gain * s/|s| by an explicit step with normalisation, as published; s is the
+/// gradient of the tilt error. Without a usable gradient (|s| or |f| ~ 0), the filter only integrates the gyro.
 ///
-/// Estimates neither bias nor heading. The correction has a fixed speed of 2 gain rad/s, so it oscillates at rest and
-/// follows accelerations.
+/// Estimates neither bias nor heading. The correction has a fixed angular speed of 2 gain rad/s, so the attitude
+/// oscillates at rest and follows accelerations.
 class Madgwick {
  public:
   struct Params {
     double gain_rad_s = 0.033;  ///< quaternion rate of the correction: sqrt(3/4) x gyro error per axis
     double gap_max_s = 1.0;
 
-    /// Describes every parameter once.
+    /// Visits every parameter with its name, unit and limits.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.gain_rad_s, {"gain_rad_s", "rad/s", 0.0, 10.0,
@@ -41,8 +41,8 @@ class Madgwick {
 
   explicit Madgwick(const Params& params);
 
-  /// Processes a sample. The first sample levels the attitude (yaw 0); later ones integrate and correct. On error the
-  /// state is unchanged. O(1), no allocation.
+  /// Processes one IMU sample. The first sample sets roll and pitch from gravity and yaw to 0; later samples integrate
+  /// the gyro and correct the tilt. On error the state is unchanged. O(1), no allocation.
   Status step(const ImuSample& sample, State& state) const;
 
  private:

@@ -45,7 +45,7 @@ Status PointwiseFilter::add_imu(const ImuSample& sample, unsigned clipped) {
   return {};
 }
 
-/// Predicts to a time in one step, with random walks of rate and force.
+/// Predicts the state to a time in one step, with random walks of rate and force.
 void PointwiseFilter::advance(TimeNs to_ns) {
   const double dt = seconds(to_ns - time_ns_);
   if (!(dt > 0.0)) return;
@@ -67,7 +67,8 @@ void PointwiseFilter::advance(TimeNs to_ns) {
   P_.diagonal().segment<3>(12).array() += dt * params_.force_walk_m_s2_sqrt_s * params_.force_walk_m_s2_sqrt_s;
 }
 
-/// Processes one scalar: residual = measured - expected; `row` is its derivative with respect to the errors.
+/// Processes one scalar measurement: residual = measured - expected; `row` is the derivative of the measurement with
+/// respect to the errors.
 void PointwiseFilter::update(const Vector& row, double residual, double variance) {
   if (!(row.dot(P_ * row) + variance > 0.0)) return;
   const Vector step = scalar_update(row, residual, variance, P_);
@@ -92,7 +93,7 @@ void PointwiseFilter::take(const Reading& reading) {
   }
 }
 
-/// mapping.md (R16), (R17): the first two rows, within an instant.
+/// mapping.md (R16), (R17): the first two equations, at a single instant.
 bool PointwiseFilter::take(const SweepPoint& point) {
   const Eigen::Vector3d lever = q_WI_ * point.x_I_m.cast<double>();
   const Eigen::Vector3d position = p_m_ + lever;
@@ -142,8 +143,8 @@ void PointwiseFilter::take_points(TimeNs start_ns, TimeNs end_ns, LidarInertialO
       positions_m_[order[next]] = (p_m_ + q_WI_ * point.x_I_m.cast<double>()).cast<float>();
     }
   };
-  // A reading is applied at the middle of its window. Its pose is output at the end, before the middle of the next
-  // window.
+  // An IMU reading is applied at the middle of its averaging window. The pose of a reading is output at the end of the
+  // reading's window, before the middle of the next window.
   const auto record_pose = [&](TimeNs at_ns) {
     if (at_ns <= start_ns || at_ns > end_ns) return;
     take_until(at_ns);

@@ -17,13 +17,13 @@
 
 namespace tumble::baselines {
 
-/// Lidar-inertial filter that processes each point at its own time (the method of Point-LIO, He et al., 2023). Angular
-/// velocity and specific force are random walks that the IMU measures; each point measures its distance to a plane of
-/// the map. Readings of clipped axes are ignored.
+/// Estimates motion and map from lidar and IMU with a filter that processes each lidar point at the point's own time
+/// (the method of Point-LIO, He et al., 2023). Angular velocity and specific force are random walks that the IMU
+/// measures; each point measures its distance to a plane of the map. Readings of clipped axes are ignored.
 ///
-/// State errors: (position, attitude in W, velocity in W, angular velocity, specific force), the last two in IMU axes.
-/// IMU readings are applied at the middle of their window. Not modelled: biases (subtract known ones), gravity,
-/// mounting and clock as states, iterated updates.
+/// The error state contains position, attitude and velocity in W, and angular velocity and specific force in IMU axes.
+/// The filter applies each IMU reading at the middle of its averaging window. Not modelled: biases (the caller
+/// subtracts known biases), gravity, mounting and clock offset as states, iterated updates.
 class PointwiseFilter {
  public:
   struct Params {
@@ -37,7 +37,7 @@ class PointwiseFilter {
     double map_spacing_m = 0.1;
     int neighbours = 8;  ///< for the plane fit
     double match_distance_m = 1.0;
-    /// Densities of the random walks; the square roots of the authors' 1000 and 500.
+    /// Densities of the random walks, equal to the square roots of the authors' values 1000 and 500.
     double rate_walk_rad_s_sqrt_s = 31.6;
     double force_walk_m_s2_sqrt_s = 22.4;
     double gyro_sigma_rad_s = 0.02;  ///< per reading
@@ -45,7 +45,7 @@ class PointwiseFilter {
     double plane_sigma_m = 0.03;     ///< of a point's distance
     std::size_t updates_min = 50;    ///< accepted points; a sweep with fewer is rejected
 
-    /// Describes every parameter once.
+    /// Visits every parameter with its name, unit and limits.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 0.0, 100.0, "strength of gravity"});
@@ -79,14 +79,15 @@ class PointwiseFilter {
   };
   static constexpr int kErrors = 15;
 
-  /// `q_WI`: attitude at the initial rest. The position is the origin of W.
+  /// `q_WI` is the attitude at the initial rest. The initial position is the origin of W.
   PointwiseFilter(const Params& params, const Eigen::Quaterniond& q_WI);
 
-  /// Adds a sample in time order. Bit j of `clipped`: gyro axis j, bit 3 + j: accelerometer axis j. Errors:
-  /// `time_order`, `non_finite`.
+  /// Adds an IMU sample; samples must be added in time order. Bit j of `clipped` marks gyro axis j; bit 3 + j marks
+  /// accelerometer axis j. Errors: `time_order`, `non_finite`.
   Status add_imu(const ImuSample& sample, unsigned clipped);
 
-  /// Processes a sweep; requires IMU samples up to its end. Errors as in LidarInertialOdometry::add_sweep.
+  /// Processes a sweep; the IMU samples up to the end of the sweep must be added before. Errors as in
+  /// LidarInertialOdometry::add_sweep.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points,
                    LidarInertialOdometry::SweepReport& report);
 

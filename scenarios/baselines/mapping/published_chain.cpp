@@ -27,9 +27,10 @@ TimeNs rounded_offset(const LidarPoint& point, TimeNs step_ns) {
   return static_cast<TimeNs>(point.offset_ns) / step_ns * step_ns;
 }
 
-/// Returns the time of the registered pose: the start of the sweep, or the points' time if it is common to all, as in
-/// triage. Moving such points far to the start would feed velocity errors back with v' = v_true + (v - v''), which is
-/// unstable (root -1.6). Points spread over the sweep halve that term: roots 0.5 and -1.
+/// Returns the time of the registered pose: the start of the sweep, or the points' time if all points have one time, as
+/// in triage. If points with one common time were moved far to the sweep's start, velocity errors would be fed back
+/// with v' = v_true + (v - v''), which is unstable (root -1.6). Points spread over the sweep halve the feedback term (v
+/// - v''), which gives the roots 0.5 and -1.
 TimeNs registered_at(const Sweep& sweep, TimeNs step_ns) {
   if (sweep.points.empty()) return sweep.start_ns;
   const auto [first, last] = std::minmax_element(
@@ -38,7 +39,7 @@ TimeNs registered_at(const Sweep& sweep, TimeNs step_ns) {
   return sweep.start_ns + rounded_offset(*first, step_ns);
 }
 
-/// Accepts returns that do not hit the robot and are within the range limits.
+/// Accepts returns that do not hit the robot and that are within the range limits.
 class SweepBounds {
  public:
   explicit SweepBounds(const PublishedChain::Params& params)
@@ -183,7 +184,7 @@ bool PublishedChain::registers(const Sweep& sweep, TimeNs at_ns, std::span<const
   return true;
 }
 
-/// New points are compared with the old map only.
+/// New points are compared with the map before the extension only.
 void PublishedChain::extend(std::span<const TrimmedIcp::Point> points, const Eigen::Isometry3d& T_WL,
                             SweepReport& report) {
   const Eigen::Isometry3f move = T_WL.cast<float>();
@@ -202,7 +203,7 @@ void PublishedChain::extend(std::span<const TrimmedIcp::Point> points, const Eig
   icp_.forget_normals();
 }
 
-/// In the map's frame.
+/// Reports the poses of the sweep in the map's frame.
 void PublishedChain::report_poses(const Sweep& sweep, SweepReport& report) {
   const auto at = [&](TimeNs time_ns) {
     return pose_state(T_map_odom_ * odometry_.pose(time_ns), T_map_odom_.linear() * odometry_.velocity_m_s(time_ns),

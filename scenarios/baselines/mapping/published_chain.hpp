@@ -16,11 +16,12 @@
 
 namespace tumble::baselines {
 
-/// The published mapping chain after a rate method (Deschenes et al., ICRA 2024, with the constants of the authors'
-/// launch files). Steps: Madgwick's attitude; accelerometer odometry with velocity feedback from registration;
-/// deskewing to the start of the sweep (or to the common time of its points); time weighting; trimmed point-to-plane
-/// registration of voxelised points; a map that grows where it is empty. The chain's errors can be set by parameters,
-/// with the launched values as default.
+/// Estimates trajectory and map with the published mapping chain from given rates (Deschenes et al., ICRA 2024, with
+/// the constants of the authors' launch files). The steps are Madgwick's attitude, accelerometer odometry with velocity
+/// feedback from registration, deskewing, time weighting, and trimmed point-to-plane registration of voxelised points
+/// to a map. Deskewing refers to the start of the sweep, or to the common time of the sweep's points. The map grows
+/// only where it is empty. Parameters switch each known error of the published chain; the defaults are those of the
+/// launch files.
 class PublishedChain {
  public:
   struct Params {
@@ -75,23 +76,23 @@ class PublishedChain {
   };
   using SweepReport = LidarInertialOdometry::SweepReport;
 
-  /// One sweep of the lidar, in its axes; offsets count from `start_ns`.
+  /// One lidar sweep in lidar axes; the time offsets of points count from `start_ns`.
   struct Sweep {
     TimeNs start_ns = 0, end_ns = 0;
     std::span<const LidarPoint> points;
   };
 
-  /// Takes samples and rates of a whole recording: `rates`, one per sample, replace the gyro. `samples` must outlive
-  /// this object.
+  /// Takes the samples of a whole recording and their `rates`, one per sample, which replace the gyro. `samples` must
+  /// outlive this object.
   PublishedChain(const Params& params, std::span<const ImuSample> samples, std::span<const RateState> rates);
 
-  /// Returns true if the samples extend beyond the end of the sweep.
+  /// Returns true if the IMU samples extend beyond the end of the sweep.
   bool covers(const Sweep& sweep) const;
-  /// Registers a covered sweep, later than all before. Errors: `out_of_range` for an offset beyond its end, without any
-  /// change; `empty`, `degenerate` (all points have one time) and `too_few` (in range), where only the odometry
-  /// continues.
+  /// Registers a sweep that `covers` accepts and that is later than all sweeps before. Errors: `out_of_range` if a
+  /// point's offset is beyond the end of the samples (the state is unchanged); `empty`, `degenerate` (all points have
+  /// one time) and `too_few` (points in range), where the odometry continues without registration.
   Status add(const Sweep& sweep, SweepReport& report);
-  /// Returns the map with normals that point to the sensor.
+  /// Returns the map points with normals that point towards the sensor.
   std::vector<MapPoint> map() const;
 
  private:

@@ -11,27 +11,28 @@
 
 namespace tumble::baselines {
 
-/// Attitude by Madgwick's filter and position from the accelerometer, in its own frame ("odom"). The published chain
-/// (PublishedChain) uses it for deskewing and as registration prior. The position is constant until the first velocity
-/// feedback.
+/// Computes attitude by Madgwick's filter and position from the accelerometer, in the odometry frame "odom".
+/// PublishedChain uses this odometry for deskewing and as the registration prior. The position is constant until the
+/// first velocity feedback.
 class PublishedImuOdometry {
  public:
-  /// `rates`, one per sample, replace the gyro. `samples` must outlive this object.
+  /// `rates` contains one angular rate per sample, which replaces the gyro. `samples` must outlive this object.
   PublishedImuOdometry(double madgwick_gain_rad_s, std::span<const ImuSample> samples,
                        std::span<const RateState> rates);
 
-  /// Integrates up to the sample at or after `to_ns`.
+  /// Integrates up to the first sample at or after `to_ns`.
   void advance(TimeNs to_ns);
-  /// Sets the registered velocity, valid at `time_ns`, and adds the later accelerometer increments again.
+  /// Sets the velocity from registration, valid at `time_ns`, and adds the later accelerometer increments again.
   void feed_back(const Eigen::Vector3d& velocity_m_s, TimeNs time_ns);
 
-  /// Returns the pose of the IMU, linear and slerp between samples, constant before the first.
+  /// Returns the pose of the IMU, interpolated linearly (position) and by slerp (attitude) between samples, and
+  /// constant before the first sample.
   Eigen::Isometry3d pose(TimeNs time_ns) const;
-  /// Returns the velocity as integrated, before later feedback, at the first sample at or after the time.
+  /// Returns the integrated velocity at the first sample at or after the time, without feedback that arrived later.
   const Eigen::Vector3d& velocity_m_s(TimeNs time_ns) const;
 
  private:
-  /// Returns the first integrated sample at or after the time, or the last one.
+  /// Returns the index of the first integrated sample at or after the time, or of the last sample.
   std::size_t sample_at(TimeNs time_ns) const;
   Eigen::Vector3d acceleration_m_s2(std::size_t k) const;
 

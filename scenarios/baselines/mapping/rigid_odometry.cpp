@@ -116,7 +116,7 @@ void RigidOdometry::extend_map(bool rings_differ, SweepReport& report) {
   seen_from_W_m_.push_back(T_WI.translation().cast<float>());
 }
 
-/// Reports the model's poses within the sweep, moved rigidly by the registration's correction.
+/// Reports the poses that the motion model predicts within the sweep, moved rigidly by the registration's correction.
 void RigidOdometry::describe(const SweepTrajectory& trajectory, SweepReport& report) const {
   const Eigen::Isometry3d correction = pose_of(state_) * pose_of(predicted_).inverse(Eigen::Isometry);
   const Eigen::Quaterniond turned(correction.linear());

@@ -16,11 +16,11 @@
 
 namespace tumble::baselines {
 
-/// Scan-to-map odometry with a motion model of the caller. Deskews a sweep once, to its end, and corrects its end pose
-/// as a rigid body, like most lidar odometries. These differ in the motion model (`Motion`) and in the use of the
-/// result, which are up to the caller.
+/// Registers sweeps to a map, with a motion model that the caller supplies. Deskews each sweep once, to the sweep's
+/// end, and corrects the end pose as a rigid body, like most lidar odometries. Published lidar odometries differ in the
+/// motion model (`Motion`) and in the use of the result; the caller chooses both.
 ///
-/// Not modelled: errors of the motion within the sweep, the mounting and the clocks; recovery after tracking failure.
+/// Not modelled: motion errors within the sweep, mounting errors and clock offsets, recovery after tracking failure.
 class RigidOdometry {
  public:
   struct Params {
@@ -36,7 +36,7 @@ class RigidOdometry {
     double degenerate_sigma_m = 0.15;  ///< as in LidarInertialOdometry
     Registration::Params registration;
 
-    /// Describes every parameter once.
+    /// Visits every parameter with its name, unit and limits.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.range_min_m, {"range_min_m", "m", 0.0, 10.0, "returns nearer than this are dropped"});
@@ -58,7 +58,7 @@ class RigidOdometry {
     }
   };
 
-  /// Predicted motion over a segment, with the uncertainty at its end.
+  /// Predicted motion over a time interval, with the uncertainty at the end of the interval.
   struct Motion {
     MotionState start;                  ///< time_ns at or before the sweep's start
     std::vector<MotionSample> samples;  ///< from the start to the sweep's end
@@ -68,11 +68,11 @@ class RigidOdometry {
 
   explicit RigidOdometry(const Params& params);
 
-  /// Registers a sweep with points in [start_ns, end_ns]. Errors as in LidarInertialOdometry::add_sweep.
+  /// Registers a sweep with points between start_ns and end_ns. Errors as in LidarInertialOdometry::add_sweep.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points, const Motion& motion,
                    LidarInertialOdometry::SweepReport& report);
 
-  /// Return the state at the end of the last sweep: as predicted, and as registered with its covariance.
+  /// Return the predicted state, and the registered state with covariance, at the end of the last sweep.
   const MotionState& predicted() const { return predicted_; }
   const MotionState& state() const { return state_; }
 

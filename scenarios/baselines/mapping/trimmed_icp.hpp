@@ -14,12 +14,14 @@
 
 namespace tumble::baselines {
 
-/// Registration of the published chain: point-to-plane with k matches per point. Matches are trimmed to a share chosen
-/// from the data (D. Chetverikov et al., 2005; J. Phillips et al., 2007, with lambda) and weighted by the inverse
-/// variances of both points. Solves small-angle normal equations.
+/// Aligns a sweep to a map as the published chain does: point-to-plane registration with k matches per point. The
+/// registration keeps a fraction of matches that is chosen from the data (Chetverikov et al., 2005; Phillips et al.,
+/// 2007, with lambda) and weights each match by the inverse variances of both points. Each iteration solves small-angle
+/// normal equations.
 ///
-/// Returns a pose without a measure of its observability; a corridor appears as success. LidarInertialOdometry
-/// estimates this. Cost per iteration: points times k.
+/// The result has no measure of observability; an unobservable direction, as in a corridor, is reported as success.
+/// LidarInertialOdometry detects unobservable directions. The cost of an iteration is proportional to the number of
+/// points times k.
 class TrimmedIcp {
  public:
   struct Params {
@@ -29,8 +31,9 @@ class TrimmedIcp {
     double trim_min = 0.5;       ///< smallest share of matches to keep
     double trim_max = 0.7;
     double trim_lambda = 2.35;
-    /// Known error of the original: shares refer to all slots, although unmatched ones are missing from the sorted
-    /// list. The original read beyond the list's end; here the index stops at the end.
+    /// Reproduces an error of the original, where the kept fraction refers to all match slots, although unmatched slots
+    /// are missing from the sorted list. The original reads beyond the end of the sorted list; here the index stops at
+    /// the end of the list.
     bool count_unmatched_slots = false;
     int iterations_max = 40;
     double step_m = 0.01;  ///< both means over two increments must be below their bound
@@ -73,15 +76,16 @@ class TrimmedIcp {
 
   explicit TrimmedIcp(const Params& params);
 
-  /// Aligns `points` to `map`, starting from `prior`. Reaching the iteration limit is not an error, as in the original.
-  /// No matches, or a correction beyond its bound, are errors.
+  /// Aligns `points` to `map`, starting from `prior`. Reaching the iteration limit is not an error, as in the published
+  /// chain. Returns an error if there are no matches or if the correction exceeds its limit.
   Result align(std::span<const Point> points, const Eigen::Isometry3d& prior, const VoxelMap& map);
 
-  /// Returns the share of the sorted squared distances to keep: minimises sum(d^2 up to f) / (f n f^(2 lambda)) over f
-  /// in [trim_min, trim_max], n = `slots`.
+  /// Returns the fraction f of the sorted squared distances d^2 to keep. The fraction minimises (sum of the smallest f
+  /// n distances d^2) / (f n f^(2 lambda)) over f in [trim_min, trim_max], with n = `slots`.
   static std::size_t trim(std::span<const float> sorted_d2, std::size_t slots, const Params& params);
 
-  /// Must be called after the map changed, because normals are computed on demand and cached.
+  /// The caller must call this function after each change of the map, because normals are computed on demand and
+  /// cached.
   void forget_normals() { normals_.clear(); }
 
  private:

@@ -13,8 +13,8 @@ namespace tumble::baselines {
 
 namespace {
 
-/// Eq 8: scales each axis by the larger factor of the other two, because rotation about those moves the sphere along
-/// it.
+/// Eq 8: scales each axis by the larger factor of the two other axes, because rotation about the two other axes moves
+/// the sphere along this axis.
 Eigen::Vector3d coupling(const Eigen::Vector3d& factor) {
   return {std::max(factor.y(), factor.z()), std::max(factor.x(), factor.z()), std::max(factor.x(), factor.y())};
 }
@@ -42,7 +42,7 @@ Status AutogainFusion::step(const ImuSample& sample, const Eigen::Quaterniond& q
   return {};
 }
 
-/// Eqs 6-9: the gated integral of the linear acceleration, in W.
+/// Eqs 6-9: returns the gated integral of the linear acceleration, in W.
 Eigen::Vector3d AutogainFusion::accelerated(const ImuSample& sample, const Eigen::Quaterniond& q_WI, double dt_s,
                                             State& state) const {
   const double length = sample.specific_force_m_s2.norm();
@@ -62,7 +62,7 @@ Eigen::Vector3d AutogainFusion::accelerated(const ImuSample& sample, const Eigen
   return q_WI * gated_I;
 }
 
-/// Eqs 12 and 13: limits, the vertical share, and the weighted sum.
+/// Eqs 12 and 13: applies the limits, the vertical part, and the weighted sum.
 Eigen::Vector3d AutogainFusion::fuse(const Eigen::Vector3d& v_acc_W, const Eigen::Vector3d& v_rot_W) const {
   Eigen::Vector2d acc = v_acc_W.head<2>(), rot = v_rot_W.head<2>();
   const double speed = rot.norm();

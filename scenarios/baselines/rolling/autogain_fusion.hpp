@@ -11,9 +11,10 @@
 namespace tumble::baselines {
 
 /// Estimates the position of a rolling sphere on a flat floor by fusing rolling with the integrated accelerometer
-/// (Zevering et al., IEEE MFI 2021, eqs 6-13). The acceleration integral is gated by the rates, limited to slightly
-/// more than the rolling velocity, and averaged with it. Only its sign matters, so a sphere that rolls without slip
-/// loses up to half of its path. For comparison; the options select between the paper's and the code's variants.
+/// (Zevering et al., IEEE MFI 2021, eqs 6-13). The integral of the acceleration is used only during rotation, limited
+/// to slightly more than the rolling velocity, and averaged with the rolling velocity. Only the sign of the integral
+/// matters, so the estimated path of a sphere that rolls without slip is up to half too short. The class exists for
+/// comparison; its options select the variants of the paper and of the authors' code.
 class AutogainFusion {
  public:
   struct Params {
@@ -24,7 +25,8 @@ class AutogainFusion {
     double acceleration_weight = 0.5;  ///< eq 13
     Autogain::Params autogain = {};    ///< only for the factors of eq 2
 
-    // Options for differences between paper and code. The defaults are the paper's equations as printed.
+    // The options switch the differences between the paper and the authors' code. The defaults are the paper's
+    // equations as printed.
     bool integrate_in_body = true;    ///< eq 7 in the rotating frame, without w x v; false integrates in W
     bool direction_only = false;      ///< as in the code: normalises f before subtracting gravity, without multiplying
                                       ///< by g
@@ -36,7 +38,7 @@ class AutogainFusion {
 
     double gap_max_s = 1.0;
 
-    /// Describes every parameter once.
+    /// Visits every parameter with its name, unit and limits.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.radius_m, {"radius_m", "m", 1e-9, 10.0, "radius of the sphere"});
@@ -82,7 +84,8 @@ class AutogainFusion {
 
   explicit AutogainFusion(const Params& params);
 
-  /// Processes a sample; `q_WI` is the attitude at the end of its window. On error the state is unchanged.
+  /// Processes one IMU sample; `q_WI` is the attitude at the end of the sample's averaging window. On error the state
+  /// is unchanged.
   Status step(const ImuSample& sample, const Eigen::Quaterniond& q_WI, State& state) const;
 
  private:

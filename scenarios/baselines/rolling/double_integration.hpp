@@ -9,16 +9,16 @@
 
 namespace tumble::baselines {
 
-/// Position of an IMU by integrating its specific force twice, minus gravity at a given attitude. Second order in the
-/// sample period; exact if the force is constant in W over each sample. The drift is unbounded: a tilt error of 0.1 deg
-/// gives 1.7 cm/s^2, or 1 m after 11 s.
+/// Computes the position of an IMU by integrating the specific force twice, minus gravity at an attitude that the
+/// caller supplies. The integration is second order in the sample period, and exact if the force is constant in W over
+/// each sample. The drift is unbounded: a tilt error of 0.1 deg gives 1.7 cm/s^2, or 1 m after 11 s.
 class DoubleIntegration {
  public:
   struct Params {
     double gravity_m_s2 = 9.80665;
     double gap_max_s = 1.0;
 
-    /// Describes every parameter once.
+    /// Visits every parameter with its name, unit and limits.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-9, 100.0, "strength of gravity"});
@@ -37,8 +37,8 @@ class DoubleIntegration {
 
   explicit DoubleIntegration(const Params& params);
 
-  /// Processes a sample; `q_WI` is the attitude at the end of its window. The first sample starts at rest at the
-  /// origin. On error the state is unchanged. O(1), no allocation.
+  /// Processes one IMU sample; `q_WI` is the attitude at the end of the sample's averaging window. The integration
+  /// starts at rest at the origin with the first sample. On error the state is unchanged. O(1), no allocation.
   Status step(const ImuSample& sample, const Eigen::Quaterniond& q_WI, State& state) const;
 
  private:

@@ -9,8 +9,9 @@
 
 namespace tumble::baselines {
 
-/// Position of a rolling sphere's centre G from its angular velocity: v = r w_W x n on a plane with normal n,
-/// integrated by the trapezoid rule. Exact without slip; cannot detect slip, slide or height changes.
+/// Computes the position of a rolling sphere's centre G from the angular velocity: v = r w_W x n on a plane with normal
+/// n, integrated by the trapezoid rule. The position is exact without slip; slip, sliding and height changes are not
+/// detected.
 class RollingOdometry {
  public:
   struct Params {
@@ -18,7 +19,7 @@ class RollingOdometry {
     Eigen::Vector3d normal_W = Eigen::Vector3d::UnitZ();  ///< unit, from the contact to the centre
     double gap_max_s = 1.0;
 
-    /// Describes every parameter once.
+    /// Visits every parameter with its name, unit and limits.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.radius_m, {"radius_m", "m", 1e-9, 10.0, "radius of the sphere"});
@@ -37,8 +38,8 @@ class RollingOdometry {
 
   explicit RollingOdometry(const Params& params);
 
-  /// Advances to `time_ns`. `w_I_rad_s` is the mean rate over the sample's window, as measured by an IMU; `q_WI` is the
-  /// attitude at its end. On error the state is unchanged.
+  /// Advances to `time_ns`. `w_I_rad_s` is the mean rate over the sample's averaging window, as measured by an IMU;
+  /// `q_WI` is the attitude at the end of the window. On error the state is unchanged.
   Status step(TimeNs time_ns, const Eigen::Vector3d& w_I_rad_s, const Eigen::Quaterniond& q_WI, State& state) const;
 
  private:

@@ -12,7 +12,7 @@ namespace tumble::baselines {
 
 namespace {
 
-/// Returns the mean acceleration minus the least-squares slope of the rolling velocity over the window.
+/// Returns the mean acceleration minus the least-squares derivative of the rolling velocity over the window.
 Eigen::Vector2d residual(const SlipObserver::State& state) {
   constexpr int kSize = SlipObserver::kWindow;
   double t = 0.0, t_mean = 0.0;
@@ -103,7 +103,7 @@ void SlipObserver::advance_closed(const Eigen::Vector2d& e, double dt_s, State& 
   if (!state.ignoring && e.norm() > params_.open_m_s2) open_event(e, state);
 }
 
-/// Starts an event with the contact velocity and path integrated from earlier residuals.
+/// Starts an event with the slip velocity and path integrated from earlier residuals.
 void SlipObserver::open_event(const Eigen::Vector2d& e, State& state) const {
   state.open = true;
   state.event_s = 0.0;

@@ -11,15 +11,18 @@
 
 namespace tumble::baselines {
 
-/// Position of a rolling sphere on a flat floor with an observer of the contact velocity u: v = r w x n + u.
+/// Estimates the position of a rolling sphere on a flat floor with an observer of the slip velocity u of the contact
+/// point: v = r w x n + u.
 ///
-/// Without slip, the centre's acceleration is r w' x n. The difference e to the measured acceleration, both over a
-/// window of 11 samples, starts an event if it is large. It is integrated to u until e is small and u has returned. At
-/// the start, e of the last 25 samples is integrated too, because a slide starts before its detection. At the end of an
-/// event its linear drift is removed; an event that lasts too long is undone. The window is designed for about 125 Hz.
+/// Without slip, the acceleration of the sphere's centre is r w' x n. A slip event starts if the measured acceleration
+/// differs strongly from r w' x n; the difference e is computed over a window of 11 samples. During an event, the
+/// observer integrates e to u; the event ends when e is small and u has returned to zero. At the start of an event, the
+/// observer also integrates e over the last 25 samples, because a slide starts before its detection. At the end of an
+/// event, the observer removes the linear drift of u; an event that lasts too long is undone. The window length is
+/// designed for a sample rate of about 125 Hz.
 ///
-/// Not modelled: tilt changes within an event, impacts, slopes. Ideal signals make it look better than it is: on
-/// simulated physics it hardly improves on rolling alone. For comparison.
+/// Not modelled: tilt changes within a slip event, impacts, slopes. The observer performs better on ideal signals: on
+/// simulated physics its position is hardly better than with the rolling assumption alone.
 class SlipObserver {
  public:
   static constexpr int kWindow = 11;   ///< samples for fitting acceleration and rate; the delay is half of this
@@ -40,7 +43,7 @@ class SlipObserver {
     double blend_tau_s = 0.25;  ///< time constant for applying a position correction
     double gap_max_s = 1.0;
 
-    /// Describes every parameter once.
+    /// Visits every parameter with its name, unit and limits.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.radius_m, {"radius_m", "m", 1e-9, 10.0, "radius of the sphere"});
@@ -89,8 +92,8 @@ class SlipObserver {
 
   explicit SlipObserver(const Params& params);
 
-  /// Processes a sample; `q_WI` is the attitude at the end of its window. On error the state is unchanged. O(kWindow),
-  /// no allocation.
+  /// Processes one IMU sample; `q_WI` is the attitude at the end of the sample's averaging window. On error the state
+  /// is unchanged. O(kWindow), no allocation.
   Status step(const ImuSample& sample, const Eigen::Quaterniond& q_WI, State& state) const;
 
  private:

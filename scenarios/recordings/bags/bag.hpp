@@ -23,7 +23,7 @@ struct BagCloud {
   std::vector<float> error_m;  ///< parallel, or empty
 };
 
-/// A series of body poses in W for a bag: "/NAME" (nav_msgs/Odometry) and /tf.
+/// A series of body poses in W for a bag: topics "/NAME" (nav_msgs/Odometry) and /tf.
 struct BagTrack {
   struct Pose {
     std::int64_t time_ns = 0;
@@ -36,7 +36,8 @@ struct BagTrack {
   std::string name;  ///< letters, digits and _
   std::vector<Pose> poses;
   std::vector<std::int64_t> cloud_time_ns = {};  ///< times of point clouds along the track
-  /// Creates one cloud when it is due, so that only one is in memory. Clouds without points are omitted.
+  /// Creates one cloud when the cloud is about to be written, so that only one cloud is in memory. Clouds without
+  /// points are omitted.
   std::function<BagCloud(const BagTrack&, std::size_t)> cloud = {};
 };
 
@@ -46,13 +47,13 @@ struct BagWriting {
   const StoredTruth* truth = nullptr;  ///< written if not null
   std::vector<BagTrack> tracks = {};   ///< estimates; names are unique and differ from export_names' `taken`
   SweepLayout sweeps = own_sweep_layout();
-  /// Points on disk, per lidar; null: the points are in the records.
+  /// Stored points on disk, for each lidar; null if the points are in the records.
   const std::vector<PointStore>* points = nullptr;
   std::optional<ReaderNames> names = {};  ///< if set: only the first IMU and the first lidar, with these names
   bool empty_sweeps = true;               ///< false: omits sweeps without points
 };
 
-/// Returns the stamp of time 0 in a bag [ns since 1970]: `origin_ns`, or the default if it is 0.
+/// Returns the stamp of time 0 in a bag [ns since 1970]: `origin_ns`, or the default if `origin_ns` is 0.
 std::int64_t bag_origin_ns(const BagWriting& writing);
 
 /// Writes a recording as a bag, in one of three formats:
@@ -62,31 +63,33 @@ std::int64_t bag_origin_ns(const BagWriting& writing);
 ///   since Iron);
 /// - MCAP: a file with profile ros2 (mcap.dev/spec), with indexed LZ4 chunks of 1 MiB and all checksums.
 ///
-/// All contain these topics:
+/// All formats contain these topics:
 ///
 /// - "/NAME" (sensor_msgs/Imu without attitude; covariance from the data sheet's white noise), with the exported sensor
-///   name (export_names). The primary IMU's topic is the first of its type;
+///   name (export_names). The topic of the primary IMU is the first topic of its type;
 /// - "/NAME/points" (sensor_msgs/PointCloud2, stamped at the sweep's start), with the fields of Velodyne drivers: x y z
 ///   intensity ring time. The time is in float32 seconds after the stamp (4 ns resolution within 0.1 s). The field
-///   offset_ns adds it in whole nanoseconds. Both are omitted for points without times. `sweeps` can choose another
-///   layout;
+///   offset_ns states the time in whole nanoseconds. The two time fields are omitted for points without times. `sweeps`
+///   can choose another point layout;
 /// - "/truth" (nav_msgs/Odometry of "body" in "world", at most every 5 ms), "/TRACK" and "/TRACK/points";
 /// - "/tf_static": each sensor in "body", from the calibration that the estimator uses;
-/// - "/tf": "body" in "world" from the truth, else from the first track; other tracks use a frame "TRACK";
-/// - "/clock" (rosgraph_msgs/Clock), with the first message after every 10 ms.
+/// - "/tf": "body" in "world" from the truth, else from the first track; all further tracks use a frame "TRACK";
+/// - "/clock" (rosgraph_msgs/Clock), published with the first message after every 10 ms.
 ///
 /// Throws BadInput if the output cannot be written.
 void export_ros1_bag(const sim::Sensors& sensors, const BagWriting& writing, const std::filesystem::path& file);
 void export_ros2_bag(const sim::Sensors& sensors, const BagWriting& writing, const std::filesystem::path& folder);
 void export_mcap(const sim::Sensors& sensors, const BagWriting& writing, const std::filesystem::path& file);
-/// Writes the same MCAP file in a folder with metadata.yaml, the layout of ROS 2 since Iron.
+/// Writes an MCAP file in a folder with metadata.yaml, the layout of ROS 2 since Iron.
 void export_ros2_mcap(const sim::Sensors& sensors, const BagWriting& writing, const std::filesystem::path& folder);
 
-/// Which stamp of a message is used: the header's (time of measurement), or the record's (time of recording) for
-/// headers without usable stamps. A sweep is recorded at its end; with record stamps it starts one period earlier.
+/// Selects the stamp of a message: the header's stamp (time of measurement), or the record's stamp (time of recording)
+/// if headers have no usable stamps. A sweep is recorded at its end; with record stamps, the sweep starts one period
+/// earlier.
 enum class StampSource { header, record };
 
-/// Frame of the reference poses: named by the messages if the bag contains its transform, the body, or the first lidar.
+/// Frame of the reference poses: the frame that the messages name if the bag contains its transform, the body, or the
+/// first lidar.
 enum class ReferenceOf { named, body, lidar };
 
 /// Options for reading a bag.
@@ -102,19 +105,20 @@ struct BagReading {
   SweepReading sweeps;
 };
 
-/// Reads a ROS 1 bag (not encrypted), a ROS 2 bag, or an MCAP file. A ROS 2 bag is a folder or a SQLite file (SQLite or
-/// MCAP, plain or Zstandard-compressed per file or message). An MCAP file may have messages of ROS 2 (cdr) or ROS 1, in
+/// Reads a ROS 1 bag (not encrypted), a ROS 2 bag, or an MCAP file. A ROS 2 bag is a folder or a single file: SQLite or
+/// MCAP, plain or Zstandard-compressed per file or message. An MCAP file may have messages of ROS 2 (cdr) or ROS 1, in
 /// plain, LZ4 or Zstandard chunks, with or without index.
 ///
-/// Times are those of `stamps`; notes state how headers and records differ. Units are checked against gravity as for a
-/// CSV; specific force in g at rest, as from Livox drivers, is converted and noted. Sensors get the name of their
-/// topic. Points are read as in import_sweeps. Unless topics are chosen, clouds in "world", "map" or "odom" are
-/// skipped, because they are not raw sensor data. Duplicate messages (stamp and content) are read once.
+/// Times are taken from the source `stamps`; notes state how the stamps of headers and records differ. Units are
+/// checked against gravity as for a CSV file; specific force in g at rest, as from Livox drivers, is converted and
+/// noted. Each sensor is named after its topic. Points are read as in import_sweeps. Unless topics are chosen, clouds
+/// in "world", "map" or "odom" are skipped, because such clouds are not raw sensor data. Duplicate messages (stamp and
+/// content) are read once.
 ///
-/// If /tf_static places a sensor in "body" or "base_link", or else relative to another sensor, this is its pose unless
-/// another was given. With `sweeps.scratch`, memory holds one sweep, the IMU data (57 bytes per sample) and some bytes
-/// per message; without it, everything. Throws BadInput with file and place: damaged or truncated data, a missing topic
-/// or wrong type, a stamp that does not increase, a cycle of frames.
+/// If /tf_static states the pose of a sensor in "body" or "base_link", or else relative to another sensor, this pose is
+/// used unless the caller states a pose. With `sweeps.scratch`, memory only holds one sweep, the IMU data (57 bytes per
+/// sample) and some bytes per message; otherwise memory holds all points. Throws BadInput with file and location for
+/// damaged or truncated data, a missing topic or wrong type, a stamp that does not increase, or a cycle of frames.
 Imported import_ros1_bag(const std::filesystem::path& file, const BagReading& reading);
 Imported import_ros2_bag(const std::filesystem::path& path, const BagReading& reading);
 Imported import_mcap(const std::filesystem::path& file, const BagReading& reading);

@@ -4,13 +4,13 @@
 #include <string>
 #include <vector>
 
-/// Topics, frames and point layout that a reader of bags expects. The default is ours (bag.hpp).
+/// Topics, frames and point layout that a reader of bags expects. The default layout is that of bag.hpp.
 namespace tumble::scenarios {
 
 /// Quantity of a point field.
 enum class PointQuantity { x_m, y_m, z_m, intensity, ring, time };
 
-/// Number type of a field. Integers are rounded and clamped to the type's range.
+/// Number type of a field. Integers are rounded and limited to the type's range.
 enum class NumberType { uint8, uint16, uint32, float32, float64 };
 
 /// One field of a point.
@@ -24,18 +24,19 @@ struct PointColumn {
 
 /// Message layout of a sweep.
 struct SweepLayout {
-  /// Fields of a sensor_msgs/PointCloud2, in order, without gaps; times are omitted if points have none.
+  /// Fields of a sensor_msgs/PointCloud2, in order, without gaps; the time fields are omitted if points have no times.
   std::vector<PointColumn> columns;
   bool livox = false;          ///< writes a CustomMsg of Livox drivers, with times in ns, and ignores `columns`
   bool in_time_order = false;  ///< sorts points by time; else they keep the recording's order
 };
 
-/// Returns x y z intensity ring time offset_ns: the layout of Velodyne's driver, plus whole nanoseconds.
+/// Returns the columns x y z intensity ring time offset_ns: the layout of Velodyne's driver, plus a time in whole
+/// nanoseconds.
 SweepLayout own_sweep_layout();
 /// Returns the layout of the CustomMsg.
 SweepLayout livox_sweep_layout();
 
-/// Names for a reader of one IMU and one lidar: the first of each.
+/// Topic and frame names for a reader that expects one IMU and one lidar: the first of each.
 struct ReaderNames {
   std::string imu_topic, imu_frame;
   std::string points_topic, lidar_frame;

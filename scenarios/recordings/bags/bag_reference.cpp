@@ -16,7 +16,7 @@ namespace {
 constexpr const char* kOdometry = "nav_msgs/Odometry";
 constexpr const char* kPoseStamped = "geometry_msgs/PoseStamped";
 
-/// Poses and the frame named by their messages; "" if none is named.
+/// Poses and the frame that their messages name; "" if no frame is named.
 struct NamedPoses {
   std::vector<ReferencePose> poses;
   std::string frame;
@@ -48,7 +48,7 @@ NamedPoses reference_poses(const OpenedBag& bag, const std::string& topic, Stamp
       fmt::format("{}: topic '{}' is of type {}, must be {} or {}", bag.place, topic, type, kOdometry, kPoseStamped));
 }
 
-/// Returns the mounting of the reference frame: the user's choice, else the frame named by the messages, if the bag
+/// Returns the mounting of the reference frame: the user's choice, else the frame that the messages name, if the bag
 /// contains its transform.
 Eigen::Isometry3d pose_of_reference(const std::string& topic, const std::string& frame, const SensorPlaces& places,
                                     const BagReading& reading, Imported& out) {

@@ -5,12 +5,12 @@
 #include "scenarios/recordings/bags/opened_bag.hpp"
 #include "scenarios/recordings/bags/sensor_places.hpp"
 
-/// Private to scenarios/recordings/bags.
+/// Used only within scenarios/recordings/bags.
 namespace tumble::scenarios {
 
-/// Uses the poses of `reading.reference_topic` (Odometry or PoseStamped) as the truth of the recording. Their frame is
-/// chosen by the user, or else is an Odometry's child_frame_id if the bag contains its transform. Throws BadInput with
-/// topic and message.
+/// Uses the poses of `reading.reference_topic` (Odometry or PoseStamped) as the truth of the recording. The user
+/// chooses the frame of the poses; else the frame is an Odometry's child_frame_id if the bag contains its transform.
+/// Throws BadInput with topic and message.
 void attach_reference(const OpenedBag& bag, const SensorPlaces& places, const BagReading& reading, Imported& out);
 
 }  // namespace tumble::scenarios

@@ -16,9 +16,9 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr std::int64_t kSaid_ns = 1'000'000;
-/// A header that is later than its record by more belongs to another clock.
+/// A header stamp that is later than its record's stamp by more than this belongs to another clock.
 constexpr std::int64_t kAhead_ns = 10'000'000;
-/// Largest normal delay between messages; beyond it the clocks drift, or stamps are not measurement times.
+/// Largest normal delay between messages; beyond this delay, the clocks drift or stamps are not measurement times.
 constexpr std::int64_t kSteady_ns = 500'000'000;
 
 std::string seconds_text(std::int64_t time_ns) {
@@ -27,7 +27,7 @@ std::string seconds_text(std::int64_t time_ns) {
   return text.data();
 }
 
-/// The last time that a header can hold.
+/// Latest time that a header can store.
 constexpr std::int64_t kLast_ns = 4294967295 * kSecond_ns;
 
 /// Returns the difference of two stamps without overflow.

@@ -8,29 +8,30 @@
 #include "scenarios/recordings/bags/bag.hpp"
 #include "scenarios/recordings/bags/ros_messages.hpp"
 
-/// Private to scenarios/recordings/bags.
+/// Used only within scenarios/recordings/bags.
 namespace tumble::scenarios {
 
 /// ns since 1970.
 std::int64_t stamp_of(const ros::Header& header);
 
-/// The two stamps of a topic's messages, in order: the header's (measurement) and the record's (recording).
+/// Stores the two stamps of a topic's messages, in order: the header's (time of measurement) and the record's (time of
+/// recording).
 class BagStamps {
  public:
   explicit BagStamps(StampSource source) : source_(source) {}
 
-  /// Returns the stamp from the chosen source. Throws BadInput, with a message that starts with `where`, if it does not
-  /// increase; the message also describes the other source.
+  /// Returns the stamp from the chosen source. Throws BadInput, with a message that starts with `where`, if the stamps
+  /// do not increase; the message also describes the other source of stamps.
   std::int64_t take(std::int64_t header_ns, std::int64_t record_ns, const std::string& where);
 
-  /// Returns true if header stamps are used and the header equals the previous one. With the same content, the message
-  /// is a duplicate.
+  /// Returns true if header stamps are used and the stamp equals the previous header's stamp. A message with the
+  /// previous header stamp and equal content is a duplicate.
   bool repeats(std::int64_t header_ns) const { return source_ == StampSource::header && header_ns_ == header_ns; }
 
-  /// Describes how far records lag behind headers; empty if always below one millisecond. Warns if the lag reaches a
-  /// second, is negative, or changes.
+  /// Describes how far record stamps are behind header stamps; the text is empty if the lag is always below one
+  /// millisecond. Warns if the lag reaches a second, is negative, or changes.
   std::string remark() const;
-  /// Returns true if headers are ahead of their records, or a second or more behind.
+  /// Returns true if header stamps are ahead of record stamps, or a second or more behind.
   bool other_clock() const;
 
  private:

@@ -10,11 +10,11 @@
 
 #include "scenarios/recordings/bags/ros_bytes.hpp"
 
-/// Common interface of all bag types: topics, and messages as bytes sorted by time. Private to
+/// Common interface of all bag types: topics, and messages as bytes sorted by time. Used only within
 /// scenarios/recordings/bags.
 namespace tumble::scenarios {
 
-/// Types have ROS 1's names ("sensor_msgs/Imu"); ROS 2 uses "sensor_msgs/msg/Imu".
+/// Types have the names of ROS 1 ("sensor_msgs/Imu"); ROS 2 uses "sensor_msgs/msg/Imu".
 struct BagTopic {
   std::string name, type;
 };
@@ -22,10 +22,10 @@ struct BagTopic {
 class BagWriter {
  public:
   virtual ~BagWriter() = default;
-  /// Registers these topics before others, in this order. Returns false if this bag type registers topics with their
-  /// first messages; these may then be written earlier.
+  /// Registers these topics before all other topics, in order. Returns false if this bag type registers topics with
+  /// their first messages; other topics may then be written earlier.
   virtual bool begin_with(const std::vector<BagTopic>& topics) = 0;
-  /// Messages must be sorted by time; each topic has one type. Throws BadInput.
+  /// Messages must be sorted by time; each topic has one message type. Throws BadInput.
   virtual void write(const std::string& topic, std::int64_t stamp_ns, const ros::Message& message) = 0;
   /// Completes the bag; an unfinished bag is removed. Throws BadInput.
   virtual void finish() = 0;
@@ -35,7 +35,7 @@ class BagReader {
  public:
   virtual ~BagReader() = default;
   virtual std::vector<BagTopic> topics() = 0;
-  /// Receives a message and its record time [ns since 1970].
+  /// Receives a message and the time of its record [ns since 1970].
   using Take = std::function<void(ros::Bytes&, std::int64_t record_ns)>;
   /// Calls `take` for each message of the topic in recorded order. Throws BadInput.
   virtual void read(const std::string& topic, const Take& take) = 0;
@@ -49,11 +49,11 @@ std::unique_ptr<BagWriter> make_mcap_writer(const std::filesystem::path& file);
 std::unique_ptr<BagWriter> make_ros2_mcap_writer(const std::filesystem::path& folder);
 std::unique_ptr<BagReader> open_ros1_bag(const std::filesystem::path& file);
 std::unique_ptr<BagReader> open_ros2_bag(const std::filesystem::path& path);
-/// Opens files that form one bag, in order.
+/// Opens several files that form one bag, in order.
 std::unique_ptr<BagReader> open_mcap(const std::vector<std::filesystem::path>& files);
 
-/// Checks every length, position and offset in the records of a ROS 1 bag against the file, because the library does
-/// not. Content of compressed chunks is left to the library. Throws BadInput with the offset in the file.
+/// Checks every length, position and offset in the records of a ROS 1 bag against the file size, because librosbag does
+/// not. The content of compressed chunks is checked by librosbag. Throws BadInput with the offset in the file.
 void check_ros1_bag(const std::filesystem::path& file);
 
 }  // namespace tumble::scenarios

@@ -13,10 +13,10 @@
 
 #include "scenarios/recordings/bags/ros1_archives.hpp"
 
-/// ROS 2's CDR encoding of messages, by Fast-CDR. Private to scenarios/recordings/bags.
+/// ROS 2's CDR encoding of messages, by Fast-CDR. Used only within scenarios/recordings/bags.
 namespace tumble::scenarios::ros {
 
-/// Computes an upper bound of the bytes, including padding.
+/// Computes an upper bound of the number of bytes, including padding.
 class CdrBound {
  public:
   void operator()(std::uint8_t) { bytes += 1; }
@@ -40,7 +40,7 @@ class CdrBound {
   static constexpr std::size_t kPadding = 7;
 };
 
-/// Writes to a zeroed buffer, because the library does not write padding bytes.
+/// Writes to a zeroed buffer, because Fast-CDR does not write padding bytes.
 class CdrWriter {
  public:
   explicit CdrWriter(std::size_t bound)

@@ -19,7 +19,7 @@ constexpr std::int64_t kOrigin_ns = 1000000000ll * 1000000000ll;
 constexpr std::int64_t kTruthStep_ns = 5000000, kClockStep_ns = 10000000;
 constexpr const char *kWorld = "world", *kBody = "body";
 
-/// An item to write, at the time when a listener would receive it: a sweep at its end.
+/// An item to write, at the time when a listener would receive the item; a sweep is received at its end.
 struct Event {
   enum Kind { imu, sweep, truth, pose, cloud };
   std::int64_t time_ns;
@@ -27,7 +27,7 @@ struct Event {
   std::size_t of, index;  ///< index of the sensor or track, and of its reading
 };
 
-/// Adds the thinned truth, without times that a reference does not know.
+/// Adds the thinned truth, without times at which a reference is unknown.
 void add_truth(const StoredTruth& truth, std::vector<Event>& events) {
   constexpr std::size_t kSegment = 16384;
   const auto step = static_cast<std::size_t>(std::max<std::int64_t>(kTruthStep_ns / truth.period_ns, 1));
@@ -142,8 +142,8 @@ class Export {
     return origin_ns_ + time_ns;
   }
 
-  /// Writes the primary IMU first. Readers treat a bag's first IMU as primary, but another IMU's first reading may be
-  /// earlier.
+  /// Writes the primary IMU first. Readers treat the first IMU in a bag as primary, but the first reading of another
+  /// IMU may be earlier.
   void begin_with_imus(std::vector<Event>& events) {
     const std::vector<Event> first = first_readings(imus_.size(), events);
     const auto earlier = [](const Event& a, const Event& b) { return a.time_ns < b.time_ns; };
@@ -197,7 +197,7 @@ class Export {
         return write_pose(pose_of(*writing_.truth, event.index), "truth", body_, stamp);
       case Event::pose: {
         const BagTrack& track = writing_.tracks[event.of];
-        // the truth moves the body; without it, the first track does
+        // the truth moves the body; without a truth, the first track moves the body
         const bool body = event.of == 0 && writing_.truth == nullptr;
         return write_pose(track.poses[event.index], track.name, body ? body_ : track.name, stamp);
       }

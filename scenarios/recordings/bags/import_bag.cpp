@@ -28,9 +28,10 @@ constexpr const char* kCloud = "sensor_msgs/PointCloud2";
 constexpr const char *kTransforms = "tf2_msgs/TFMessage", *kOldTransforms = "tf/tfMessage";
 constexpr const char* kStaticTopic = "/tf_static";
 constexpr const char* kNoMessage = ": the topic is declared but has no messages; it is left out";
-/// Differences between header and record stamps above this are noted.
+/// Differences between header and record stamps above this value are noted.
 constexpr double kClocksApart_s = 1e-3;
-/// Points later than their record by more are noted; smaller differences are normal between hosts' clocks.
+/// Points that are later than their record by more than this value are noted; smaller differences are normal between
+/// the clocks of two computers.
 constexpr double kAhead_s = 0.01;
 
 bool is_imu_type(const std::string& type) {
@@ -60,7 +61,8 @@ StaticFrames read_frames(const OpenedBag& bag) {
   return frames;
 }
 
-/// Returns the unit of the specific force. If none was stated and the readings are in g, converts them to m/s^2.
+/// Returns the unit of the specific force. If the caller states no unit and the readings are in g, converts the
+/// readings to m/s^2.
 AccelUnit take_in_g(const std::string& topic, const BagReading& reading, sim::ImuRecord& imu,
                     std::vector<std::string>& notes) {
   if (reading.accel_unit || !is_in_g(imu)) return reading.accel_unit.value_or(AccelUnit::m_s2);
@@ -102,7 +104,7 @@ sim::ImuRecord read_imu(const OpenedBag& bag, SensorPlaces& places, const std::s
   if (imu.time_ns.empty() && reading.imu_topics.empty()) return imu;  // the topic has no messages
   const AccelUnit accel_unit = take_in_g(topic, reading, imu, notes);
   finish_readings(where, accel_unit, imu);
-  // Messages should be in rad/s by definition, but not every driver complies.
+  // Messages should be in rad/s by definition, but not every driver conforms to the definition.
   const std::string evened = even_out_stamps(imu);
   const std::string units = rates_text(where, imu, reading.gyro_unit);
   for (const std::string& remark : {evened, gaps_text(imu), units, stamps.remark(), repeats_text(repeated)}) {
@@ -112,7 +114,7 @@ sim::ImuRecord read_imu(const OpenedBag& bag, SensorPlaces& places, const std::s
   return imu;
 }
 
-/// Information about a topic's clouds from a first pass without reading points.
+/// Information about the clouds of a topic from a first pass that does not read points.
 struct CloudHeaders {
   std::vector<std::int64_t> stamps;  ///< sweep starts
   std::int64_t period_ns = 0;        ///< stated, or the median step of the stamps
@@ -120,7 +122,8 @@ struct CloudHeaders {
   std::string remark;
   bool follow_records = true;  ///< the records appear to use the same clock and lie after the stamps
   std::string frame;
-  /// Returns true if the topic was not chosen and its frame is not a sensor's: a map, or points already transformed.
+  /// Returns true if the topic was not chosen by the caller and its frame is not a sensor's frame: a map, or points
+  /// that are already transformed.
   bool left_out(const BagReading& reading) const {
     return reading.lidar_topics.empty() && (frame == "world" || frame == "map" || frame == "odom");
   }
@@ -161,8 +164,8 @@ CloudHeaders read_headers(const OpenedBag& bag, const std::string& topic, const 
   return out;
 }
 
-/// Points later than their own record cannot have been measured yet: their times were counted from another start than
-/// the stamp.
+/// Points that are later than their own record cannot have been measured yet, so their times count from another start
+/// than the stamp.
 void note_points_to_come(const std::string& topic, const BuiltSweeps& built, const std::vector<std::int64_t>& records,
                          std::vector<std::string>& notes) {
   std::vector<double> ahead_s;
@@ -221,7 +224,7 @@ void note_packets(const OpenedBag& bag, std::vector<std::string>& notes) {
   }
 }
 
-/// Throws if the sensors do not overlap in time, and thus have no common clock.
+/// Throws BadInput if the sensors do not overlap in time, and thus have no common clock.
 void require_one_clock(const sim::Sensors& sensors, bool by_headers, const std::filesystem::path& path) {
   struct Span {
     std::string name;
@@ -247,7 +250,8 @@ void require_one_clock(const sim::Sensors& sensors, bool by_headers, const std::
   }
 }
 
-/// Rethrows an error of an automatically chosen topic, with advice how to skip it if there are others.
+/// Rethrows an error of an automatically chosen topic; if there are other topics, adds advice how to skip the faulty
+/// topic.
 [[noreturn]] void fail_of_several(const BadInput& error, const char* option) {
   throw BadInput(std::string(error.what()) + " (" + option + " selects which topics are read)");
 }

@@ -13,13 +13,13 @@
 
 #include "scenarios/recordings/bags/mcap_records.hpp"
 
-/// Encodes and decodes records of MCAP files. Private to scenarios/recordings/bags.
+/// Encodes and decodes records of MCAP files. Used only within scenarios/recordings/bags.
 namespace tumble::scenarios::mcap {
 
 inline constexpr std::string_view kMagic("\x89MCAP0\r\n", 8);
 inline constexpr std::uint64_t kHeadBytes = 9;  ///< of a record: kind and length
 
-/// Record content that ends before its fields do.
+/// Error for record content that ends before the last field.
 struct BadRecord : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -85,7 +85,7 @@ class Take {
   }
 };
 
-/// Encodes a whole record; `tail` follows its fields.
+/// Encodes a whole record; `tail` is appended after the record's fields.
 template <class Record>
 std::string to_bytes(Record record, std::string_view tail = {}) {
   Put content, out;
@@ -95,7 +95,7 @@ std::string to_bytes(Record record, std::string_view tail = {}) {
   return std::move(out.bytes.append(content.bytes).append(tail));
 }
 
-/// Decodes a record from its content; ignores fields that later versions append. Throws BadRecord.
+/// Decodes a record from its content; ignores fields that later versions of the format append. Throws BadRecord.
 template <class Record>
 Record from_bytes(std::string_view content) {
   Record record;

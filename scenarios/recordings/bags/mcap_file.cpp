@@ -15,7 +15,7 @@ namespace tumble::scenarios::mcap {
 
 namespace {
 
-/// Largest chunk, compressed or not, record outside chunks, and summary.
+/// Largest size of a chunk (compressed or not), of a record outside chunks, and of the summary.
 constexpr std::uint64_t kBytesMax = 1u << 28;
 /// Block size for reading records outside chunks.
 constexpr std::uint64_t kLooseBytes = 1u << 22;
@@ -25,7 +25,7 @@ std::string in_bytes(std::uint64_t bytes) {
   return std::to_string(bytes) + " bytes";
 }
 
-/// Compares the data in a chunk's record and in its index.
+/// Compares the data in the record of a chunk with the data in the chunk index.
 bool agree(const ChunkIndex& a, const ChunkIndex& b) {
   return a.message_start_time == b.message_start_time && a.message_end_time == b.message_end_time &&
          a.chunk_start_offset == b.chunk_start_offset && a.chunk_length == b.chunk_length &&
@@ -154,7 +154,7 @@ void File::read_summary() {
   take_indexed(std::move(chunks));
 }
 
-/// Each offset must point to a group of one kind.
+/// Each offset must point to a group of records of one kind.
 void File::check_groups(std::string_view summary, std::string_view groups) const {
   const std::uint64_t groups_at = footer_.summary_offset_start;
   walk(groups, groups_at, [&](const Record& record) {
@@ -172,7 +172,7 @@ void File::check_groups(std::string_view summary, std::string_view groups) const
   });
 }
 
-/// Uses the chunk index if it is complete. A file without index is scanned.
+/// Uses the chunk index if the index is complete. A file without an index is scanned.
 void File::take_indexed(std::vector<ChunkIndex> chunks) {
   if (chunks.empty()) return;
   std::sort(chunks.begin(), chunks.end(),
@@ -197,7 +197,7 @@ void File::take_indexed(std::vector<ChunkIndex> chunks) {
     }
     segments_.push_back({at, each.chunk_length, each.message_start_time, each.message_end_time, each});
   }
-  // Messages outside chunks are not indexed; scan if any are missing.
+  // Messages outside chunks are not indexed, so the file is scanned if any message is missing.
   if (!statistics_ || channels_.empty()) segments_.clear();
 }
 
@@ -247,7 +247,7 @@ std::optional<MessageIndex> File::index_of(const Segment& segment, std::uint16_t
   return index;
 }
 
-/// Returns the data of the chunk's own record, in the form of an index.
+/// Returns the data of the chunk's record, in the form of an index entry.
 ChunkIndex File::head_of_chunk(std::uint64_t at, std::uint64_t bytes, std::uint32_t* crc) {
   constexpr std::uint64_t kMost = kHeadBytes + 8 + 8 + 8 + 4 + 4 + 64 + 8;  // including the name of the compression
   std::string head = text(at, std::min(bytes, kMost));

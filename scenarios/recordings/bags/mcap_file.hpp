@@ -13,7 +13,7 @@
 #include "scenarios/recordings/bags/mcap_bytes.hpp"
 #include "scenarios/recordings/bags/mcap_records.hpp"
 
-/// Reads an MCAP file chunk by chunk. Validates every length, position, time and checksum before use. Private to
+/// Reads an MCAP file chunk by chunk. Validates every length, position, time and checksum before use. Used only within
 /// scenarios/recordings/bags.
 namespace tumble::scenarios::mcap {
 
@@ -22,7 +22,7 @@ struct Segment {
   std::uint64_t at = 0, bytes = 0;  ///< position in the file, including record heads
   std::uint64_t first_ns = 0, last_ns = 0;
   std::optional<ChunkIndex> chunk;  ///< for a chunk; its index is complete if the file has a summary
-  /// Returns true if it may contain messages of the channel.
+  /// Returns true if the segment may contain messages of the channel.
   bool may_hold(std::uint16_t channel) const {
     return !chunk || chunk->message_index_offsets.empty() || chunk->message_index_offsets.contains(channel);
   }
@@ -37,24 +37,26 @@ struct Record {
 
 class File {
  public:
-  /// Reads the summary if present, else scans the file. Also computes the checksum of the data section if one is
-  /// stated: O(bytes of the file); memory holds some MiB and the summary. Throws BadInput with the offset: not MCAP,
-  /// truncated, damaged, compression other than none, lz4 or zstd, or a chunk or record larger than 256 MiB.
+  /// Reads the summary if present, else scans the file. Also computes the checksum of the data section if the file
+  /// states one. The cost is proportional to the file size; memory holds some MiB and the summary. Throws BadInput with
+  /// the offset if the file is not MCAP, is truncated or damaged, has a compression other than none, lz4 or zstd, or
+  /// has a chunk or record larger than 256 MiB.
   explicit File(const std::filesystem::path& path);
 
   const std::map<std::uint16_t, Schema>& schemas() const { return schemas_; }
   const std::map<std::uint16_t, Channel>& channels() const { return channels_; }
-  /// Segments in the order of their first messages.
+  /// Returns the segments in the order of their first messages.
   const std::vector<Segment>& segments() const { return segments_; }
   /// Returns the stated number of messages of a channel; empty if not stated.
   std::optional<std::uint64_t> stated_messages(std::uint16_t channel) const;
 
-  /// Returns the uncompressed records of a segment after checking its checksum.
+  /// Returns the uncompressed records of a segment after a check of the segment's checksum.
   std::string records(const Segment& segment);
-  /// Returns the message index of the channel after the segment's chunk; empty if there is none.
+  /// Returns the message index of the channel after the segment's chunk, or empty if there is no index.
   std::optional<MessageIndex> index_of(const Segment& segment, std::uint16_t channel);
 
-  /// Calls `take(record)` for each of `records`; `at` is their position in the file if not compressed.
+  /// Calls `take(record)` for each of `records`; `at` is the position of the records in the file if they are not
+  /// compressed.
   template <class Call>
   void walk(std::string_view records, std::uint64_t at, Call&& take) const {
     for (std::uint64_t place = 0; place < records.size();) {
@@ -72,7 +74,7 @@ class File {
       fail(at, "a record of kind " + std::to_string(record.op) + " " + error.what());
     }
   }
-  /// Registers a schema or channel found at `at`; a repeated one must be identical.
+  /// Registers a schema or channel found at offset `at`; a repeated schema or channel must be identical.
   void add(Schema schema, std::uint64_t at);
   void add(Channel channel, std::uint64_t at);
   [[noreturn]] void fail(std::uint64_t at, const std::string& what) const;

@@ -69,7 +69,7 @@ void File::scan() {
   close();
 }
 
-/// Registers the channels in a chunk and the times of its messages.
+/// Registers the channels in a chunk and the times of the chunk's messages.
 void File::scan_chunk(const ChunkIndex& index) {
   Segment segment{index.chunk_start_offset, index.chunk_length, 0, 0, index};
   bool empty = true;

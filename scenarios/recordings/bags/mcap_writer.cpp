@@ -27,7 +27,7 @@ constexpr std::size_t kChunkBytes = 1u << 20;
 class Output {
  public:
   explicit Output(const std::filesystem::path& path) : file_(path) { put(kMagic); }
-  /// Appends bytes and returns their position.
+  /// Appends bytes and returns the position of the first byte.
   std::uint64_t put(std::string_view bytes) {
     file_.write(std::as_bytes(std::span(bytes.data(), bytes.size())));
     crc_ = crc32_of(bytes, crc_);
@@ -43,7 +43,7 @@ class Output {
   std::uint32_t crc_ = 0;
 };
 
-/// Records not yet compressed, with each channel's message positions.
+/// Records that are not yet compressed, with the message positions of each channel.
 struct OpenChunk {
   std::string records;
   std::map<std::uint16_t, MessageIndex> index;

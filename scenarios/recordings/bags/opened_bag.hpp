@@ -9,16 +9,16 @@
 #include "scenarios/recordings/bags/bag_storage.hpp"
 #include "sim/parameters.hpp"
 
-/// Private to scenarios/recordings/bags.
+/// Used only within scenarios/recordings/bags.
 namespace tumble::scenarios {
 
-/// Origin of a message: its location for error messages, and its record time.
+/// Origin of a message: the location for error messages, and the time of the record.
 struct MessageOrigin {
   std::string where;
   std::int64_t record_ns;
 };
 
-/// A bag, its location for error messages, and its topics.
+/// An open bag with its topics and its location for error messages.
 struct OpenedBag {
   BagReader& reader;
   std::string place;
@@ -35,7 +35,7 @@ struct OpenedBag {
                    (near.empty() ? "" : "; did you mean '" + near + "'?"));
   }
 
-  /// Returns the named topics, which must have a matching type; without names, all that match.
+  /// Returns the named topics, which must have a matching type; without names, returns all topics of a matching type.
   std::vector<std::string> chosen(const std::vector<std::string>& names, bool (*fits)(const std::string& type),
                                   const std::string& wanted) const {
     std::vector<std::string> out = names;

@@ -8,12 +8,13 @@
 
 #include "scenarios/recordings/bags/bag_storage.hpp"
 
-/// ROS 2 bags with Zstandard compression. Private to scenarios/recordings/bags.
+/// ROS 2 bags with Zstandard compression. Used only within scenarios/recordings/bags.
 namespace tumble::scenarios {
 
 /// Decompresses files of Zstandard frames ("bag_0.db3.zstd") to a temporary folder, which is removed with the reader,
-/// also when a signal ends the program. Calls `open` with the decompressed files. Throws BadInput with the file:
-/// damaged, truncated, not enough disk space, or an output above 64 MiB and 200 times the file.
+/// also when a signal ends the program. Calls `open` with the paths of the decompressed files. Throws BadInput with the
+/// file if the data are damaged or truncated, if disk space is missing, or if the output exceeds both 64 MiB and 200
+/// times the file's size.
 std::unique_ptr<BagReader> open_packed_files(
     const std::vector<std::filesystem::path>& files,
     const std::function<std::unique_ptr<BagReader>(const std::vector<std::filesystem::path>&)>& open);

@@ -9,14 +9,14 @@
 #include <string>
 #include <vector>
 
-/// ROS 1's little-endian message layout. Readers check every length against the remaining bytes before any allocation.
-/// Private to scenarios/recordings/bags.
+/// Encodes and decodes messages in ROS 1's little-endian layout. Readers check every length against the remaining bytes
+/// before any allocation. Used only within scenarios/recordings/bags.
 namespace tumble::scenarios::ros {
 
 using Bytes = std::vector<std::uint8_t>;
 static_assert(std::endian::native == std::endian::little, "ROS 1 messages are written in the byte order of memory");
 
-/// A message that ends before its fields do, or states more data than it has.
+/// Error for a message that ends before its last field, or that states more data than it contains.
 struct BadMessage : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

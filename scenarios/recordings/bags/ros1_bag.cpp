@@ -26,7 +26,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Bytes with type information, in the form that the library expects.
+/// Bytes with type information, in the form that librosbag expects.
 struct TypedBytes {
   std::string type, md5sum, definition;
   ros::Bytes bytes;
@@ -36,7 +36,7 @@ struct TypedBytes {
 
 }  // namespace tumble::scenarios
 
-// Traits that the library requires of a message.
+// Traits that librosbag requires of a message type.
 namespace ros {
 using tumble::scenarios::TypedBytes;
 namespace message_traits {
@@ -71,7 +71,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Suppresses the library's messages during its lifetime.
+/// Suppresses the messages of librosbag during the object's lifetime.
 class QuietBag {
  public:
   QuietBag() { console_bridge::noOutputHandler(); }
@@ -85,7 +85,7 @@ std::string without_line_ends(std::string text) {
   return text;
 }
 
-/// Converts the library's exceptions.
+/// Converts the exceptions of librosbag to BadInput.
 template <class Call>
 auto guarded(const std::filesystem::path& path, const char* what, Call&& call) {
   const QuietBag quiet;
@@ -114,7 +114,7 @@ TypedBytes typed(const ros::PointCloud2& message) {
 TypedBytes typed(const ros::Odometry& message) {
   return typed_as<nav_msgs::Odometry>(message);
 }
-// The build does not include these three headers; the sums are those of their definitions.
+// The build does not include the headers of these three types; the checksums are those of the message definitions.
 TypedBytes typed(const ros::TFMessage& message) {
   const std::string inner = ::ros::message_traits::Definition<geometry_msgs::TransformStamped>::value();
   return {ros::type_of(message), "94810edda583a504dfda3829e70d7eec",
@@ -156,7 +156,8 @@ class Ros1BagWriter : public BagWriter {
   }
 
  private:
-  /// Connection header of a latched topic, whose last message is sent to late listeners; null: the library's default.
+  /// Returns the connection header of a latched topic, whose last message is sent to late listeners; null means
+  /// librosbag's default.
   boost::shared_ptr<::ros::M_string> connection_of(const std::string& topic, const TypedBytes& message) {
     if (topic != "/tf_static") return nullptr;
     return boost::make_shared<::ros::M_string>(::ros::M_string{{"topic", topic},
@@ -176,8 +177,8 @@ class Ros1BagWriter : public BagWriter {
     }
   }
 
-  /// Abandons a bag after an error. The library's destructor closes the file and writes, which throws on a full disk
-  /// where nothing catches it. If closing fails here, the object is leaked until the process ends.
+  /// Abandons a bag after an error. The destructor of librosbag's bag closes and writes the file, which throws on a
+  /// full disk where no code catches the exception. If closing fails here, the object is leaked until the process ends.
   void give_up() {
     if (!bag_) return;
     const QuietBag quiet;
@@ -237,7 +238,8 @@ class Ros1BagReader : public BagReader {
   void open_unpacked() {
     const std::filesystem::path folder = std::filesystem::temp_directory_path();
     require_room(folder);
-    // Unlinked once open: disappears with the reader or the process; before that, removed on signals.
+    // The file is unlinked once it is open, so it disappears with the reader or the process; until then, a signal
+    // removes it.
     const OutputFile unpacked(folder / "tumble_unpacked.bag");
     copy_ros1_bag(file_, unpacked.unfinished(), [](Ros1Chunk& chunk) {
       if (chunk.compression == "lz4") unpack_lz4(chunk);
@@ -251,7 +253,7 @@ class Ros1BagReader : public BagReader {
     open(unpacked.unfinished());
   }
 
-  /// Check the free space first, because a full disk affects other programs.
+  /// The free disk space is checked first, because a full disk affects other programs.
   void require_room(const std::filesystem::path& folder) const {
     const std::uint64_t needed = bytes_unpacked(file_), free = std::filesystem::space(folder).available;
     if (needed <= free) return;

@@ -21,7 +21,7 @@ namespace {
 constexpr std::string_view kMagic = "#ROSBAG V2.0\n";
 constexpr std::uint32_t kRecordHeaderMax = 1u << 20, kChunkMax = 1u << 30;
 
-/// One record: header fields, and the position of its data.
+/// One record: its header fields, and the position of its data.
 struct CheckedRecord {
   std::uint64_t at = 0, data_at = 0;
   std::uint32_t data_bytes = 0;
@@ -73,7 +73,7 @@ class Walk {
     return out;
   }
 
-  /// Returns the length stored at `at`, of an item that must end before `end`.
+  /// Returns the length stored at `at`; the item with this length must end before `end`.
   std::uint32_t length(std::uint64_t at, std::uint64_t end, const char* what, std::uint32_t most) {
     if (end - at < sizeof(std::uint32_t))
       fail(at, fmt::format("the file ends within the length of {}; the bag may be truncated", what));
@@ -127,7 +127,7 @@ class Walk {
 
   std::uint8_t op(const CheckedRecord& record) const { return number<std::uint8_t>(record, "op"); }
 
-  /// Registers a record and checks its references to others.
+  /// Registers a record and checks the record's references to other records.
   void step(const CheckedRecord& record) {
     switch (op(record)) {
       case ros1::kChunk:
@@ -199,7 +199,7 @@ class Walk {
     return count;
   }
 
-  /// Checks the message offsets in the preceding chunk.
+  /// Checks the message offsets of the preceding chunk.
   void index(const CheckedRecord& record) {
     constexpr std::uint32_t kEntry = 12, kPlace = 8;
     if (chunks_.empty()) fail(record.at, "an index comes before any chunk");

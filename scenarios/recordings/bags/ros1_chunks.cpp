@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::uint64_t kMagicBytes = 13;  // "#ROSBAG V2.0\n"
 
-/// One record. Its header is kept as bytes, so that fields can be changed in place.
+/// One record of a bag. The record's header is kept as bytes, so that fields can be changed in place.
 struct RawRecord {
   std::uint64_t at = 0;
   std::string header;

@@ -94,7 +94,7 @@ class Ros2BagWriter : public BagWriter {
     }
   }
 
-  /// Returns the id of a topic; registers it if new.
+  /// Returns the id of a topic; registers the topic if it is new.
   std::int64_t number_of(const BagTopic& topic) {
     const std::size_t known = summary_.topics.size();
     const std::size_t place = summary_.place_of(topic);
@@ -110,7 +110,8 @@ class Ros2BagWriter : public BagWriter {
     return static_cast<std::int64_t>(place) + 1;
   }
 
-  /// Stores the message definition for readers without ROS. The type hash may be empty; readers accept this.
+  /// Stores the message definition for readers without ROS. The type hash may be empty, because readers accept an empty
+  /// hash.
   void define(const std::string& type) {
     SQLite::Statement statement(
         *database_,
@@ -145,14 +146,14 @@ class Ros2BagWriter : public BagWriter {
   std::set<std::string> defined_;  ///< types already defined
 };
 
-/// The files of a bag in order, their storage ("sqlite3" or "mcap"), and compression: "", "file" or "message".
+/// The files of a bag in order, their storage ("sqlite3" or "mcap"), and their compression: "", "file" or "message".
 struct StoredBag {
   std::string kind = "sqlite3";
   std::vector<path> files;
   std::string packed = {};
 };
 
-/// Returns the bag's compression from its metadata.
+/// Returns the compression of the bag from the bag's metadata.
 std::string packed_by(const YAML::Node& root, const path& metadata) {
   const auto text = [&](const char* key) {
     std::string out = root[key] ? root[key].as<std::string>("") : "";

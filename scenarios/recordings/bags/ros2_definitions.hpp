@@ -3,19 +3,19 @@
 
 #include <string>
 
-/// Message definitions and types stored in ROS 2 bags. Private to scenarios/recordings/bags.
+/// Message definitions and types stored in ROS 2 bags. Used only within scenarios/recordings/bags.
 namespace tumble::scenarios {
 
-/// Converts "sensor_msgs/Imu" to ROS 2's "sensor_msgs/msg/Imu" and back.
+/// Converts a type name such as "sensor_msgs/Imu" to ROS 2's "sensor_msgs/msg/Imu" and back.
 std::string ros2_type(const std::string& type);
 std::string ros1_type(std::string type);
 
-/// Returns the definition of a message (by ROS 1's name) with its nested messages, as rosbag2 stores them (encoding
-/// "ros2msg"). Throws std::logic_error for messages that are never written.
+/// Returns the definition of a message (by its ROS 1 name) with nested messages, as rosbag2 stores definitions
+/// (encoding "ros2msg"). Throws std::logic_error for message types that the bag writers never write.
 std::string ros2_definition(const std::string& type);
 
-/// Returns a topic's quality of service in the YAML of rosbag2's metadata: transient for /tf_static, for late
-/// listeners; else empty (default).
+/// Returns a topic's quality of service in the YAML of rosbag2's metadata: transient for /tf_static, so that late
+/// listeners receive the transforms; otherwise an empty text (default).
 std::string ros2_qos(const std::string& topic);
 
 }  // namespace tumble::scenarios

@@ -9,7 +9,7 @@
 
 namespace tumble::scenarios {
 
-/// Content of a ROS 2 bag's metadata.yaml. Private to scenarios/recordings/bags.
+/// Content of a ROS 2 bag's metadata.yaml. Used only within scenarios/recordings/bags.
 struct Ros2Summary {
   struct Topic {
     BagTopic topic;
@@ -20,7 +20,7 @@ struct Ros2Summary {
   std::vector<Topic> topics = {};
   std::int64_t first_ns = 0, last_ns = 0;  ///< range of the messages' stamps
 
-  /// Returns the index of a topic; appends it if new.
+  /// Returns the index of a topic; appends the topic if it is new.
   std::size_t place_of(const BagTopic& topic);
   /// Counts a message.
   void count(const BagTopic& topic, std::int64_t stamp_ns);

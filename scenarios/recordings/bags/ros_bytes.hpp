@@ -11,7 +11,8 @@
 #include "scenarios/recordings/bags/ros1_archives.hpp"
 #include "scenarios/recordings/bags/ros_fields.hpp"
 
-/// Encodes and decodes messages: ROS 1's little-endian layout and ROS 2's CDR. Private to scenarios/recordings/bags.
+/// Encodes and decodes messages: ROS 1's little-endian layout and ROS 2's CDR. Used only within
+/// scenarios/recordings/bags.
 namespace tumble::scenarios::ros {
 
 /// Encode and decode a message. Decoding throws BadMessage.

@@ -7,13 +7,14 @@
 
 #include "scenarios/recordings/bags/ros_messages.hpp"
 
-/// The single list of the messages' fields in the order of their definitions. ROS 1 and ROS 2 encode the same fields
-/// differently, by the archives in ros_bytes.hpp. Private to scenarios/recordings/bags.
+/// Lists the fields of each message type in the order of the message definition. ROS 1 and ROS 2 encode these fields
+/// differently; the archives in ros_bytes.hpp implement both encodings. Used only within scenarios/recordings/bags.
 ///
-/// An archive has:
+/// An archive has these members:
 /// - operator()(uint8 | uint32 | uint64 | float | text | array of doubles);
 /// - ros1_only(uint32), for a field that ROS 2 removed;
-/// - count(number of entries, minimum bytes of one), for the length before a list; a reader returns the stored length;
+/// - count(number of entries, minimum bytes of an entry), for the length before a list; a reader returns the stored
+///   length;
 /// - raw(first byte, bytes).
 namespace tumble::scenarios::ros {
 

@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-/// Messages of an exported recording; their fields: ros_fields.hpp. Private to scenarios/recordings/bags.
+/// Message types of an exported recording; ros_fields.hpp lists the fields. Used only within scenarios/recordings/bags.
 namespace tumble::scenarios::ros {
 
 struct Header {
@@ -82,7 +82,7 @@ struct LivoxPoint {
   std::uint8_t reflectivity = 0, tag = 0, line = 0;
 };
 
-/// "CustomMsg" of the vendor's drivers.
+/// Message type "CustomMsg" of the vendor's drivers.
 struct LivoxCustomMsg {
   Header header;
   std::uint64_t timebase = 0;  ///< ns, of the first point
@@ -92,7 +92,7 @@ struct LivoxCustomMsg {
   std::vector<LivoxPoint> points;
 };
 
-/// Messages used for writing. Types have ROS 1's names.
+/// Message types that are written; type names are those of ROS 1.
 using Message = std::variant<Imu, PointCloud2, Odometry, TFMessage, Clock, LivoxCustomMsg>;
 inline const char* type_of(const Imu&) {
   return "sensor_msgs/Imu";
@@ -109,7 +109,7 @@ inline const char* type_of(const TFMessage&) {
 inline const char* type_of(const Clock&) {
   return "rosgraph_msgs/Clock";
 }
-/// Name in the driver for ROS 2; ROS 1 bags use kLivoxRos1.
+/// Returns the type name of the driver for ROS 2; ROS 1 bags use kLivoxRos1.
 inline const char* type_of(const LivoxCustomMsg&) {
   return "livox_ros_driver2/CustomMsg";
 }

@@ -62,7 +62,7 @@ void SensorPlaces::place_in_body(const std::string& topic, const Eigen::Isometry
 
 const SensorPlaces::Placed* SensorPlaces::neighbour(const std::string& frame) const {
   for (const Placed& each : placed_) {
-    // drivers give all sensors of a device one frame, which relates no two frames
+    // drivers give all sensors of a device one frame, so equal frames do not relate two sensors
     if (each.frame != frame && frames_.pose(each.frame, frame, where_)) return &each;
   }
   return nullptr;

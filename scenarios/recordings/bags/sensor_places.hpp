@@ -10,19 +10,21 @@
 
 namespace tumble::scenarios {
 
-/// Mountings of a bag's sensors on the body, from /tf_static or from the user. Private to scenarios/recordings/bags.
+/// Stores the mountings of a bag's sensors on the body, from /tf_static or from the user. Used only within
+/// scenarios/recordings/bags.
 class SensorPlaces {
  public:
   /// `where` is the topic's location for messages.
   SensorPlaces(StaticFrames frames, std::string where) : frames_(std::move(frames)), where_(std::move(where)) {}
 
-  /// Sets T_BA, unless the user has (it is not the identity); then only differences are reported. Uses the body's frame
-  /// if the bag has one, else the first earlier sensor with a transform to this one. If nothing is known, notes the
-  /// option that sets the mounting.
+  /// Sets the mounting T_BA from /tf_static. If the user has already set T_BA (it is not the identity), only
+  /// differences are reported. The mounting refers to the body's frame if the bag has one, else to the first earlier
+  /// sensor that is connected to this sensor. If /tf_static does not state the mounting, a note names the option that
+  /// sets the mounting.
   void place(const std::string& topic, const std::string& frame, const char* option, Eigen::Isometry3d& T_BA,
              std::vector<std::string>& notes);
 
-  /// Returns the mounting of a frame that is connected to the body; empty for others.
+  /// Returns the mounting of a frame that is connected to the body, and empty for other frames.
   std::optional<Eigen::Isometry3d> of(const std::string& frame) const;
   /// Returns the body's frame; "" if the bag has none.
   std::string body() const { return frames_.body(); }
@@ -34,7 +36,7 @@ class SensorPlaces {
   };
   void place_in_body(const std::string& topic, const Eigen::Isometry3d& stated, Eigen::Isometry3d& T_BA,
                      std::vector<std::string>& notes) const;
-  /// Returns the first earlier sensor connected to the frame by /tf_static.
+  /// Returns the first earlier sensor that /tf_static connects to the frame.
   const Placed* neighbour(const std::string& frame) const;
 
   StaticFrames frames_;

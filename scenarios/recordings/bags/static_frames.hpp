@@ -14,25 +14,25 @@ namespace tumble::scenarios {
 /// Removes the leading slash of ROS 1's frame names.
 std::string without_slash(const std::string& frame);
 
-/// Tree of frames from /tf_static; each frame has one parent. Private to scenarios/recordings/bags.
+/// Tree of frames from /tf_static; each frame has one parent. Used only within scenarios/recordings/bags.
 class StaticFrames {
  public:
   /// Adds a transform. For a repeated frame the last transform is used; a changed parent is noted (`remarks`). An
-  /// invalid transform is noted with `where` and throws only if used, because bags contain frames unrelated to the
-  /// sensors. Invalid are: non-finite values, more than 1 km, a quaternion norm off by more than 1 %, a frame that is
-  /// its own parent.
+  /// invalid transform is noted with `where` and throws only when it is used, because bags contain frames unrelated to
+  /// the sensors. A transform is invalid if it has non-finite values, a translation above 1 km, a quaternion norm that
+  /// differs from 1 by more than 1 %, or a frame that is its own parent.
   void add(const ros::TransformStamped& transform, const std::string& where);
 
-  /// Throws BadInput, with a message that starts with `where`, if the frames have a cycle.
+  /// Throws BadInput, with a message that starts with `where`, if the frames form a cycle.
   void require_no_ring(const std::string& where) const;
 
   const std::vector<std::string>& remarks() const { return remarks_; }
 
-  /// Returns the body's frame: "body", else "base_link", else "".
+  /// Returns the name of the body's frame: "body", else "base_link", else "".
   std::string body() const;
 
-  /// Returns T_AB of two connected frames, else empty. Throws BadInput if a transform between them is invalid, or if the
-  /// frames have a cycle (message starts with `where`).
+  /// Returns T_AB of two connected frames, else empty. Throws BadInput, with a message that starts with `where`, if a
+  /// transform between the two frames is invalid or if the frames form a cycle.
   std::optional<Eigen::Isometry3d> pose(const std::string& frame_A, const std::string& frame_B,
                                         const std::string& where) const;
 
@@ -42,7 +42,7 @@ class StaticFrames {
     Eigen::Isometry3d T_parent;  ///< transforms coordinates of the frame to its parent
     std::string problem;         ///< why the transform is invalid; "" if valid
   };
-  /// Returns the frame and all its ancestors, each with the frame's pose in it.
+  /// Returns the frame and all its ancestors; each entry contains the pose of `frame` in the ancestor.
   std::vector<Hung> way_up(const std::string& frame, const std::string& where) const;
   std::map<std::string, Hung> frames_;
   std::vector<std::string> remarks_;

@@ -14,21 +14,23 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr std::size_t kKitti = 4;
-/// Multiples of four stand for doubles, or for two rows of a point that is read as two.
+/// Multiples of four represent doubles, or two rows of a point that is read as two points.
 constexpr std::array<std::size_t, 8> kOtherFloats = {3, 5, 6, 7, 8, 9, 10, 12};
 constexpr std::array<std::size_t, 6> kDoubles = {3, 4, 5, 6, 7, 8};
-/// Numbers are taken from so many places of the file, so many in a row: a sweep in the order of its rings is seen
-/// whole.
+/// Numbers are sampled from kSections sections of the file, kInRow numbers in a row, so that a sweep in the order of
+/// its rings is sampled completely.
 constexpr std::size_t kSections = 4, kInRow = 6000;
 constexpr std::size_t kPerColumnMin = 25;
 constexpr std::size_t kNumberBins = 16;
-/// Beyond these no coordinate in metres is, nor an intensity. Sines of 180 degrees times a range are 1e-16 or so.
+/// No coordinate in metres and no intensity is outside these limits. The smallest limit is needed because sines of 180
+/// degrees times a range are about 1e-16.
 constexpr double kLargest = 1e7, kSmallest = 1e-20, kOddShareMax = 0.01;
-/// How much more the columns must differ: those of sound sweeps gain 0.08 at most where every second ring looks down.
+/// Factor by which the columns must differ more; for valid sweeps, the difference grows by 0.08 at most, where every
+/// second ring looks down.
 constexpr double kMultipleDiffers = 1.5;
 constexpr double kClearlyMore = 1.25, kClearlyMoreBy = 0.05;
 
-/// Numbers of a file, and at which place of it each stands.
+/// Sampled numbers of a file, and the position of each number in the file.
 struct NumberSample {
   std::vector<double> values;
   std::vector<std::size_t> index;
@@ -59,7 +61,7 @@ double odd_share(const NumberSample& sample) {
   return sample.values.empty() ? 0.0 : static_cast<double>(count) / static_cast<double>(sample.values.size());
 }
 
-/// The bin of each number, by the quantiles of all of them.
+/// Returns the histogram bin of each number; the bins are the quantiles of all numbers.
 std::vector<std::size_t> bins_of(const NumberSample& sample) {
   std::vector<double> sorted = sample.values;
   std::erase_if(sorted, [](double value) { return std::isnan(value); });
@@ -77,7 +79,7 @@ std::vector<std::size_t> bins_of(const NumberSample& sample) {
 
 using NumberHistogram = std::array<double, kNumberBins + 1>;
 
-/// Mean total variation between a column and all numbers, without what chance makes of it.
+/// Returns the mean total variation distance between a column and all numbers, minus the expected distance by chance.
 double columns_differ(const NumberSample& sample, const std::vector<std::size_t>& bins, std::size_t columns) {
   std::vector<NumberHistogram> counts(columns, NumberHistogram{});
   NumberHistogram all{};
@@ -103,8 +105,9 @@ struct ColumnFit {
   double differ = 0.0;
 };
 
-/// The fewest columns that differ about as much as any, among those that divide the file. Multiples of the right number
-/// differ somewhat more, where the order of the points repeats.
+/// Returns the fewest columns whose distributions differ about as much as for any other number of columns, among
+/// numbers that divide the file. Multiples of the right number of columns differ somewhat more if the order of the
+/// points repeats.
 template <std::size_t kCount>
 ColumnFit best_of(const NumberSample& sample, std::size_t numbers_in_file,
                   const std::array<std::size_t, kCount>& candidates) {

@@ -5,17 +5,19 @@
 #include <span>
 #include <string>
 
-/// How many columns a file without a header has, by its numbers. Private to scenarios/recordings/clouds.
+/// Infers how many columns a file without a header has from the file's numbers. Used only within
+/// scenarios/recordings/clouds.
 namespace tumble::scenarios {
 
-/// What contradicts that `bytes` hold points of four float32, x y z intensity; "" where nothing does, or where there
-/// are too few to decide.
+/// Returns the reason why `bytes` do not contain points of four float32 (x y z intensity), or "" if nothing contradicts
+/// this layout or if there are too few numbers to decide.
 ///
-/// Two signs count. (1) More than 1 % of the numbers are larger than 1e7 or, but for 0, smaller than 1e-20: halves of
-/// doubles and packed integers look so. (2) Read with another number of columns, the columns differ clearly more from
-/// each other. Columns that mix, because the number is wrong, are distributed alike. The difference is the total
-/// variation between the histograms of a column and of all numbers, mean over the columns. The text names the number of
-/// columns that fits. O(1): at most 24 000 numbers are read.
+/// The function applies two criteria. (1) More than 1 % of the numbers are larger than 1e7, or are not 0 and smaller
+/// than 1e-20; halves of doubles and packed integers give such numbers. (2) With another number of columns, the value
+/// distributions of the columns differ clearly more from each other. The reason for criterion (2): a wrong number of
+/// columns mixes the quantities, so that all columns have similar distributions. The difference is the total variation
+/// distance between the histogram of a column and the histogram of all numbers, averaged over the columns. The returned
+/// text names the number of columns that fits. The cost is constant: at most 24 000 numbers are read.
 std::string contradiction_to_kitti(std::span<const char> bytes);
 
 }  // namespace tumble::scenarios

@@ -82,7 +82,7 @@ Cloud to_columns(const pcl::PCLPointCloud2& cloud, std::size_t points) {
   return out;
 }
 
-/// Returns true if the whole word is a number: "nan" and "inf" are, "0,5" and "x" are not.
+/// Returns true if the whole word is a number: "nan" and "inf" are numbers, "0,5" and "x" are not.
 bool is_number_of_pcl(std::string_view word) {
   if (word.starts_with('+')) word.remove_prefix(1);
   double value = 0.0;
@@ -90,8 +90,8 @@ bool is_number_of_pcl(std::string_view word) {
   return error != std::errc::invalid_argument && end == word.data() + word.size();
 }
 
-/// Checks that all words of a text file are numbers, as many per line as the header states. The library silently reads
-/// a prefix, or 0 or NaN.
+/// Checks that all words of a text file are numbers, and that each line has as many numbers as the header states. The
+/// check is needed because PCL silently reads a prefix, or 0 or NaN.
 void require_numbers(const std::filesystem::path& path, const CloudHeader& header) {
   std::ifstream stream(path, std::ios::binary);
   std::string text(static_cast<std::size_t>(header.header_bytes), '\0');
@@ -135,7 +135,7 @@ Cloud read_points(const std::filesystem::path& path, const CloudHeader& header, 
   return out;
 }
 
-/// Types of a .bin file's columns, as NumPy writes them.
+/// Types of the columns of a .bin file, named as NumPy writes them.
 constexpr std::array<std::pair<const char*, std::uint8_t>, 10> kBinTypes = {{{"f4", pcl::PCLPointField::FLOAT32},
                                                                              {"f8", pcl::PCLPointField::FLOAT64},
                                                                              {"u1", pcl::PCLPointField::UINT8},
@@ -147,7 +147,7 @@ constexpr std::array<std::pair<const char*, std::uint8_t>, 10> kBinTypes = {{{"f
                                                                              {"i4", pcl::PCLPointField::INT32},
                                                                              {"i8", pcl::PCLPointField::INT64}}};
 
-/// One "NAME" or "NAME:TYPE", behind the fields before it.
+/// Appends one column, stated as "NAME" or "NAME:TYPE", after the existing fields.
 void add_bin_column(const std::string& text, pcl::PCLPointCloud2& cloud) {
   const std::size_t colon = text.find(':');
   const std::string type = colon == std::string::npos ? "f4" : text.substr(colon + 1);
@@ -166,7 +166,7 @@ void add_bin_column(const std::string& text, pcl::PCLPointCloud2& cloud) {
   cloud.fields.push_back(field);
 }
 
-/// The points' fields, without a point.
+/// Returns the fields of a point, without points.
 pcl::PCLPointCloud2 bin_fields(const std::string& columns) {
   pcl::PCLPointCloud2 cloud;
   std::istringstream stream(columns + ",");

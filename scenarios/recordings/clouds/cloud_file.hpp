@@ -8,29 +8,29 @@
 
 namespace tumble::scenarios {
 
-/// Points of a file or message as uninterpreted named columns. A 64-bit integer keeps its 53 leading bits: stamps since
-/// 1970 in nanoseconds are accurate to 256 ns.
+/// Points of a file or message as uninterpreted named columns. A 64-bit integer keeps its 53 leading bits, so stamps
+/// since 1970 in nanoseconds are accurate to 256 ns.
 struct Cloud {
   std::vector<std::string> names;            ///< as written, without CloudCompare's prefix "scalar_"
   std::vector<std::vector<double>> columns;  ///< parallel to `names`, one number per point
   std::size_t points = 0;
   std::string viewpoint;  ///< VIEWPOINT of a PCD if it is not the identity, as written; not applied
 
-  /// Returns the column with that name, or null.
+  /// Returns the column with this name, or null.
   const std::vector<double>* find(const std::string& name) const;
 };
 
 inline constexpr std::uint64_t kCloudPointsMax = std::uint64_t{1} << 26;
 
-/// Reads the points of a file; the extension selects the format. Formats: PLY and PCD of any encoding (by PCL), legacy
-/// VTK text (vtk_file.hpp), and .bin, which has no header. A file without points gives an empty cloud. Checks the header
-/// against the file size before any allocation.
+/// Reads the points of a file; the extension selects the format. The formats are PLY and PCD of any encoding (by PCL),
+/// legacy VTK text (vtk_file.hpp), and .bin, which has no header. A file without points gives an empty cloud. Checks
+/// the header against the file size before any allocation.
 ///
-/// @param bin_columns  Columns of a .bin file in order, "x,y,z,intensity,ring". Each is float32, or has a NumPy type
-///                     after a colon ("x:f8"); "_" names bytes to skip. "": KITTI's x y z intensity; the content must
-///                     not contradict them (bin_layout.hpp).
-/// Throws BadInput with file and place: missing, another format, damaged header, truncated, more than 2^26 points,
-/// impossible columns, content that contradicts KITTI's columns.
+/// @param bin_columns  Columns of a .bin file in order, "x,y,z,intensity,ring". Each column is float32, or has a
+///                     NumPy type after a colon ("x:f8"); the name "_" skips bytes. An empty text means KITTI's
+///                     x y z intensity; the content must not contradict KITTI's layout (bin_layout.hpp).
+/// Throws BadInput with file and location if the file is missing or truncated, has another format, a damaged header,
+/// more than 2^26 points or impossible columns, or if its content contradicts KITTI's columns.
 Cloud read_cloud(const std::filesystem::path& path, const std::string& bin_columns = "");
 
 /// Content of a PLY or PCD header.
@@ -44,7 +44,7 @@ struct CloudHeader {
   std::string viewpoint;  ///< of a PCD: x y z qw qx qy qz, as written; "" for the identity
 };
 
-/// Reads and checks the header only; same errors.
+/// Reads and checks the header only; throws BadInput like read_cloud.
 CloudHeader read_ply_header(const std::filesystem::path& path);
 CloudHeader read_pcd_header(const std::filesystem::path& path);
 

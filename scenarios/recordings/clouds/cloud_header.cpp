@@ -36,7 +36,7 @@ class HeaderLines {
     ++number_;
     bytes_ += line_.size() + 1;
     if (bytes_ > kCloudHeaderMax) fail(fmt::format("the header is longer than {} bytes", kCloudHeaderMax));
-    // The point reader separates words by blanks and tabs only.
+    // PCL's reader of points separates words by blanks and tabs only.
     if (line_.find_first_of("\v\f") != std::string::npos) fail("the header contains a form feed or a vertical tab");
     std::istringstream words(line_);
     std::vector<std::string> out;
@@ -59,12 +59,13 @@ class HeaderLines {
 
   std::uint64_t bytes() const { return bytes_; }
 
-  /// Checks the stated number of points against the remaining file size; one byte expands to at most `made_of_a_byte`.
+  /// Checks the stated number of points against the remaining file size; one byte of the file gives at most
+  /// `made_of_a_byte` bytes of points.
   void require_room(const CloudHeader& header, std::uint64_t made_of_a_byte = 1) const {
     if (header.points > kCloudPointsMax) {
       fail(fmt::format("states {} points; at most {} can be read from a file", header.points, kCloudPointsMax));
     }
-    // a text number needs at least a digit and a separator; the last one may lack the separator
+    // a number in text needs at least a digit and a separator; the last number may lack the separator
     const std::uint64_t point_bytes = header.point_bytes > 0 ? header.point_bytes : 2 * header.fields;
     const std::uint64_t slack = header.point_bytes > 0 ? 0 : 1;
     const std::uint64_t rest = bytes_in_file_ - std::min(bytes_, bytes_in_file_) + slack;
@@ -74,7 +75,7 @@ class HeaderLines {
     }
   }
 
-  /// Checks the two sizes before compressed points, which the library does not check: compressed and uncompressed.
+  /// Checks the two sizes before compressed points (compressed and uncompressed), which PCL does not check.
   void require_sizes(const CloudHeader& header) {
     std::array<std::uint32_t, 2> sizes{};
     if (!stream_.read(reinterpret_cast<char*>(sizes.data()), sizeof(sizes)))
@@ -89,8 +90,8 @@ class HeaderLines {
     }
   }
 
-  /// The library continues reading the header while lines start with a header word, are empty or comments. Point data
-  /// that look like this would change the header.
+  /// PCL continues to read the header while lines start with a header word, are empty or are comments. Point data that
+  /// look like header lines would therefore change the header.
   void require_end_of_header(std::span<const char* const> words) {
     stream_.clear();
     stream_.seekg(static_cast<std::streamoff>(bytes_));
@@ -122,7 +123,7 @@ std::uint64_t ply_bytes(const std::string& type) {
   return found == known.end() ? 0 : found->second;
 }
 
-/// Reads a PLY header line that describes the points.
+/// Reads a line of a PLY header that describes the points.
 void take_property(const HeaderLines& lines, const std::vector<std::string>& words, CloudHeader& header) {
   if (words.size() == 5 && words[1] == "list")
     lines.fail("the points have a list property; such files are not supported");
@@ -135,12 +136,12 @@ void take_property(const HeaderLines& lines, const std::vector<std::string>& wor
 
 using Words = std::vector<std::string>;
 
-/// In the order of the format, then an alternative name of FIELDS.
+/// Words in the order of the format; the last word is an alternative name of FIELDS.
 constexpr std::array<const char*, 11> kPcdWords = {"VERSION", "FIELDS",    "SIZE",   "TYPE", "COUNT",  "WIDTH",
                                                    "HEIGHT",  "VIEWPOINT", "POINTS", "DATA", "COLUMNS"};
 
-/// Reads a PCD header by first words. Each must occur once and in order: the library misreads unknown, repeated,
-/// misplaced or blank lines and does not check the result.
+/// Reads the lines of a PCD header by their first words. Each word must occur once and in order, because PCL misreads
+/// unknown, repeated, misplaced or blank lines and does not check the result.
 std::map<std::string, Words> pcd_lines(HeaderLines& lines) {
   const std::span order = std::span(kPcdWords).first<10>();
   std::map<std::string, Words> found;
@@ -173,7 +174,7 @@ std::uint64_t single(const HeaderLines& lines, const std::string& name, const Wo
   return value;
 }
 
-/// Returns VIEWPOINT x y z qw qx qy qz as written; "" if it is the identity.
+/// Returns the line VIEWPOINT x y z qw qx qy qz as written; "" if the viewpoint is the identity.
 std::string viewpoint_of(const HeaderLines& lines, const Words& words) {
   if (words.size() != 7) lines.fail(fmt::format("VIEWPOINT has {} numbers, must have 7", words.size()));
   constexpr std::array<double, 7> kOwn = {0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The module with PCL's readers (pcl_reader.hpp); no library of this project is linked to it.
+// The module with PCL's readers (pcl_reader.hpp); the module is not linked to any library of this project.
 #include <pcl/io/pcd_io.h>
 #include <pcl/io/ply_io.h>
 

@@ -25,12 +25,12 @@ constexpr std::array<TimeUnit, 4> kUnits = {{{"s", 1e9}, {"ms", 1e6}, {"us", 1e3
 constexpr std::array<const char*, 8> kNames = {"t",          "time",        "timestamp",   "timestamps",
                                                "time_stamp", "offset_time", "time_offset", "offset"};
 /// The times of a sweep must span this fraction of the period: at least a sector of 7 degrees, at most some overlap.
-/// Units differ by factors of 1000, so at most one fits.
+/// Units differ by factors of 1000, so at most one unit fits.
 constexpr double kSpanMin = 0.02, kSpanMax = 1.5;
-/// Stamps after 1973, in seconds, exceed this.
+/// Stamps after 1973, in seconds, exceed this value.
 constexpr double kEpochMin_s = 1e8;
-/// With this many points a sweep's times span its period. Fewer points may cover any short part and do not contradict a
-/// stated unit.
+/// With at least this many points, the times of a sweep span the sweep's period. Fewer points may span any short part
+/// of the period and do not contradict a stated unit.
 constexpr double kPointsThatSpan = 100.0;
 
 std::string lower(std::string text) {
@@ -113,7 +113,7 @@ void require_no_other_unit(const TimeUnit& stated, double span, double period_ns
 double unit_by_size(double span, double largest, double period_ns, const std::string& field, const std::string& where) {
   for (const TimeUnit& unit : kUnits) {
     if (period_ns > 0.0 && fits(span, unit, period_ns)) return unit.ns;
-    // For stamps since 1970: the largest plausible unit.
+    // For stamps since 1970, returns the largest plausible unit.
     if (!(period_ns > 0.0) && largest >= kEpochMin_s * 1e9 / unit.ns && largest < kEpochMin_s * 1e12 / unit.ns)
       return unit.ns;
   }

@@ -17,7 +17,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Number of clouds that determine the time unit; a single one may be incomplete.
+/// Number of clouds that determine the time unit; a single cloud may be incomplete.
 constexpr std::ptrdiff_t kProbe = 10;
 constexpr double kByteIntensity = 255.0;
 constexpr double kPointFar_m = 1e6;
@@ -135,7 +135,7 @@ void SweepBuilder::take(Waiting& sweep) {
   if (store_) store_->take(record_);
 }
 
-/// Returns the start of the sweep; stores the points' offsets from it.
+/// Returns the start of the sweep; stores the time offsets of the points from this start.
 std::int64_t SweepBuilder::take_times(const Waiting& sweep, const std::vector<std::size_t>& kept) {
   const auto no_offsets = [&] { record_.offset_ns.resize(record_.offset_ns.size() + kept.size(), 0); };
   if (rule_->field.empty() || kept.empty()) {
@@ -224,7 +224,7 @@ double SweepBuilder::range_max_m() const {
   return reading_.range_max_m > 0.0 ? reading_.range_max_m : kFarthest_m;
 }
 
-/// Detects ranges in mm. Rare points beyond the data sheet's range are possible.
+/// Throws BadInput if ranges are probably in mm. Single points beyond the range in the data sheet are accepted.
 void SweepBuilder::require_range(const std::string& where) const {
   if (2 * beyond_ <= points()) return;
   throw BadInput(fmt::format(

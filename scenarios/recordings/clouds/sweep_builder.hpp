@@ -14,7 +14,7 @@
 
 namespace tumble::scenarios {
 
-/// Options for reading points where the file lacks information.
+/// Options for reading points if the file lacks information.
 struct SweepReading {
   sim::LidarRecord device;   ///< name, device, T_BL; sweep_period_ns 0: median step of the sweeps' starts
   std::string time_field;    ///< "": a field with a usual name
@@ -22,7 +22,7 @@ struct SweepReading {
   bool not_skewed = false;   ///< the points were deskewed or measured at once; ignore their times
   double range_max_m = 0.0;  ///< from the data sheet; 0: unknown
   bool assumed = false;      ///< the stamps are a guess: absolute point times replace them
-  /// Folder for points on disk; "": in memory, which grows with each sweep.
+  /// Folder for points on disk; if empty, points are kept in memory, which grows with each sweep.
   std::filesystem::path scratch;
 };
 
@@ -34,17 +34,18 @@ struct PointTimeRule {
 };
 
 /// Finds the time field and its unit from the first clouds. Names (any case): t time timestamp timestamps time_stamp
-/// offset_time time_offset offset_ns. A suffix _s _ms _us _ns states the unit. Otherwise the unit is the one in which a
-/// sweep's times (median over the clouds) span 2 to 150 % of `period_ns`. If the period is unknown (0), stamps since
-/// 1970 determine the unit by their size.
+/// offset_time time_offset offset_ns. A suffix _s _ms _us _ns states the unit. If no name states the unit, the unit is
+/// chosen such that a sweep's times (median over the clouds) span 2 to 150 % of `period_ns`. If the period is unknown
+/// (0), the size of stamps since 1970 determines the unit.
 ///
-/// A stated unit is rejected if only another unit fits and the sweeps have at least 100 points. Times are absolute if
-/// they start more than two periods from 0 in any cloud. Of two fields, the one whose name states the unit is used.
-/// Throws BadInput, with a message that starts with `where`: a missing or ambiguous field, or no unit that fits.
+/// A stated unit is rejected if another unit fits, the stated unit does not fit, and the sweeps have at least 100
+/// points. Times are absolute if they start more than two periods from 0 in any cloud. If two fields have usual names,
+/// the field whose name states the unit is used. Throws BadInput, with a message that starts with `where`, for a
+/// missing or ambiguous field, or if no unit fits.
 PointTimeRule find_point_times(const std::vector<Cloud>& first, std::int64_t period_ns, const SweepReading& reading,
                                const std::string& where);
 
-/// A lidar, with its points if they are on disk; the record then has none.
+/// A lidar with its points; if the points are on disk, the record has no points.
 struct BuiltSweeps {
   sim::LidarRecord lidar;
   std::optional<PointStore> points;
@@ -52,28 +53,29 @@ struct BuiltSweeps {
                                                  ///< points without times
 };
 
-/// Builds a lidar record from clouds in order of time. Memory holds the first ten clouds, then one at a time if points
-/// are on disk.
+/// Builds a lidar record from clouds that arrive in order of time. Memory holds the first ten clouds, and afterwards
+/// one cloud at a time if points are on disk.
 ///
-/// Points that are not finite, farther than 1000 km, or at the origin are misses. Intensity ("intensity",
-/// "reflectivity") up to 1 is unchanged; up to 255 it is divided by 255, else by the maximum. Ring ("ring", "line",
-/// "channel") is an integer up to 65535. A sweep starts at its stamp. If its first point is earlier, or later by a
-/// period, it starts at that point, so that no offset is negative. Only x, y and z are required.
+/// Points that are not finite, farther than 1000 km, or at the origin count as rays without a return. Intensities
+/// ("intensity", "reflectivity") up to 1 are unchanged; intensities up to 255 are divided by 255, larger intensities by
+/// the maximum. Ring numbers ("ring", "line", "channel") are integers up to 65535. A sweep starts at its stamp. If the
+/// first point of a sweep is earlier than the stamp, or later by a period, the sweep starts at the first point, so that
+/// no offset is negative. Only the columns x, y and z are required.
 class SweepBuilder {
  public:
-  /// `period_ns` as for find_point_times: stated for the device, or the median step of the stamps.
+  /// `period_ns` is the period of find_point_times: the stated period of the device, or the median step of the stamps.
   SweepBuilder(SweepReading reading, std::int64_t period_ns) : reading_(std::move(reading)), period_ns_(period_ns) {
     if (!reading_.scratch.empty()) store_.emplace(reading_.scratch);
   }
 
-  /// Adds a sweep; messages start with `where`. Throws BadInput: missing x, y or z, a stamp that does not increase, a
-  /// time outside two sweep periods, an invalid ring.
+  /// Adds a sweep; error messages start with `where`. Throws BadInput for missing x, y or z, a stamp that does not
+  /// increase, a time outside two sweep periods, or an invalid ring.
   void add(std::optional<std::int64_t> stamp_ns, Cloud cloud, std::string where);
 
   /// Returns the record in the stamps' clock, and adds notes, for example on how point times were read. Without a
-  /// stated period, it is the median step, or the latest offset if larger. Throws BadInput, with a message that starts
-  /// with `where`: no points at all, most points beyond twice the data sheet's range, or a single sweep of unknown
-  /// length.
+  /// stated period, the period is the median step of the stamps, or the latest point offset if that is larger. Throws
+  /// BadInput, with a message that starts with `where`, if there are no points, if most points are beyond twice the
+  /// range in the data sheet, or if there is a single sweep of unknown length.
   BuiltSweeps finish(const std::string& where, std::vector<std::string>& notes);
 
  private:

@@ -46,7 +46,7 @@ bool natural_less(const std::filesystem::path& left, const std::filesystem::path
   return a < b;  // equal except for leading zeros
 }
 
-/// Cuts the trailing digits off `text` and returns them.
+/// Removes the trailing digits from `text` and returns the digits.
 std::string_view take_digits(std::string_view& text) {
   std::size_t begin = text.size();
   while (begin > 0 && is_digit(text[begin - 1])) --begin;
@@ -61,13 +61,14 @@ std::int64_t value_of(std::string_view digits) {
   return value;
 }
 
-/// Returns `count` units plus `rest_ns`, both non-negative; empty beyond the year 2262, where nanoseconds overflow.
+/// Returns `count` units plus `rest_ns`, both non-negative, in nanoseconds; empty beyond the year 2262, where
+/// nanoseconds overflow.
 std::optional<std::int64_t> in_ns(std::int64_t count, std::int64_t unit_ns, std::int64_t rest_ns = 0) {
   if (count > (std::numeric_limits<std::int64_t>::max() - rest_ns) / unit_ns) return std::nullopt;
   return count * unit_ns + rest_ns;
 }
 
-/// Returns nanoseconds since 1970; the number of digits determines the unit. Empty for other lengths.
+/// Returns nanoseconds since 1970; the number of digits determines the unit. Returns empty for other numbers of digits.
 std::optional<std::int64_t> epoch_ns(std::string_view digits) {
   if (digits.size() == 13) return in_ns(value_of(digits), 1000000);
   if (digits.size() == 16) return in_ns(value_of(digits), 1000);

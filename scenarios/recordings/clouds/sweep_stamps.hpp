@@ -8,26 +8,28 @@
 
 namespace tumble::scenarios {
 
-/// Returns the files of a folder with this extension (".ply") in natural order: "9" before "10", ignoring leading zeros
-/// and hidden files. The stem is the name before its last numbers ("lidar" in "lidar_000012"). It must be `stem`, or
-/// equal for all files if `stem` is empty. Throws BadInput: no folder, no such file, several stems.
+/// Returns the files of a folder with this extension (".ply") in natural order ("9" before "10"), ignoring leading
+/// zeros and hidden files. The stem is the name before its last numbers ("lidar" in "lidar_000012"). The stem must
+/// equal `stem`; if `stem` is empty, all files must have an equal stem. Throws BadInput for a missing folder, no
+/// matching file, or several stems.
 std::vector<std::filesystem::path> sweep_files(const std::filesystem::path& folder, const std::string& ending,
                                                const std::string& stem);
 
 /// Returns the stem of a file's name.
 std::string stem_of(const std::filesystem::path& file);
 
-/// Returns the stamps at the end of the file names, if all have one. Formats: seconds and nanoseconds
+/// Returns the stamps at the end of the file names, if all names have a stamp. Stamps are seconds and nanoseconds
 /// ("1617333602.223639727", "cloud_1617333602_223639727", fewer decimals after a point), or one number of 13, 16 or 19
-/// digits since 1970 (ms, us, ns). Empty if names only have numbers like "000012". Throws BadInput with the file if
-/// only some have stamps.
+/// digits since 1970 (ms, us, ns). Returns empty if names only have numbers like "000012". Throws BadInput with the
+/// file if only some names have stamps.
 std::vector<std::int64_t> stamps_in_names(const std::vector<std::filesystem::path>& files);
 
-/// Reads stamps from a text file, one per line; '#' starts a comment. Formats: decimal seconds, or integers of 16 or 19
-/// digits (us, ns). Throws BadInput with file and line: not a number, or a stamp that does not increase.
+/// Reads stamps from a text file, one stamp per line; '#' starts a comment. Stamps are decimal seconds, or integers of
+/// 16 or 19 digits (us, ns). Throws BadInput with file and line for a text that is not a number, or a stamp that does
+/// not increase.
 std::vector<std::int64_t> read_stamps(const std::filesystem::path& file);
 
-/// Returns the upper median step of increasing times; 0 for fewer than two.
+/// Returns the upper median step of increasing times, or 0 for fewer than two times.
 std::int64_t median_step_ns(const std::vector<std::int64_t>& times_ns);
 
 }  // namespace tumble::scenarios

@@ -39,7 +39,7 @@ class VtkWords {
     return out;
   }
 
-  /// Returns the next word; empty at the end of the file.
+  /// Returns the next word, or an empty text at the end of the file.
   std::string_view next() {
     while (at_ < text_.size() && is_blank(text_[at_])) line_ += text_[at_++] == '\n';
     const std::size_t begin = at_;
@@ -47,7 +47,7 @@ class VtkWords {
     return std::string_view(text_).substr(begin, at_ - begin);
   }
 
-  /// Returns the next word; throws at the end of the file.
+  /// Returns the next word; throws BadInput at the end of the file.
   std::string_view need(const char* what) {
     const std::string_view word = next();
     if (word.empty()) fail(fmt::format("the file ends before {}; it may be truncated", what));
@@ -61,7 +61,7 @@ class VtkWords {
     return value;
   }
 
-  /// Accepts "nan" and "inf", which lidars write for misses.
+  /// Accepts "nan" and "inf", which lidar drivers write for rays without a return.
   double number() {
     std::string_view word = need("its numbers");
     if (word.starts_with('+')) word.remove_prefix(1);
@@ -71,7 +71,7 @@ class VtkWords {
     return value;
   }
 
-  /// Returns the number of remaining bytes; a number needs two, a digit and a separator.
+  /// Returns the number of remaining bytes; a number needs two bytes, a digit and a separator.
   std::uint64_t left() const { return text_.size() - at_; }
 
  private:
@@ -109,13 +109,13 @@ void pass_over(VtkWords& words, std::uint64_t count, std::uint64_t each) {
   for (std::uint64_t i = 0; i < count * each; ++i) words.number();
 }
 
-/// VERTICES lines numbers: skips that many numbers.
+/// Reads "VERTICES lines numbers" and skips this many numbers.
 void pass_vertices(VtkWords& words) {
   words.whole("the number of vertices");
   pass_over(words, words.whole("the numbers of the vertices"), 1);
 }
 
-/// SCALARS name type [numbers per point], LOOKUP_TABLE name, one line each; then the numbers.
+/// Reads "SCALARS name type [numbers per point]" and "LOOKUP_TABLE name", one line each, and then the numbers.
 void read_scalars(VtkWords& words, Cloud& cloud) {
   const std::string name(words.need("the name of scalars"));
   words.need("the scalars' type");
@@ -138,7 +138,7 @@ void read_scalars(VtkWords& words, Cloud& cloud) {
   cloud.columns.push_back(std::move(column));
 }
 
-/// NORMALS, VECTORS, TENSORS name type, COLOR_SCALARS name numbers.
+/// Skips the data of NORMALS, VECTORS, TENSORS name type, and of COLOR_SCALARS name numbers.
 void pass_data(VtkWords& words, const Cloud& cloud, std::string_view section) {
   words.need("a name");
   if (section == "COLOR_SCALARS") {

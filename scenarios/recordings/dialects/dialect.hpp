@@ -8,7 +8,7 @@
 #include "scenarios/recordings/bags/bag_layout.hpp"
 #include "scenarios/recordings/dialects/sensor_facts.hpp"
 
-/// Recording formats that published estimators expect. Private to scenarios/recordings/dialects.
+/// Recording formats that published estimators expect. Used only within scenarios/recordings/dialects.
 namespace tumble::scenarios {
 
 /// Source that documents the format.
@@ -30,7 +30,8 @@ struct Dialect {
   bool takes_empty = true;   ///< accepts sweeps without points; else these are omitted
   ReaderNames (*names)(const SensorFacts&) = nullptr;
   SweepLayout (*sweeps)(const SensorFacts&) = nullptr;
-  /// Returns the peer's configuration files with this recording's sensors; other values are its authors'.
+  /// Returns the configuration files of the published estimator with this recording's sensors; all other values are
+  /// those of the estimator's authors.
   std::vector<ConfigurationFile> (*configuration)(const SensorFacts&, const ReaderNames&) = nullptr;
   std::string run = {};                 ///< command that starts the peer on these files
   std::vector<std::string> notes = {};  ///< remarks for the user
@@ -48,13 +49,14 @@ Dialect norlab_dialect();
 
 std::span<const Dialect> all_dialects();
 
-/// Shared layouts: x y z and an intensity of 0 to 255, all float32, ring uint16, and the time since the sweep's start.
-/// The time is in float32 seconds ("time", Velodyne's driver) or uint32 nanoseconds ("t", Ouster's).
+/// Returns the point layout with x y z and an intensity of 0 to 255, all float32, ring uint16, and the time since the
+/// sweep's start. The time field is in float32 seconds ("time", Velodyne's driver) or uint32 nanoseconds ("t", Ouster's
+/// driver).
 SweepLayout velodyne_layout(const SensorFacts&);
 SweepLayout ouster_layout(const SensorFacts&);
 
-/// Names for FAST-LIO and its derivatives: a Livox with its driver's topics as CustomMsg, any other lidar as a
-/// Velodyne.
+/// Returns the topic and frame names for FAST-LIO and its derivatives: a Livox has its driver's topics as CustomMsg,
+/// any other lidar has those of a Velodyne.
 ReaderNames fast_lio_names(const SensorFacts& facts);
 SweepLayout fast_lio_layout(const SensorFacts& facts);
 

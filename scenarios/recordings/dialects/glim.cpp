@@ -12,7 +12,7 @@ ReaderNames glim_names(const SensorFacts&) {
   return {"/os_cloud_node/imu", "imu", "/os_cloud_node/points", "lidar", "base_link", ""};
 }
 
-/// Returns the data sheet's density, or the authors' number if none is stated.
+/// Returns the density of the data sheet, or the authors' value if none is stated.
 double density(double stated, double authors) {
   return stated > 0.0 ? stated : authors;
 }

@@ -9,8 +9,9 @@
 
 namespace tumble::scenarios {
 
-/// Returns manifest.json (keys: dialects/README.md): files with their units, stamps and frames, the sensors' noise,
-/// ranges and mounting, and the peer's documentation. Private to scenarios/recordings/dialects.
+/// Returns the text of manifest.json (keys: dialects/README.md): the files with units, stamps and frames, the noise,
+/// ranges and mounting of the sensors, and the estimator's documentation. Used only within
+/// scenarios/recordings/dialects.
 std::string manifest_of(const Dialect& dialect, const SensorFacts& facts, const RecordingInfo& info,
                         std::int64_t origin_ns, const std::vector<std::string>& configuration, bool with_truth);
 

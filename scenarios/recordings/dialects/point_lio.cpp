@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Point-LIO (hku-mars/Point-LIO, GPL-2): contains facts about its interface only, none of its text.
+// Point-LIO (hku-mars/Point-LIO, GPL-2): this file only contains facts about the interface, and no text of the sources.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,8 +11,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns the saturation threshold for the peer. The data sheet may state less than the device reaches; then the
-/// largest reading is used.
+/// Returns the saturation threshold for the published estimator. The data sheet may state less than the device reaches;
+/// in this case the largest reading is used.
 double rail(double stated, double largest) {
   return std::max(stated, largest);
 }

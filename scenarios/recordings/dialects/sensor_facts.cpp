@@ -64,16 +64,17 @@ void for_steps(const Sweeps& sweeps, Take&& take) {
   });
 }
 
-/// Returns the upper median of 16-bit values from their counts, after `below` smaller ones.
+/// Returns the upper median of 16-bit values from their counts, where `below` values are smaller than all counted
+/// values.
 std::uint32_t middle_of(const std::vector<std::uint64_t>& counts, std::uint64_t place, std::uint64_t& below) {
   std::uint32_t value = 0;
   for (; value + 1 < counts.size() && below + counts[value] <= place; ++value) below += counts[value];
   return value;
 }
 
-/// Returns the firings of a ring per sweep: its period divided by the upper median step between returns of one ring.
-/// There are as many steps as points, so their upper halves are counted first, then the lower halves within the
-/// median's bin.
+/// Returns the number of firings of a ring per sweep: the sweep period divided by the upper median step between returns
+/// of one ring. There are as many steps as points, so the upper 16 bits are counted first, then the lower 16 bits
+/// within the bin of the median.
 int columns_of(const Sweeps& sweeps) {
   constexpr std::uint32_t kHalf_bits = 16, kLower = 0xffff;
   std::vector<std::uint64_t> counts(std::size_t{1} << kHalf_bits, 0);

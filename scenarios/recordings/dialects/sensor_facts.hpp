@@ -11,7 +11,7 @@
 
 namespace tumble::scenarios {
 
-/// Properties of the first IMU for configurations.
+/// Properties of the first IMU that configuration files state.
 struct ImuFacts {
   std::string device;
   std::size_t samples = 0;
@@ -32,12 +32,12 @@ struct LidarFacts {
   int rings = 1;                             ///< highest ring plus one
   int columns = 1;                           ///< firings of a ring in a sweep, from the median step between its returns
   double nearest_m = 0.0, farthest_m = 0.0;  ///< range of the returns
-  /// Closer points belong to the robot: the rig's cage extends 0.7 m from its lidar (the mapper's exclusion box).
-  /// Otherwise the nearest return.
+  /// Points closer than this distance belong to the robot: the rig's cage extends 0.7 m from its lidar (the box that
+  /// the mapper excludes). For other robots, the distance of the nearest return.
   double own_body_m = 0.0;
 };
 
-/// Properties of the sensors that a peer reads, without the truth.
+/// Properties of the sensors that a published estimator reads, without the truth.
 struct SensorFacts {
   std::optional<ImuFacts> imu;
   std::optional<LidarFacts> lidar;
@@ -47,7 +47,8 @@ struct SensorFacts {
   Eigen::Isometry3d T_IL() const { return T_BI.inverse(Eigen::Isometry) * T_BL; }
 };
 
-/// `points`: stores per lidar if on disk; null: in the records. Memory holds one sweep.
+/// `points` stores the points of each lidar on disk; null if the points are in the records. Memory holds one sweep at a
+/// time.
 SensorFacts facts_of(const sim::Sensors& sensors, const std::vector<PointStore>* points = nullptr);
 
 }  // namespace tumble::scenarios

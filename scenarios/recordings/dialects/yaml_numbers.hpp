@@ -9,8 +9,8 @@
 
 #include "scenarios/recordings/number_text.hpp"
 
-/// Numbers that every YAML reader accepts as doubles: with a decimal point, which ROS 2 requires for a double and YAML
-/// 1.1 before an exponent. Private to scenarios/recordings/dialects.
+/// Writes numbers that every YAML reader accepts as doubles: with a decimal point, which ROS 2 requires for a double
+/// and YAML 1.1 requires before an exponent. Used only within scenarios/recordings/dialects.
 namespace tumble::scenarios {
 
 inline std::string decimal(double value) {

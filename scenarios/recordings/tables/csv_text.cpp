@@ -32,7 +32,8 @@ char likely_separator(std::string_view text) {
   return most;
 }
 
-/// Throws BadInput unless the file is UTF-8 text with lines; checked before columns, for a better message.
+/// Throws BadInput unless the file is UTF-8 text with lines; this check precedes the check of columns, to give a better
+/// message.
 void require_lines(const std::string& name, std::string_view text) {
   const std::string_view mark = text.substr(0, 2);
   if (mark == "\xFF\xFE" || mark == "\xFE\xFF") throw BadInput(name + ": the text is in UTF-16; it must be in UTF-8");

@@ -7,10 +7,11 @@
 #include <string_view>
 #include <vector>
 
-/// Text files with separated columns, read line by line. Private to scenarios/recordings.
+/// Text files with separated columns, read line by line. Used only within scenarios/recordings.
 namespace tumble::scenarios {
 
-/// A line and its location "FILE:12". Fields are views of the file's text without surrounding blanks or quotes.
+/// A line of a file and its location "FILE:12". The fields are views of the file's text without surrounding blanks or
+/// quotes.
 struct CsvLine {
   std::string where;
   std::vector<std::string_view> fields;
@@ -19,11 +20,12 @@ struct CsvLine {
 /// The lines of a file in memory. Accepts Windows line ends; ignores empty lines at the end.
 class CsvText {
  public:
-  /// Uses the most frequent separator in the first line: comma, semicolon or tab.
+  /// Separates fields with the most frequent separator in the first line: comma, semicolon or tab.
   explicit CsvText(const std::filesystem::path& path);
-  /// Throws BadInput with the file: missing, empty, or a last line without newline, which may be truncated.
+  /// Throws BadInput with the file if the file is missing or empty, or if the last line has no newline and may be
+  /// truncated.
   CsvText(const std::filesystem::path& path, char separator);
-  /// Reads the next line; false at the end.
+  /// Reads the next line; returns false at the end.
   bool next(CsvLine& line);
 
  private:
@@ -36,7 +38,8 @@ class CsvText {
 /// Throws BadInput with the line's location and the message.
 [[noreturn]] void fail(const CsvLine& line, const std::string& what);
 
-/// Returns a finite number. Throws BadInput with the location and `column`, the column's name or number.
+/// Returns a finite number from a field. Throws BadInput with the location and `column`, which is the column's name or
+/// number.
 double csv_number(const CsvLine& line, std::size_t index, const std::string& column);
 
 /// Returns true if the whole field is a number; NaN and infinities are accepted.

@@ -11,7 +11,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Attitude 0 0 0 1 with a first covariance of -1: unknown attitude in sensor_msgs/Imu.
+/// In sensor_msgs/Imu, the attitude 0 0 0 1 with a first covariance element of -1 means an unknown attitude.
 constexpr const char* kNoAttitude = "0,0,0,1,[-1 0 0 0 0 0 0 0 0]";
 
 template <class Vector>
@@ -19,7 +19,7 @@ void append_all(std::string& text, const Vector& vector) {
   for (const double x : vector) append_number(text += ',', x);
 }
 
-/// Covariance of one sample's white noise: density squared times the bandwidth of the output rate.
+/// Returns the covariance of one sample's white noise: density squared times the bandwidth of the output rate.
 std::string covariance_text(double density_sqrt_hz, std::int64_t period_ns) {
   const double variance = density_sqrt_hz * density_sqrt_hz / (static_cast<double>(period_ns) * 1e-9);
   std::string text = ",[";

@@ -21,7 +21,7 @@ namespace {
 constexpr const char* kAirbrakesAttribution =
     "AirbrakesV2, NCSU High-Powered Rocketry Club (github.com/NCSU-High-Powered-Rocketry-Club/AirbrakesV2), MIT; ";
 constexpr double kAirbrakesStampMax_s = 1e9;
-/// Estimators bridge no longer gap.
+/// Estimators do not bridge longer gaps.
 constexpr std::int64_t kBridgedGap_ns = 1'000'000'000;
 
 using Columns3 = std::array<std::size_t, 3>;
@@ -50,7 +50,7 @@ void keep(std::vector<T>& rows, std::size_t first, std::size_t end) {
                         rows.begin() + static_cast<std::ptrdiff_t>(end));
 }
 
-/// Logs start long before the flight with few samples: keeps the longest segment without a gap.
+/// Keeps the longest segment without a gap, because logs start long before the flight with few samples.
 void keep_longest_segment(sim::ImuRecord& imu, std::vector<std::string>& notes) {
   const std::size_t count = imu.time_ns.size();
   std::size_t first = 0, end = 0, gaps = 0;

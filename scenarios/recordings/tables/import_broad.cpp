@@ -23,8 +23,8 @@ constexpr const char* kBroadAttribution =
     "D. Laidig, M. Caruso, A. Cereatti, T. Seel: BROAD - A Benchmark for Robust Inertial Orientation Estimation, "
     "Data 2021, 6(7), 72; CC BY 4.0; trial ";
 
-/// Half the span of the reference's differences: 70 ms. The noise at rest then stays below the thresholds that scores
-/// use for rest (measured: 0.022 rad/s at half this span). Fast rotations are blurred.
+/// Half of the time span for differentiating the reference: 70 ms. With this span, the noise at rest stays below the
+/// thresholds that scores use for rest (measured: 0.022 rad/s at half of the span). The span blurs fast rotations.
 constexpr std::size_t kSlopeReach = 20;
 
 sim::ImuRecord read_imu(const hdf5::Group& root, double rate_hz) {
@@ -36,7 +36,7 @@ sim::ImuRecord read_imu(const hdf5::Group& root, double rate_hz) {
   if (root.has("imu_mag")) root.read("imu_mag", imu.magnetic_field_t);
   for (Eigen::Vector3d& field : imu.magnetic_field_t) field *= kTeslaPerMicrotesla;
   for (std::size_t k = 0; k < imu.gyro_rad_s.size(); ++k) {
-    // computed from the rate: multiples of a rounded period would drift
+    // computed from the rate, because multiples of a rounded period would drift
     imu.time_ns.push_back(std::llround(static_cast<double>(k) * 1e9 / rate_hz));
   }
   imu.clip_flags.assign(imu.time_ns.size(), 0);
@@ -62,7 +62,7 @@ std::vector<Eigen::Quaterniond> attitudes(const hdf5::Group& root) {
   return q_WB;
 }
 
-/// Returns the known attitudes at the samples' stamps.
+/// Returns the known attitudes at the stamps of the samples.
 std::vector<ReferencePose> known_poses(const sim::Truth& truth, const sim::ImuRecord& imu) {
   std::vector<ReferencePose> poses;
   for (std::size_t k = 0; k < truth.q_WB.size(); ++k) {
@@ -71,7 +71,7 @@ std::vector<ReferencePose> known_poses(const sim::Truth& truth, const sim::ImuRe
   return poses;
 }
 
-/// Reads the optical reference. Body axes are the IMU's; world axes are east, north, up.
+/// Reads the optical reference. The body axes are the IMU axes; the world axes are east, north, up.
 std::optional<sim::Truth> read_reference(const hdf5::Group& root, const sim::ImuRecord& imu) {
   if (!root.has("opt_quat") || !root.has("opt_pos")) return std::nullopt;
   sim::Truth truth;

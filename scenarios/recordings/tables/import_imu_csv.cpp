@@ -15,7 +15,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns the unit in the column names, else the requested one. Throws if a non-default request contradicts the names.
+/// Returns the unit in the column names, else the unit that the caller states. Throws BadInput if a unit that the
+/// caller states contradicts the names.
 template <class Unit>
 Unit chosen(std::optional<Unit> stated, Unit asked, Unit usual, const CsvLine& header) {
   if (!stated || *stated == asked) return asked;

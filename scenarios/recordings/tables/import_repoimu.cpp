@@ -30,7 +30,7 @@ constexpr const char* kRepoimuAttribution =
 
 constexpr double kBadNormShareMax = 0.2;
 constexpr double kRepoimuStampMax_s = 86400.0;
-/// Rows on either side used to find the precision of printed stamps.
+/// Number of rows on either side that determine the precision of printed stamps.
 constexpr std::size_t kDigitsReach = 50;
 constexpr double kCoarse = 0.02;  // fraction of a step above which coarse printing is noted
 
@@ -51,7 +51,7 @@ struct Log {
   std::vector<std::string> where;
 };
 
-/// "Vicon Orientation/W": the group's name is above its first column.
+/// Returns names such as "Vicon Orientation/W"; the name of a group is above the group's first column.
 std::vector<std::string> column_names(const CsvLine& groups, const CsvLine& names) {
   if (groups.fields.size() != names.fields.size()) {
     fail(names, fmt::format("has {} columns, but the line above has {}; must be equal", names.fields.size(),
@@ -93,7 +93,7 @@ RepoimuColumns columns_of(const CsvLine& groups, const CsvLine& second) {
   return columns;
 }
 
-/// Accepts a decimal comma, which one published file contains; between ';' it is unambiguous.
+/// Accepts a decimal comma, which one published file contains; between ';' separators, a decimal comma is unambiguous.
 class DecimalNumbers {
  public:
   DecimalNumbers(const CsvLine& line, std::size_t& commas) : line_(line), commas_(commas) {}
@@ -111,7 +111,7 @@ class DecimalNumbers {
   Eigen::Vector3d at(const std::array<std::size_t, 3>& columns, const char* name) {
     return {at(columns[0], name), at(columns[1], name), at(columns[2], name)};
   }
-  /// Returns NaN for missing values, where the cameras saw nothing.
+  /// Returns NaN for missing values, which occur where the cameras saw no markers.
   double or_unknown(std::size_t column, const char* name) {
     const std::string_view text = line_.fields[column];
     if (text.empty() || text == "NaN" || text == "nan") return kNaN;
@@ -225,7 +225,7 @@ void require_attitudes(const std::filesystem::path& path, const Log& log) {
                   log.where[first], log.poses[first].q_WA.norm(), bad, log.poses.size(), path.filename().string()));
 }
 
-/// Describes errors of the reference's rates where all axes are far from their extreme.
+/// Describes errors of the reference's rates where all gyro axes are far from their extreme readings.
 std::string rate_error_text(const sim::ImuRecord& imu, const std::vector<Eigen::Vector3d>& rates) {
   Eigen::Vector3d extreme = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& w : imu.gyro_rad_s) extreme = extreme.cwiseMax(w.cwiseAbs());
@@ -243,7 +243,7 @@ std::string rate_error_text(const sim::ImuRecord& imu, const std::vector<Eigen::
       kRateWindow_ns / 1'000'000, errors[errors.size() / 2], errors[errors.size() * 9 / 10], errors.size());
 }
 
-/// Adds the reference as the recording's truth.
+/// Adds the reference as the truth of the recording.
 void add_reference(const std::filesystem::path& path, Log& log, bool align, Imported& out) {
   const sim::ImuRecord& imu = out.sensors.imus.front();
   const std::size_t samples = log.poses.size();
@@ -292,7 +292,7 @@ Imported import_repoimu(const std::filesystem::path& path, bool align) {
   out.info.origin_ns = log.readings.time_ns.front();
   for (std::int64_t& time : log.readings.time_ns) time -= out.info.origin_ns;
   steady(log, out.notes);
-  // time 0 is the first printed stamp, not its regularised time
+  // time 0 is the first printed stamp, not the regularised time of the first sample
   const std::int64_t first_ns = log.readings.time_ns.front();
   for (std::int64_t& time : log.readings.time_ns) time -= first_ns;
   for (ReferencePose& pose : log.poses) pose.time_ns -= first_ns;

@@ -27,13 +27,13 @@ constexpr std::size_t kColumnsByPlace = 15;
 
 const std::array<std::string, 3> kAxes = {"x", "y", "z"};
 
-/// Columns written by `export`: each once, and nothing else.
+/// Columns that `export` writes: each column once, and no other columns.
 const std::vector<std::string> kExported = {"stamp_s",  "stamp_ns", "frame_id", "qx",
                                             "qy",       "qz",       "qw",       "orientation_covariance",
                                             "wx_rad_s", "wy_rad_s", "wz_rad_s", "angular_velocity_covariance",
                                             "fx_m_s2",  "fy_m_s2",  "fz_m_s2",  "linear_acceleration_covariance"};
 
-/// Returns the only column that `fits`; a second one would belong to another sensor.
+/// Returns the only column that `fits` accepts; a second such column would belong to another sensor.
 template <class Fits>
 std::optional<std::size_t> find_column(const CsvLine& header, const std::string& name, const Fits& fits) {
   std::optional<std::size_t> found;
@@ -65,7 +65,7 @@ class RequiredColumns {
     else
       missing_ += " " + name;
   }
-  /// Returns false if none exists; throws if only some do.
+  /// Returns false if no column exists; throws BadInput if only some columns exist.
   bool complete() const {
     if (found_ == 0) return false;
     if (!missing_.empty()) fail(header_, "missing columns:" + missing_);
@@ -78,7 +78,7 @@ class RequiredColumns {
   std::string missing_;
 };
 
-/// Columns ".../header/stamp" and so on, as written by tools that flatten messages.
+/// Finds columns such as ".../header/stamp", as tools that flatten messages write them.
 std::optional<ImuColumns> flattened(const CsvLine& header) {
   ImuColumns layout;
   RequiredColumns columns(header);
@@ -92,7 +92,8 @@ std::optional<ImuColumns> flattened(const CsvLine& header) {
   return columns.complete() ? std::optional(layout) : std::nullopt;
 }
 
-/// Columns "wx_rad_s" or "wx", "fx_m_s2", "fx" or "ax", "stamp_s", "sec", "secs" or "s" with "stamp_ns" and so on.
+/// Finds the columns "wx_rad_s" or "wx", "fx_m_s2", "fx" or "ax", and "stamp_s", "sec", "secs" or "s" with "stamp_ns"
+/// and similar names.
 std::optional<ImuColumns> named(const CsvLine& header) {
   ImuColumns layout;
   RequiredColumns columns(header);
@@ -106,7 +107,7 @@ std::optional<ImuColumns> named(const CsvLine& header) {
   return columns.complete() ? std::optional(layout) : std::nullopt;
 }
 
-/// Throws unless a header with names of our export has all of them once and no other.
+/// Throws BadInput unless a header with names of `export` has each of these names once and no other name.
 void require_exported(const CsvLine& header) {
   for (const std::string_view field : header.fields) {
     const std::string name(field);
@@ -145,7 +146,8 @@ struct Decimal {
   bool sound() const { return !whole.empty() && all_digits(whole) && all_digits(part); }
 };
 
-/// Converts a number in a unit with this many decimals to nanoseconds, without a double's rounding; empty if invalid.
+/// Converts a number in a unit with this many decimals to nanoseconds, without the rounding of a double; empty if the
+/// number is invalid.
 std::optional<std::int64_t> scaled_ns(const Decimal& number, std::size_t decimals) {
   std::string digits = std::string(number.whole) + std::string(number.part.substr(0, decimals));
   digits.resize(number.whole.size() + decimals, '0');

@@ -12,7 +12,7 @@
 #include "scenarios/recordings/import.hpp"
 #include "scenarios/recordings/tables/csv_text.hpp"
 
-/// Finds the IMU columns of a table. Private to scenarios/recordings.
+/// Finds the IMU columns of a table. Used only within scenarios/recordings.
 namespace tumble::scenarios {
 
 /// Format of time stamps.
@@ -33,22 +33,22 @@ struct ImuColumns {
   std::vector<std::string> left_out;  ///< names of ignored columns
 };
 
-/// Interprets the first line. Names take precedence over positions: those of tools that flatten ROS messages
-/// (".../angular_velocity/x"), of `export` (each once and no other), their short forms (sec nsec wx.. fx..), or of
-/// loggers (logger_columns.hpp). A line of numbers is a sample, with columns by position. Throws BadInput with file and
-/// line: unknown, repeated or missing columns.
+/// Interprets the first line. Names take precedence over positions. Known names are those of tools that flatten ROS
+/// messages (".../angular_velocity/x"), of `export` (each once and no other names), short forms of the export names
+/// (sec nsec wx.. fx..), and names of loggers (logger_columns.hpp). If the first line contains numbers, it is a sample,
+/// and columns are identified by position. Throws BadInput with file and line for unknown, repeated or missing columns.
 ImuColumns imu_columns(const CsvLine& first);
 
 /// Returns a line's stamp in nanoseconds. Throws BadInput with file, line and column.
 std::int64_t stamp_ns(const CsvLine& line, const ImuColumns& columns);
 
-/// Throws BadInput, starting with the line's location, unless the line has this many columns.
+/// Throws BadInput, with a message that starts with the line's location, unless the line has this many columns.
 void require_width(const CsvLine& line, std::size_t columns);
 
-/// Determines the unit of stamps without a stated unit (as decimals) from up to a thousand steps: the one of s, ms, us
-/// and ns that gives 10 to 1000 samples per second. At most one fits; other rates must state the unit. `text` starts at
-/// the first sample; lines must have `columns` fields. Throws BadInput, with a message that starts with the file, if no
-/// unit fits.
+/// Infers the unit of stamps from up to a thousand steps, as a number of decimals: the unit among s, ms, us and ns that
+/// gives 10 to 1000 samples per second. At most one unit fits; for other sample rates, the file must state the unit.
+/// `text` starts at the first sample; lines must have `columns` fields. Throws BadInput, with a message that starts
+/// with the file, if no unit fits.
 int decimals_by_step(CsvText text, std::size_t stamp, std::size_t columns, const std::string& file);
 
 }  // namespace tumble::scenarios

@@ -17,14 +17,15 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// At rest, rolling or hand-held, the median is near g; in g, mg or raw counts it is not.
+/// At rest, rolling or hand-held, the median is near g in m/s^2; the median of readings in g, mg or raw counts is
+/// outside these limits.
 constexpr double kLeastMedian_m_s2 = 3.0, kLargestMedian_m_s2 = 30.0;
 
 bool near_factor(double ratio, double factor) {
   return ratio > factor / 2.0 && ratio < factor * 2.0;
 }
 
-/// Returns the unit in which the median would be close to gravity; none for raw counts.
+/// Returns the unit in which the median would be close to gravity; no unit for raw counts.
 const char* likely_force_unit(double median, AccelUnit read_as) {
   constexpr double kThousand = 1000.0;
   const double numbers = read_as == AccelUnit::g ? median / kStandardGravity_m_s2 : median;
@@ -49,15 +50,15 @@ void require_plausible_force(const std::string& where, const sim::ImuRecord& imu
 
 constexpr const char *kTakenInDegrees = " (set '--gyro-unit deg/s')", *kTakenInRadians = " (set '--gyro-unit rad/s')";
 
-/// Limit of both triads [rad/s, m/s^2], as in the estimator.
+/// Limit of the readings of both triads [rad/s, m/s^2], as in the estimator.
 constexpr double kSensorReadingMax = 1e6;
 
-/// Returns a non-finite value if any axis is.
+/// Returns the largest absolute value of the triad, or a non-finite value if any axis is non-finite.
 double largest_of_triad(const Eigen::Vector3d& reading) {
   return reading.allFinite() ? reading.cwiseAbs().maxCoeff() : std::nan("");
 }
 
-/// 0.5 Hz to 50 kHz, the range of IMUs.
+/// The limits are 0.5 Hz to 50 kHz, the range of IMU sample rates.
 constexpr double kLeastPeriod_s = 2e-5, kLargestPeriod_s = 2.0;
 
 void require_plausible_period(const std::string& where, const sim::ImuRecord& imu) {
@@ -71,11 +72,11 @@ void require_plausible_period(const std::string& where, const sim::ImuRecord& im
 
 /// Largest plausible rate of a robot's device without a data sheet.
 constexpr double kLargestRate_rad_s = 100.0;
-/// Fraction of the samples; single ones are glitches.
+/// Allowed fraction of the samples; single samples beyond the range are glitches.
 constexpr double kBeyondShare = 0.01, kBeyondRange = 2.0;
 constexpr double kDegreesPerRadian = 57.29577951308232;
 
-/// Returns the fraction of samples whose largest axis, times `factor`, exceeds the bound.
+/// Returns the fraction of samples whose largest axis, times `factor`, exceeds the limit.
 double beyond_share(const sim::ImuRecord& imu, double bound_rad_s, double factor) {
   const auto beyond = std::count_if(imu.gyro_rad_s.begin(), imu.gyro_rad_s.end(), [&](const Eigen::Vector3d& w) {
     return factor * w.cwiseAbs().maxCoeff() > bound_rad_s;
@@ -102,7 +103,7 @@ constexpr double kLeastRotation = 0.0175, kMostRotation = 0.4;  // rotation of t
                                                                 // one degree
 constexpr int kLeastWindows = 10;
 constexpr double kLeastCorrelation = 0.8;
-/// Change of gravity that ends a brisk window.
+/// Change of gravity's direction that ends a brisk window.
 constexpr double kBriskRotation = 0.25;
 
 }  // namespace
@@ -139,14 +140,14 @@ GravityRotation gravity_rotation(const sim::ImuRecord& imu, RotationWindows wind
     while (end + 1 < count && near(end) && !turned() &&
            1e-9 * static_cast<double>(imu.time_ns[end] - imu.time_ns[begin]) < kRotationWindow_s) {
       ++end;
-      // a sample is the mean over the window that ends at its stamp
+      // a sample is the mean over the averaging window that ends at its stamp
       angle += imu.gyro_rad_s[end] * (1e-9 * static_cast<double>(imu.time_ns[end] - imu.time_ns[end - 1]));
     }
     const double length_s = 1e-9 * static_cast<double>(imu.time_ns[end] - imu.time_ns[begin]);
     const bool whole = near(end) && end >= begin + 4 && (length_s >= kRotationWindow_s || turned()) &&
                        length_s < 1.5 * kRotationWindow_s;
     if (whole) {
-      // Average a quarter of the window at each end, so that noise does not appear as rotation.
+      // Averages a quarter of the window at each end, so that noise does not appear as rotation.
       const std::size_t quarter = std::max<std::size_t>(1, (end - begin) / 4);
       Eigen::Vector3d first = Eigen::Vector3d::Zero(), last = Eigen::Vector3d::Zero(), middle = Eigen::Vector3d::Zero();
       for (std::size_t k = 0; k < quarter; ++k) first += imu.accel_m_s2[begin + k], last += imu.accel_m_s2[end - k];
@@ -176,7 +177,7 @@ bool has_sufficient_rotation(const GravityRotation& turn) {
 
 GravityRotation sufficient_rotation(const sim::ImuRecord& imu) {
   const GravityRotation turn = gravity_rotation(imu, RotationWindows::even);
-  // a rolling sphere rotates too far in even windows
+  // brisk windows are used because a rolling sphere rotates too far in even windows
   return has_sufficient_rotation(turn) ? turn : gravity_rotation(imu, RotationWindows::brisk);
 }
 

@@ -5,37 +5,39 @@
 
 #include "scenarios/recordings/import.hpp"
 
-/// Collects IMU readings from any source, one by one. Private to scenarios/recordings.
+/// Collects IMU readings from any source, reading by reading. Used only within scenarios/recordings.
 namespace tumble::scenarios {
 
 /// Returns the device without readings.
 sim::ImuRecord without_readings(sim::ImuRecord device);
 
-/// Appends a reading. Throws BadInput, with a message that starts with `where`: not finite, beyond 1e6, or a stamp that
-/// does not increase.
+/// Appends a reading. Throws BadInput, with a message that starts with `where`, for a value that is not finite or
+/// beyond 1e6, or for a stamp that does not increase.
 void add_reading(const std::string& where, std::int64_t stamp_ns, const Eigen::Vector3d& rate_rad_s,
                  const Eigen::Vector3d& force_m_s2, sim::ImuRecord& imu);
 
-/// Sets the period to the median step. Throws BadInput, with a message that starts with `where`: fewer than two
-/// readings, or a probable wrong unit: a median specific force outside 3 to 30 m/s^2 or a period outside 20 us to 2 s.
+/// Sets the period to the median step. Throws BadInput, with a message that starts with `where`, for fewer than two
+/// readings or a probably wrong unit: a median specific force outside 3 to 30 m/s^2, or a period outside 20 us to 2 s.
 void finish_readings(const std::string& where, AccelUnit unit, sim::ImuRecord& imu);
 
-/// Returns true if readings are in g instead of m/s^2, as some lidar drivers give them: the median is within a tenth of
-/// 1, and a fifth of them within 2 % of it (rest). Gravity-free readings have no constant size.
+/// Returns true if the specific force is in g instead of m/s^2, as from some lidar drivers: the median norm is within
+/// 10 % of 1, and a fifth of the norms are within 2 % of the median (rest). Readings from which gravity was removed
+/// have no constant norm.
 bool is_in_g(const sim::ImuRecord& imu);
 
-/// Restores stamps of a faster IMU that were rounded to milliseconds (rounded_stamps.hpp), with their mean step as
-/// period. Returns a note, or "".
+/// Restores stamps that were rounded to milliseconds (rounded_stamps.hpp), and sets the period to their mean step.
+/// Returns a note on the restored stamps, or "".
 std::string even_out_stamps(sim::ImuRecord& imu);
 
 /// Returns a note on gaps longer than one second, which no estimator bridges, or "".
 std::string gaps_text(const sim::ImuRecord& imu);
 
-/// Compares the rotation of gravity in the accelerometer with the gyro. In windows of 0.2 s, the specific force must
-/// keep the size of gravity within a tenth and rotate by one to about twenty degrees. The change of the force is
-/// compared with -(rotation vector) x force. `ratio`: the factor between the two, 1 for correct units. `correlation`:
-/// between the two. Brisk windows end early, once the force has rotated by a quarter of gravity, because a rolling
-/// sphere rotates too far in 0.2 s. O(N).
+/// Selects the time windows in which the gyro is compared with the rotation of gravity in the accelerometer. In windows
+/// of 0.2 s, the specific force must keep the size of gravity within a tenth and rotate by one to about twenty degrees.
+/// The change of the specific force is compared with -(rotation vector) x force. `ratio` is the factor between the
+/// measured change and the product; 1 means correct units. `correlation` is the correlation between the measured change
+/// and the product. Windows of kind `brisk` end early, once the force has rotated by a quarter of gravity, because a
+/// rolling sphere rotates too far in 0.2 s. O(N).
 enum class RotationWindows { even, brisk };
 struct GravityRotation {
   int windows = 0;
@@ -43,18 +45,18 @@ struct GravityRotation {
 };
 GravityRotation gravity_rotation(const sim::ImuRecord& imu, RotationWindows windows = RotationWindows::even);
 
-/// Returns a note on the units indicated by gravity (in even, else brisk windows), or on a gyro that is always 0.
-/// Returns "" if the motion does not suffice. Throws BadInput, with a message that starts with `where`, if gravity
-/// indicates the other rate unit (factor 57.3). Also throws if more than 1 % of the rates exceed twice the stated range
-/// (100 rad/s if none is stated).
+/// Returns a note on the units that gravity indicates (in `even` windows, else in `brisk` windows), or on a gyro that
+/// always reads 0. Returns "" if the motion does not suffice. Throws BadInput, with a message that starts with `where`,
+/// if gravity indicates that rates are in deg/s instead of rad/s or vice versa (factor 57.3). Also throws if more than
+/// 1 % of the rates exceed twice the stated range (100 rad/s if no range is stated).
 std::string require_plausible_rates(const std::string& where, const sim::ImuRecord& imu, GyroUnit unit);
 
-/// The same for a format that does not state the unit; insufficient motion is then noted.
+/// Returns the note on units for a format that does not state the unit; insufficient motion is then noted.
 std::string rates_text(const std::string& where, const sim::ImuRecord& imu, GyroUnit unit);
 
 inline constexpr double kTeslaPerMicrotesla = 1e-6;
 
-/// m/s^2 or rad/s per unit.
+/// Returns the factor from the unit to m/s^2 or rad/s.
 double scale_of(AccelUnit unit);
 double scale_of(GyroUnit unit);
 

@@ -14,7 +14,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// A name and its unit, both in lower case without separators.
+/// A column name and its unit, both in lower case without separators.
 struct Name {
   std::string quantity, unit;
 };
@@ -63,14 +63,14 @@ bool is_one_of(const std::vector<std::string_view>& names, std::string_view name
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// "gx [deg/s]", "gx (deg/s)": unit in brackets.
+/// Splits names with the unit in brackets: "gx [deg/s]", "gx (deg/s)".
 Name split_brackets(std::string_view field) {
   const std::size_t open = field.find_first_of("[(");
   if (open == std::string_view::npos) return {letters(field), ""};
   return {letters(field.substr(0, open)), letters(field.substr(open))};
 }
 
-/// "time_ms", "gyro_x_deg_s": unit after an underscore, following the axis.
+/// Splits names such as "time_ms" and "gyro_x_deg_s", with the unit after an underscore that follows the axis.
 template <class Value, class IsQuantity>
 Name split_suffix(std::string_view field, const UnitNames<Value>& units, const IsQuantity& is_quantity) {
   for (std::size_t at = field.find('_'); at != std::string_view::npos; at = field.find('_', at + 1)) {
@@ -134,7 +134,7 @@ class HeaderReader {
     return stated[0];
   }
 
-  /// Returns false if only a time is known; throws if something is missing.
+  /// Returns false if only a time column is known; throws BadInput if a column is missing.
   bool complete(std::size_t readings) const {
     if (readings == 0) return false;
     if (!missing_.empty()) fail("missing columns:" + missing_);

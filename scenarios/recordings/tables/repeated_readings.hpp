@@ -8,10 +8,11 @@
 
 #include "sim/recording.hpp"
 
-/// Removes sample-and-hold: a log that is faster than its sensor repeats readings. Private to scenarios/recordings.
+/// Removes sample-and-hold repetitions, which occur if a log is faster than its sensor. Used only within
+/// scenarios/recordings.
 namespace tumble::scenarios {
 
-/// Rows of a log with the latest reading of each sensor.
+/// Rows of a log; each row has the latest reading of each sensor.
 struct LoggedReadings {
   std::vector<std::int64_t> time_ns;
   std::vector<Eigen::Vector3d> gyro_rad_s, accel_m_s2;
@@ -25,15 +26,16 @@ struct HoldReport {
   std::string text() const;
 };
 
-/// Extracts the readings of a log without repetitions. A sensor is held if more than 5 % and fewer than 98 % (then it
-/// is frozen) of its rows repeat all three axes. Only new gyro readings are kept; their times are regularised within
-/// the log step in which they came. An accelerometer that holds longer than the gyro is interpolated linearly at the
-/// gyro's times, which low-passes it. Fills time_ns, gyro, accelerometer and clip_flags (0) of `imu`. O(N).
+/// Extracts the readings of a log without repetitions. A sensor repeats readings (sample-and-hold) if 5 to 98 % of its
+/// rows repeat all three axes; above 98 % the sensor is frozen. Only new gyro readings are kept; their times are
+/// regularised within the log step in which they arrived. If the accelerometer repeats readings for longer than the
+/// gyro, its readings are interpolated linearly at the gyro's times, which low-passes the specific force. Fills
+/// time_ns, gyro, accelerometer and clip_flags (0) of `imu`. O(N).
 HoldReport undo_hold(const LoggedReadings& log, sim::ImuRecord& imu);
 
-/// Returns a note on probable accelerometer saturation, or "". An axis and sign counts if its readings accumulate
-/// beyond 1.5 g at their extreme: at least five within 2 % (a tilted limit), and three times as many as between 2 and 4
-/// % below. Repeated readings count once.
+/// Returns a note on probable accelerometer saturation, or "". An axis and sign counts as saturated if readings
+/// accumulate at an extreme beyond 1.5 g: at least five readings within 2 % of the extreme (a tilted limit), and three
+/// times as many as between 2 and 4 % below. Repeated readings count once.
 std::string accel_rail_text(const std::vector<Eigen::Vector3d>& logged);
 
 }  // namespace tumble::scenarios

@@ -15,7 +15,7 @@ constexpr double kGapSteps = 1.3;
 /// Smaller differences between a line and a raster are rounding.
 constexpr std::int64_t kSame_ns = 1000;
 
-/// Fits a line to the samples first to last; returns its offset from `stamps[k]` at k.
+/// Fits a line to the samples `first` to `last`; returns the line's offset from `stamps[k]` at k.
 double line_offset_ns(std::span<const std::int64_t> stamps, std::span<const StampBounds> bounds, std::size_t first,
                       std::size_t last, std::size_t k) {
   double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;

@@ -79,8 +79,8 @@ double correlation(const std::vector<SamplePair>& pairs, const std::vector<doubl
   return spread > 0.0 ? (n * ab - a * b) / std::sqrt(spread) : -1.0;
 }
 
-/// One Gauss-Newton step of the delay on |w| of the samples [first, end); the slope comes from speeds slightly earlier
-/// and later.
+/// Performs one Gauss-Newton step of the delay on |w| of the samples `first` to `end` - 1; the derivative comes from
+/// rates slightly earlier and later.
 double delay_step(const std::vector<SamplePair>& pairs, const std::array<std::vector<double>, 3>& speeds,
                   std::size_t first, std::size_t end) {
   std::vector<double> sizes;
@@ -159,17 +159,17 @@ void pair_up(const std::vector<ReferencePose>& poses, double delay_s, std::vecto
   pairs = std::move(kept);
 }
 
-/// Returns the up direction in the reference's world for a given rotation. Averages all samples, because accelerations
-/// cancel over the recording.
+/// Returns the up direction in the reference's world for a rotation between IMU and reference. Averages all samples,
+/// because accelerations cancel over the recording.
 Eigen::Vector3d up_in_world(const std::vector<SamplePair>& all, const Eigen::Quaterniond& q_IV) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const SamplePair& pair : all) sum += pair.q_V * (q_IV.conjugate() * pair.f_I);
   return sum.normalized();
 }
 
-/// Returns the rotation R with the largest trace(R^T B) as a unit quaternion: the eigenvector of the largest eigenvalue
+/// Returns the rotation R with the largest trace(R^T B) as a unit quaternion, the eigenvector of the largest eigenvalue
 /// of Davenport's matrix (Markley and Crassidis, Fundamentals of Spacecraft Attitude Determination and Control, 2014,
-/// section 5.3; there for R^T).
+/// section 5.3, which defines the matrix for R^T).
 Eigen::Quaterniond closest_rotation(const Eigen::Matrix3d& B) {
   const Eigen::Vector3d z(B(2, 1) - B(1, 2), B(0, 2) - B(2, 0), B(1, 0) - B(0, 1));
   Eigen::Matrix4d K;
@@ -181,7 +181,7 @@ Eigen::Quaterniond closest_rotation(const Eigen::Matrix3d& B) {
   return Eigen::Quaterniond(q.w() < 0.0 ? Eigen::Vector4d(-q) : q).normalized();
 }
 
-/// Returns the rotation of samples [first, end) for a given gravity direction.
+/// Returns the rotation that fits the samples `first` to `end` - 1 for a stated direction of gravity.
 Eigen::Quaterniond rotation(const std::vector<SamplePair>& pairs, std::size_t first, std::size_t end,
                             const Eigen::Vector3d& up) {
   Eigen::Matrix3d B = Eigen::Matrix3d::Zero();

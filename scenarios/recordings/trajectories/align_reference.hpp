@@ -6,12 +6,12 @@
 
 #include "scenarios/recordings/trajectories/reference.hpp"
 
-/// Alignment of an optical reference with the IMU in time and rotation. Private to scenarios/recordings.
+/// Aligns an optical reference with the IMU in time and rotation. Used only within scenarios/recordings.
 namespace tumble::scenarios {
 
-/// w_I(t) = R_IV w_V(t + delay), where V is the reference's body frame. `R_WV` levels the reference's world. The
-/// uncertainties are standard deviations from eight parts of the recording, estimated separately; errors common to all
-/// parts are not included.
+/// The alignment is w_I(t) = R_IV w_V(t + delay), where V is the reference's body frame and I the IMU frame. `R_WV`
+/// rotates the reference's world to a level world. The uncertainties are standard deviations from eight parts of the
+/// recording, estimated separately; errors common to all parts are not included.
 struct ReferenceAlignment {
   bool known = false;  ///< false: too little rotation while the gyro is unsaturated, or too few reference poses
   double delay_s = 0.0, delay_sigma_s = 0.0;
@@ -22,17 +22,19 @@ struct ReferenceAlignment {
   std::string text() const;
 };
 
-/// Estimates the delay by cross-correlation of |w| within +-0.1 s, then by robust least squares (outliers beyond three
-/// times the median). The rotation solves Wahba's problem over two kinds of pairs: rates at unsaturated samples, and
-/// specific force against the reference's gravity, weighted by how close its size is to gravity. Rates alone do not
-/// determine the rotation about a single rotation axis.
+/// Estimates the delay by cross-correlation of |w| within +-0.1 s, then by robust least squares, which rejects outliers
+/// beyond three times the median. Estimates the rotation by Wahba's problem over two kinds of vector pairs: rates at
+/// unsaturated samples, and specific force with the reference's gravity. The weight of a force pair decreases with the
+/// difference between force and gravity. Rates alone do not determine the rotation if the body only turns about one
+/// axis.
 ///
-/// A sample is unsaturated if every gyro axis is below 0.9 of its extreme. Gravity in the reference's world is the mean
-/// specific force, assuming that the body ends with about its initial position and speed. Wahba, SIAM Review 7(3),
-/// 1965; solved by singular values (Markley, J. Astronautical Sciences 36(3), 1988). O(N) with about fifty passes.
+/// A sample counts as unsaturated if every gyro axis is below 0.9 of the axis's extreme reading. The direction of
+/// gravity in the reference's world is the mean specific force, which assumes that the body ends with about its initial
+/// position and speed. The method is Wahba's problem (SIAM Review 7(3), 1965), solved by singular values (Markley,
+/// Journal of the Astronautical Sciences 36(3), 1988). The cost is about fifty passes over the samples.
 ReferenceAlignment align_reference(const std::vector<ReferencePose>& poses, const sim::ImuRecord& imu);
 
-/// Removes delay, rotation and tilt: converts the poses to the IMU, in its clock and a level world.
+/// Removes delay, rotation and tilt: converts the poses to poses of the IMU, in the IMU's clock and a level world.
 void apply(const ReferenceAlignment& alignment, std::vector<ReferencePose>& poses);
 
 }  // namespace tumble::scenarios

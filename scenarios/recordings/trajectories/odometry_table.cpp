@@ -22,7 +22,7 @@ constexpr const char* kFirst = "header.stamp.sec";
 /// A header with all columns of drivers has about 2 kB.
 constexpr std::size_t kHeaderMax_bytes = 64 * 1024;
 
-/// The columns to read, in this order.
+/// The columns to read, in the order of reading.
 constexpr std::array<const char*, 9> kOdometryColumns = {
     kFirst,
     "header.stamp.nanosec",
@@ -35,8 +35,8 @@ constexpr std::array<const char*, 9> kOdometryColumns = {
     "pose.pose.orientation.w",
 };
 
-/// Returns the first line; empty if the file is not a regular file. Reads at most one byte more than the limit, because
-/// a file may have no line ends.
+/// Returns the first line, or an empty text if the file is not a regular file. Reads at most one byte more than the
+/// limit, because a file may have no line ends.
 std::string odometry_header(const std::filesystem::path& file) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) return "";

@@ -9,7 +9,7 @@
 
 #include "sim/recording.hpp"
 
-/// Motion of a real recording measured by a reference instrument: FORMAT.md, "References".
+/// Motion of a real recording that a reference instrument measured (FORMAT.md, "References").
 namespace tumble::scenarios {
 
 /// A pose of frame A (body or lidar) in the instrument's world, z up. An unknown position is NaN.
@@ -19,50 +19,55 @@ struct ReferencePose {
   Eigen::Quaterniond q_WA = Eigen::Quaterniond::Identity();
 };
 
-/// Tolerance of a reference quaternion's norm.
+/// Tolerance of the norm of a reference quaternion.
 inline constexpr double kReferenceNormTolerance = 1e-2;
 
-/// Returns why a pose is invalid after the previous one (or none), "" if valid: not finite, a quaternion norm off by
-/// more than 1 %, or a stamp that does not increase. Normalises valid quaternions.
+/// Returns why a pose is invalid, or "" if the pose is valid. Faults are non-finite numbers, a quaternion norm that
+/// differs from 1 by more than 1 %, and a stamp that is not later than the stamp of `before`. Normalises valid
+/// quaternions.
 std::string problem_of(ReferencePose& pose, const ReferencePose* before);
 
-/// Returns "tum" or "kitti", from the first line with numbers (8 or 12), or "odometry" from its header. Throws
-/// BadInput.
+/// Returns "tum" or "kitti" from the first line with numbers (8 or 12 numbers), or "odometry" from the header. Throws
+/// BadInput if the file has none of these formats.
 std::string pose_format(const std::filesystem::path& file);
 
-/// Reads a TUM file: "t x y z qx qy qz qw" per line, seconds, '#' starts a comment. `sorted` sorts by time and keeps
-/// the first of equal stamps. Throws BadInput with file and line: not eight finite numbers, a quaternion norm off by
-/// more than 1 %, a stamp that does not increase (unless sorted), fewer than two poses.
+/// Reads a TUM file: "t x y z qx qy qz qw" per line, seconds, '#' starts a comment. `sorted` sorts the poses by time
+/// and keeps the first of several poses with equal stamps. Throws BadInput with file and line for a line without eight
+/// finite numbers, a quaternion norm that differs from 1 by more than 1 %, a stamp that does not increase (unless
+/// sorted), or fewer than two poses.
 std::vector<ReferencePose> read_tum_poses(const std::filesystem::path& file, bool sorted);
 
-/// Reads a KITTI file, the upper three rows of a matrix per line, with the given times. Throws BadInput with file and
-/// line: not twelve finite numbers, not a rotation (within 1e-3), different numbers of poses and times.
+/// Reads a KITTI file, in which each line has the upper three rows of a pose matrix; `times` are the times of the
+/// poses. Throws BadInput with file and line for a line without twelve finite numbers, a matrix that is not a rotation
+/// (within 1e-3), or different numbers of poses and times.
 std::vector<ReferencePose> read_kitti_poses(const std::filesystem::path& file,
                                             const std::vector<std::int64_t>& times_ns);
 
 /// Returns true if the first line is the header of a nav_msgs/Odometry table.
 bool is_odometry(const std::filesystem::path& file);
 
-/// Reads a table of nav_msgs/Odometry, one message per line, as written by rosbag tools. It is comma separated, with
-/// field names in the header. Reads header.stamp.sec, header.stamp.nanosec, pose.pose.position.x y z and
-/// pose.pose.orientation.x y z w. Throws like read_tum_poses, and for a missing or repeated column and invalid
+/// Reads a table of nav_msgs/Odometry as written by rosbag tools: one message per line, comma separated, with field
+/// names in the header. Reads header.stamp.sec, header.stamp.nanosec, pose.pose.position.x y z and
+/// pose.pose.orientation.x y z w. Throws like read_tum_poses, and also for a missing or repeated column and invalid
 /// nanoseconds.
 std::vector<ReferencePose> read_odometry_poses(const std::filesystem::path& file);
 
 /// Returns the number of poses in a KITTI file; throws like read_kitti_poses, except for the times.
 std::size_t count_kitti_poses(const std::filesystem::path& file);
 
-/// Converts body poses to a truth. `poses` increase in the recording's clock and may start before time 0. If all poses
-/// lie on a regular grid from time 0 (at least 0.1 ms), this grid is used, so that poses are unchanged; else 1 ms (more
-/// for recordings above two million samples). Between poses at most 2.5 median steps apart, position is linear and
-/// attitude a slerp; elsewhere both are unknown. Ends with the poses or at `end_ns`, whichever is earlier. Throws
-/// BadInput without a known pose, or if longer than a day.
+/// Converts body poses to a truth. The stamps of `poses` increase in the recording's clock and may start before time 0.
+/// If all poses are on a regular grid from time 0 (at least 0.1 ms), the truth uses this grid, so that poses are
+/// unchanged; else the truth has steps of 1 ms (more for recordings above two million samples). Between poses at most
+/// 2.5 median steps apart, the position is linear and the attitude a slerp; elsewhere position and attitude are
+/// unknown. The truth ends with the poses or at `end_ns`, whichever is earlier. Throws BadInput if no pose is known, or
+/// if the truth would be longer than a day.
 sim::Truth reference_truth(const std::vector<ReferencePose>& poses, std::int64_t end_ns);
 
-/// Returns the rotation vector of the shorter rotation.
+/// Returns the rotation vector of the shorter rotation that `q` represents.
 Eigen::Vector3d rotation_vector(const Eigen::Quaterniond& q);
 
-/// Computes velocity and rate by central differences over `reach` samples on each side; unknown where a sample is.
+/// Computes velocity and rate by central differences over `reach` samples on each side; the result is unknown where a
+/// sample is unknown.
 void differentiate(sim::Truth& truth, std::size_t reach);
 
 }  // namespace tumble::scenarios

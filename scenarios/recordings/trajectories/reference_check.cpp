@@ -12,16 +12,19 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Differences as shares of the rotation: more than the first contradicts, less than the second agrees.
+/// Limits of the rotation difference, as fractions of the rotation: a larger difference than kContradicts contradicts
+/// the gyro, a smaller difference than kReferenceAgrees agrees.
 constexpr double kContradicts = 0.5, kReferenceAgrees = 0.3;
-/// A difference beyond the first is a fault where another order or direction of the quaternions leaves less than the
-/// second share of it.
+/// A difference beyond kExplained is a fault of the file if another order or direction of the quaternions leaves less
+/// than the fraction kExplanationLeaves of the difference.
 constexpr double kExplained = 0.15, kExplanationLeaves = 0.4;
 constexpr double kDelaySearched_s = 5.0;
-/// Stamps of sweeps' ends for their starts make 0.1 s, and filters of the IMU some 0.02 s, in sound recordings.
+/// In valid recordings, stamps at the end of sweeps instead of the start cause a delay of 0.1 s, and filters of the IMU
+/// cause about 0.02 s.
 constexpr double kDelayNoted_s = 0.03, kDelayMax_s = 0.15;
 
-/// The stated frame first: poses that fit it are never said to be of another.
+/// Returns the candidate frames with the stated frame first, so that poses that fit the stated frame are never assigned
+/// to another frame.
 std::vector<CandidateFrame> candidate_frames(const Eigen::Isometry3d& T_BA, const sim::Sensors& sensors) {
   const Eigen::Quaterniond q_BI(sensors.imus.front().T_BI.linear());
   std::vector<CandidateFrame> out = {{"as stated", Eigen::Quaterniond(T_BA.linear()).conjugate() * q_BI},
@@ -44,7 +47,7 @@ bool is_delayed(double delay_s) {
   return std::abs(delay_s) >= kDelayMax_s;
 }
 
-/// What is wrong with the file, and what to do about it.
+/// Describes the fault of the file and the correction.
 std::string remedy(Written written, double delay_s) {
   std::string out;
   if (written == Written::w_first || written == Written::w_first_inverse)
@@ -64,7 +67,7 @@ std::string disagreement(const TurningCheck& check, const std::string& imu) {
       share_text(check.stated.difference), check.pairs);
 }
 
-/// A contradiction that the IMU or a mounting may cause as well as the reference.
+/// Describes a contradiction whose cause may be the IMU, a mounting or the reference.
 std::string caution(const TurningCheck& check, const std::string& frame, const std::string& imu) {
   const std::string text =
       "caution: " + disagreement(check, imu) + fmt::format(", at most {} is expected; ", share_text(kContradicts));
@@ -99,7 +102,7 @@ std::string agreement(const TurningCheck& check, const std::string& imu) {
          (check.order_known ? "" : "; the order of its quaternions is not checked: the motion would not show w first");
 }
 
-/// Whether a delay, which may be accepted, is all that separates the reference from the gyro.
+/// Returns true if the reference differs from the gyro only by a delay, which may be accepted.
 bool fits_as_stated(const TurningCheck& check) {
   const TurningFit& fit = check.reading.likely();
   return fit.written == Written::as_stated && fit.frame == 0 && fit.difference < kReferenceAgrees;
@@ -111,7 +114,7 @@ bool fits_as_stated(const TurningCheck& check) {
                  fmt::format(", by {} once corrected", share_text(corrected)) + remedies);
 }
 
-/// Order and direction of the quaternions, and their clock.
+/// Throws BadInput if the gyro contradicts the order or direction of the quaternions, or their clock.
 void require_reading_as_stated(const TurningCheck& check, const std::string& imu, const std::string& where) {
   const TurningFit& fit = check.reading.likely();
   if (fit.difference >= kReferenceAgrees) return;
@@ -121,7 +124,7 @@ void require_reading_as_stated(const TurningCheck& check, const std::string& imu
     refuse(check, imu, where, fit.difference, remedy(rewritten ? fit.written : Written::as_stated, fit.delay_s));
 }
 
-/// The clock of a reference whose mounting is another than stated.
+/// Throws BadInput if the gyro contradicts the clock of a reference whose mounting differs from the stated mounting.
 void require_clock(const TurningCheck& check, const std::string& imu, const std::string& where) {
   const MountingFit& fit = check.mounting.likely();
   if (fit.difference < kReferenceAgrees && is_delayed(fit.delay_s))

@@ -33,7 +33,8 @@ std::vector<double> step_rates_rad_s(const std::vector<ReferencePose>& poses) {
   return rates;
 }
 
-/// Returns the lower median of up to four steps; none at the recording's ends counts as rest.
+/// Returns the lower median of up to four steps; if there is no step at an end of the recording, the body counts as
+/// resting.
 double side_rad_s(const std::vector<double>& rates, std::ptrdiff_t k, std::ptrdiff_t direction) {
   std::vector<double> side;
   for (auto i = static_cast<std::ptrdiff_t>(kNear); i <= static_cast<std::ptrdiff_t>(kFar); ++i) {

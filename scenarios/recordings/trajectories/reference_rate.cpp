@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kLeastPoses = 3;
 
-/// Fits a parabola to the poses first to last and returns its slope at the given time.
+/// Fits a parabola to the poses `first` to `last` and returns its derivative at the requested time.
 Eigen::Vector3d slope_rad_s(const std::vector<ReferencePose>& poses, std::size_t first, std::size_t last,
                             std::int64_t time_ns) {
   std::size_t nearest = first;
@@ -40,7 +40,7 @@ std::vector<Eigen::Vector3d> reference_rates(const std::vector<ReferencePose>& p
   std::vector<std::int64_t> stamps;
   for (const ReferencePose& pose : poses) stamps.push_back(pose.time_ns);
   const auto step = static_cast<double>(median_step_ns(stamps));
-  // slightly larger than the window, so that rounding does not add or drop a sample at its edge
+  // slightly larger than the window, so that rounding does not add or drop a sample at the window's edge
   const auto reach = std::llround(1.01 * std::max(static_cast<double>(kRateWindow_ns), kRateSteps * step));
   const auto gap = std::llround(2.5 * step);
   std::vector<Eigen::Vector3d> rates(times_ns.size(),
@@ -54,7 +54,7 @@ std::vector<Eigen::Vector3d> reference_rates(const std::vector<ReferencePose>& p
     for (; end < poses.size() && poses[end].time_ns <= time + reach; ++end)
       whole = whole && (end == first || poses[end].time_ns - poses[end - 1].time_ns <= gap);
     if (end < first + kLeastPoses || !whole) continue;
-    // both sides of the instant must have a pose
+    // there must be a pose on both sides of the instant
     const bool around = poses[first].time_ns <= time - reach + gap / 2 &&
                         poses[end - 1].time_ns >= time + reach - gap / 2 && poses[first].time_ns < time &&
                         poses[end - 1].time_ns > time;

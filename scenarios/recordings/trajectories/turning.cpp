@@ -19,18 +19,20 @@ namespace {
 constexpr std::int64_t kTurnShortest_ns = 50'000'000, kTurnLongest_ns = 1'000'000'000;
 constexpr std::int64_t kReadingHole_ns = 100'000'000;
 constexpr double kLeast_rad = 0.02, kMost_rad = 2.5;
-/// A pair grows until it has turned so far: noise of the attitudes is then a small share.
+/// A pair of attitudes extends until it has rotated by this angle, so that noise of the attitudes is a small fraction
+/// of the rotation.
 constexpr double kEnough_rad = 0.2;
 constexpr std::size_t kTurnPairsMin = 6, kTurnPairsMax = 400, kDelayPairsMin = 20;
 constexpr std::uint8_t kGyroClipped = 0b111;
 constexpr double kCoarse_s = 0.02, kFine_s = 0.002;
-/// A delay of this size shows where it doubles the difference.
+/// A delay of kShown_s is detectable if it multiplies the rotation difference by kShows.
 constexpr double kShown_s = 0.3, kShows = 2.0, kShowsBy = 0.02;
-/// Only where the attitudes as stated agree so far is there a choice between them and others.
+/// Other interpretations are considered only if the attitudes as stated differ from the gyro by less than this
+/// fraction.
 constexpr double kAgreesAsStated = 0.3;
 constexpr double kNoFit = std::numeric_limits<double>::infinity();
 
-/// The gyro's rotation since its first sample.
+/// Integrates the gyro's rotation since the first sample.
 class GyroIntegral {
  public:
   explicit GyroIntegral(const sim::ImuRecord& imu) : imu_(imu) {
@@ -46,7 +48,7 @@ class GyroIntegral {
     }
   }
 
-  /// None beyond the readings, across a gap, or where a reading is at its rail.
+  /// Returns empty beyond the readings, across a gap, or if a reading is saturated.
   std::optional<Eigen::Quaterniond> between(std::int64_t from_ns, std::int64_t to_ns) const {
     const std::size_t first = sample_at(from_ns), last = sample_at(to_ns);
     if (last == imu_.time_ns.size() || from_ns < imu_.time_ns.front()) return std::nullopt;
@@ -55,7 +57,7 @@ class GyroIntegral {
   }
 
  private:
-  /// The sample in whose window the instant is: the first one that does not precede it.
+  /// Returns the sample whose averaging window contains the instant: the first sample that is not earlier.
   std::size_t sample_at(std::int64_t time_ns) const {
     return static_cast<std::size_t>(std::ranges::lower_bound(imu_.time_ns, time_ns) - imu_.time_ns.begin());
   }
@@ -76,8 +78,8 @@ double angle_rad(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b) {
   return 2.0 * std::acos(std::min(std::abs(a.dot(b)), 1.0));
 }
 
-/// The first attitude after `first` up to which it has turned enough, else the last one within reach; none where that
-/// is too little, too much or too near.
+/// Returns a pair from `first` to the first attitude with sufficient rotation, else to the last attitude within the
+/// time limit; empty if the rotation is too small or too large or the attitudes are too close in time.
 std::optional<AttitudePair> pair_from(std::span<const TimedAttitude> attitudes, std::size_t first) {
   std::optional<AttitudePair> out;
   for (std::size_t k = first + 1; k < attitudes.size(); ++k) {
@@ -92,8 +94,8 @@ std::optional<AttitudePair> pair_from(std::span<const TimedAttitude> attitudes, 
   return out;
 }
 
-/// Pairs begin 50 ms apart and may overlap. Those that have turned less than enough count only where there are few
-/// others: at rest they show the noise of the attitudes alone.
+/// Pairs begin 50 ms apart and may overlap. Pairs with too little rotation only count if there are few other pairs,
+/// because pairs at rest show only the noise of the attitudes.
 std::vector<AttitudePair> pairs_of(std::span<const TimedAttitude> attitudes) {
   std::vector<AttitudePair> out;
   for (std::size_t first = 0; first < attitudes.size();) {
@@ -118,7 +120,7 @@ Eigen::Quaterniond as_meant(const Eigen::Quaterniond& read, Written written) {
   return written == Written::inverse || written == Written::w_first_inverse ? q.conjugate() : q;
 }
 
-/// What the attitudes, read in one way, and the gyro say of the same pairs.
+/// Compares the rotations of attitude pairs under one interpretation with the gyro's rotations over these pairs.
 class TurningComparison {
  public:
   TurningComparison(std::span<const TimedAttitude> attitudes, const std::vector<CandidateFrame>& frames,
@@ -129,7 +131,7 @@ class TurningComparison {
     }
   }
 
-  /// Takes the gyro's rotations at another delay; false where it covers too few of the pairs.
+  /// Sets the delay of the gyro's rotations; returns false if the gyro then has readings for too few pairs.
   bool set_delay(double delay_s, std::size_t least) {
     const auto delay_ns = std::llround(1e9 * delay_s);
     measured_.clear();
@@ -153,7 +155,8 @@ class TurningComparison {
             share([&](const Measured& said) { return angle_rad(each.seen_I[said.pair], said.turn); })};
   }
 
-  /// Of all readings; of equal ones the first, which is as stated.
+  /// Returns the best fit over all interpretations; among equal fits, the first fit, which is the interpretation as
+  /// stated.
   TurningFit best() const {
     TurningFit out = fit(0);
     for (std::size_t k = 1; k < readings_.size(); ++k) {
@@ -162,7 +165,8 @@ class TurningComparison {
     return out;
   }
 
-  /// Mean specific force in the world of the attitudes, read in one way: points up, by about the size of gravity.
+  /// Returns the mean specific force in the world of the attitudes under the interpretation of `fit`; the force points
+  /// up and has about the size of gravity.
   Eigen::Vector3d force(const TurningFit& fit, const sim::ImuRecord& imu) const {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     for (const Measured& said : measured_) {
@@ -175,8 +179,8 @@ class TurningComparison {
     return sum / std::max(static_cast<double>(measured_.size()), 1.0);
   }
 
-  /// Readings in the same frame that fit about as well, as several do in a motion about one axis. The first is as
-  /// stated where that is among them.
+  /// Returns the interpretations in the frame of `fitted` that fit about equally well, which occurs in a motion about
+  /// one axis. If the interpretation as stated is among the results, it comes first.
   std::vector<TurningFit> alike(const TurningFit& fitted) const {
     std::vector<TurningFit> out;
     for (std::size_t k = 0; k < readings_.size(); ++k) {
@@ -186,7 +190,7 @@ class TurningComparison {
     return out;
   }
 
-  /// Wahba's problem (1965), by singular values.
+  /// Solves Wahba's problem (1965) by singular values.
   MountingFit mounting() const {
     Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
     for (const Measured& said : measured_) sum += seen_A(said.pair) * so3::log(said.turn).transpose();
@@ -247,7 +251,7 @@ void take_better(const Fit& found, Fit& best) {
   if (found.difference < best.difference) best = found;
 }
 
-/// Coarsely over all delays, then finely around what was found.
+/// Searches coarsely over all delays, then finely around the best coarse delay.
 template <class Fit, class FitNow>
 void search_delay(TurningComparison& comparison, double delay_max_s, std::size_t least, FitNow&& fit_now, Fit& best) {
   const auto search = [&](double centre_s, double reach_s, double step_s) {
@@ -264,14 +268,14 @@ void search_delay(TurningComparison& comparison, double delay_max_s, std::size_t
 constexpr double kUpMin_m_s2 = 5.0;              ///< of a mean force whose direction shows which way is up
 constexpr double kUpright = 0.9, kTilted = 0.5;  ///< cosines of its tilt
 
-/// Cosine of the angle between the mean specific force and the vertical; 0 where the force is too small to show.
+/// Returns the cosine of the angle between the mean specific force and the vertical; 0 if the force is too small.
 double uprightness(const TurningComparison& comparison, const sim::ImuRecord& imu, const TurningFit& fit) {
   const Eigen::Vector3d up = comparison.force(fit, imu);
   return up.norm() < kUpMin_m_s2 ? 0.0 : up.z() / up.norm();
 }
 
-/// Where the rotations leave the order and direction of the quaternions open, gravity may decide. At the delay of
-/// `fit`.
+/// If the rotations do not determine the order and direction of the quaternions, gravity may decide. The comparison
+/// uses the delay of `fit`.
 void prefer_upright(TurningComparison& comparison, const sim::ImuRecord& imu, TurningFit& fit) {
   if (fit.written == Written::as_stated) return;
   comparison.set_delay(fit.delay_s, 0);
@@ -314,7 +318,7 @@ TurningCheck check_turning(std::span<const TimedAttitude> attitudes, const std::
   compare_with_gravity(comparison, imu, out);
   prefer_upright(comparison, imu, out.reading.undelayed);
   out.reading.delayed = out.reading.undelayed;
-  // a delay that leaves few of the pairs fits them by chance
+  // a delay that leaves few of the pairs fits these pairs by chance
   const std::size_t least = std::max(kDelayPairsMin, out.pairs / 2);
   if (delay_max_s <= 0.0 || out.pairs < least) return out;
   out.clock_known = clock_shows(comparison, out.stated.difference, least);

@@ -11,8 +11,8 @@
 
 #include "sim/recording.hpp"
 
-/// Attitudes compared with a gyro. A file of poses states neither whose poses they are, nor the order and direction of
-/// its quaternions, nor its clock; the gyro measures all of them.
+/// Compares attitudes with a gyro. A pose file does not state the frame of its poses, the order and direction of its
+/// quaternions, or its clock; the gyro reveals all of these.
 namespace tumble::scenarios {
 
 struct TimedAttitude {
@@ -20,17 +20,17 @@ struct TimedAttitude {
   Eigen::Quaterniond q_WA = Eigen::Quaterniond::Identity();
 };
 
-/// A frame whose attitudes they may be.
+/// A frame that the attitudes of a pose file may describe.
 struct CandidateFrame {
   std::string name;
   Eigen::Quaterniond q_AI = Eigen::Quaterniond::Identity();  ///< IMU coordinates to those of the frame
 };
 
-/// What a file may mean by its quaternions.
+/// Possible meanings of the quaternions in a pose file.
 enum class Written { as_stated, w_first, inverse, w_first_inverse };
 
-/// One reading of the attitudes, and how far their rotations then differ from the gyro's: the median over the pairs, as
-/// a share of the median rotation.
+/// Difference between the gyro and the attitudes under one interpretation: the median over pairs of attitudes of the
+/// rotation difference, as a fraction of the median rotation.
 struct TurningFit {
   Written written = Written::as_stated;
   std::size_t frame = 0;  ///< index of the candidate
@@ -38,19 +38,19 @@ struct TurningFit {
   double difference = 0.0;
 };
 
-/// The mounting of the IMU in the frame that fits best, with attitudes read as stated.
+/// Mounting of the IMU in the frame that fits best, with attitudes as stated in the file.
 struct MountingFit {
   Eigen::Quaterniond q_AI = Eigen::Quaterniond::Identity();
   double delay_s = 0.0, difference = 0.0;
 };
 
-/// The best fits without a delay, and with one.
+/// Best fit without a delay, and best fit with a delay.
 template <class Fit>
 struct DelayedFit {
   Fit undelayed, delayed;
 
-  /// The delayed one where it leaves less than half of the difference, less 0.02: a few hundred delays fit somewhat
-  /// better by chance.
+  /// Returns the fit with a delay if its difference is below half of the fit without a delay, less 0.02, because a few
+  /// hundred candidate delays fit somewhat better by chance.
   const Fit& likely() const { return delayed.difference < 0.5 * undelayed.difference - 0.02 ? delayed : undelayed; }
 };
 
@@ -61,18 +61,19 @@ struct TurningCheck {
   DelayedFit<MountingFit> mounting;
   bool clock_known = false;  ///< a delay of 0.3 s would show
   bool order_known = false;  ///< another order or direction of the quaternions would show
-  /// Another order or direction whose rotations agree as well; gravity is vertical in it, but not as stated.
+  /// Another order or direction of the quaternions that agrees equally well and makes gravity vertical, while the
+  /// stated order does not.
   std::optional<TurningFit> upright;
 };
 
-/// Rotations from attitude to attitude, 0.05 to 1 s and 0.02 to 2.5 rad apart, against those of the gyro (products of
-/// the exponentials of its samples, none at its rail, no gap beyond 0.1 s). At most 400 pairs, evenly over the
-/// recording; fewer than 6 decide nothing.
+/// Compares rotations between attitudes (0.05 to 1 s and 0.02 to 2.5 rad apart) with the rotations that the gyro
+/// measures. The gyro's rotation is the product of exponentials of unsaturated samples without a gap above 0.1 s. Uses
+/// at most 400 pairs, spread evenly over the recording; fewer than 6 pairs give no result.
 ///
-/// @param frames       Candidates; the first is the one that is stated.
-/// @param delay_max_s  Delays are searched to both sides, in steps of 20 ms, then of 2 ms. Fewer than 20 pairs decide
-///                     no delay. 0: none is searched.
-/// Cost: O(N log N + pairs x delays), half a second at 5 s.
+/// @param frames       Candidate frames; the first candidate is the stated frame.
+/// @param delay_max_s  Largest delay in either direction; searched in steps of 20 ms, then of 2 ms. Fewer than 20 pairs
+///                     give no delay; for 0, no delay is searched.
+/// Cost: O(N log N + pairs x delays), half a second for delays up to 5 s.
 TurningCheck check_turning(std::span<const TimedAttitude> attitudes, const std::vector<CandidateFrame>& frames,
                            const sim::ImuRecord& imu, double delay_max_s);
 

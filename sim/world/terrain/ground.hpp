@@ -11,22 +11,23 @@
 
 namespace tumble::sim {
 
-/// Heights of the ground on a square grid centred on the origin. Generators shape it; then it is added to a world as
-/// one height field.
+/// Heights of the ground on a square grid centred on the origin. Generators change the heights; then the ground is
+/// added to a world as one height field.
 class Ground {
  public:
-  /// Level ground at height 0: `side` by `side` nodes over |x|, |y| <= half_extent_m; `side` must be at least 2.
+  /// Creates level ground at height 0: `side` by `side` nodes over |x|, |y| <= half_extent_m; `side` must be at least
+  /// 2.
   Ground(int side, double half_extent_m);
 
   int side() const { return side_; }
   double half_extent_m() const { return half_extent_m_; }
   double cell_m() const { return 2.0 * half_extent_m_ / (side_ - 1); }
-  /// Returns x of a column or y of a row.
+  /// Returns the x coordinate of a column or the y coordinate of a row.
   double coordinate_m(int index) const { return index * cell_m() - half_extent_m_; }
   double node_m(int row, int column) const { return heights_m_[static_cast<std::size_t>(row) * side_ + column]; }
 
-  /// Returns the bilinear height between the nodes; beyond the edge, the height of the edge. The engine's triangles
-  /// differ from it by the twist of a cell: 4 mm per 20 cm cell at 0.4 /m.
+  /// Returns the bilinear height between the nodes; beyond the edge, the height of the edge. The triangles of the
+  /// engine differ from the bilinear height by the twist of a cell: 4 mm per 20 cm cell at 0.4 /m.
   double height_m(double x_m, double y_m) const;
 
   /// Replaces each height by f(x_m, y_m, height_m).
@@ -63,7 +64,7 @@ class Ground {
   std::vector<double> heights_m_;
 };
 
-/// Returns 0 within `inner_m`, 1 beyond `outer_m`, and a smooth transition between: relief fades around a position so
+/// Returns 0 within `inner_m`, 1 beyond `outer_m`, and a smooth transition between; relief fades around a position so
 /// that a robot can rest there.
 double fade(double distance_m, double inner_m, double outer_m);
 

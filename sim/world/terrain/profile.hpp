@@ -16,7 +16,7 @@ struct SlopeProfile {
 };
 
 /// Terraces below the level top at height 0: drops of equal height, vertical within `face_m`, each followed by a
-/// sloping ledge; then a level run-out.
+/// sloping ledge; after the last ledge, a level run-out.
 struct LedgeProfile {
   double edge_x_m = 0.0;  ///< first drop
   int drops = 2;          ///< at least 1

@@ -20,14 +20,14 @@ struct RockField {
   Disc clear;  ///< no rock reaches into this disc
 };
 
-/// An ellipsoid that is more than a third buried.
+/// An ellipsoid that is buried by more than a third.
 struct Rock {
   Eigen::Vector3d centre_W_m;
   Eigen::Vector3d half_axes_m;
   double yaw_rad;
 };
 
-/// Places rocks on the ground, uniformly over the area; they may overlap. Throws InvalidSituation if the clear disc
+/// Places rocks on the ground, uniformly over the area; rocks may overlap. Throws InvalidSituation if the clear disc
 /// leaves no room.
 std::vector<Rock> strew_rocks(Stream& stream, const RockField& field, const Ground& ground);
 /// Adds the rocks as surfaces "rock_0", "rock_1", ...

@@ -20,7 +20,8 @@ struct Flight {
   double length_m() const { return steps * tread_m; }
 };
 
-/// Box of step i = 1 .. steps. Its top is i risers below the top of the flight; the last top is level with the foot.
+/// Box of step i = 1 .. steps. The top of step i is i risers below the top of the flight; the top of the last step is
+/// level with the ground below the flight.
 struct Step {
   Eigen::Vector3d centre_W_m;
   Eigen::Vector3d half_m;
