@@ -32,8 +32,8 @@ std::string output_of(const std::string& command) {
   return out;
 }
 
-/// The sensors of a recording as examples/odometry/driver.hpp reads them, all IMUs but the reference. Each sweep is stated
-/// to begin `early_ns` before it does, the times of its points to the same.
+/// The sensors of a recording as examples/odometry/driver.hpp reads them, all IMUs but the reference. Each sweep is
+/// stated to begin `early_ns` before it does, the times of its points to the same.
 void write_messages(const sim::Sensors& sensors, const fs::path& file, std::int64_t early_ns = 0) {
   std::vector<std::vector<ImuSample>> units;
   for (const sim::ImuRecord& record : sensors.imus) {

@@ -91,7 +91,7 @@ TEST(Shrink, LeavesACaseThatTheGateHolds) {
                    "--worse-than", "0.0001", "--budget", "6", "-o", file.string(), "--json"},
                   in_own_data);
   ASSERT_EQ(shrunk.status, 0) << shrunk.err;
-  EXPECT_THAT(shrunk.err, HasSubstr("6 of 6 at most: "));
+  EXPECT_THAT(shrunk.err, HasSubstr("6 of at most 6: "));
   const json document = json_of(shrunk);
   EXPECT_EQ(document["runs"], 6);
   EXPECT_GT(document["shrunk"]["value"], 0.0001);

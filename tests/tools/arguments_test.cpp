@@ -36,7 +36,7 @@ TEST(RequireKnown, NamesWhatIsNearAndNothingThatSharesNoLetter) {
   EXPECT_THAT(said("stamp"), ThrowsMessage<BadInput>(HasSubstr("did you mean 'stamp_s'?")));
   EXPECT_THAT(said("qy"), ThrowsMessage<BadInput>(HasSubstr("did you mean 'qx'?")));
   for (const char* far : {"t", "", "gy"})
-    EXPECT_THAT(said(far), ThrowsMessage<BadInput>(HasSubstr("; known names: qx stamp_s"))) << far;
+    EXPECT_THAT(said(far), ThrowsMessage<BadInput>(HasSubstr("; known: qx stamp_s"))) << far;
 }
 
 TEST(ParseSeeds, TakesARangeOrOne) {

@@ -16,7 +16,7 @@ _OF_COMMON = """size_t ptrdiff_t move swap pair make_pair exchange initializer_l
 _STREAMS = "ostream istream fstream sstream iostream".split()
 
 _HEADERS = {
-    "algorithm": """adjacent_find all_of any_of binary_search clamp copy_if count count_if equal_range fill_n find find_if
+    "algorithm": """partition_point adjacent_find all_of any_of binary_search clamp copy_if count count_if equal_range fill_n find find_if
         find_if_not includes is_sorted iter_swap lower_bound max_element min_element minmax minmax_element mismatch next_permutation none_of nth_element replace replace_if
         reverse reverse_copy rotate search set_difference set_union sort stable_partition stable_sort transform unique upper_bound ranges""",
     "atomic": "atomic",
@@ -31,7 +31,7 @@ _HEADERS = {
     "concepts": "same_as unsigned_integral",
     "csignal": "signal",
     "cstdint": "int8_t int16_t int32_t int64_t uint8_t uint16_t uint32_t uint64_t uintmax_t",
-    "cstdio": "fflush fgets fprintf fputs fread freopen fwrite printf rename setvbuf snprintf",
+    "cstdio": "fflush fgets fprintf fputs puts fread freopen fwrite printf rename setvbuf snprintf",
     "cstdlib": "_Exit abort atof atoi exit free getenv llabs malloc realloc strtod strtol strtoull system",
     "cstring": "memcmp memcpy strcmp strerror strlen",
     "ctime": "clock clock_t strftime time time_t tm",

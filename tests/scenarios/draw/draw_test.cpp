@@ -91,7 +91,7 @@ TEST_F(DrawFiles, NamesAreSortedAndTheNearestIsNamed) {
   put("notes.txt", "not a scenario");
   EXPECT_THAT(scenario_names(data_), testing::ElementsAre("bare", "hill"));
   EXPECT_EQ(complaint_of("hil"), "unknown scenario 'hil'; did you mean 'hill'?");
-  EXPECT_EQ(complaint_of("corridor"), "unknown scenario 'corridor'; known: bare hill");
+  EXPECT_EQ(complaint_of("corridor"), "unknown scenario 'corridor'; known names: bare hill");
   EXPECT_THAT(complaint_of("../hill"), HasSubstr("unknown scenario"));
 }
 

@@ -66,8 +66,8 @@ TEST(Bridge, WhatNoDeviceOfThatRangeMeasuresIsRefusedWithItsValue) {
   EXPECT_EQ(gyro.bound, 2.0 * record.stated_gyro_range_rad_s);
   EXPECT_TRUE(samples.empty());
   record.gyro_rad_s = read;
-  record.accel_m_s2[7].x() = record.accel_m_s2[8].x() = 1e3;  // it lasts
-  EXPECT_EQ(bridge::imu_samples(record, samples).value, 1e3);
+  record.accel_m_s2[7].x() = record.accel_m_s2[8].x() = 1e4;  // lasts for two samples
+  EXPECT_EQ(bridge::imu_samples(record, samples).value, 1e4);
   record.stated_accel_range_m_s2 = 0.0;  // nothing is stated
   EXPECT_TRUE(bridge::imu_samples(record, samples).ok());
 }
@@ -76,7 +76,7 @@ TEST(Bridge, ASingleReadingThatNoDeviceOfThatRangeMeasuresIsLeftOut) {
   sim::Recording recording = testing::synthetic_rig();
   sim::ImuRecord& record = recording.sensors.imus.front();
   record.gyro_rad_s[40].y() = -3e5;
-  record.accel_m_s2[70].x() = 1e3;
+  record.accel_m_s2[70].x() = 1e4;
   std::vector<ImuSample> samples;
   ASSERT_TRUE(bridge::imu_samples(record, samples).ok());
   ASSERT_EQ(samples.size() + 2, record.time_ns.size());

@@ -139,7 +139,7 @@ TEST_F(EstimateFile, ComplaintsNameFileAndLine) {
            {"null", "not a JSON object"},
            {R"({"format": "1"})", R"('format' is "1", must be 1)"},
            {R"({"format": 1})", "'method' is missing"},
-           {R"({"format": 1, "method": 5})", "'method' is 5, must be a text"},
+           {R"({"format": 1, "method": 5})", "'method' is 5, must be text"},
            {R"({"format": 1, "method": "a", "kind": "slan"})",
             R"('kind' is "slan", must be one of rate, attitude, position, slam)"},
            {R"({"format": 1, "method": "a", "kind": "rate", "frame": "imu", "status": null})",

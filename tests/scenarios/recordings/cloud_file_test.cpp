@@ -123,9 +123,9 @@ TEST_F(CloudFile, KittiBin) {
   const Cloud cloud = read("a.bin", bytes(1.0f) + bytes(2.0f) + bytes(3.0f) + bytes(0.5f));
   ASSERT_EQ(cloud.points, 1u);
   EXPECT_EQ((*cloud.find("intensity"))[0], 0.5);
-  EXPECT_THAT(complaint_of("a.bin", "123456789012345"),
-              HasSubstr("a.bin: has 15 bytes; the size must be a multiple of 16 (float32 x y z intensity), so the file "
-                        "may be truncated"));
+  EXPECT_THAT(
+      complaint_of("a.bin", "123456789012345"),
+      HasSubstr("a.bin: has 15 bytes, must be a multiple of 16 (float32 x y z intensity); the file may be truncated"));
 }
 
 /// A sweep of 16 rings, ring by ring, as the columns x y z intensity ring time 0: the first `columns` of them.
@@ -218,7 +218,7 @@ TEST_F(CloudFile, WhatAHeaderPromisesIsHeldAgainstTheFile) {
   EXPECT_THAT(complaint_of("a.ply", ply("99999999999999999999")), HasSubstr("a.ply:3: count of vertex is"));
   EXPECT_THAT(complaint_of("a.ply", ply("-1")),
               HasSubstr("a.ply:3: count of vertex is '-1'; it must be a whole number"));
-  EXPECT_THAT(complaint_of("a.ply", kAsciiPly + "1 2 3\n"), HasSubstr("truncated?"));
+  EXPECT_THAT(complaint_of("a.ply", kAsciiPly + "1 2 3\n"), HasSubstr("the file may be truncated"));
   const auto pcd = [](const std::string& width, const std::string& data) {
     return "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH " + width + "\nHEIGHT 1\nPOINTS " + width +
            "\nDATA " + data + "\n";

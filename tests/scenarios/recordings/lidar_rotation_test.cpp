@@ -129,7 +129,7 @@ TEST(LidarRotation, DegreesAreRefusedWithTheOptionThatTakesThem) {
                                     HasSubstr("set '--gyro-unit deg/s'")));
   }
   EXPECT_THROW(with_gyro(Eigen::Matrix3d::Identity() / kDegrees, GyroUnit::deg_s), BadInput);
-  EXPECT_THAT(with_gyro(degrees, GyroUnit::deg_s), HasSubstr("caution: read in deg/s"));
+  EXPECT_THAT(with_gyro(degrees, GyroUnit::deg_s), HasSubstr("caution: with rates in deg/s"));
 }
 
 TEST(LidarRotation, FlippedAndPermutedAxesAreNamed) {
@@ -145,7 +145,8 @@ TEST(LidarRotation, AMountingThatIsTurnedIsGivenAsARotation) {
   const std::string text = text_of([](sim::ImuRecord&, sim::LidarRecord& lidar) {
     lidar.T_BL.linear() = Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitY()).toRotationMatrix();
   });
-  EXPECT_THAT(text, AllOf(HasSubstr("caution"), HasSubstr("0.343"), HasSubstr("0.939"), HasSubstr("and the mounting")));
+  EXPECT_THAT(text,
+              AllOf(HasSubstr("caution"), HasSubstr("0.343"), HasSubstr("0.939"), HasSubstr("check the mounting")));
   // told by both: nothing to say
   EXPECT_THAT(text_of([](sim::ImuRecord& imu, sim::LidarRecord& lidar) {
                 imu.T_BI.linear() = lidar.T_BL.linear() =

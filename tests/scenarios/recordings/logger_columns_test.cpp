@@ -94,12 +94,14 @@ TEST_F(LoggerTable, TheUnitOfTimesIsTakenFromTheirSteps) {
     return imported.notes;
   };
   EXPECT_THAT(notes_of(kSeconds), Contains("times are read in s, from the size of their steps"));
-  EXPECT_THAT(notes_of({"1700000000000", "1700000000005", "1700000000010"}), Contains(HasSubstr("for ms by")));
-  EXPECT_THAT(notes_of({"0", "5000", "10000"}), Contains(HasSubstr("for us by")));
+  EXPECT_THAT(notes_of({"1700000000000", "1700000000005", "1700000000010"}),
+              Contains(HasSubstr("times are read in ms,")));
+  EXPECT_THAT(notes_of({"0", "5000", "10000"}), Contains(HasSubstr("times are read in us,")));
   EXPECT_THAT(notes_of({"1700000000000000000", "1700000000005000000", "1700000000010000000"}),
-              Contains(HasSubstr("for ns by")));
+              Contains(HasSubstr("times are read in ns,")));
   // as Python prints sums of steps
-  EXPECT_THAT(notes_of({"0.005", "0.010000000000000002", "0.014999999999999999"}), Contains(HasSubstr("for s by")));
+  EXPECT_THAT(notes_of({"0.005", "0.010000000000000002", "0.014999999999999999"}),
+              Contains(HasSubstr("times are read in s,")));
   // half a second, or half a millisecond
   EXPECT_THAT(complaint_of(table("time,gx,gy,gz,ax,ay,az", {"0", "0.5", "1"}, kRow)),
               AllOf(HasSubstr("log.csv: the time step is 0.5"), HasSubstr("Add the unit to the column name")));

@@ -74,7 +74,7 @@ TEST(RecordingCheck, NamesWhatContradicts) {
       {[](auto& s) { s.lidars[0].point_times = static_cast<sim::PointTimes>(3); }, "point_times is not one of"},
       {[](auto& s) { s.lidars[0].sweep_start_ns[1] = 0; }, "sweep_start_ns does not increase"},
       {[](auto& s) { s.series[0].time_ns.pop_back(); },
-       "sensors/series/0: quantities/0: values has 5 rows, time_ns has 4"},
+       "sensors/series/0: quantities/0: values has 5 rows, but time_ns has 4"},
       {[](auto& s) { s.series[0].quantities[1].values.pop_back(); }, "quantities/1: values has 4 rows"},
       {[nan](auto& s) { s.series[0].quantities[1].noise = nan; }, "quantities/1: noise is nan"},
       {[](auto& s) { s.series[0].quantities[1].name = "a,b"; },

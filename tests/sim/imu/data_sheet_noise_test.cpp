@@ -247,7 +247,8 @@ TEST(ScenarioOptions, UnknownAndContradictoryKeysAreRefused) {
     return "";
   };
   EXPECT_THAT(complaint(", gyro_warp: 1"), testing::HasSubstr("did you mean 'gyro_wrap'"));
-  EXPECT_THAT(complaint(", gyro_rail_rad_s: 0, gyro_wrap: 1"), testing::HasSubstr("gyro_wrap needs a rail"));
+  EXPECT_THAT(complaint(", gyro_rail_rad_s: 0, gyro_wrap: 1"),
+              testing::HasSubstr("gyro_wrap needs a saturation level"));
   EXPECT_THAT(complaint(", accel_plateau_axis_spread_m_s2: 90"),
               testing::HasSubstr("below a third of accel_rail_m_s2"));
 }

@@ -343,8 +343,8 @@ TEST(ImuSimulation, RefusesNumbersThatContradictEachOther) {
     return "";
   };
   using testing::HasSubstr;
-  EXPECT_THAT(complaint({{"gyro_wrap", 1}}), HasSubstr("sensors.imu.gyro_wrap needs a rail"));
-  EXPECT_THAT(complaint({{"accel_slow_recovery_s", 1}}), HasSubstr("accel_slow_recovery_s needs a rail"));
+  EXPECT_THAT(complaint({{"gyro_wrap", 1}}), HasSubstr("sensors.imu.gyro_wrap needs a saturation level"));
+  EXPECT_THAT(complaint({{"accel_slow_recovery_s", 1}}), HasSubstr("accel_slow_recovery_s needs a saturation level"));
   EXPECT_THAT(complaint({{"gyro_rail_rad_s", 3}, {"gyro_plateau_axis_spread_rad_s", 1}}), HasSubstr("below a third"));
   EXPECT_THAT(complaint({{"gyro_rail_rad_s", 3}, {"gyro_wrap", 1}, {"gyro_slow_recovery_s", 1}}),
               HasSubstr("must be 0 with gyro_wrap"));
