@@ -302,6 +302,11 @@ TEST(TumblingOdometry, SweepsThatWaitAreBounded) {
   params.expert.sweeps_max = 3;
   TumblingOdometry odometry(params);
   const int most = 3 + 4;  // and those that a lag of 0.2 s may hold back
+  // before the first sample, the oldest sweep makes room
+  for (int k = -most - 2; k < 0; ++k) EXPECT_TRUE(odometry.add_sweep(k * kSweep_ns, (k + 1) * kSweep_ns, {}).ok());
+  EXPECT_EQ(odometry.early_sweeps(), 2u);
+  ASSERT_TRUE(odometry.add_imu(body.imu().front()).ok());
+  EXPECT_EQ(odometry.early_sweeps(), static_cast<std::size_t>(most) + 2);
   for (int k = 0; k < most; ++k) EXPECT_TRUE(odometry.add_sweep(k * kSweep_ns, (k + 1) * kSweep_ns, {}).ok());
   const Status status = odometry.add_sweep(most * kSweep_ns, (most + 1) * kSweep_ns, {});
   EXPECT_EQ(status.trouble, Trouble::out_of_range);
