@@ -45,8 +45,8 @@ Status tumble_rates(const sim::Sensors& sensors, std::span<const ImuSample> samp
                     SmoothedRates& out, Estimate& result);
 
 /// Adds the readings of other IMUs on the body, at the stamps of `samples`. Uses the first auxiliary IMUs except
-/// `imu_reference`, at most kAuxiliaryImusMax, and writes their calibrated mountings to `model`. Errors are those of
-/// the records.
+/// `imu_reference`, at most kAuxiliaryImusMax, and writes their calibrated mountings to `model`. Returns the
+/// first error of the conversion of a record.
 Status auxiliary_readings(const sim::Sensors& sensors, std::span<const ImuSample> samples, RateModelParams& model,
                           std::vector<std::vector<AuxiliaryReading>>& out);
 

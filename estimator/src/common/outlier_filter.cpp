@@ -19,13 +19,12 @@ constexpr double kForceMin_m_s2 = 30.0;   // smallest outlier of an acceleromete
 constexpr double kAgreement = 3.0;        // an outlier is larger than this multiple of the neighbours' difference
 constexpr double kTurn_rad_m = 40.0;      // largest angular acceleration per force
 constexpr double kLever_m = 10.0;         // largest force per angular acceleration
-constexpr double kTurnMost_rad_s = 50.0;  // no impact turns a robot so much faster for a single sample
-constexpr double kHitMost_m_s = 20.0;     // nor changes its velocity by so much within one
+constexpr double kTurnMost_rad_s = 50.0;  // limit of a rate jump that lasts one sample only
+constexpr double kHitMost_m_s = 20.0;     // limit of a velocity jump that lasts one sample only
 constexpr double kNear_s = 0.1;           // neighbours further away than this are not compared
 constexpr double kPeriodsAhead = 4.0;     // a longer step of the stamps is held
 
-// From this fraction of the stated range on, a reading may be smaller than the true value. A repeated large reading may
-// also be smaller.
+// A reading may be saturated from this fraction of the stated range on, and also if a large reading repeats.
 constexpr double kAtRange = 0.95;
 constexpr double kRepeats_rad_s = 1.0, kRepeats_m_s2 = 15.0;
 
