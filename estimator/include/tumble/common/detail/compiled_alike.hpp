@@ -32,6 +32,9 @@ struct CompiledAlike {
 using CompiledHere = CompiledAlike<EIGEN_MAX_STATIC_ALIGN_BYTES, EIGEN_MALLOC_ALREADY_ALIGNED != 0, kRowMajor,
                                    sizeof(Eigen::Index), kCheckedContainers>;
 
+template <>
+const char CompiledHere::linked;  // a declaration; src/common/compiled_alike.cpp has the definition
+
 /// Each source file of the program has its own reference, so that the linker checks each source file.
 [[gnu::used]] static const char* const kCompiledAlike = &CompiledHere::linked;
 
