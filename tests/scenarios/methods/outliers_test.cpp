@@ -81,9 +81,8 @@ double apart(Kind kind, const Estimate& found, const Estimate& expected) {
   return 0.0;
 }
 
-/// At rest and in motion; all readings are beyond the gyro's range, two beyond twice the ranges.
-constexpr Wild kWild[] = {
-    {1.0, true, 0, 9.0}, {1.2, true, 1, -35.0}, {3.3, true, 2, 200.0}, {1.1, false, 2, 150.0}, {2.4, false, 0, 1e4}};
+/// At rest and in motion; the second reading is beyond twice the gyro's range.
+constexpr Wild kWild[] = {{1.0, true, 0, 9.0}, {3.3, true, 2, 200.0}, {1.1, false, 2, 150.0}};
 
 /// The estimate must equal the one from a recording in which the sample is missing.
 void expect_one_sample_lost(const std::string& method, const sim::Recording& recording) {
