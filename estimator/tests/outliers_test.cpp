@@ -152,7 +152,7 @@ TEST(Outliers, WhatLastsIsNoOutlierWhateverTheSheetSays) {
   samples[35].angular_velocity_rad_s.z() += 20.0;
   samples[35].specific_force_m_s2.y() += 100.0;
   EXPECT_EQ(rejected_of(samples), 0u);                             // the force may have caused it
-  EXPECT_EQ(rejected_of(samples, {.gyro_range_rad_s = 4.0}), 1u);  // no device of that range reads so much
+  EXPECT_EQ(rejected_of(samples, {.gyro_range_rad_s = 4.0}), 1u);  // beyond twice the stated range
 }
 
 TEST(Outliers, WhatNoSensorReadsIsMissing) {
@@ -170,7 +170,7 @@ TEST(Outliers, AStampThatIsAheadCostsOneSample) {
   for (const ImuSample& sample : imu) ASSERT_TRUE(odometry.add_imu(sample).ok());
   EXPECT_EQ(odometry.rejected_readings(), 1u);
   EXPECT_EQ(odometry.newest_ns(), last_ns);
-  // one that is right after a pause is none
+  // a right stamp after a pause is accepted
   ImuSample later = imu.back();
   for (const TimeNs step_ns : {TimeNs{300'000'000}, TimeNs{10'000'000}}) {
     later.time_ns += step_ns;

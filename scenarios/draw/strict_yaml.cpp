@@ -28,7 +28,7 @@ constexpr std::uintmax_t kLargestFile = 4u << 20;
 /// an extension.
 constexpr std::size_t kIdentifierMax = 100;
 
-/// Counts parser events. Each event consumes at least one byte of text, so many more events than bytes indicate an
+/// Counts parser events. Each event consumes at least one byte of text, therefore more events than bytes indicate an
 /// endless loop. The parser enters endless loops on some invalid texts.
 class Counter : public YAML::EventHandler {
  public:

@@ -34,7 +34,7 @@ enum class Written { as_stated, w_first, inverse, w_first_inverse };
 struct TurningFit {
   Written written = Written::as_stated;
   std::size_t frame = 0;  ///< index of the candidate
-  double delay_s = 0.0;   ///< attitudes bear stamps that are so much too late
+  double delay_s = 0.0;   ///< time by which the stamps of the attitudes are late
   double difference = 0.0;
 };
 
