@@ -322,8 +322,7 @@ it runs. The printed numbers of the paper's figures come from the data files tha
   Autogain changes more slowly.
 - At the higher rate of the scenario `roll`, Autogain gives nearly the errors of Madgwick's filter, because the weight of
   Madgwick's step is 1 above 2.1 rad/s.
-- With the radius of the sphere, the fusion does not give the printed lengths of the legs. With the diameter in place of
-  the radius, the fused legs are nearer to the printed lengths.
+- The fused legs are near the printed lengths only if the fusion uses the diameter of the sphere in place of the radius.
 
 ## What differs from the paper
 
@@ -368,10 +367,9 @@ The figure shows the first simulated run of `slow_roll`.
 - The true median legs are {true_legs}.
 - On slippery patches of `slip_l`, the sphere spins 1.5 to 2.8 times faster than rolling. On slippery patches of `slide_l`, a
   hand brakes the rotation to at most 0.7 of rolling. In `slip`, the sphere rolls 1 m in 2 to 5 s, faster than in the paper.
-- *Published fusion* uses the radius of the sphere, 0.145 m. The fusion halves the rolling velocity while the velocity from
-  the accelerometer is near zero, because both velocities have the weight 0.5.
-- *Published fusion, radius 0.29 m* uses the diameter in place of the radius, as the authors' code does. The doubled radius
-  partly cancels the halving of the rolling velocity.
+- *Published fusion* uses the radius of the sphere, 0.145 m. *Published fusion, radius 0.29 m* uses the diameter in place of
+  the radius, as the authors' code does. The fusion halves the rolling velocity while the velocity from the accelerometer
+  is near zero; the doubled radius partly cancels the halving.
 
 ![paths with slip](sphere_slip.png)
 
