@@ -332,7 +332,7 @@ that it runs.
 | saturated axes | one at a time | up to three at a time |
 | rate reference | second IMU, which also clips | exact |
 | centre of mass | found by balancing the rig | error of up to 20 mm |
-| lidar mounting, clock | as measured | errors: 1 cm, 1°, 5 ms |
+| lidar mounting, clock | as measured | errors of 1 cm, 1°, 5 ms |
 | pose reference | registered static scans | exact |
 | map reference | registered slow scan | true surface, aligned at the start |
 | aborted registration | ends the mapper | replaced by IMU odometry |
@@ -346,9 +346,8 @@ The figure shows the simulated run with the most collisions during clipping. Gre
 ## Rate error with and without recovery
 
 {rates}
-The gyro has three sensing elements, one near each axis. One element is clipped in {one} of the clipped samples, and two
-or three elements in {more}. The published method corrects only one axis. The inexact centre of mass has an error of up to
-20 mm.
+One of the gyro's three sensing elements is clipped in {one} of the clipped samples, and two or three elements in {more}.
+The published method corrects only one axis. The inexact centre of mass has an error of up to 20 mm.
 
 ![distribution of the rate error](rig_rate_errors.png)
 
@@ -372,7 +371,7 @@ point is its distance to the true surface.
 
 ![density of angular speed against acceleration](rig_density.png)
 
-The paper states that its rig exceeds all other data sets in the paper by 13.9 rad/s and 127.1 m/s². The rectangle shows the
-highest values of the other data sets: 4.7 rad/s and 30.7 m/s². The outlines show the highest angular speed of two public
-data sets in steps of 5 m/s²: BROAD (Laidig et al., Data 2021, CC BY 4.0) and AirbrakesV2 (MIT).
+The rectangle shows the highest values of other data sets in the paper: 4.7 rad/s and 30.7 m/s². The paper's rig exceeds
+these values by 13.9 rad/s and 127.1 m/s². The outlines show the highest angular speed of two public data sets in steps of
+5 m/s²: BROAD (Laidig et al., Data 2021, CC BY 4.0) and AirbrakesV2 (MIT).
 """
