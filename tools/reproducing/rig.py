@@ -131,8 +131,8 @@ def rate_rows(out: Table, quantity: str, errors: dict, elements: str, printed: s
 
 
 CHANGE = "change relative to raw gyro"
-PRINTED = {TRANSLATION: "−71.5 %", ROTATION: "−65.5 %", OVERLAP: "77.2 % (raw), 92.1 % (published)",
-           FAILED: "12 of 32 (raw), 0 of 32 (published)"}
+PRINTED = {TRANSLATION: "−71.5 %", ROTATION: "−65.5 %", OVERLAP: "map overlap 77.2 % (raw gyro), 92.1 % (published)",
+           FAILED: "failed maps: 12 of 32 (raw gyro), 0 of 32 (published)"}
 
 
 def map_rows(out: Table, maps: Scores, seeds: list[int]) -> None:
@@ -292,10 +292,10 @@ SCALE_PX = 26
 
 PAGE = """# The tumbling rig: the paper next to our simulation
 
-S.-P. Deschênes et al., *Saturation-Aware Angular Velocity Estimation*, ICRA 2024, push a lidar rig down a hill until its
-gyro saturates. The published method recovers the saturated axis from the accelerometer. `tools/reproduce papers --only
-rig` writes this page from {draws} runs of the simulated scenario `hill` (seeds {first} to {last}). The script prints each command
-that it runs.
+The authors of *Saturation-Aware Angular Velocity Estimation* (Deschênes et al., ICRA 2024) push a lidar rig down a hill until
+its gyro saturates. The published method recovers the saturated axis from the accelerometer. `tools/reproduce papers --only
+rig` writes this page from {draws} runs of the simulated scenario `hill` (seeds {first} to {last}). `tools/reproduce` prints
+each command that it runs.
 
 {headline}
 - *Raw gyro* is the published mapping chain with unchanged gyro readings (`rate/raw`, `slam/icp_raw`).
@@ -320,28 +320,29 @@ that it runs.
 - The published mapping chain reduces the median localisation errors at least as much as in the paper. On the runs that are
   most similar to the paper, the chain also raises the map overlap as in the paper.
 - The published recovery does not remove all mapping failures in our simulation. Some simulated motions are faster
-  than in the paper, and our maps are not registered to the reference.
+  than the motions of the paper, and our maps are not registered to the reference.
 
 ## What differs from the paper
 
 | condition | paper | our simulation |
 | --- | --- | --- |
-| motion | 5 to 10 m on one hill | 5 to 10 m on random slopes of 20 to 45° |
-| gyro | one device, 10.5 rad/s | one device per run, tilted sensing elements |
+| motion | runs of 5 to 10 m on one hill | runs of 5 to 10 m on random slopes of 20 to 45° |
+| gyro | one device, 10.5 rad/s | one device per run |
 | accelerometer range | 156.9 m/s² | 196.1 m/s² |
-| saturated axes | one at a time | up to three at a time |
+| saturated axes | one at a time | up to three at once |
 | rate reference | second IMU, which also clips | exact |
-| centre of mass | found by balancing the rig | error of up to 20 mm |
-| lidar mounting, clock | as measured | errors of 1 cm, 1°, 5 ms |
+| centre of mass | found by balancing the rig | within 20 mm |
+| lidar mounting | as measured | within 1 cm and 1° |
+| clock | as measured | within 5 ms |
 | pose reference | registered static scans | exact |
-| map reference | registered slow scan | true surface, aligned at the start |
+| map reference | registered slow scan | true surface, aligned once |
 | aborted registration | ends the mapper | replaced by IMU odometry |
 
 ## Rate through a tumble
 
 ![rate through a tumble](rig_rate.png)
 
-The figure shows the simulated run with the most collisions during clipping. Grey marks contact with the ground.
+The figure shows the simulated run with the most collisions during clipping. Grey areas mark contact with the ground.
 
 ## Rate error with and without recovery
 
@@ -355,8 +356,10 @@ The published method corrects only one axis. The inexact centre of mass has an e
 
 ![percentiles of the localisation error](rig_localisation.png)
 
-A failed run has an error of 10 m and 180° in the figure. {alike_draws} of the {draws} simulated runs are most similar to the paper:
-at most 2 % of their clipped samples have two or three clipped elements. The following table shows only the runs that are
+The figure shows a failed run as an error of 10 m and 180°.
+
+{alike_draws} of the {draws} simulated runs are most similar to the paper:
+at most 2 % of their clipped samples have two or three clipped sensing elements. The following table shows only the runs that are
 most similar to the paper.
 
 {alike}
@@ -371,7 +374,7 @@ point is its distance to the true surface.
 
 ![density of angular speed against acceleration](rig_density.png)
 
-The rectangle shows the highest values of other data sets in the paper: 4.7 rad/s and 30.7 m/s². The paper's rig exceeds
-these values by 13.9 rad/s and 127.1 m/s². The outlines show the highest angular speed of two public data sets in steps of
+The rectangle shows the highest values of other data sets in the paper: 4.7 rad/s and 30.7 m/s². The paper states that its
+rig exceeds the other data sets by 13.9 rad/s and 127.1 m/s². The outlines show the highest angular speed of two public data sets in steps of
 5 m/s²: BROAD (Laidig et al., Data 2021, CC BY 4.0) and AirbrakesV2 (MIT).
 """

@@ -201,16 +201,16 @@ def distance_table(turns: dict[str, list[Turning]]) -> Table:
             ("rms distance", "1.545", "1.548", rms, "°"),
             ("highest distance", "4.68", "4.48", lambda d: float(d.max()), "°"),
             ("total variation per second", "4.06", "2.94", lambda d: float(np.abs(np.diff(d)).sum() * TRACKER_HZ / len(d)), "°/s"),
-            ("median step at 120 Hz", "0.0226", "0.0084", lambda d: float(np.median(np.abs(np.diff(d)))), "°"),
-            ("median second difference at 120 Hz", "0.0102", "0.0036", lambda d: float(np.median(np.abs(np.diff(d, 2)))), "°")):
+            ("median step, 120 Hz", "0.0226", "0.0084", lambda d: float(np.median(np.abs(np.diff(d)))), "°"),
+            ("median second difference, 120 Hz", "0.0102", "0.0036", lambda d: float(np.median(np.abs(np.diff(d, 2)))), "°")):
         table.add(name, madgwick + unit, autogain + unit, *(number(statistics.median(measure(d) for d in draws)) + unit for draws in at.values()))
     return table
 
 
 def leg_table(legs: dict[str, list[Leg]]) -> Table:
     table = Table(["quantity", "printed in the paper", *(LABELS[m] for m in POSITIONS)])
-    printed_slip = ("1.52 m (rotation), 1.13 m (fusion)", "1.47 m (rotation), 0.93 m (fusion)", "−10 to +10 % (fusion)", "all")
-    printed_slide = ("0.81 m (rotation), 1.02 m (fusion)", "0.48 m (rotation), 0.46 m (fusion)", "-", "1 of 2 (fusion)")
+    printed_slip = ("leg 1.52 m (rotation alone), 1.13 m (fusion)", "leg 1.47 m (rotation alone), 0.93 m (fusion)", "−10 to +10 % (fusion)", "all")
+    printed_slide = ("leg 0.81 m (rotation alone), 1.02 m (fusion)", "leg 0.48 m (rotation alone), 0.46 m (fusion)", "-", "1 of 2 (fusion)")
     for scenario, printed in ((SLIP, printed_slip), (SLIDE, printed_slide)):
         draws = legs[scenario]
         for k, which in enumerate(("first", "second")):
@@ -231,7 +231,7 @@ def room_table(maps: dict[int, dict[str, np.ndarray]]) -> Table:
     table = Table(["quantity", "printed in the paper", *(LABELS[m] for m in MAPS)])
     below = {m: sum(int(np.sum(points[m][:, 2] < -BELOW_M)) for points in maps.values()) for m in MAPS}
     total = {m: sum(len(points[m]) for points in maps.values()) for m in MAPS}
-    table.add(f"points {BELOW_M} m below the floor", "shown, not counted",
+    table.add(f"map points below −{BELOW_M} m", "shown, not counted",
               *(f"{below[m]} of {total[m]} ({share(below[m] / max(1, total[m]))})" for m in MAPS))
     return table
 
@@ -308,16 +308,16 @@ def draw_map(maps: dict[int, dict[str, np.ndarray]], path: pathlib.Path) -> None
 
 PAGE = """# The rolling sphere: the paper next to our simulation
 
-J. Zevering et al., *IMU-Based Pose-Estimation for Spherical Robots with Limited Resources*, IEEE MFI 2021, roll a sphere of
-29 cm by hand. The published attitude filter Autogain switches between Madgwick's filter and a complementary filter. The
-published position is a fusion of the rolling velocity with the integrated acceleration. `tools/reproduce papers --only
-sphere` writes this page from {draws} simulated runs of each scenario (seeds {first} to {last}). The script prints each command that
-it runs. The printed numbers of the paper's figures come from the data files that the authors published.
+The authors of *IMU-Based Pose-Estimation for Spherical Robots with Limited Resources* (Zevering et al., IEEE MFI 2021) roll a
+sphere of 29 cm by hand. The published attitude filter Autogain switches between Madgwick's filter and a complementary
+filter. The published position estimate is a fusion of the rolling velocity with the integrated acceleration. `tools/reproduce papers --only
+sphere` writes this page from {draws} simulated runs of each scenario (seeds {first} to {last}). `tools/reproduce` prints each
+command that it runs. The printed numbers of the paper's figures come from the data files that the authors published.
 
 ## What is reproduced
 
-- Madgwick's filter jumps at standstill in the paper and in our simulation. The steps of the complementary filter are more
-  than ten times smaller.
+- Madgwick's filter jumps at standstill in the paper and in our simulation. The attitude
+  steps of the complementary filter are more than ten times smaller than the steps of Madgwick's filter.
 - At the pace of the paper (`slow_roll`), the errors of Autogain and of Madgwick's filter are similar, and the error of
   Autogain changes more slowly.
 - At the higher rate of the scenario `roll`, Autogain gives nearly the errors of Madgwick's filter, because the weight of
@@ -328,20 +328,20 @@ it runs. The printed numbers of the paper's figures come from the data files tha
 
 | condition | paper | our simulation |
 | --- | --- | --- |
-| published methods | three averaged gyros, 125 Hz | first of three IMUs, 250 Hz |
+| published methods | three averaged gyros, 125 Hz | first IMU, 250 Hz |
 | our methods | - | all three IMUs, 250 Hz |
-| weights of the fusion | different in two figures, limiter 1.1 | equal, limiter 1.2 |
+| weights of the fusion | varying, limiter 1.1 | equal, limiter 1.2 |
 | integrated acceleration | direction of the force only | force in m/s² |
 | roll correction | never made in the code | made, as printed |
 | attitude reference | optical tracker, fitted to Autogain | exact, aligned in yaw |
 | position reference | tape measure at way points | exact |
-| pace | 1 m in 5 to 9 s | 5 to 9 s (`slow_roll`, `slip_l`, `slide_l`) |
+| pace | 1 m takes 5 to 9 s | 1 m takes 5 to 9 s |
 | slip and slide | provoked by hand | slippery patches |
 
 ## Jitter at standstill: Madgwick against complementary
 
 {jitter}
-The rms step is the rotation from sample to sample (figure 2 of the paper). A step of Madgwick's filter is at most twice the
+The rms step is the rms rotation from sample to sample (figure 2 of the paper). A step of Madgwick's filter is at most twice the
 gain times the sample time: 0.092° at 4 ms, as in our simulation, and 0.229° at 10 ms. Successive steps of Madgwick's filter
 have a correlation of {lag1} in our simulation, and −0.83 in the paper's data. A correlation near −1 means that the filter
 alternates between two values.
@@ -350,9 +350,10 @@ alternates between two values.
 
 ## Autogain against Madgwick: distance to the reference and its derivative
 
-Each cell is the median over the simulated runs of the angle between estimated and true attitude (figures 5 and 6 of the
-paper). The mean rate is {slow} rad/s in `slow_roll`, {fast} rad/s in `roll`, and 0.56 rad/s in a log of the paper. The paper's
-data have a total variation of 82.1° (Madgwick) and 59.3° (Autogain) in 20.2 s, including noise of the optical tracker.
+The distance is the angle between estimated and true attitude (figures 5 and 6 of the paper). Each cell is a median over the
+simulated runs. The mean rate is {slow} rad/s in `slow_roll`, {fast} rad/s in `roll`, and 0.56 rad/s in a log of the paper. The paper's
+data have a total variation of 82.1° (Madgwick) and 59.3° (Autogain) in 20.2 s, including noise of the optical tracker. A step is
+the change of the distance between samples at 120 Hz, and the second difference is the change of the step.
 
 {distance}
 ![distance to the truth and its derivative](sphere_distance.png)
@@ -364,9 +365,9 @@ The figure shows the first simulated run of `slow_roll`.
 {ways}
 - The rows `slip_l` reproduce figure 7 of the paper, and the rows `slide_l` reproduce figure 8. The paper shows one L-shaped
   path per figure.
-- The true median legs are {true_legs}.
-- On slippery patches of `slip_l`, the sphere spins 1.5 to 2.8 times faster than rolling. On slippery patches of `slide_l`, a
-  hand brakes the rotation to at most 0.7 of rolling.
+- The true legs (medians) are {true_legs}.
+- On slippery patches of the scenario `slip_l`, the sphere spins 1.5 to 2.8 times faster than rolling. On slippery patches of the
+  scenario `slide_l`, a hand brakes the rotation to at most 0.7 of rolling.
 - *Published fusion* uses the radius of the sphere, 0.145 m. *Published fusion, radius 0.29 m* uses the diameter in place of
   the radius, as the authors' code does. The fusion halves the rolling velocity while the velocity from the accelerometer
   is near zero; the doubled radius partly cancels the halving.
@@ -377,13 +378,13 @@ The figure shows the first simulated run of `slow_roll`.
 
 ![errors of the legs](sphere_legs.png)
 
-The first two figures show three simulated runs of `slip_l` and of `slide_l`, seen from above. In the scenario `slip` of the
-third figure, the sphere rolls 1 m in 2 to 5 s, faster than in the paper.
+The first two figures of this section show three simulated runs of `slip_l` and of `slide_l`, seen from above. In the
+scenario `slip` of the third figure, the sphere rolls 1 m in 2 to 5 s, faster than in the paper.
 
 ## The map of a room
 
 {rooms}
-The table counts the map points of {rooms_draws} runs of `roll` in a furnished room. The sphere of the paper rolls 4 m in 5 s in one
+The table counts map points more than 0.1 m below the floor in {rooms_draws} runs of `roll` in a furnished room. The sphere of the paper rolls 4 m in 5 s in one
 room. The figure shows the map of the run with seed {map_seed}, seen from the side.
 
 ![the map from the side](sphere_map.png)
