@@ -308,21 +308,23 @@ def draw_map(maps: dict[int, dict[str, np.ndarray]], path: pathlib.Path) -> None
 
 PAGE = """# The rolling sphere: the paper next to our simulation
 
-The authors of *IMU-Based Pose-Estimation for Spherical Robots with Limited Resources* (Zevering et al., IEEE MFI 2021) roll a
-sphere of 29 cm by hand. The published attitude filter Autogain switches between Madgwick's filter and a complementary
-filter. The published position estimate is a fusion of the rolling velocity with the integrated acceleration. `tools/reproduce papers --only
-sphere` writes this page from {draws} simulated runs of each scenario (seeds {first} to {last}). `tools/reproduce` prints each
-command that it runs. The printed numbers of the paper's figures come from the data files that the authors published.
+The authors of *IMU-Based Pose-Estimation for Spherical Robots with Limited Resources* (Zevering et al., IEEE MFI
+2021) roll a sphere of 29 cm by hand. The published attitude filter Autogain switches between Madgwick's filter and a
+complementary filter. The published position estimate is a fusion of the rolling velocity with the integrated
+acceleration. `tools/reproduce papers --only sphere` writes this page from {draws} simulated runs of each scenario
+(seeds {first} to {last}). `tools/reproduce` prints each command that it runs. The printed numbers of the paper's
+figures come from the data files that the authors published.
 
 ## What is reproduced
 
-- Madgwick's filter jumps at standstill in the paper and in our simulation. The attitude
-  steps of the complementary filter are more than ten times smaller than the steps of Madgwick's filter.
-- At the pace of the paper (`slow_roll`), the errors of Autogain and of Madgwick's filter are similar, and the error of
-  Autogain changes more slowly.
-- At the higher rate of the scenario `roll`, Autogain gives nearly the errors of Madgwick's filter, because the weight of
-  Madgwick's step is 1 above 2.1 rad/s.
-- The fused legs are near the printed lengths only if the fusion uses the diameter of the sphere in place of the radius.
+- Madgwick's filter jumps at standstill in the paper and in our simulation. The attitude steps of the complementary
+  filter are more than ten times smaller than the steps of Madgwick's filter.
+- At the pace of the paper (`slow_roll`), the errors of Autogain and of Madgwick's filter are similar, and the error
+  of Autogain changes more slowly.
+- At the higher rate of the scenario `roll`, Autogain gives nearly the errors of Madgwick's filter, because the weight
+  of Madgwick's step is 1 above 2.1 rad/s.
+- The fused lengths of the legs are near the printed lengths only if the fusion uses the diameter of the sphere in
+  place of the radius.
 
 ## What differs from the paper
 
@@ -335,25 +337,26 @@ command that it runs. The printed numbers of the paper's figures come from the d
 | roll correction | never made in the code | made, as printed |
 | attitude reference | optical tracker, fitted to Autogain | exact, aligned in yaw |
 | position reference | tape measure at way points | exact |
-| pace | 1 m takes 5 to 9 s | 1 m takes 5 to 9 s |
+| pace | rolling 1 m takes 5 to 9 s | rolling 1 m takes 5 to 9 s |
 | slip and slide | provoked by hand | slippery patches |
 
 ## Jitter at standstill: Madgwick against complementary
 
 {jitter}
-The rms step is the rms rotation from sample to sample (figure 2 of the paper). A step of Madgwick's filter is at most twice the
-gain times the sample time: 0.092° at 4 ms, as in our simulation, and 0.229° at 10 ms. Successive steps of Madgwick's filter
-have a correlation of {lag1} in our simulation, and −0.83 in the paper's data. A correlation near −1 means that the filter
-alternates between two values.
+The rms step is the rms rotation from sample to sample (figure 2 of the paper). A step of Madgwick's filter is at most
+twice the gain times the sample time: 0.092° at 4 ms, as in our simulation, and 0.229° at 10 ms. Successive steps of
+Madgwick's filter have a correlation of {lag1} in our simulation, and −0.83 in the paper's data. A correlation near −1
+means that Madgwick's filter alternates between two values.
 
 ![steps at standstill](sphere_jitter.png)
 
 ## Autogain against Madgwick: distance to the reference and its derivative
 
-The distance is the angle between estimated and true attitude (figures 5 and 6 of the paper). Each cell is a median over the
-simulated runs. The mean rate is {slow} rad/s in `slow_roll`, {fast} rad/s in `roll`, and 0.56 rad/s in a log of the paper. The paper's
-data have a total variation of 82.1° (Madgwick) and 59.3° (Autogain) in 20.2 s, including noise of the optical tracker. A step is
-the change of the distance between samples at 120 Hz, and the second difference is the change of the step.
+The distance is the angle between estimated and true attitude (figures 5 and 6 of the paper). Each cell is a median
+over the simulated runs. The mean rate is {slow} rad/s in `slow_roll`, {fast} rad/s in `roll`, and 0.56 rad/s in a log
+of the paper's authors. The paper's data have a total variation of 82.1° (Madgwick) and 59.3° (Autogain) in 20.2 s,
+including noise of the optical tracker. A step is the change of the distance between samples at 120 Hz, and the second
+difference is the change of the step.
 
 {distance}
 ![distance to the truth and its derivative](sphere_distance.png)
@@ -363,14 +366,14 @@ The figure shows the first simulated run of `slow_roll`.
 ## The L of 1 m × 1 m with slip and with slide
 
 {ways}
-- The rows `slip_l` reproduce figure 7 of the paper, and the rows `slide_l` reproduce figure 8. The paper shows one L-shaped
-  path per figure.
+- The rows `slip_l` reproduce figure 7 of the paper, and the rows `slide_l` reproduce figure 8. The paper shows one
+  L-shaped path per figure.
 - The true legs (medians) are {true_legs}.
-- On slippery patches of the scenario `slip_l`, the sphere spins 1.5 to 2.8 times faster than rolling. On slippery patches of the
-  scenario `slide_l`, a hand brakes the rotation to at most 0.7 of rolling.
-- *Published fusion* uses the radius of the sphere, 0.145 m. *Published fusion, radius 0.29 m* uses the diameter in place of
-  the radius, as the authors' code does. The fusion halves the rolling velocity while the velocity from the accelerometer
-  is near zero; the doubled radius partly cancels the halving.
+- On slippery patches of the scenario `slip_l`, the sphere spins 1.5 to 2.8 times faster than rolling. On slippery
+  patches of the scenario `slide_l`, a hand brakes the rotation to at most 0.7 of rolling.
+- *Published fusion* uses the radius of the sphere, 0.145 m. *Published fusion, radius 0.29 m* uses the diameter in
+  place of the radius, as the authors' code does. The fusion halves the rolling velocity while the velocity from the
+  accelerometer is near zero; the doubled radius partly cancels the halving.
 
 ![paths with slip](sphere_slip.png)
 
@@ -384,8 +387,9 @@ scenario `slip` of the third figure, the sphere rolls 1 m in 2 to 5 s, faster th
 ## The map of a room
 
 {rooms}
-The table counts map points more than 0.1 m below the floor in {rooms_draws} runs of `roll` in a furnished room. The sphere of the paper rolls 4 m in 5 s in one
-room. The figure shows the map of the run with seed {map_seed}, seen from the side.
+The table counts map points more than 0.1 m below the floor in {rooms_draws} runs of `roll` in a furnished room. The
+sphere of the paper rolls 4 m in 5 s in one room. The figure shows the map of the run with seed {map_seed}, seen from
+the side.
 
 ![the map from the side](sphere_map.png)
 """
