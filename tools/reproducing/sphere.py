@@ -172,19 +172,18 @@ def rms(values: np.ndarray) -> float:
 def page(runs: Runs, turns: dict[str, list[Turning]], legs: dict[str, list[Leg]], maps: dict) -> str:
     rates = {name: number(statistics.median(t.mean_rate_rad_s for t in draws), 2) for name, draws in turns.items()}
     steps = {m: np.concatenate([t.rest_step_rad[m] for t in turns[SLOW]]) for m in ATTITUDES}
+    true_legs = {name: [number(statistics.median(d.true_legs_m[k] for d in draws)) for k in (0, 1)] for name, draws in legs.items() if name != FAST_SLIP}
     return PAGE.format(draws=len(turns[SLOW]), first=runs.seeds[0], last=runs.seeds[1], jitter=jitter_table(steps).text(),
-                       distance="\n".join(distance_table(draws, name, rates[name]).text() for name, draws in turns.items()),
-                       ways=leg_table(legs).text(), rooms=room_table(maps).text(), map_seed=next(iter(maps)),
-                       lag1=number(lag_1([t.rest_step_rad[MADGWICK] for t in turns[SLOW]]), 2).replace("-", "−"),
-                       commands="\n".join("    " + c for c in commands(runs)))
+                       distance=distance_table(turns).text(), slow=rates[SLOW], fast=rates[FAST], ways=leg_table(legs).text(),
+                       true_legs="; ".join(f"{first} m and {second} m (`{name}`)" for name, (first, second) in true_legs.items()),
+                       rooms=room_table(maps).text(), rooms_draws=len(maps), map_seed=next(iter(maps)),
+                       lag1=number(lag_1([t.rest_step_rad[MADGWICK] for t in turns[SLOW]]), 2).replace("-", "−"))
 
 
 def jitter_table(steps: dict[str, np.ndarray]) -> Table:
-    table = Table(["quantity", "printed in the paper", *(LABELS[m] for m in ATTITUDES), "conditions that differ"])
-    table.add("step from sample to sample at standstill, rms", "step 0.229° (Madgwick), 0.0084° (complementary)",
-              *(number(np.degrees(rms(np.linalg.norm(steps[m], axis=1)))) + "°" for m in ATTITUDES),
-              "The sample rate is 250 Hz here. Madgwick's step is at most twice the gain times the sample time: 0.092° at 4 ms, 0.229° at 10 ms. "
-              "The simulated IMU at rest has only the noise of its data sheet.")
+    table = Table(["quantity", "printed in the paper", *(LABELS[m] for m in ATTITUDES)])
+    table.add("rms step at standstill", "0.229° (Madgwick), 0.0084° (complementary)",
+              *(number(np.degrees(rms(np.linalg.norm(steps[m], axis=1)))) + "°" for m in ATTITUDES))
     return table
 
 
@@ -193,45 +192,33 @@ def lag_1(parts: list[np.ndarray]) -> float:
     return float(sum(np.sum(p[1:] * p[:-1]) for p in parts) / sum(np.sum(p * p) for p in parts))
 
 
-def distance_table(draws: list[Turning], scenario: str, rate: str) -> Table:
-    table = Table([f"scenario `{scenario}`, mean rate {rate} rad/s", "paper, Madgwick", "paper, Autogain",
-                   *(LABELS[m] for m in (MADGWICK, AUTOGAIN, OURS)), "conditions that differ"])
-    at = {m: [t.at_tracker(m)[1] for t in draws] for m in (MADGWICK, AUTOGAIN, OURS)}
-    pace = "The pace is that of the paper, whose log has a mean rate of 0.56 rad/s" if scenario == SLOW else "The motion is faster than in the paper"
-    for name, madgwick, autogain, measure, unit, differs in (
-            ("distance to the reference, mean", "1.35", "1.29", lambda d: float(d.mean()), "°",
-             f"{pace}. The reference is exact here. The paper fits the frames of its optical tracker to the Autogain attitudes."),
-            ("distance to the reference, rms", "1.545", "1.548", rms, "°", ""),
-            ("distance to the reference, highest", "4.68", "4.48", lambda d: float(d.max()), "°", ""),
-            ("total variation per second", "4.06", "2.94", lambda d: float(np.abs(np.diff(d)).sum() * TRACKER_HZ / len(d)), "°/s",
-             "The paper's data have a total variation of 82.1° (Madgwick) and 59.3° (Autogain) in 20.2 s. The paper's values include noise of the tracker."),
-            ("step at 120 Hz, median size", "0.0226", "0.0084", lambda d: float(np.median(np.abs(np.diff(d)))), "°", ""),
-            ("second difference at 120 Hz, median size", "0.0102", "0.0036", lambda d: float(np.median(np.abs(np.diff(d, 2)))), "°", "")):
-        cells = [number(statistics.median(measure(d) for d in at[m])) + unit for m in at]
-        table.add(name, madgwick + unit, autogain + unit, *cells, differs)
+def distance_table(turns: dict[str, list[Turning]]) -> Table:
+    methods = (MADGWICK, AUTOGAIN, OURS)
+    table = Table(["quantity", "paper, Madgwick", "paper, Autogain", *(f"`{name}`, {LABELS[m]}" for name in turns for m in methods)])
+    at = {(name, m): [t.at_tracker(m)[1] for t in draws] for name, draws in turns.items() for m in methods}
+    for name, madgwick, autogain, measure, unit in (
+            ("mean distance", "1.35", "1.29", lambda d: float(d.mean()), "°"),
+            ("rms distance", "1.545", "1.548", rms, "°"),
+            ("highest distance", "4.68", "4.48", lambda d: float(d.max()), "°"),
+            ("total variation per second", "4.06", "2.94", lambda d: float(np.abs(np.diff(d)).sum() * TRACKER_HZ / len(d)), "°/s"),
+            ("median step, 120 Hz", "0.0226", "0.0084", lambda d: float(np.median(np.abs(np.diff(d)))), "°"),
+            ("median second difference, 120 Hz", "0.0102", "0.0036", lambda d: float(np.median(np.abs(np.diff(d, 2)))), "°")):
+        table.add(name, madgwick + unit, autogain + unit, *(number(statistics.median(measure(d) for d in draws)) + unit for draws in at.values()))
     return table
 
 
 def leg_table(legs: dict[str, list[Leg]]) -> Table:
-    table = Table(["quantity", "printed in the paper", *(LABELS[m] for m in POSITIONS), "conditions that differ"])
+    table = Table(["quantity", "printed in the paper", *(LABELS[m] for m in POSITIONS)])
     printed_slip = ("leg 1.52 m (rotation alone), 1.13 m (fusion)", "leg 1.47 m (rotation alone), 0.93 m (fusion)", "−10 to +10 % (fusion)", "all")
-    for scenario, name, printed, differs in (
-            (SLIP, "slip", printed_slip, "The sphere rolls 1 m in 5 to 9 s, as in the paper. On slippery patches it spins 1.5 to 2.8 times faster than rolling."),
-            (FAST_SLIP, "slip, scenario `slip`", printed_slip, "The sphere rolls 1 m in 2 to 5 s, faster than in the paper."),
-            (SLIDE, "slide", ("leg 0.81 m (rotation alone), 1.02 m (fusion)", "leg 0.48 m (rotation alone), 0.46 m (fusion)", "-", "1 of 2 (fusion)"),
-             "The sphere rolls 1 m in 5 to 9 s, as in the paper. On slippery patches a hand brakes its rotation to at most 0.7 of rolling.")):
+    printed_slide = ("leg 0.81 m (rotation alone), 1.02 m (fusion)", "leg 0.48 m (rotation alone), 0.46 m (fusion)", "-", "1 of 2 (fusion)")
+    for scenario, printed in ((SLIP, printed_slip), (SLIDE, printed_slide)):
         draws = legs[scenario]
         for k, which in enumerate(("first", "second")):
-            truth = number(statistics.median(d.true_legs_m[k] for d in draws))
-            table.add(f"{name}: {which} leg, median", printed[k],
-                      *(number(statistics.median(d.legs_m[m][k] for d in draws)) + " m" for m in POSITIONS),
-                      (f"{differs} " if k == 0 else "") + f"The true leg is {truth} m.")
+            table.add(f"`{scenario}`: median {which} leg", printed[k], *(number(statistics.median(d.legs_m[m][k] for d in draws)) + " m" for m in POSITIONS))
         errors = {m: leg_errors(draws, m) for m in POSITIONS}
-        table.add(f"{name}: error of a leg, lowest to highest", printed[2],
-                  *(f"{100 * min(errors[m]):+.1f} to {100 * max(errors[m]):+.1f} %".replace("-", "−") for m in POSITIONS),
-                  f"{len(errors[ROTATION])} simulated legs. The paper shows one L-shaped path.")
-        table.add(f"{name}: legs within −10 to +10 %", printed[3],
-                  *(share(statistics.fmean(abs(e) <= 0.1 for e in errors[m])) for m in POSITIONS), "")
+        table.add(f"`{scenario}`: range of leg errors", printed[2],
+                  *(f"{100 * min(errors[m]):+.1f} to {100 * max(errors[m]):+.1f} %".replace("-", "−") for m in POSITIONS))
+        table.add(f"`{scenario}`: legs within ±10 %", printed[3], *(share(statistics.fmean(abs(e) <= 0.1 for e in errors[m])) for m in POSITIONS))
     return table
 
 
@@ -241,21 +228,12 @@ def leg_errors(legs: list[Leg], method: str) -> list[float]:
 
 
 def room_table(maps: dict[int, dict[str, np.ndarray]]) -> Table:
-    table = Table(["quantity", "printed in the paper", *(LABELS[m] for m in MAPS), "conditions that differ"])
+    table = Table(["quantity", "printed in the paper", *(LABELS[m] for m in MAPS)])
     below = {m: sum(int(np.sum(points[m][:, 2] < -BELOW_M)) for points in maps.values()) for m in MAPS}
     total = {m: sum(len(points[m]) for points in maps.values()) for m in MAPS}
-    table.add(f"map points more than {BELOW_M} m below the floor", "shown, not counted",
-              *(f"{below[m]} of {total[m]} ({share(below[m] / max(1, total[m]))})" for m in MAPS),
-              f"{len(maps)} runs of `roll` in a furnished room. In the paper, the sphere rolls 4 m in 5 s in one room.")
+    table.add(f"map points below −{BELOW_M} m", "shown, not counted",
+              *(f"{below[m]} of {total[m]} ({share(below[m] / max(1, total[m]))})" for m in MAPS))
     return table
-
-
-def commands(runs: Runs) -> list[str]:
-    """The sweeps, and one of the commands that differ in scenario, draw and method."""
-    shown = [c for c in runs.commands if c.startswith("tumble sweep") and "sphere_" in c]
-    return [*shown, "tumble record tools/reproducing/SCENARIO.yaml --seed N -o recording.h5",
-            "tumble estimate recording.h5 --method METHOD -o FOLDER",
-            *(f"tumble estimate recording.h5 --method {m.split()[0]} --set {s} -o FOLDER" for m, s in SETTINGS.items())]
 
 
 def draw_jitter(turn: Turning, path: pathlib.Path) -> None:
@@ -330,51 +308,55 @@ def draw_map(maps: dict[int, dict[str, np.ndarray]], path: pathlib.Path) -> None
 
 PAGE = """# The rolling sphere: the paper next to our simulation
 
-The paper is J. Zevering et al., *IMU-Based Pose-Estimation for Spherical Robots with Limited Resources*, IEEE MFI 2021. A sphere
-of 29 cm is rolled by hand. The published filter (Autogain) switches between Madgwick's filter and a complementary filter. The
-position is a fusion of the rolling velocity with the integrated acceleration.
-
-`tools/reproduce papers` writes this page. The script simulates {draws} runs of each scenario (seeds {first} to {last}) and runs the
-published methods and our methods on the same recordings. The printed numbers of the figures come from the data files that the authors
-published with the paper's source.
+The authors of *IMU-Based Pose-Estimation for Spherical Robots with Limited Resources* (Zevering et al., IEEE MFI
+2021) roll a sphere of 29 cm by hand. The published attitude filter Autogain switches between Madgwick's filter and a
+complementary filter. The published position estimate is a fusion of the rolling velocity with the integrated
+acceleration. `tools/reproduce papers --only sphere` writes this page from {draws} simulated runs of each scenario
+(seeds {first} to {last}). `tools/reproduce` prints each command that it runs. The printed numbers of the paper's
+figures come from the data files that the authors published.
 
 ## What is reproduced
 
-- Madgwick's filter jumps at standstill in the paper and here. The steps of the complementary filter are more than ten times
-  smaller.
-- At the pace of the paper, the errors of Autogain and of Madgwick's filter are similar, and the error of Autogain changes more slowly.
-- At the higher rate of `roll`, Autogain gives nearly the errors of Madgwick's filter, because the weight of Madgwick's step is 1 above
-  2.1 rad/s.
-- With the radius of the sphere, the fusion does not give the printed lengths of the legs. With the diameter in place of the
-  radius, the fused legs are nearer to the printed lengths.
+- Madgwick's filter jumps at standstill in the paper and in our simulation. The attitude steps of the complementary
+  filter are more than ten times smaller than the steps of Madgwick's filter.
+- At the pace of the paper (`slow_roll`), the errors of Autogain and of Madgwick's filter are similar, and the error
+  of Autogain changes more slowly.
+- At the higher rate of the scenario `roll`, Autogain gives nearly the errors of Madgwick's filter, because the weight
+  of Madgwick's step is 1 above 2.1 rad/s.
+- The fused lengths of the legs are near the printed lengths only if the fusion uses the diameter of the sphere in
+  place of the radius.
 
 ## What differs from the paper
 
-| | paper | our simulation |
+| condition | paper | our simulation |
 | --- | --- | --- |
-| IMU | three gyros averaged, 125 Hz | the published methods use the first of three IMUs at 250 Hz, our methods use all three IMUs |
-| weights of the fusion | weights differ between the paper's two figures, limiter 1.1 | as printed in the text: equal weights, limiter 1.2 |
-| integration of the acceleration | body frame; the code uses only the direction of the force | as printed: body frame, force in m/s² |
-| roll correction | never made in the authors' code | made, as printed |
-| attitude reference | optical tracker, whose frames were fitted to the Autogain attitudes | exact, aligned in yaw at the start |
+| published methods | three averaged gyros, 125 Hz | first IMU, 250 Hz |
+| our methods | - | all three IMUs, 250 Hz |
+| weights of the fusion | varying, limiter 1.1 | equal, limiter 1.2 |
+| integrated acceleration | direction of the force only | force in m/s² |
+| roll correction | never made in the code | made, as printed |
+| attitude reference | optical tracker, fitted to Autogain | exact, aligned in yaw |
 | position reference | tape measure at way points | exact |
-| pace | 1 m in 5 to 9 s; a log of the same campaign has a mean rate of 0.56 rad/s | `slow_roll`, `slip_l` and `slide_l` have the paper's pace; `roll` and `slip` are faster |
-| slip and slide | provoked by hand | slippery patches, on which a hand spins or brakes the sphere |
+| pace | rolling 1 m takes 5 to 9 s | rolling 1 m takes 5 to 9 s |
+| slip and slide | provoked by hand | slippery patches |
 
 ## Jitter at standstill: Madgwick against complementary
 
 {jitter}
-Successive steps of Madgwick's filter have a correlation of {lag1} here, and −0.83 in the paper's data. A correlation near −1
-means that the filter alternates between two values with steps of fixed size.
+The rms step is the rms rotation from sample to sample (figure 2 of the paper). A step of Madgwick's filter is at most
+twice the gain times the sample time: 0.092° at 4 ms, as in our simulation, and 0.229° at 10 ms. Successive steps of
+Madgwick's filter have a correlation of {lag1} in our simulation, and −0.83 in the paper's data. A correlation near −1
+means that Madgwick's filter alternates between two values.
 
 ![steps at standstill](sphere_jitter.png)
 
-The figure shows steps below 0.00001° as 0.00001°.
-
 ## Autogain against Madgwick: distance to the reference and its derivative
 
-Each number is the median over the simulated runs. The first table has the pace of the paper. The second table has the faster
-scenario `roll` of the catalogue.
+The distance is the angle between estimated and true attitude (figures 5 and 6 of the paper). Each cell is a median
+over the simulated runs. The mean rate is {slow} rad/s in `slow_roll`, {fast} rad/s in `roll`, and 0.56 rad/s in a log
+of the paper's authors. The paper's data have a total variation of 82.1° (Madgwick) and 59.3° (Autogain) in 20.2 s,
+including noise of the optical tracker. A step is the change of the distance between samples at 120 Hz, and the second
+difference is the change of the step.
 
 {distance}
 ![distance to the truth and its derivative](sphere_distance.png)
@@ -384,32 +366,30 @@ The figure shows the first simulated run of `slow_roll`.
 ## The L of 1 m × 1 m with slip and with slide
 
 {ways}
-- *published fusion* uses the radius of the sphere, 0.145 m. The fusion halves the rolling velocity whenever the velocity from
-  the accelerometer is near zero, because both velocities have the weight 0.5.
-- *published fusion, radius 0.29 m* uses the diameter in place of the radius, as the authors' code does. The doubled radius
-  partly cancels the halving of the rolling velocity. With slip, the medians of this column are nearest to the printed numbers.
+- The rows `slip_l` reproduce figure 7 of the paper, and the rows `slide_l` reproduce figure 8. The paper shows one
+  L-shaped path per figure.
+- The true legs (medians) are {true_legs}.
+- On slippery patches of the scenario `slip_l`, the sphere spins 1.5 to 2.8 times faster than rolling. On slippery
+  patches of the scenario `slide_l`, a hand brakes the rotation to at most 0.7 of rolling.
+- *Published fusion* uses the radius of the sphere, 0.145 m. *Published fusion, radius 0.29 m* uses the diameter in
+  place of the radius, as the authors' code does. The fusion halves the rolling velocity while the velocity from the
+  accelerometer is near zero; the doubled radius partly cancels the halving.
 
 ![paths with slip](sphere_slip.png)
 
-The figure shows three simulated runs of `slip_l`, seen from above.
-
 ![paths with slide](sphere_slide.png)
 
-The figure shows three simulated runs of `slide_l`, seen from above.
-
 ![errors of the legs](sphere_legs.png)
+
+The first two figures of this section show three simulated runs of `slip_l` and of `slide_l`, seen from above. In the
+scenario `slip` of the third figure, the sphere rolls 1 m in 2 to 5 s, faster than in the paper.
 
 ## The map of a room
 
 {rooms}
+The table counts map points more than 0.1 m below the floor in {rooms_draws} runs of `roll` in a furnished room. The
+sphere of the paper rolls 4 m in 5 s in one room. The figure shows the map of the run with seed {map_seed}, seen from
+the side.
+
 ![the map from the side](sphere_map.png)
-
-The figure shows the run with seed {map_seed}. The floor is at z = 0.
-
-## Commands
-
-The following commands, run in the work folder `build/reproduce/papers`, give the numbers of this page. SCENARIO is `slow_roll`,
-`slip_l` or `slide_l`.
-
-{commands}
 """
