@@ -11,7 +11,7 @@ namespace tumble::sim {
 
 /// Thrown if a simulated run is rejected. The message states the reason and the simulated time; sweeps count rejected
 /// runs separately. A run is rejected for any of these reasons:
-/// - a warning of the engine, or a state that is not finite;
+/// - a warning of MuJoCo, or a state that is not finite;
 /// - a speed above 5 mm/s after the second of settling before the start;
 /// - a position beyond the half extent of the world, or 60 m below the world's origin;
 /// - a robot that never moves 5 cm away from the start;

@@ -10,8 +10,8 @@
 
 #include "sim/situation.hpp"
 
-/// Used only within sim: mujoco.h is included only by headers in this folder and by headers next to the sources that
-/// need mujoco.h.
+/// This header is used only within sim. mujoco.h is included only by headers in this folder and by headers next to the
+/// sources that need mujoco.h.
 namespace tumble::sim::engine {
 
 struct ModelDeleter {

@@ -19,8 +19,8 @@ struct MagneticDipole {
 };
 
 /// Magnetic flux density in the world [T]: the uniform field of the Earth and point dipoles, B = mu_0 / (4 pi) (3 (m r)
-/// r - m r^2) / r^5 (Jackson, Classical Electrodynamics, equation 5.56). Not modelled: induced magnetisation, currents,
-/// moving sources.
+/// r - m r^2) / r^5 (Jackson, Classical Electrodynamics, equation 5.56). The model excludes induced magnetisation,
+/// currents and moving sources.
 struct MagneticField {
   Eigen::Vector3d earth_W_t = Eigen::Vector3d::Zero();
   std::vector<MagneticDipole> dipoles;
@@ -36,8 +36,8 @@ struct MagneticField {
 MagneticField draw_magnetic_field(const Values& values, std::span<const Eigen::Vector3d> p_W_m, std::uint64_t seed);
 
 /// Error model of a magnetometer triad: soft iron (scale and misalignment), hard iron (an offset in the sensor's axes,
-/// drawn once), white noise of each sample, saturation, quantum. With every number 0 the reading is the true field, bit
-/// for bit. Not modelled: bandwidth and delay, temperature.
+/// drawn once), white noise of each sample, saturation, quantum. If every error parameter is 0, the reading is the true
+/// field, bit for bit. The model excludes bandwidth, delay and temperature.
 class Magnetometer {
  public:
   Magnetometer(const Values& values, std::uint64_t seed, const std::string& stream_name);

@@ -11,8 +11,8 @@ namespace tumble::sim {
 
 /// Sampling of a device that does not integrate between outputs. Each reading is the plain mean of the signal over the
 /// device's own window. The device may have its own update rate, slower or faster than the outputs and not synchronous
-/// with the outputs. Outputs repeat the last reading until a new reading is available (sample and hold). Not modelled:
-/// drift or jitter of the device's clock, weighted windows.
+/// with the outputs. Outputs repeat the last reading until a new reading is available (sample and hold). The model
+/// excludes drift and jitter of the device's clock, and weighted windows.
 class Sampling {
  public:
   struct Params {

@@ -11,7 +11,7 @@ namespace tumble::sim {
 /// Maximum number of rays per beam.
 inline constexpr int kMaxBeamRays = 16;
 
-/// The echoes to which the device measures ranges with beams of finite width, one lane per firing.
+/// The echoes that determine the ranges of a device with beams of finite width; one lane per firing.
 struct Echoes {
   RayPacket packet;  ///< range of the echo; reflectivity and cosine as for a single surface with that echo
   alignas(64) float hit_x[kLanes], hit_y[kLanes], hit_z[kLanes];  ///< hit of the ray with the most energy, world axes
@@ -22,7 +22,7 @@ struct Echoes {
 /// whose ranges differ by less than the length of the echo are merged. The strongest echo determines the range, as the
 /// energy-weighted mean of the ranges of its hits. A beam across an edge therefore returns a range between the two
 /// surfaces, or the range of one surface if the surfaces are farther apart. Surface id and exact hit are those of the
-/// ray with the most energy. Not modelled: an intensity profile over the beam, several returns per firing.
+/// ray with the most energy. The model excludes an intensity profile over the beam, and several returns per firing.
 class BeamSpread {
  public:
   explicit BeamSpread(const Values& values);

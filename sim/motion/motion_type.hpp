@@ -48,7 +48,7 @@ const MotionType& swing_motion();
 /// Returns all kinds of motion in the order of registration. A new kind of motion needs a source file and a line in
 /// motion_type.cpp.
 std::span<const MotionType* const> all_motion_types();
-/// Throws InvalidSituation for an unknown name, with the nearest known name.
+/// Returns the kind of motion with this name. For an unknown name, throws InvalidSituation with the nearest known name.
 const MotionType& find_motion_type(std::string_view name);
 
 }  // namespace tumble::sim

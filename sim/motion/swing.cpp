@@ -30,7 +30,7 @@ constexpr std::array kSwingParameters = {
 
 constexpr double kSwingLongest_s = 3600.0;
 
-/// One swing: grip, lead aside, hold, release.
+/// One swing, in which the hand grips the robot, leads it aside, holds it and releases it.
 struct Lift {
   double start_s;
   Eigen::Vector3d lift_W_m;

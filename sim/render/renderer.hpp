@@ -14,7 +14,7 @@
 
 namespace tumble::sim {
 
-/// RGB, rows from the top.
+/// RGB pixels, row by row from the top.
 struct Picture {
   int width = 0;
   int height = 0;

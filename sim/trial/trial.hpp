@@ -12,8 +12,7 @@
 
 namespace tumble::sim {
 
-/// Integrator of the engine. The simulation uses `runge_kutta_4`; the other integrators serve to demonstrate their
-/// errors.
+/// Integrator of MuJoCo. The simulation uses `runge_kutta_4`; the other integrators serve to demonstrate their errors.
 enum class Integrator { runge_kutta_4, euler, implicit };
 
 struct TrialOptions {
@@ -22,7 +21,7 @@ struct TrialOptions {
 };
 
 /// A robot in its world that is set and advanced step by step with the model and engine of `simulate`, for
-/// measurements. A trial has no settling, and ignores the motion and sensors of the situation.
+/// measurements. A trial does not let the robot settle, and ignores the motion and sensors of the situation.
 class Trial {
  public:
   /// Uses a copy of the world. Throws InvalidSituation if the time step is outside its limits.

@@ -35,7 +35,7 @@ const WorldType& tube_world();
 /// Returns all kinds of world in the order of registration. A new kind of world needs a source file and a line in
 /// world_type.cpp.
 std::span<const WorldType* const> all_world_types();
-/// Throws InvalidSituation for an unknown name, with the nearest known name.
+/// Returns the kind of world with this name. For an unknown name, throws InvalidSituation with the nearest known name.
 const WorldType& find_world_type(std::string_view name);
 
 }  // namespace tumble::sim
