@@ -30,7 +30,7 @@ void refuse_for_memory(std::string_view message) {
 }
 
 /// Installs error handlers, because without handlers MuJoCo would write a log file and end the process on an error.
-/// MuJoCo counts warnings in mjData, and Physics checks these counters after every step.
+/// MuJoCo counts its warnings in mjData, and the class Physics checks the counters after every step.
 void install_handlers() {
   static const bool kInstalled = [] {
     mju_user_warning = [](const char*) {};

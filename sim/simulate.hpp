@@ -22,13 +22,13 @@ class SimulationFailure : public std::runtime_error {
 };
 
 /// Simulates one situation: rigid bodies and contact (MuJoCo, RK4, 0.5 ms), IMU readings, lidar sweeps, truth.
-/// `threads` is the number of threads for the lidar; the result does not depend on this number. Throws InvalidSituation
-/// if the robot lacks a sensor's site or the motion is impossible in this world; throws SimulationFailure for a
-/// rejected run.
+/// `threads` is the number of threads for the lidar; the recording does not depend on `threads`. Throws
+/// InvalidSituation if the robot lacks a sensor's site or the motion is impossible in the situation's world; throws
+/// SimulationFailure for a rejected run.
 Recording simulate(const BuiltSituation& built, int threads = 1);
 
 /// Returns the pose of the robot's body frame at the start of a situation, before the body settles into its contacts;
-/// nothing is simulated. Throws InvalidSituation if the motion is impossible in this world.
+/// nothing is simulated. Throws InvalidSituation if the motion is impossible in the situation's world.
 Eigen::Isometry3d start_pose(const BuiltSituation& built);
 
 }  // namespace tumble::sim

@@ -46,7 +46,7 @@ std::span<const ComponentType> sensor_types();
 /// Parameters of SensorSpec::mount_error.
 std::span<const Parameter> mount_error_parameters();
 
-/// A complete and checked situation. Only `resolve` creates this type, so receivers need no further checks. A
+/// A complete and checked situation. Only `resolve` creates a ResolvedSituation, so receivers need no further checks. A
 /// ResolvedSituation can be read as a Situation. To change a number, copy the Situation, change the copy and resolve
 /// the copy.
 class ResolvedSituation {

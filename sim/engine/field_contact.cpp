@@ -16,7 +16,7 @@ namespace {
 using Eigen::Vector3d;
 
 /// One cell of a height field below a part of a strut's axis, in coordinates relative to the cell's first corner.
-/// MuJoCo divides a cell along the diagonal from the cell's first to its last corner.
+/// MuJoCo divides a cell of a height field along the diagonal from the cell's first to its last corner.
 class Cell {
  public:
   Cell(const Field& field, int row, int column, const Strut& strut, const Part& over)

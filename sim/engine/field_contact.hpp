@@ -13,10 +13,10 @@ namespace tumble::sim::engine {
 /// within MuJoCo's tolerance (1e-6 m). Each prism has at most one contact; the contacts are in the order of rows and
 /// columns. The position of a contact is midway between the two surfaces, and its normal points from the ground to the
 /// axis. `contacts` must have room for mjMAXCONPAIR contacts; the function returns the number of contacts. Returns no
-/// value if MuJoCo's own search is needed. The own search is needed if the axis is in the ground (penetration beyond
-/// the radius), if the field is rotated, or if the strut is as low as the bottom of the field. `field` and `capsule`
-/// are geoms with up-to-date poses. For an axis along a face, MuJoCo's contact may be anywhere along the face; this
-/// function places the contact at an end.
+/// value if MuJoCo's own search is needed. MuJoCo's search is needed if the strut's axis is in the ground (penetration
+/// beyond the radius), if the field is rotated, or if the strut is as low as the bottom of the field. `field` and
+/// `capsule` are geoms with up-to-date poses. For an axis along a face, MuJoCo's contact may be anywhere along the
+/// face; field_contacts places the contact at an end.
 std::optional<int> field_contacts(const mjModel& model, const mjData& data, int field, int capsule,
                                   mjPreContact* contacts);
 

@@ -39,8 +39,8 @@ struct Field {
   }
 
   /// Returns the depth of a point below the plane of the ground triangle at the point's position; the depth is negative
-  /// above the ground and 0 outside of the field. MuJoCo divides a cell along the diagonal from the cell's first to its
-  /// last corner.
+  /// above the ground and 0 outside of the field. MuJoCo divides a cell of the field along the diagonal from the cell's
+  /// first to its last corner.
   double depth_m(const Eigen::Vector3d& p_m) const {
     const double across = (p_m.x() + half_x_m) / cell_x_m, along = (p_m.y() + half_y_m) / cell_y_m;
     if (!(across >= 0.0 && across <= columns - 1 && along >= 0.0 && along <= rows - 1)) return 0.0;

@@ -11,10 +11,10 @@ namespace {
 using Eigen::Vector3d;
 using Box = Eigen::Matrix<double, 6, 1>;
 
-/// The tree contains the geoms up to this distance beyond the robot's reach, so that the tree is rebuilt only once in
+/// Geoms up to this distance beyond the robot's reach are in the tree, so that the tree is rebuilt only once in
 /// hundreds of steps.
 constexpr double kMargin_m = 0.5;
-/// The tree is rebuilt at this remaining margin, which is more than the robot moves in one step at 400 m/s.
+/// The tree is rebuilt when only this margin remains; the margin is more than the robot moves in one step at 400 m/s.
 constexpr double kStep_m = 0.2;
 
 Box everything() {

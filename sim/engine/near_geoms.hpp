@@ -11,8 +11,8 @@ namespace tumble::sim::engine {
 /// Restricts MuJoCo's bounding-volume tree over the world's geoms to geoms that a floating robot may touch soon. The
 /// destructor restores the tree of MuJoCo's compiler. MuJoCo tests the remaining pairs in the same way and sorts
 /// contacts by geom, so the motion stays bit-identical. Planes and height fields are always in the tree, with unbounded
-/// boxes, because testing their boxes saves no time. A model with further moving bodies, or without a tree, is
-/// unchanged.
+/// boxes, because a test of their bounding boxes saves no time. A model with further moving bodies, or without a tree,
+/// is unchanged.
 class NearGeoms {
  public:
   /// `model` must outlive this object, and must not be copied while this object exists.

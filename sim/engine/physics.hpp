@@ -16,8 +16,8 @@ namespace tumble::sim::engine {
 /// Any warning of MuJoCo ends the run, because lost contacts or invalid numbers would make the data worthless.
 class Physics {
  public:
-  /// Modifies `world`'s model until this object is destroyed: the floor's friction follows the contact's position, and
-  /// the tree over the world's geoms follows the robot. `world` must outlive this object.
+  /// Modifies the model of `world` until this Physics object is destroyed: the floor's friction follows the contact's
+  /// position, and the tree over the world's geoms follows the robot. `world` must outlive this object.
   explicit Physics(World& world);
 
   double step_s() const { return world_.model->opt.timestep; }
@@ -32,13 +32,13 @@ class Physics {
   double joint_rate_rad_s(const std::string& name) const;
   void set_joint(const std::string& name, double angle_rad, double rate_rad_s);
 
-  /// Advances by one step under gravity, contacts and `wrench`, which is constant over the step. Throws
+  /// Advances the simulation by one step under gravity, contacts and `wrench`, which is constant over the step. Throws
   /// SimulationFailure with reason and simulated time for a warning of MuJoCo, a state that is not finite, or a robot
   /// that left its world.
   void step(const Wrench& wrench);
 
   /// Appends the robot's contacts with the world at the end of the last step, in arbitrary order. The contacts belong
-  /// to the last stage of RK4. The position at this stage differs from the state by an error of second order in the
+  /// to the last stage of RK4. The position at the last stage differs from the state by an error of second order in the
   /// step. `time_ns` is stored with each contact.
   void append_contacts(std::int64_t time_ns, std::vector<ContactTruth>& contacts) const;
 

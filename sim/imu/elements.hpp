@@ -15,10 +15,10 @@ namespace tumble::sim {
 /// device subtracts the offset and inverts the matrix, so the reading is y = M^-1 (c(s) - o). The saturation of
 /// elements has these consequences:
 /// - While no element saturates, the reading is u, bit for bit: neither M nor o is observable.
-/// - While only element j is at its limit r, m_j . y = +r - o_j or -r - o_j. The limit is a plane in the readings,
-///   tilted against the axes, and different for the two signs.
-/// - The other axes are then also wrong, by entries of M^-1 times the saturation deficit of element j. For the
-///   unsaturated elements, m_i . y = m_i . u still holds.
+/// - While only element j is at its limit r, the reading satisfies m_j . y = +r - o_j or -r - o_j. The limit is a plane
+///   in the readings, tilted against the axes, and different for the two signs.
+/// - While element j is at its limit, the other axes are also wrong, by entries of M^-1 times the saturation deficit of
+///   element j. For the unsaturated elements, m_i . y = m_i . u still holds.
 /// Real devices show planes tilted by 0.02 and 0.05, and offsets of 0.05 and 0.14 rad/s (wand and pendulum of RepoIMU;
 /// scenarios/certificate/real_rails.cpp has the values). The model excludes noise and quantum along the axes of the
 /// elements, because both act in the device's axes. The model also excludes compensation errors that differ at

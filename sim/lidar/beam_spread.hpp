@@ -18,11 +18,12 @@ struct Echoes {
 };
 
 /// Models a finite beam width by a fixed pattern of rays, each with an equal part of the ellipse's area (Vogel,
-/// Mathematical Biosciences 44, 1979). Each ray returns an energy of reflectivity times cosine over range squared. Hits
-/// whose ranges differ by less than the length of the echo are merged. The strongest echo determines the range, as the
-/// energy-weighted mean of the ranges of its hits. A beam across an edge therefore returns a range between the two
-/// surfaces, or the range of one surface if the surfaces are farther apart. Surface id and exact hit are those of the
-/// ray with the most energy. The model excludes an intensity profile over the beam, and several returns per firing.
+/// Mathematical Biosciences 44, 1979). Each ray returns the energy reflectivity times cosine of incidence over range
+/// squared. Hits whose ranges differ by less than the length of the echo are merged. The measured range is the
+/// energy-weighted mean of the ranges in the strongest echo. A beam across an edge therefore returns a range between
+/// the two surfaces, or the range of one surface if the surfaces are farther apart. The surface id and the exact hit
+/// belong to the ray with the most energy. The model excludes an intensity profile over the beam, and several returns
+/// per firing.
 class BeamSpread {
  public:
   explicit BeamSpread(const Values& values);

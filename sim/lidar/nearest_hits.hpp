@@ -5,7 +5,7 @@
 
 #include "sim/lidar/ray_scene.hpp"
 
-/// This header is used only within sim. It stores the nearest hits found so far for a packet of rays.
+/// This header is used only within sim. NearestHits stores the nearest hits found so far for a packet of rays.
 namespace tumble::sim {
 
 /// Nearest hit of each lane, computed with our own arithmetic. Among hits at equal ranges, the hit with the lowest

@@ -19,7 +19,7 @@ struct Returns {
 /// Applies range errors in this order: loss of weak returns (by range, incidence, reflectivity), random loss, white
 /// noise, range limits, quantum. Intensity is reflectivity times the cosine of incidence, rounded down to the intensity
 /// quantum, as reported by devices that compensate for range. The model excludes range bias by incidence or intensity,
-/// cross-talk, and several returns per firing. BeamSpread models beam divergence and mixed returns before this stage.
+/// cross-talk, and several returns per firing. Before RangeErrors, BeamSpread models beam divergence and mixed returns.
 class RangeErrors {
  public:
   RangeErrors(const Values& values, std::uint64_t seed, std::string_view stream_name);

@@ -37,8 +37,8 @@ constexpr const char* kDevice =
     "start_threads=0,set_affinity=0,isa=avx2,frequency_level=simd256,ignore_config_files=1";
 constexpr int kKernelLanes = 8;
 static_assert(kKernelLanes == kShapeLanes && NearestHits::kNone == RTC_INVALID_GEOMETRY_ID);
-/// Embree divides with an approximate reciprocal that differs between CPU vendors. The ranges of Embree only select
-/// candidates: all faces within this factor of the nearest hit are examined.
+/// Embree divides with an approximate reciprocal that differs between CPU vendors. Embree's ranges only select
+/// candidates: all faces within the factor kReach of the nearest hit are examined.
 constexpr float kReach = 1.0f + 4e-6f;
 
 struct MeshLabel {
@@ -278,7 +278,7 @@ void RayScene::Impl::cast_lanes(const RayPacket& packet, int first, CastContext&
   RTCRayHit8 rays;
   alignas(32) int valid[kKernelLanes];
   for (int i = 0; i < kKernelLanes; ++i) {
-    // an unused lane repeats the first lane with an empty range, so that its input is defined
+    // an unused lane repeats the first lane with an empty range, so that the input of the lane is defined
     const bool used = first + i < packet.count;
     const int lane = used ? first + i : first;
     valid[i] = used ? -1 : 0;

@@ -10,7 +10,7 @@
 #include "sim/engine/model.hpp"
 #include "sim/lidar/shape.hpp"
 
-/// This header is used only within sim. Its functions extract the surfaces that rays can hit from a compiled model.
+/// This header is used only within sim. The functions extract the surfaces that rays can hit from a compiled model.
 namespace tumble::sim {
 
 /// Surface id of a return from the robot's own struts. Non-negative ids are indices of engine::World::surfaces.

@@ -141,7 +141,7 @@ double signed_box_distance(const Vector& point, const Vector& half) {
 
 /// Finds the nearest point of an ellipsoid as the root of sum (a_i y_i / (t + a_i^2))^2 = 1 for t > -min a_i^2, with
 /// the semi-axes a_i and the point y (Eberly, Distance from a point to an ellipsoid). Bisection is used because the sum
-/// decreases monotonically for t in this range.
+/// decreases monotonically for t > -min a_i^2.
 double ellipsoid_distance(const Vector3d& size, const Vector3d& point) {
   const double scale = size.maxCoeff();
   const Vector3d a = size / scale, y = point.cwiseAbs() / scale;

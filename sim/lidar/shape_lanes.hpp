@@ -3,7 +3,7 @@
 
 #include "sim/lidar/shape.hpp"
 
-/// This header is used only within sim. It intersects eight rays with one shape.
+/// This header is used only within sim. cast_rays() intersects eight rays with one shape.
 namespace tumble::sim {
 
 /// Number of rays that Embree passes in one call.

@@ -51,8 +51,8 @@ constexpr std::array<Parameter, kHandParameters.size() + N> with_hand(const std:
 }
 
 /// A hand that moves a sphere with a horizontal force at the sphere's centre. The force follows a reference position
-/// (spring, damper, and the feed-forward force of rolling) with tremor; on patches of other friction, bursts of torque
-/// are added. The hand applies no vertical force and has no body in the simulation.
+/// (spring, damper, and the feed-forward force of rolling) with tremor; on floor patches with different friction,
+/// bursts of torque are added. The hand applies no vertical force and has no body in the simulation.
 class Hand {
  public:
   /// Error messages of the constructor start with `motion`. Throws InvalidSituation if the robot is not a sphere.

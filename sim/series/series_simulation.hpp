@@ -26,7 +26,7 @@ inline constexpr std::array kSeriesParameters = {
     Parameter{"dropout_mean_samples", 1.0, 1.0, 1e4, "1", "mean length of a run of lost samples"},
 };
 
-/// Errors of the readings of a quantity relative to its mean over the averaging window; an error of 0 is off.
+/// Errors of readings, relative to the mean of the quantity over the averaging window; an error of 0 is off.
 struct ReadingErrors {
   double noise = 0.0;                                     ///< standard deviation of the white noise of each reading
   double bias = 0.0;                                      ///< standard deviation of an error drawn once per recording

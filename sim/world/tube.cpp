@@ -88,7 +88,7 @@ void add_shell(mjSpec* spec, engine::World& world, const Values& values, int sid
 void add_ends(mjSpec* spec, engine::World& world, const Values& values, double half_y_m) {
   const double half_height_m = 0.75 * values.at("height_m"), x_m = values.at("length_m") / 2;
   for (const int sign : {1, -1}) {
-    // the box closes the end of the tube; it is slightly rotated, like debris
+    // the box closes the end of the tube and is slightly rotated, like debris
     add_surface(spec, world, sign > 0 ? "end_front" : "end_back", mjGEOM_BOX, {sign * (x_m + 0.05), 0, half_height_m},
                 {0.2, half_y_m, half_height_m}, 0.1, kRock);
   }

@@ -23,7 +23,7 @@ const WorldType& hill_world();
 const WorldType& stairs_world();
 /// Drops of a metre and more with ledges between the drops.
 const WorldType& cliff_world();
-/// Room with a floor, walls, ceiling, furniture, obstacles and patches of other friction.
+/// Room with a floor, walls, ceiling, furniture, obstacles and floor patches with different friction.
 const WorldType& floor_world();
 /// Room with a ramp up, a plateau and a ramp down.
 const WorldType& ramp_world();
