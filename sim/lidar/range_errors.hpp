@@ -24,7 +24,7 @@ class RangeErrors {
  public:
   RangeErrors(const Values& values, std::uint64_t seed, std::string_view stream_name);
 
-  /// The result depends only on seed, name, `index` (unique per packet) and hits.
+  /// The returns depend only on seed, name, `index` (unique per packet) and hits.
   void apply(const RayPacket& hits, std::uint64_t index, Returns& returns) const;
 
  private:

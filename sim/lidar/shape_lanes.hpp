@@ -16,7 +16,7 @@ struct ShapeHits {
   alignas(64) double normal_x[kShapeLanes], normal_y[kShapeLanes], normal_z[kShapeLanes];
 };
 
-/// Eight rays in F, stored by coordinate.
+/// Eight rays in the frame F, stored by coordinate.
 struct ShapeRays {
   const float *origin_x_m, *origin_y_m, *origin_z_m;
   const float *direction_x, *direction_y, *direction_z;  ///< unit vectors

@@ -18,7 +18,8 @@ class Motion {
   /// Returns the pose at rest just above the ground, from which the robot settles under gravity before the recording
   /// starts.
   virtual BodyState start() const = 0;
-  /// Returns the wrench from `state.time_s` to the next step. Negative times are the settling before the recording.
+  /// Returns the wrench from `state.time_s` to the next step. At negative times, the robot settles before the recording
+  /// starts.
   virtual Wrench wrench(const BodyState& state) = 0;
 };
 

@@ -60,8 +60,8 @@ double smooth(double share) {
   return u * u * u * (10.0 + u * (-15.0 + 6.0 * u));
 }
 
-/// A hand that grips the lowest segment at the segment's centre of mass with a spring and a damper to a moving target.
-/// The hand applies no torque and has no body in the simulation.
+/// A hand that grips the lowest segment of the pendulum at the segment's centre of mass. A spring and a damper pull the
+/// segment to a moving target. The hand applies no torque and has no body in the simulation.
 class Swing : public Motion {
  public:
   Swing(const Values& values, const engine::World& world)

@@ -66,7 +66,7 @@ class Renderer {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Arranges pictures of equal size in rows of `columns` (a film strip).
+/// Arranges pictures of equal size in rows of `columns` pictures (a film strip).
 Picture film_strip(std::span<const Picture> pictures, int columns);
 
 /// Returns the picture as a PNG file.

@@ -26,7 +26,7 @@ struct RayTrialOptions {
 };
 
 /// Casts random rays in all directions with the ray scene and with MuJoCo. Half of the rays start 0.2 to 3 m above the
-/// surface at random positions of the world, half near the robot's start. The robot is not part of the comparison. A
+/// surface at random positions of the world, half near the robot's start. The comparison of rays excludes the robot. A
 /// ray of MuJoCo takes up to 0.3 ms on a height field. Throws InvalidSituation for a geom without a surface.
 RayDisagreement compare_rays(const BuiltSituation& built, const RayTrialOptions& options);
 

@@ -31,7 +31,7 @@ constexpr std::array kTubeParameters = joined(kGroundParameters, kOwnTubeParamet
 constexpr Colour kRock = {0.42f, 0.36f, 0.33f, 1.0f};
 constexpr double kOver_m = 0.5;  // the ground extends beyond the walls, so that there is no gap
 
-/// Returns the position of the tube's middle.
+/// Returns the y coordinate of the tube's middle line at `x_m`.
 double middle_m(const Values& values, double x_m) {
   return values.at("bend_m") * std::sin(2.0 * std::numbers::pi * x_m / values.at("bend_length_m"));
 }
