@@ -23,13 +23,14 @@ using SpecPtr = std::unique_ptr<mjSpec, SpecDeleter>;
 constexpr double kStep_s = 0.0005;
 constexpr int kFewPairs = 100;
 
-/// A lack of memory is not an error of the situation, which may simulate on a larger machine.
+/// Throws std::bad_alloc for a lack of memory, which is not an error of the situation: a larger machine may simulate
+/// it.
 void refuse_for_memory(std::string_view message) {
   if (message.find("ould not allocate") != std::string_view::npos) throw std::bad_alloc();
 }
 
-/// Without handlers, the engine would write a log file and end the process on an error. Warnings of the engine are
-/// counted in mjData and checked after every step.
+/// Installs error handlers, because without handlers MuJoCo would write a log file and end the process on an error.
+/// MuJoCo counts its warnings in mjData, and the class Physics checks the counters after every step.
 void install_handlers() {
   static const bool kInstalled = [] {
     mju_user_warning = [](const char*) {};
@@ -46,7 +47,7 @@ bool touches(const mjModel& model, int geom) {
   return model.geom_contype[geom] != 0 || model.geom_conaffinity[geom] != 0;
 }
 
-/// Counts the pairs of a moving and a static geom.
+/// Counts the pairs that consist of a moving geom and a static geom.
 int count_pairs(const mjModel& model) {
   int moving = 0, all = 0;
   for (int i = 0; i < model.ngeom; ++i) {
@@ -56,8 +57,9 @@ int count_pairs(const mjModel& model) {
   return moving * (all - moving);
 }
 
-/// Returns true if the engine's tree returns the contacts of a robot with one geom in the order in which a test of
-/// every pair returns them. The tree sorts by the first geom of a pair, which is the geom whose type comes first.
+/// Returns true if the robot has one geom and MuJoCo's bounding-volume tree returns the robot's contacts in the same
+/// order as a test of every pair. The tree sorts the contacts by the first geom of a pair. The first geom is the geom
+/// whose type has the lower number.
 bool sorts_as_asked(const mjModel& model) {
   int robot = -1;
   for (int i = 0; i < model.ngeom; ++i) {
@@ -87,18 +89,19 @@ bool moves_freely(const mjModel& model) {
          none(model.dof_frictionloss, model.nv);
 }
 
-/// Disables computations whose results are not used; the motion stays bit-identical. Sleeping is enabled because the
-/// engine then places static bodies only once instead of at every stage of a step. The robot never sleeps.
+/// Disables computations of MuJoCo whose results are not used; the motion stays bit-identical. Sleeping is enabled
+/// because MuJoCo then places static bodies only once instead of at every stage of a step. The robot never sleeps.
 void spare_work(mjModel& model) {
   model.opt.enableflags |= mjENBL_SLEEP;
   std::fill(model.tree_sleep_policy, model.tree_sleep_policy + model.ntree, static_cast<int>(mjSLEEP_NEVER));
   model.opt.disableflags |= mjDSBL_ISLAND;  // the robot is a single island
-  // a height field is below every strut, so its bounding box is not tested; planes have no bounding box either
+  // bounding boxes of height fields are not tested, because a height field is below every strut; planes have no box
   for (int i = 0; i < model.ngeom; ++i) {
     if (model.geom_type[i] == mjGEOM_HFIELD)
       std::fill(model.geom_aabb + 6 * i + 3, model.geom_aabb + 6 * i + 6, mjMAXVAL);
   }
-  // for few pairs, a tree over the world's geoms costs more than it saves, unless the tree contains only near geoms
+  // for few pairs, a tree over the world's geoms costs more than it saves, unless the tree contains only geoms near the
+  // robot
   if (count_pairs(model) <= kFewPairs && !(NearGeoms::serves(model) && sorts_as_asked(model))) {
     model.opt.disableflags |= mjDSBL_MIDPHASE;
   }

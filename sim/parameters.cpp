@@ -26,7 +26,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
-/// Parameters with these names are counts or list numbers, so their values must be whole.
+/// Returns true if a parameter with this name is a count or a list number, so that its value must be a whole number.
 bool is_whole(std::string_view name) {
   return name.ends_with("_count") || name == "shape";
 }
@@ -41,7 +41,7 @@ double Values::at(std::string_view name) const {
 
 std::string nearest_name(std::string_view name, std::span<const std::string> known) {
   std::string best;
-  // at most half of the letters may differ: more distant names would mislead
+  // at most half of the letters of a suggested name may differ, because more distant names would mislead
   std::size_t best_distance = std::max<std::size_t>(2, name.size() / 2) + 1;
   for (const std::string& candidate : known) {
     const std::size_t distance = edit_distance(name, candidate);

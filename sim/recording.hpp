@@ -53,7 +53,7 @@ struct LidarTruth {
   std::vector<std::int32_t> surface_id;  ///< index into Truth::surfaces; -2 is the robot's own cage
 };
 
-/// Parallel to a Quantity.
+/// True values of a Quantity, parallel to its readings.
 struct QuantityTruth {
   std::string name;
   std::string unit;

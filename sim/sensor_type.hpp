@@ -34,7 +34,7 @@ struct SensorType {
 
 /// Returns all kinds of sensor in the order of registration.
 std::span<const SensorType* const> all_sensor_types();
-/// Throws InvalidSituation for an unknown name, with the nearest known kind.
+/// Returns the kind of sensor with this name. For an unknown name, throws InvalidSituation with the nearest known kind.
 const SensorType& find_sensor_type(std::string_view kind);
 
 }  // namespace tumble::sim

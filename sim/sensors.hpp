@@ -38,7 +38,7 @@ enum class PointTimes : std::uint8_t {
   unknown      ///< the sweep is skewed in an unknown way; offset_ns is 0
 };
 
-/// Returns of one lidar, sweep after sweep; firings without a hit have no point.
+/// Returns of one lidar, sweep after sweep; a firing without a hit has no point in the record.
 struct LidarRecord {
   std::string name;
   std::string device;

@@ -38,7 +38,7 @@ struct Situation {
   bool operator==(const Situation&) const = default;
 };
 
-/// Return the registries, in the order of registration.
+/// These functions return the registries, in the order of registration.
 std::span<const ComponentType> world_types();
 std::span<const ComponentType> robot_types();
 std::span<const ComponentType> motion_types();
@@ -46,8 +46,9 @@ std::span<const ComponentType> sensor_types();
 /// Parameters of SensorSpec::mount_error.
 std::span<const Parameter> mount_error_parameters();
 
-/// A complete and checked situation. Only `resolve` creates this type, so receivers need no further checks. The object
-/// can be read as a Situation. To change a number, copy the Situation, change the copy and resolve the copy.
+/// A complete and checked situation. Only `resolve` creates a ResolvedSituation, so receivers need no further checks. A
+/// ResolvedSituation can be read as a Situation. To change a number, copy the Situation, change the copy and resolve
+/// the copy.
 class ResolvedSituation {
  public:
   const Situation* operator->() const { return &situation_; }

@@ -33,14 +33,14 @@ struct Field {
   double x_m(int column) const { return cell_x_m * column - half_x_m; }
   double y_m(int row) const { return cell_y_m * row - half_y_m; }
   double height_m(int row, int column) const { return scale_m * heights[row * columns + column]; }
-  /// Returns the larger height of two grid nodes: this node and the node in the next row of its column.
+  /// Returns the larger height of two grid nodes: the node (row, column) and the node in the next row of its column.
   double higher_m(int row, int column) const {
     return scale_m * std::max(heights[row * columns + column], heights[(row + 1) * columns + column]);
   }
 
   /// Returns the depth of a point below the plane of the ground triangle at the point's position; the depth is negative
-  /// above the ground and 0 outside of the field. The engine divides a cell along the diagonal from the cell's first to
-  /// its last corner.
+  /// above the ground and 0 outside of the field. MuJoCo divides a cell of the field along the diagonal from the cell's
+  /// first to its last corner.
   double depth_m(const Eigen::Vector3d& p_m) const {
     const double across = (p_m.x() + half_x_m) / cell_x_m, along = (p_m.y() + half_y_m) / cell_y_m;
     if (!(across >= 0.0 && across <= columns - 1 && along >= 0.0 && along <= rows - 1)) return 0.0;
@@ -78,13 +78,13 @@ struct Strut {
   double highest_m(int axis) const { return from_m[axis] + std::max(0.0, along_m[axis]) + reach_m; }
 };
 
-/// A part of the axis, from `first` to `last` as fractions of the axis's length; empty if `first` exceeds `last`.
+/// A part of a strut's axis, from `first` to `last` as fractions of the axis's length; empty if `first` exceeds `last`.
 struct Part {
   double first = 0.0, last = 1.0;
   bool none() const { return first > last; }
 
-  /// Returns the part of the axis whose coordinate is between the two limits, after both limits are widened by the
-  /// reach.
+  /// Returns the part of the strut's axis whose coordinate is between the two limits, after both limits are widened by
+  /// the strut's reach.
   Part within(const Strut& strut, int axis, double low_m, double high_m) const {
     const double from_m = strut.from_m[axis], along_m = strut.along_m[axis];
     low_m -= strut.reach_m;

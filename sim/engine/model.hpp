@@ -10,8 +10,8 @@
 
 #include "sim/situation.hpp"
 
-/// Used only within sim: mujoco.h is included only by headers in this folder and by headers next to the sources that
-/// need mujoco.h.
+/// This header is used only within sim. mujoco.h is included only by headers in this folder and by headers next to the
+/// sources that need mujoco.h.
 namespace tumble::sim::engine {
 
 struct ModelDeleter {
@@ -33,7 +33,7 @@ struct FrictionPatch {
 /// A compiled situation: world and robot in one model.
 struct World {
   ModelPtr model;
-  /// id of the body that carries the sensors; its inertial frame is B
+  /// id of the body that carries the sensors; the inertial frame of this body is B
   int robot_body = -1;
   bool free = true;                   ///< true: the robot is a single free body; false: the body is attached by joints
   std::vector<std::string> surfaces;  ///< surface id -> name; parallel to `surface_geom`

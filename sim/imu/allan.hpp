@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
-/// Overlapping Allan deviation of a stationary sensor, with confidence intervals. These pure functions do not depend on
-/// the simulation. The sources are Riley, "Handbook of Frequency Stability Analysis", NIST Special Publication 1065
-/// (2008), sections 5.2.5 (overlapping Allan variance), 5.3.2 (confidence), table 5 (degrees of freedom), and IEEE Std
-/// 952-1997, annex C, for the names of the noises of a gyroscope.
+/// Overlapping Allan deviation of a stationary sensor, with confidence intervals. The functions of this header do not
+/// depend on the simulation. The sources are Riley, "Handbook of Frequency Stability Analysis", NIST Special
+/// Publication 1065 (2008), sections 5.2.5 (overlapping Allan variance), 5.3.2 (confidence), table 5 (degrees of
+/// freedom), and IEEE Std 952-1997, annex C, for the names of the noises of a gyroscope.
 namespace tumble::sim {
 
 /// Allan deviation at one averaging time.

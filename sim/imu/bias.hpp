@@ -8,16 +8,14 @@
 
 namespace tumble::sim {
 
-/// Bias of a triad: a turn-on value (normal, drawn once), an in-run instability and a random walk, independent for each
-/// axis.
-///
-/// The instability is flicker noise over three decades: the sum of four first-order Gauss-Markov processes of equal
-/// size, with correlation times a factor of ten apart, which start in their stationary state. The instability is
-/// bounded; its standard deviation is 2.58 times the floor of the Allan deviation. The Allan deviation of the
-/// instability is flat at `in_run` within 5 % for averaging times from 1/200 to 1/2 of `in_run_s`. Data sheets state
-/// the value `in_run` as "in-run bias stability" (IEEE Std 952-1997, annex C; the sum of Gauss-Markov processes as
-/// flicker: Keshner, "1/f noise", Proceedings of the IEEE 70, 1982). Not modelled: temperature, and any dependence on
-/// earlier motion.
+/// Bias of a triad, independent for each axis: the sum of a turn-on value (normal, drawn once), an in-run instability
+/// and a random walk. The instability is flicker noise over three decades: the sum of four first-order Gauss-Markov
+/// processes of equal size, with correlation times a factor of ten apart. The processes start in their stationary
+/// state. The instability is bounded; its standard deviation is 2.58 times the floor of the Allan deviation. The Allan
+/// deviation of the instability is flat at `in_run` within 5 % for averaging times from 1/200 to 1/2 of `in_run_s`.
+/// Data sheets state the value `in_run` as "in-run bias stability" (IEEE Std 952-1997, annex C; the sum of Gauss-Markov
+/// processes as flicker: Keshner, "1/f noise", Proceedings of the IEEE 70, 1982). The model excludes temperature and
+/// any dependence on earlier motion.
 class Bias {
  public:
   struct Params {
@@ -26,7 +24,7 @@ class Bias {
     double in_run_s = 1000.0;  ///< longest correlation time of the instability
     double walk_sqrt_s = 0.0;  ///< standard deviation of the walk after one second
   };
-  /// Advances in steps of `period_s`. Components of size 0 draw no random numbers.
+  /// The bias advances in steps of `period_s`. Bias components of size 0 draw no random numbers.
   Bias(const Params& params, double period_s, const Stream& stream);
   /// Returns the current bias, then advances by one period.
   Eigen::Vector3d next();

@@ -26,13 +26,12 @@ struct TriadReading {
 /// the active range, sensing elements with saturation, the device's compensation of the elements, quantum, digital
 /// low-pass, mean over the window. With `clip_after_low_pass`, elements and saturation act on the mean over the window
 /// instead.
-///
 /// For a rotating triad, the mean of the readings differs from the increment of the motion (coning, sculling). The
 /// caller therefore passes the exact ideal reading of the window, and the chain adds the mean of the chain's errors. An
-/// element that saturated in the window reports the plain mean of the chain's output. If every stage is off, the
-/// reading equals the exact reading, bit for bit. The unclipped reading is computed by equal stages with equal noise,
-/// but without saturation. A device with its own window or update rate (sampling.hpp) does not integrate; its reading
-/// is the plain mean over its window.
+/// element that saturated in the window reports the plain mean of the chain's output. If every stage of the chain is
+/// off, the reading equals the exact reading, bit for bit. Equal stages with equal noise, but without saturation,
+/// compute the unclipped reading. A device with its own window or update rate (sampling.hpp) does not integrate; its
+/// reading is the plain mean over its window.
 class TriadChain {
  public:
   /// `prefix` and `unit` select the parameters: "gyro", "rad_s" or "accel", "m_s2". Random streams are named after
@@ -48,15 +47,15 @@ class TriadChain {
   TriadReading take(const Eigen::Vector3d& exact, int first_bit, std::uint8_t& flags);
 
   const Elements& elements() const { return elements_; }
-  /// Replaces the drawn elements; must be called before the first step.
+  /// Replaces the randomly drawn sensing elements; must be called before the first step.
   void set_elements(const Elements& elements) { elements_ = elements; }
 
  private:
-  /// Path from the signal to the mean of a window, with or without saturation.
+  /// Processing path from the signal to the mean of a window, with or without saturation.
   struct Path {
     LowPass low_pass;
     Eigen::Vector3d sum = Eigen::Vector3d::Zero(), error = Eigen::Vector3d::Zero();
-    /// Returns the signal after all stages.
+    /// Returns the signal after all stages of the error chain.
     Eigen::Vector3d add(const Eigen::Vector3d& signal, const Eigen::Vector3d& ideal);
   };
 

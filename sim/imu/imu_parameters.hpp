@@ -11,9 +11,12 @@ namespace tumble::sim {
 /// Parameters of an inertial measurement unit. The defaults describe an ideal device at 100 Hz without magnetometer.
 std::span<const Parameter> imu_parameters();
 
-/// Checks that resolved numbers do not contradict each other. Contradictions are a kind of saturation without a level,
-/// spreads or offsets that leave no level, `wrap` together with `slow_recovery`, and magnetic sources whose farthest
-/// distance is below the nearest. Throws InvalidSituation with a message that starts with `place`.
+/// Checks that resolved numbers do not contradict each other. Throws InvalidSituation, with a message that starts with
+/// `place`, for these contradictions:
+/// - a kind of saturation without a saturation level
+/// - spreads or offsets that leave no saturation level
+/// - `wrap` together with `slow_recovery`
+/// - magnetic sources whose farthest distance is below the nearest distance
 void check_imu_values(const Values& values, const std::string& place);
 
 }  // namespace tumble::sim

@@ -31,7 +31,7 @@ std::optional<Eigen::Matrix3d> draw_g_sensitivity(const SensorSpec& sensor, std:
   return drawn;
 }
 
-/// Both triads of a device, its time stamps, and the output of its samples.
+/// A simulated device: both triads (gyro and accelerometer), its time stamps, and the output of its samples.
 class Device {
  public:
   Device(const SensorSpec& sensor, double rate_hz, int steps, std::uint64_t seed, const GivenElements& given,
@@ -129,7 +129,7 @@ class Compass {
   int count_ = 0;
 };
 
-/// Relation between the samples of a device and the steps of its error chain.
+/// Relation between the output samples of a device and the steps of its error chain.
 struct Pace {
   int steps = 1;   ///< chain steps per sample
   int shares = 1;  ///< chain steps per physics step; above 1 for devices faster than the physics
@@ -160,8 +160,9 @@ Ideal ideal_between(const BodyState& before, const BodyState& after, const Eigen
   return {R_IB * mean_rate_B(before, after), R_IB * specific_force_B(before, after, T_BI.translation(), gravity_m_s2)};
 }
 
-/// A rotation between two attitudes has several rotation vectors, which differ by full turns. Selects the rotation
-/// vector that agrees with the steps of the window. Below half a turn per window, the rotation vector is unchanged.
+/// Selects the rotation vector that agrees with the physics steps of the window. The selection is needed because a
+/// rotation between two attitudes has several rotation vectors, which differ by full turns. A rotation below half a
+/// turn per window is unchanged.
 Eigen::Vector3d unwound(const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& mean_of_steps_rad_s, double time_s) {
   constexpr double kRevolution_rad = 6.283185307179586;
   const double norm = rate_rad_s.norm();

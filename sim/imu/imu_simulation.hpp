@@ -23,25 +23,23 @@ struct GivenElements {
 /// duration. The specific force is the change of the sensor's velocity minus gravity, in the axes of the midway
 /// attitude. The integral of the ideal readings is the true motion at any output rate, also through impacts. The errors
 /// of the device are applied in this order (each stage is documented in its header):
-///
 ///   lever arm and mounting (truth/record_truth.hpp), delay, analogue low-pass, scale and misalignment, bias,
 ///   g-sensitivity, white noise of the active range, sensing elements, saturation, compensation of the elements
 ///   (elements.hpp), quantum, digital low-pass, mean over the window (imu_chain.hpp), stamps and losses
 ///   (time_stamps.hpp); magnetometer.hpp for the magnetic field.
-///
-/// ImuTruth's unclipped readings have equal noise but no saturation. `sensor.values` must be resolved; `T_BI` is the
-/// true mounting. Clip flags mark windows in which an element saturated at any moment. With tilted elements, the other
-/// axes are also wrong in such windows, without flags. A sample that the device loses is also missing in the truth.
-/// `given` elements do not change any other random number. Throws InvalidSituation if the output period is not a whole
-/// number of physics steps, or if numbers contradict each other. Not modelled: temperature, vibration rectification,
-/// bending of the mount.
+/// The unclipped readings in ImuTruth have the noise of the readings, but no saturation. `sensor.values` must be
+/// resolved; `T_BI` is the true mounting. Clip flags mark windows in which an element saturated at any moment. If
+/// elements are tilted, a saturated element also makes the readings of the unflagged axes wrong. A sample that the
+/// device loses is also missing in the truth of this IMU. The elements in `given` do not change the random numbers of
+/// the other stages. Throws InvalidSituation if the output period is not a whole number of physics steps, or if numbers
+/// contradict each other. The model excludes temperature, vibration rectification and bending of the mount.
 void simulate_imu(const Truth& truth, const SensorSpec& sensor, const Eigen::Isometry3d& T_BI, double gravity_m_s2,
                   std::uint64_t seed, ImuRecord& record, ImuTruth& imu_truth, const GivenElements& given = {});
 
 /// Simulates the readings of a device at rest with z up for `duration_s`, without engine, body and magnetometer. The
-/// readings serve to measure noise figures. The error chain runs at `chain_rate_hz` instead of the physics rate; an
-/// hour at 500 Hz takes about a second. The analogue and digital bandwidths of the device must be below half of
-/// `chain_rate_hz`, or 0.
+/// readings at rest serve to measure the noise figures of the device. The error chain runs at `chain_rate_hz` instead
+/// of the physics rate; an hour at 500 Hz takes about a second. The analogue and digital bandwidths of the device must
+/// be below half of `chain_rate_hz`, or 0.
 void simulate_imu_at_rest(const SensorSpec& sensor, double duration_s, double chain_rate_hz, double gravity_m_s2,
                           std::uint64_t seed, ImuRecord& record, ImuTruth& imu_truth);
 

@@ -16,8 +16,7 @@ namespace tumble::sim {
 /// - `wrap`: a reading beyond the level appears with the opposite sign, as when a 16-bit word overflows.
 /// - `slow_recovery`: a clipped axis accumulates an offset with the sign of the signal, up to `recovery_share` of the
 ///   level, with time constant `recovery_s`. After clipping, the offset decays with the time constant `recovery_s`.
-///
-/// Not modelled: a level that depends on temperature, and a device that stops permanently.
+/// The model excludes a saturation level that depends on temperature, and a device that stops permanently.
 class Rail {
  public:
   struct Params {
@@ -28,7 +27,7 @@ class Rail {
     double recovery_s = 0.0;      ///< 0: immediate
     double recovery_share = 0.0;  ///< share of the level
   };
-  /// `period_s` is the time between calls. Random numbers are drawn only if a spread is above 0.
+  /// `period_s` is the time between two calls of operator(). Random numbers are drawn only if a spread is above 0.
   Rail(const Params& params, double period_s, const Stream& stream);
 
   /// Applies saturation to each axis and sets bit `first_bit + axis` of `flags` for saturated axes.

@@ -10,9 +10,9 @@
 namespace tumble::sim {
 
 /// Sampling of a device that does not integrate between outputs. Each reading is the plain mean of the signal over the
-/// device's own window. The device may have its own update rate, slower or faster than the outputs and not synchronous
-/// with the outputs. Outputs repeat the last reading until a new reading is available (sample and hold). Not modelled:
-/// drift or jitter of the device's clock, weighted windows.
+/// device's own window. The device may have its own update rate, which is slower or faster than the output rate and not
+/// synchronous with the outputs. Outputs repeat the last reading until a new reading is available (sample and hold).
+/// The model excludes drift and jitter of the device's clock, and weighted windows.
 class Sampling {
  public:
   struct Params {
@@ -28,7 +28,7 @@ class Sampling {
   /// update rate.
   Sampling(const Params& params, double rate_hz, Stream stream);
 
-  /// Returns false if the device integrates between outputs; in this case no other member may be used.
+  /// Returns false if the device integrates between outputs. If on() is false, no other member may be used.
   bool on() const { return !ring_.empty(); }
   void add(const Reading& step);
   /// Returns the current output. The cost is O(window) for a device without its own update rate.

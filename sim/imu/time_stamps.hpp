@@ -13,7 +13,7 @@ namespace tumble::sim {
 /// Converts the true end of each averaging window to the host's time stamp, or to no stamp if the sample is lost.
 /// Stamps have a constant offset and white jitter. The jitter is normal, truncated at three standard deviations, and
 /// small against the period, so that stamps always increase. Lost samples form runs of geometric length (Gilbert's
-/// model), independent of the signal. Not modelled: a clock with a rate error, and samples in the wrong order.
+/// model), independent of the signal. The model excludes a clock with a rate error, and samples in the wrong order.
 class TimeStamps {
  public:
   /// Reads the parameters time_offset_s, time_jitter_s, dropout_share and dropout_mean_samples. Throws

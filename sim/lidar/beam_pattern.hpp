@@ -18,8 +18,9 @@ struct ChannelFirings {
   alignas(64) double direction_x[kLanes], direction_y[kLanes], direction_z[kLanes];  ///< unit vectors
 };
 
-/// Firings of up to kLanes consecutive slots. Neighbouring lanes have similar directions, which makes a packet of rays
-/// fast to cast. All kLanes lanes are filled, including lanes beyond `slots`.
+/// Firings of up to kLanes consecutive slots. A lane is one of the kLanes rays that are cast together. Neighbouring
+/// lanes have similar directions, which makes a packet of rays fast to cast. All kLanes lanes are filled, including
+/// lanes beyond `slots`.
 struct FiringBlock {
   std::int64_t first_slot = 0;  ///< counted from the start of the recording; the unique key of the random numbers
   int slots = 0;
@@ -56,7 +57,7 @@ class BeamPattern {
   /// Returns the largest angle about the z axis of L between a firing of a cell and the firing at the middle of the
   /// cell.
   virtual double cell_half_angle_rad() const { return 0.0; }
-  /// Fills origins and directions at the middles of the cells `first` to `first + kLanes - 1`.
+  /// Fills the origins and directions of the beams at the middles of the cells `first` to `first + kLanes - 1`.
   virtual void fire_cells(int /*first*/, FiringBlock& /*block*/) const {}
 
  protected:
@@ -68,8 +69,8 @@ class BeamPattern {
 /// Spinning lidar: a column of lasers that rotates about the z axis. The azimuth is zero (along x of L) at the start of
 /// each sweep and increases clockwise seen from above. Channel c of sequence k fires at the time k P + c p, with the
 /// sequence period P and the firing period p. The beam of the channel leaves the mirror at the distance R1 from the
-/// axis and R2 below the origin. Rings are counted from the lowest elevation. The values are from the RoboSense RS-16
-/// User's Guide v4.0 and the published driver.
+/// axis and R2 below the origin. Rings are counted from the lowest elevation. The timing and geometry are from the
+/// RoboSense RS-16 User's Guide v4.0 and the published driver.
 class SpinningPattern final : public BeamPattern {
  public:
   explicit SpinningPattern(const Values& values);
@@ -80,7 +81,7 @@ class SpinningPattern final : public BeamPattern {
 
  private:
   std::uint32_t reported_start_ns(std::int64_t sweep, std::int64_t slot) const;
-  /// Fills all channels from the azimuth at the start of each lane's slot.
+  /// Fills the firings of all channels from the azimuth at the start of each lane's slot.
   void aim(const std::array<double, kLanes>& azimuth_rad, FiringBlock& block) const;
 
   double rate_rad_ns_, sense_, mirror_radius_m_, mirror_drop_m_;

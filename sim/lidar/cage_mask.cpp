@@ -21,7 +21,7 @@ Shape widened(Shape shape, double margin_m) {
       size = Vector3d(size.x() + margin_m, size.y() + margin_m, margin_m);
       break;
     case ShapeKind::ellipsoid:
-      // scaled such that the support function |a n| grows by at least the margin
+      // the ellipsoid is scaled such that its support function |a n| grows by at least the margin
       size *= 1.0 + margin_m / size.minCoeff();
       break;
     case ShapeKind::capsule:

@@ -10,9 +10,9 @@
 namespace tumble::sim {
 
 /// Precomputes which firings of a repeating pattern may hit the robot's own cage. The mask saves time because the cage
-/// is rigidly attached to the lidar and most firings miss the cage. The mask has no false negatives. The middle of each
-/// cell is cast against shapes that are widened by the largest distance between a beam of the cell and the beam at the
-/// middle.
+/// is rigidly attached to the lidar and most firings miss the cage. The mask has no false negatives: the beam at the
+/// middle of each cell is cast against widened shapes. The shapes are widened by the largest distance between a beam of
+/// the cell and the beam at the middle.
 class CageMask {
  public:
   /// `cage` is in the axes of L. For a pattern that does not repeat, every firing may hit.

@@ -84,7 +84,7 @@ LaneNoiseSource::LaneNoiseSource(const Stream& stream) {
     noise.normal[i + kBlocks] = radius * sine;
   }
   for (int i = 0; i < kBlocks; ++i) {
-    // with 23 bits, the middle of the last cell is below 1 in float
+    // with 23 bits, the largest uniform number is still below 1 in float
     noise.uniform[i] = (static_cast<float>(static_cast<std::int32_t>(words.word[2][i] >> 9)) + 0.5f) * 0x1p-23f;
     noise.uniform[i + kBlocks] =
         (static_cast<float>(static_cast<std::int32_t>(words.word[3][i] >> 9)) + 0.5f) * 0x1p-23f;

@@ -5,7 +5,7 @@
 
 #include "sim/lidar/ray_scene.hpp"
 
-/// Used only within sim: the nearest hits found so far for a packet of rays.
+/// This header is used only within sim. NearestHits stores the nearest hits found so far for a packet of rays.
 namespace tumble::sim {
 
 /// Nearest hit of each lane, computed with our own arithmetic. Among hits at equal ranges, the hit with the lowest
@@ -14,7 +14,7 @@ class NearestHits {
  public:
   static constexpr unsigned int kNone = ~0u;
 
-  /// Starts without hits, limited to the packet's ranges.
+  /// Starts without hits; hits beyond the maximum ranges of the packet's rays are ignored.
   explicit NearestHits(const RayPacket& packet);
 
   bool is_replaced(unsigned int lane, double by_range_m, unsigned int by_geometry, unsigned int by_primitive) const {
@@ -23,7 +23,7 @@ class NearestHits {
            (geometry_[lane] != kNone &&
             (by_geometry < geometry_[lane] || (by_geometry == geometry_[lane] && by_primitive < primitive_[lane])));
   }
-  /// The normal may have any length.
+  /// Replaces the hit of a lane; the normal may have any length.
   void replace(unsigned int lane, double range_m, double normal_x, double normal_y, double normal_z,
                unsigned int geometry, unsigned int primitive) {
     range_m_[lane] = range_m;

@@ -14,7 +14,8 @@ namespace {
 constexpr double kSure = 0.99;
 constexpr double kCertainOdds = 0x1p25;
 
-/// Rounds to the nearest multiple, ties to even; adding 1.5 * 2^52 removes the fraction without a function call.
+/// Rounds to the nearest multiple of `quantum`, ties to even; adding 1.5 * 2^52 removes the fraction without a function
+/// call.
 double rounded(double value, double quantum) {
   constexpr double kShift = 0x1.8p52;
   return quantum * ((value / quantum + kShift) - kShift);
@@ -39,7 +40,7 @@ RangeErrors::RangeErrors(const Values& values, std::uint64_t seed, std::string_v
 bool RangeErrors::is_detected(float signal, double uniform) const {
   if (uniform >= kept_share_) return false;
   if (detection2_m2_ == 0.0 || signal >= certain_signal_) return true;
-  // if the return survived the random loss, the rescaled number is again uniform
+  // if the return survived the random loss, the rescaled random number is again uniform
   const double u = uniform / kept_share_;
   if (u < kSure && signal >= sure_signal_) return true;
   const double odds = std::pow(signal, steepness_);

@@ -18,13 +18,13 @@ struct Returns {
 
 /// Applies range errors in this order: loss of weak returns (by range, incidence, reflectivity), random loss, white
 /// noise, range limits, quantum. Intensity is reflectivity times the cosine of incidence, rounded down to the intensity
-/// quantum, as reported by devices that compensate for range. Not modelled: range bias by incidence or intensity,
-/// cross-talk, several returns per firing. BeamSpread models beam divergence and mixed returns before this stage.
+/// quantum, as reported by devices that compensate for range. The model excludes range bias by incidence or intensity,
+/// cross-talk, and several returns per firing. Before RangeErrors, BeamSpread models beam divergence and mixed returns.
 class RangeErrors {
  public:
   RangeErrors(const Values& values, std::uint64_t seed, std::string_view stream_name);
 
-  /// The result depends only on seed, name, `index` (unique per packet) and hits.
+  /// The returns depend only on seed, name, `index` (unique per packet) and hits.
   void apply(const RayPacket& hits, std::uint64_t index, Returns& returns) const;
 
  private:

@@ -35,7 +35,8 @@ struct Shares {
   }
 }
 
-/// Computes one number of the pose and its rate per second, for the lanes within the interval.
+/// Computes one number of the lidar's pose (an entry of rotation or position) and its derivative by time, for the lanes
+/// within the interval.
 [[gnu::target("avx2")]] void follow_number(const TrackCursor::Interval& now, const Shares& shares, int row, int column,
                                            double (&pose)[kLanes], double (&rate)[kLanes]) {
   const double start = now.start(row, column), turned = now.turned(row, column), twice = now.rotated_twice(row, column);

@@ -37,8 +37,8 @@ constexpr const char* kDevice =
     "start_threads=0,set_affinity=0,isa=avx2,frequency_level=simd256,ignore_config_files=1";
 constexpr int kKernelLanes = 8;
 static_assert(kKernelLanes == kShapeLanes && NearestHits::kNone == RTC_INVALID_GEOMETRY_ID);
-/// Embree divides with an approximate reciprocal that differs between CPU vendors. The ranges of Embree only select
-/// candidates: all faces within this factor of the nearest hit are examined.
+/// Embree divides with an approximate reciprocal that differs between CPU vendors. Embree's ranges only select
+/// candidates: all faces within the factor kReach of the nearest hit are examined.
 constexpr float kReach = 1.0f + 4e-6f;
 
 struct MeshLabel {
@@ -107,7 +107,7 @@ Ray ray_at(RTCRayN* rays, unsigned int count, unsigned int i) {
 /// length). For a quad, `second_half` selects the half through which the ray passes. The selection comes from Embree's
 /// approximate reciprocal, which is accurate enough because the two halves are adjacent.
 double meet_face(const MeshLabel& mesh, unsigned int face, const Ray& ray, bool second_half, Vector3d& normal) {
-  // relative to the origin; double represents the float differences exactly
+  // corners are relative to the ray's origin; double represents the differences of floats exactly
   const auto corner = [&](std::uint32_t i) -> Vector3d { return mesh.corner(face, i).cast<double>() - ray.origin; };
   Vector3d a = corner(0), b = corner(1), c = corner(2);
   if (mesh.as_quads) {
@@ -145,7 +145,7 @@ void keep_nearest(const RTCFilterFunctionNArguments* args) {
   }
 }
 
-/// Only packets are cast, so there are always eight rays; some may be inactive.
+/// Embree always passes eight rays, because only packets are cast; some rays may be inactive.
 void intersect_shape(const RTCIntersectFunctionNArguments* args) {
   const Shape& shape = static_cast<const SceneShape*>(args->geometryUserPtr)[args->primID].shape;
   CastContext& cast = cast_context(args->context);
@@ -234,7 +234,7 @@ void RayScene::Impl::add_shapes() {
 
 RayScene::RayScene(const SceneGeometry& geometry) : impl_(std::make_unique<Impl>()) {
   impl_->device.reset(rtcNewDevice(kDevice));
-  // a memory limit is not a missing CPU feature
+  // a lack of memory must not be reported as a missing CPU feature
   if (!impl_->device && rtcGetDeviceError(nullptr) == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
   if (!impl_->device) throw std::runtime_error("lidar: Embree cannot create a device; the CPU must have AVX2 and FMA");
   impl_->scene.reset(rtcNewScene(impl_->device.get()));
@@ -278,7 +278,7 @@ void RayScene::Impl::cast_lanes(const RayPacket& packet, int first, CastContext&
   RTCRayHit8 rays;
   alignas(32) int valid[kKernelLanes];
   for (int i = 0; i < kKernelLanes; ++i) {
-    // an unused lane repeats the first lane with an empty range, so that its input is defined
+    // an unused lane repeats the first lane with an empty range, so that the input of the lane is defined
     const bool used = first + i < packet.count;
     const int lane = used ? first + i : first;
     valid[i] = used ? -1 : 0;

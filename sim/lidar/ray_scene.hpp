@@ -29,8 +29,8 @@ inline constexpr std::int32_t kNothing = -1;
 /// Casts rays and finds nearest points on a fixed geometry (Embree, plus infinite planes). Building takes about 0.07 s
 /// for 320 000 triangles; the cost of a cast is logarithmic in the geometry. Const members may be called from several
 /// threads. Coordinates are float: at 50 m from the origin a hit is accurate to about 1e-5 m. Embree selects the
-/// surface with its AVX2 kernel on every CPU; the hit on this surface is then computed in double precision. Results are
-/// therefore bit-identical on every x86-64 CPU with AVX2 and FMA. Throws std::runtime_error on other CPUs.
+/// surface with its AVX2 kernel on every CPU; RayScene then computes the hit on the surface in double precision.
+/// Results are therefore bit-identical on every x86-64 CPU with AVX2 and FMA. Throws std::runtime_error on other CPUs.
 class RayScene {
  public:
   explicit RayScene(const SceneGeometry& geometry);

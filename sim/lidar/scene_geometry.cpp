@@ -42,8 +42,7 @@ class HeightField {
   const float* data_;
 };
 
-/// Returns two triangles per cell, cut along the diagonal from (row, column) to (row + 1, column + 1), as in the
-/// engine.
+/// Returns two triangles per cell, cut along the diagonal from (row, column) to (row + 1, column + 1), as in MuJoCo.
 TriangleMesh height_field_top(const HeightField& field, const Isometry3d& T_FS) {
   TriangleMesh mesh;
   mesh.vertices_F_m.reserve(static_cast<std::size_t>(field.rows()) * field.columns());
@@ -115,7 +114,7 @@ TriangleMesh geom_mesh(const mjModel& model, int geom, const Isometry3d& T_FS) {
   return mesh;
 }
 
-/// Returns false if the geom is not a primitive.
+/// Converts a geom type of MuJoCo to a kind of shape. Returns false if the geom is not a primitive.
 bool primitive_kind(int type, ShapeKind& kind) {
   switch (type) {
     case mjGEOM_PLANE:

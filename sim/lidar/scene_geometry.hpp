@@ -10,7 +10,7 @@
 #include "sim/engine/model.hpp"
 #include "sim/lidar/shape.hpp"
 
-/// Used only within sim: extracts the surfaces that rays can hit from a compiled model.
+/// This header is used only within sim. The functions extract the surfaces that rays can hit from a compiled model.
 namespace tumble::sim {
 
 /// Surface id of a return from the robot's own struts. Non-negative ids are indices of engine::World::surfaces.
@@ -42,9 +42,9 @@ struct SceneGeometry {
 /// hits.
 enum class HeightFieldSides { open, closed };
 
-/// Returns the geoms of engine::World::surface_geom in world axes; the surface id is the index there. Visual geoms
-/// (contype and conaffinity zero) and invisible geoms (alpha zero, as in mj_ray) are left out. Throws InvalidSituation
-/// for a geom type without a surface here (SDF).
+/// Returns the geoms of engine::World::surface_geom in world axes; the surface id of a geom is its index in
+/// surface_geom. Visual geoms (contype and conaffinity zero) and invisible geoms (alpha zero, as in mj_ray) are left
+/// out. Throws InvalidSituation for a geom type whose surface is not supported (SDF).
 SceneGeometry static_geometry(const engine::World& world, HeightFieldSides sides);
 
 /// Returns the robot's colliding geoms in the axes of a lidar mounted at `T_BL`, with id kOwnCage. A primitive that
@@ -54,8 +54,8 @@ SceneGeometry cage_geometry(const engine::World& world, const Eigen::Isometry3d&
 /// Returns the pose of a geom in W by the current kinematics of the data.
 Eigen::Isometry3d geom_pose(const mjData& data, int geom);
 
-/// Adds one geom of any purpose; `T_FS` converts geom axes S to the frame F. Throws InvalidSituation for a type without
-/// a surface here (SDF).
+/// Adds one geom of any purpose; `T_FS` converts geom axes S to the frame F. Throws InvalidSituation for a geom type
+/// whose surface is not supported (SDF).
 void append_geom(const mjModel& model, int geom, const Eigen::Isometry3d& T_FS, std::int32_t surface_id,
                  HeightFieldSides sides, SceneGeometry& scene);
 

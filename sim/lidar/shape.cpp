@@ -16,8 +16,8 @@ struct Roots {
   double first, second;
 };
 
-/// Returns the solutions of a x^2 + 2 b x + c = 0 in increasing order; NaN without real solutions (comparisons are then
-/// false).
+/// Returns the solutions of a x^2 + 2 b x + c = 0 in increasing order. Without real solutions, the function returns
+/// NaN, so that comparisons are false.
 Roots solve_quadratic(double a, double b, double c) {
   const double discriminant = b * b - a * c;
   if (!(discriminant > 0.0) || !(a > 0.0)) return {std::nan(""), std::nan("")};
@@ -47,7 +47,7 @@ double cast_sphere(double radius, const Vector3d& o, const Vector3d& d, Vector3d
 }
 
 double cast_ellipsoid(const Vector3d& size, const Vector3d& o, const Vector3d& d, Vector3d& normal) {
-  // scaled to the unit sphere; the parameter remains the distance in F
+  // the ellipsoid is scaled to the unit sphere; the ray parameter remains the distance in F
   const Vector3d so = o.cwiseQuotient(size), sd = d.cwiseQuotient(size);
   const double x = first_ahead(solve_quadratic(sd.squaredNorm(), so.dot(sd), so.squaredNorm() - 1.0));
   if (x < kNone) normal = (so + x * sd).cwiseQuotient(size).normalized();
@@ -140,8 +140,8 @@ double signed_box_distance(const Vector& point, const Vector& half) {
 }
 
 /// Finds the nearest point of an ellipsoid as the root of sum (a_i y_i / (t + a_i^2))^2 = 1 for t > -min a_i^2, with
-/// the semi-axes a_i and the point y (Eberly, Distance from a point to an ellipsoid). Bisection is used because the
-/// sum decreases monotonically for these t.
+/// the semi-axes a_i and the point y (Eberly, Distance from a point to an ellipsoid). Bisection is used because the sum
+/// decreases monotonically for t > -min a_i^2.
 double ellipsoid_distance(const Vector3d& size, const Vector3d& point) {
   const double scale = size.maxCoeff();
   const Vector3d a = size / scale, y = point.cwiseAbs() / scale;

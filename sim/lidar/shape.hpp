@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 
-/// Used only within sim: analytic surfaces of MuJoCo's primitive geoms.
+/// This header is used only within sim. Shape is an analytic surface of one of MuJoCo's primitive geoms.
 namespace tumble::sim {
 
 enum class ShapeKind : std::uint8_t { plane, sphere, capsule, ellipsoid, cylinder, box };

@@ -19,7 +19,7 @@ struct LocalRays {
 [[gnu::target("avx2")]] void to_shape_axes(const Shape& shape, const ShapeRays& rays, LocalRays& local) {
   const double px = shape.p_FS_m.x(), py = shape.p_FS_m.y(), pz = shape.p_FS_m.z();
   for (int axis = 0; axis < 3; ++axis) {
-    // the order of operations is that of Eigen, for identical bits
+    // the operations have the order of Eigen's operations, for bit-identical results
     const double x = shape.R_FS(0, axis), y = shape.R_FS(1, axis), z = shape.R_FS(2, axis);
     for (int i = 0; i < kShapeLanes; ++i) {
       local.origin[axis][i] =
@@ -46,7 +46,7 @@ struct LocalRays {
 }
 
 /// Computes the hit by the slab method (Kay and Kajiya, SIGGRAPH 1986): the last side through which the ray enters, or,
-/// from inside, the first side through which the ray leaves. L. T.
+/// from inside, the first side through which the ray leaves.
 [[gnu::target("avx2")]] void cast_on_box(const Shape& shape, const LocalRays& rays, ShapeHits& hits) {
   // axis numbers have the lanes' width, so that the compiler selects ranges and axis numbers with equal masks
   alignas(64) double enter[kShapeLanes], enter_axis[kShapeLanes], enter_sign[kShapeLanes];

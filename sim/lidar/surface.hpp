@@ -13,8 +13,8 @@ namespace tumble::sim {
 /// The true surface of a situation's static world, which returns distances for the scoring of maps.
 class Surface {
  public:
-  /// Copies the world's static geoms to a scene for rays; the world is not composed again. Throws InvalidSituation for
-  /// a geom without a surface.
+  /// Copies the world's static geoms to a scene for rays, without a new composition of the world. Throws
+  /// InvalidSituation for a geom without a surface.
   explicit Surface(const BuiltSituation& built);
   ~Surface();
   Surface(Surface&&) noexcept;

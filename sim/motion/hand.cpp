@@ -71,7 +71,8 @@ Wrench Hand::wrench(const BodyState& state, const Reference& reference) {
   return out;
 }
 
-/// Returns the torque that moves the rate away from rolling while the sphere touches a patch.
+/// Returns the torque of a burst, which moves the angular rate away from rolling while the sphere touches a friction
+/// patch.
 Eigen::Vector3d Hand::burst(double time_s, const Eigen::Vector3d& p_G_m, const Eigen::Vector3d& v_m_s,
                             const Eigen::Vector3d& w_W_rad_s) {
   for (std::size_t i = 0; i < std::min(world_.patches.size(), kHandPatches); ++i) {

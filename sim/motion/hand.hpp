@@ -41,7 +41,7 @@ inline constexpr std::array kHandParameters = {
 };
 inline constexpr std::size_t kHandPatches = 3;
 
-/// Combines the parameters of the hand and of a motion in one table.
+/// Concatenates the parameters of the hand and the parameters of a motion in one table.
 template <std::size_t N>
 constexpr std::array<Parameter, kHandParameters.size() + N> with_hand(const std::array<Parameter, N>& own) {
   std::array<Parameter, kHandParameters.size() + N> all{};
@@ -51,12 +51,12 @@ constexpr std::array<Parameter, kHandParameters.size() + N> with_hand(const std:
 }
 
 /// A hand that moves a sphere with a horizontal force at the sphere's centre. The force follows a reference position
-/// (spring, damper, and the feed-forward force of rolling) with tremor; on patches of other friction, bursts of torque
-/// are added. The hand applies no vertical force and has no body in the simulation.
+/// (spring, damper, and the feed-forward force of rolling) with tremor; on floor patches with different friction,
+/// bursts of torque are added. The hand applies no vertical force and has no body in the simulation.
 class Hand {
  public:
-  /// Error messages start with `motion`. Throws InvalidSituation if the robot is not a sphere. `world` must outlive the
-  /// hand.
+  /// Error messages of the constructor start with `motion`. Throws InvalidSituation if the robot is not a sphere.
+  /// `world` must outlive the hand.
   Hand(const std::string& motion, const Values& values, const engine::World& world);
 
   double radius_m() const { return radius_m_; }

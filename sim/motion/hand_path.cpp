@@ -54,7 +54,7 @@ class Schedule {
   const Eigen::Vector2d& first() const { return nodes_.front(); }
 
   void add_to(double time_s, Reference& reference) const {
-    // three ticks about the middle give value, first and second difference
+    // three ticks about the middle give the value, the first and the second difference of the path
     const double at = (time_s - start_s_) / kTick_s;
     const auto last = static_cast<double>(ticks_.size()) - 2.0;
     const double inside = std::clamp(at, 1.0, last);
@@ -102,7 +102,7 @@ class Schedule {
       constexpr double kLastTau_s = 0.15;  // time constant of the approach over the last centimetres
       aim_m_s = std::min({aim_m_s, std::sqrt(1.6 * acceleration_m_s2 * left_m), left_m / kLastTau_s});
       const double change = acceleration_m_s2 * kTick_s;
-      // only the averaging limits the acceleration of a push
+      // for a push, only the averaging of the path limits the acceleration
       v_m_s = std::clamp(aim_m_s, v_m_s - change, pushed ? aim_m_s : v_m_s + change);
       v_m_s = std::max(v_m_s, 1e-3);
       s_m += v_m_s * kTick_s;
@@ -112,7 +112,8 @@ class Schedule {
     return ticks;
   }
 
-  /// Returns the mean over `width` ticks. The end values are extended, so that start and end are preserved.
+  /// Returns the moving average of a path over `width` ticks. The end values of the path are extended, so that start
+  /// and end are preserved.
   static std::vector<Eigen::Vector2d> averaged(const std::vector<Eigen::Vector2d>& in, int width) {
     std::vector<Eigen::Vector2d> out;
     out.reserve(in.size() + static_cast<std::size_t>(width));

@@ -18,7 +18,8 @@ class Motion {
   /// Returns the pose at rest just above the ground, from which the robot settles under gravity before the recording
   /// starts.
   virtual BodyState start() const = 0;
-  /// Returns the wrench from `state.time_s` to the next step. Negative times are the settling before the recording.
+  /// Returns the wrench from `state.time_s` to the next step. At negative times, the robot settles before the recording
+  /// starts.
   virtual Wrench wrench(const BodyState& state) = 0;
 };
 
@@ -48,7 +49,7 @@ const MotionType& swing_motion();
 /// Returns all kinds of motion in the order of registration. A new kind of motion needs a source file and a line in
 /// motion_type.cpp.
 std::span<const MotionType* const> all_motion_types();
-/// Throws InvalidSituation for an unknown name, with the nearest known name.
+/// Returns the kind of motion with this name. For an unknown name, throws InvalidSituation with the nearest known name.
 const MotionType& find_motion_type(std::string_view name);
 
 }  // namespace tumble::sim

@@ -37,7 +37,8 @@ Nodes corner(const PathPlan& plan, int count) {
   return nodes;
 }
 
-/// Returns Gerono's lemniscate from its crossing point; the caller sets the length afterwards.
+/// Returns nodes of Gerono's lemniscate, starting at its crossing point. The caller then scales the nodes to the
+/// requested length.
 Nodes eight(int count) {
   Nodes nodes;
   for (int i = 0; i <= count; ++i) {
@@ -47,7 +48,8 @@ Nodes eight(int count) {
   return nodes;
 }
 
-/// The heading is a sum of slow sinusoids: bends to both sides, none sharper than the shortest sinusoid allows.
+/// Returns a free path, whose heading is a sum of slow sinusoids. The path bends to both sides, and the shortest
+/// sinusoid limits its curvature.
 Nodes free_path(const PathPlan& plan, int count, Stream& stream) {
   struct Bend {
     double turns, phase_rad, amplitude_rad;

@@ -57,7 +57,7 @@ class Stroll : public Motion {
   }
 
  private:
-  /// Phase along the eight [rad]: the integral of an eased rate in closed form.
+  /// Returns the phase along the figure of eight [rad]: the integral, in closed form, of a rate that eases in and out.
   double phase_rad(double walked_s) const {
     const auto begun_s = [this](double t_s) {  // integral of `eased` over the first `ease_s`
       const double u = std::clamp(t_s / ease_s_, 0.0, 1.0);
@@ -69,7 +69,7 @@ class Stroll : public Motion {
     return phase_rate_rad_s_ * (walk_s_ - ease_s_ - begun_s(walk_s_ - t_s));
   }
 
-  /// Attitude along the path at a phase.
+  /// Returns the attitude of the robot, which faces along the path, at a phase.
   Eigen::Quaterniond heading(double phase_rad) const {
     const double yaw_rad =
         std::atan2(2.0 * half_width_m_ * std::cos(2.0 * phase_rad), half_length_m_ * std::cos(phase_rad));

@@ -30,7 +30,7 @@ constexpr std::array kSwingParameters = {
 
 constexpr double kSwingLongest_s = 3600.0;
 
-/// One swing: grip, lead aside, hold, release.
+/// One swing, in which the hand grips the robot, leads it aside, holds it and releases it.
 struct Lift {
   double start_s;
   Eigen::Vector3d lift_W_m;
@@ -60,8 +60,8 @@ double smooth(double share) {
   return u * u * u * (10.0 + u * (-15.0 + 6.0 * u));
 }
 
-/// A hand that grips the lowest segment at the segment's centre of mass with a spring and a damper to a moving target.
-/// The hand applies no torque and has no body in the simulation.
+/// A hand that grips the lowest segment of the pendulum at the segment's centre of mass. A spring and a damper pull the
+/// segment to a moving target. The hand applies no torque and has no body in the simulation.
 class Swing : public Motion {
  public:
   Swing(const Values& values, const engine::World& world)

@@ -45,7 +45,7 @@ struct Stroke {
   static constexpr double kRise = 1.0 / 3.0;
   double start_s, length_s, peak_rad_s;
 
-  /// Angle turned so far, in closed form.
+  /// Returns the angle turned until `time_s`, in closed form.
   double angle_rad(double time_s) const {
     constexpr double kFall = 1.0 - kRise;
     const double u = std::clamp((time_s - start_s) / length_s, 0.0, 1.0);

@@ -8,8 +8,9 @@
 namespace tumble::sim {
 
 /// A named, independent stream of random numbers: `Stream(seed, "imu.noise")`. The stream is counter-based (Philox
-/// 4x32-10, Salmon et al., SC 2011): the n-th number is available without its predecessors, and results depend neither
-/// on threads nor on order. The distributions are implemented here, because distributions of standard libraries differ.
+/// 4x32-10, Salmon et al., SC 2011): the n-th number is available without the numbers before it, and results depend
+/// neither on threads nor on order. The distributions are implemented here, because distributions of standard libraries
+/// differ.
 class Stream {
  public:
   Stream(std::uint64_t seed, std::string_view name);

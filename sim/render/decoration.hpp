@@ -4,8 +4,9 @@
 #include "sim/engine/model.hpp"
 #include "sim/render/renderer.hpp"
 
-/// Used only within sim: adds the decoration of a picture to the engine's scene. Callers must count the decoration's
-/// geoms first, because adding to a full scene is a programming error.
+/// This header is used only within sim. The functions add grid lines, paths and point clouds (the decoration of a
+/// picture) to MuJoCo's scene. Callers must count the decoration's geoms first, because adding to a full scene is a
+/// programming error.
 namespace tumble::sim {
 
 /// Returns the maximum number of engine geoms that the decoration of a view uses.

@@ -5,8 +5,9 @@
 
 namespace tumble::sim {
 
-/// Used only within sim: functions of OSMesa, which is loaded when the first picture is rendered. OSMesa loads LLVM,
-/// which makes the start of every program a third longer (docs/figures.md).
+/// This header is used only within sim. OsMesa holds the functions of the library OSMesa, which is loaded when the
+/// first picture is rendered. OSMesa loads LLVM, which makes the start of every program a third longer
+/// (docs/figures.md).
 struct OsMesa {
   decltype(&::OSMesaCreateContextExt) create_context;
   decltype(&::OSMesaDestroyContext) destroy_context;
@@ -14,7 +15,7 @@ struct OsMesa {
 };
 
 /// Loads OSMesa once for the life of the process and returns its functions. The symbols of OSMesa are then visible to
-/// the engine, which looks up OpenGL functions by name. Throws std::runtime_error if loading fails. The function may be
+/// MuJoCo, which looks up OpenGL functions by name. Throws std::runtime_error if loading fails. The function may be
 /// called from any thread.
 const OsMesa& osmesa();
 

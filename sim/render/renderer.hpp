@@ -14,7 +14,7 @@
 
 namespace tumble::sim {
 
-/// RGB, rows from the top.
+/// RGB pixels, row by row from the top.
 struct Picture {
   int width = 0;
   int height = 0;
@@ -66,7 +66,7 @@ class Renderer {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Arranges pictures of equal size in rows of `columns` (a film strip).
+/// Arranges pictures of equal size in rows of `columns` pictures (a film strip).
 Picture film_strip(std::span<const Picture> pictures, int columns);
 
 /// Returns the picture as a PNG file.

@@ -41,7 +41,7 @@ class Current {
   unsigned char pixels_[4 * kSide * kSide];
 };
 
-/// The engine's scene for one picture.
+/// MuJoCo's scene for one picture.
 class Scene {
  public:
   Scene(const mjModel& model, int geoms) {
@@ -94,8 +94,8 @@ void set_look(mjModel& model, int shadow_pixels) {
   }
 }
 
-/// Restricts the shadow map to the visible area, because the area of the map determines the sharpness of shadows. The
-/// engine would spread the shadow map over the whole world.
+/// Restricts the shadow map to the visible area, because the area of the map determines the sharpness of shadows.
+/// MuJoCo would spread the shadow map over the whole world.
 void aim_sun(const Framing& framing, mjvScene& scene, mjrContext& engine) {
   const double reach_m = 2.0 + framing.distance_m;
   engine.shadowClip = static_cast<float>(reach_m);

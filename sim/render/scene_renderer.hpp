@@ -8,8 +8,7 @@
 
 namespace tumble::sim {
 
-/// Used only within sim: renders pictures of a compiled world (OSMesa, MuJoCo's renderer).
-///
+/// This class is used only within sim. SceneRenderer renders pictures of a compiled world (OSMesa, MuJoCo's renderer).
 /// An OSMesa context is current in one thread at a time. The renderer makes its context current during each call, so
 /// any thread may use the renderer, but only one thread at a time. Several renderers may exist in one process. No
 /// display is needed.

@@ -47,8 +47,8 @@ void add_round(const Shape& shape, const std::vector<Ring>& rings, int segments,
   }
 }
 
-/// `semi_m` are the semi-axes of an ellipsoid; `half_m` is half the length of the tube between the ellipsoid's halves
-/// (capsule).
+/// Adds an ellipsoid with the semi-axes `semi_m`. For a capsule, a tube with the half length `half_m` separates the
+/// halves of the ellipsoid.
 void add_ellipsoid(const Shape& shape, const Vector3d& semi_m, double half_m, int segments, Tessellation& out) {
   const int steps = segments / 2;
   std::vector<Ring> rings;

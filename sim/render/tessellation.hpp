@@ -8,7 +8,7 @@
 
 #include "sim/lidar/shape.hpp"
 
-/// Used only within sim: converts primitives to triangles.
+/// This header is used only within sim. tessellate() converts primitives to triangles.
 namespace tumble::sim {
 
 /// Triangles are anticlockwise seen from outside. Triangles that share a vertex form one smooth surface; sharp edges

@@ -32,7 +32,7 @@ const RobotType& pendulum_robot();
 /// Returns all kinds of robot in the order of registration. A new kind of robot needs a source file and a line in
 /// robot_type.cpp.
 std::span<const RobotType* const> all_robot_types();
-/// Throws InvalidSituation for an unknown name, with the nearest known name.
+/// Returns the kind of robot with this name. For an unknown name, throws InvalidSituation with the nearest known name.
 const RobotType& find_robot_type(std::string_view name);
 
 /// Moves every geom and site of `body` by `shift_m` in the body's own frame.

@@ -26,7 +26,7 @@ inline constexpr std::array kSeriesParameters = {
     Parameter{"dropout_mean_samples", 1.0, 1.0, 1e4, "1", "mean length of a run of lost samples"},
 };
 
-/// Errors of the readings of a quantity relative to its mean over the averaging window; an error of 0 is off.
+/// Errors of readings, relative to the mean of the quantity over the averaging window; an error of 0 is off.
 struct ReadingErrors {
   double noise = 0.0;                                     ///< standard deviation of the white noise of each reading
   double bias = 0.0;                                      ///< standard deviation of an error drawn once per recording
@@ -46,9 +46,9 @@ struct Measured {
 /// Adds a series of `quantities` to a recording that contains the body's truth. A reading is the mean over a window
 /// with bias, white noise, range, quantum, stamps and losses (imu/time_stamps.hpp) by kSeriesParameters. If every error
 /// is 0, the reading equals the true mean, bit for bit. A sample that the device loses is also missing in the truth.
-/// Throws InvalidSituation if the output period is not a whole number of physics steps. Not modelled: temperature
-/// errors, bandwidth other than that of the averaging window, drift. `constants` are numbers of the sensor that readers
-/// of the recording receive.
+/// Throws InvalidSituation if the output period is not a whole number of physics steps. The model excludes temperature
+/// errors, drift, and any bandwidth limit except the averaging window. `constants` are numbers of the sensor that
+/// estimators receive with the recording.
 void simulate_series(const SensorContext& context, const std::vector<Measured>& quantities,
                      const std::vector<std::string>& constants, Recording& recording);
 

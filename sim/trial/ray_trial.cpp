@@ -20,7 +20,7 @@ constexpr double kReach_m = 1e4;
 /// correct.
 constexpr double kCoincident_m = 1e-4;
 
-/// Rays of the engine against the static part of a world.
+/// Casts rays of MuJoCo (mj_ray) against the static part of a world.
 class EngineRays {
  public:
   explicit EngineRays(const engine::World& world) : world_(world), data_(mj_makeData(world.model.get())) {
@@ -38,7 +38,7 @@ class EngineRays {
     return {range_m, geom};
   }
 
-  /// Returns the range to this geom; negative if the ray misses the geom.
+  /// Returns the range of a ray to a geom; negative if the ray misses the geom.
   double range_to(int geom, const Vector3d& origin_m, const Vector3d& direction) const {
     const mjModel* model = world_.model.get();
     const int type = model->geom_type[geom];
@@ -54,7 +54,7 @@ class EngineRays {
   engine::DataPtr data_;
 };
 
-/// A ray and its hit according to the engine.
+/// A ray, and its hit according to MuJoCo.
 struct TrialRay {
   Vector3d origin_m, direction;
   EngineRays::Hit expected;

@@ -12,8 +12,8 @@
 
 namespace tumble::sim {
 
-/// Integrator of the engine. The simulation uses `runge_kutta_4`; the other integrators serve to demonstrate their
-/// errors.
+/// Integrator of MuJoCo. The simulation uses `runge_kutta_4`; `euler` and `implicit` serve to demonstrate the errors of
+/// these integrators.
 enum class Integrator { runge_kutta_4, euler, implicit };
 
 struct TrialOptions {
@@ -22,7 +22,7 @@ struct TrialOptions {
 };
 
 /// A robot in its world that is set and advanced step by step with the model and engine of `simulate`, for
-/// measurements. A trial has no settling, and ignores the motion and sensors of the situation.
+/// measurements. A trial does not let the robot settle, and ignores the motion and sensors of the situation.
 class Trial {
  public:
   /// Uses a copy of the world. Throws InvalidSituation if the time step is outside its limits.
@@ -41,8 +41,8 @@ class Trial {
   BodyState state() const;  ///< state of the body that carries the sensors
   /// Throws InvalidSituation for a robot on joints.
   void set_state(const BodyState& state);
-  /// Return angle and angular velocity of a hinge by name, for a robot on joints. These members throw InvalidSituation
-  /// if there is no hinge of this name.
+  /// Return angle and angular velocity of a hinge by name, for a robot on joints. joint_rad and joint_rate_rad_s throw
+  /// InvalidSituation if there is no hinge of this name.
   double joint_rad(const std::string& name) const;
   double joint_rate_rad_s(const std::string& name) const;
   void set_joint(const std::string& name, double angle_rad, double rate_rad_s);

@@ -9,7 +9,7 @@
 
 namespace tumble::sim {
 
-/// A sensor may be below the ground by up to this depth permanently, and deeper for less than the allowed time. A soft
+/// A sensor may permanently be below the ground by up to kDipDepth_m, and deeper for less than the allowed time. A soft
 /// contact yields by several centimetres for about 30 ms of a hard impact; a longer penetration means that the robot is
 /// wedged.
 inline constexpr double kDipDepth_m = 0.01;

@@ -27,7 +27,7 @@ struct HeightGrid {
   std::span<const double> heights_m;  ///< rows * columns values
 };
 
-/// Adds a height field as the surface `name`, solid down to `base_m` below the lowest node of the field. The engine
+/// Adds a height field as the surface `name`, solid down to `base_m` below the lowest node of the field. MuJoCo
 /// requires a field with some relief, so the height range of the field is at least `least_span_m`.
 mjsGeom* add_height_field(mjSpec* spec, engine::World& world, const std::string& name, const HeightGrid& grid,
                           double base_m, double least_span_m, const Colour& colour);

@@ -9,7 +9,7 @@
 
 namespace tumble::sim {
 
-/// Parameters of the ground on which a sphere rolls, for every world with such ground.
+/// Parameters of the ground on which a sphere rolls, for every world that has ground for a sphere.
 inline constexpr std::array kGroundParameters = {
     Parameter{"friction", 0.6, 0.0, 2.0, "1", "sliding friction of the floor outside of the patches"},
     Parameter{"spin_friction_m", 0.0005, 0.0, 0.1, "m",

@@ -40,7 +40,7 @@ inline constexpr std::array kCoverParameters = {
     Parameter{"buildings", 1, 0, 1, "1", "1: a building below and a wall beside the slope, out of reach"},
 };
 
-/// Fraction of the relief that applies at a position, within [0, 1].
+/// Fraction of the relief's height that applies at a position, within [0, 1].
 using Share = std::function<double(double x_m, double y_m)>;
 
 /// Adds relief and bumps (streams "terrain.relief" and "terrain.bumps"). Relief and bumps fade around the start, so

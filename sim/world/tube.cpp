@@ -31,7 +31,7 @@ constexpr std::array kTubeParameters = joined(kGroundParameters, kOwnTubeParamet
 constexpr Colour kRock = {0.42f, 0.36f, 0.33f, 1.0f};
 constexpr double kOver_m = 0.5;  // the ground extends beyond the walls, so that there is no gap
 
-/// Returns the position of the tube's middle.
+/// Returns the y coordinate of the tube's middle line at `x_m`.
 double middle_m(const Values& values, double x_m) {
   return values.at("bend_m") * std::sin(2.0 * std::numbers::pi * x_m / values.at("bend_length_m"));
 }
@@ -41,8 +41,8 @@ double ground_m(const Values& values, double x_m, double y_m) {
   return values.at("gutter_m") * u * u;
 }
 
-/// Adds half of the shell: rings along x, from the foot of one wall to the crown. The shell has no contact, because the
-/// engine would use the convex hull of the mesh; the ground and the ends hold the robot.
+/// Adds half of the shell: rings along x, from the foot of one wall to the crown. The shell has no contact, because
+/// MuJoCo would use the convex hull of the mesh; the ground and the ends hold the robot.
 void add_shell(mjSpec* spec, engine::World& world, const Values& values, int side, const Relief& rough) {
   constexpr double kRing_m = 0.1;
   constexpr int kSteps = 28;
@@ -88,7 +88,7 @@ void add_shell(mjSpec* spec, engine::World& world, const Values& values, int sid
 void add_ends(mjSpec* spec, engine::World& world, const Values& values, double half_y_m) {
   const double half_height_m = 0.75 * values.at("height_m"), x_m = values.at("length_m") / 2;
   for (const int sign : {1, -1}) {
-    // closes the tube; slightly rotated, as debris would be
+    // the box closes the end of the tube and is slightly rotated, like debris
     add_surface(spec, world, sign > 0 ? "end_front" : "end_back", mjGEOM_BOX, {sign * (x_m + 0.05), 0, half_height_m},
                 {0.2, half_y_m, half_height_m}, 0.1, kRock);
   }

@@ -23,7 +23,7 @@ const WorldType& hill_world();
 const WorldType& stairs_world();
 /// Drops of a metre and more with ledges between the drops.
 const WorldType& cliff_world();
-/// Room with a floor, walls, ceiling, furniture, obstacles and patches of other friction.
+/// Room with a floor, walls, ceiling, furniture, obstacles and floor patches with different friction.
 const WorldType& floor_world();
 /// Room with a ramp up, a plateau and a ramp down.
 const WorldType& ramp_world();
@@ -35,7 +35,7 @@ const WorldType& tube_world();
 /// Returns all kinds of world in the order of registration. A new kind of world needs a source file and a line in
 /// world_type.cpp.
 std::span<const WorldType* const> all_world_types();
-/// Throws InvalidSituation for an unknown name, with the nearest known name.
+/// Returns the kind of world with this name. For an unknown name, throws InvalidSituation with the nearest known name.
 const WorldType& find_world_type(std::string_view name);
 
 }  // namespace tumble::sim

@@ -26,8 +26,8 @@ class Ground {
   double coordinate_m(int index) const { return index * cell_m() - half_extent_m_; }
   double node_m(int row, int column) const { return heights_m_[static_cast<std::size_t>(row) * side_ + column]; }
 
-  /// Returns the bilinear height between the nodes; beyond the edge, the height of the edge. The triangles of the
-  /// engine differ from the bilinear height by the twist of a cell: 4 mm per 20 cm cell at 0.4 /m.
+  /// Returns the bilinear height between the nodes; beyond the edge, the height of the edge. The triangles of MuJoCo
+  /// differ from the bilinear height by the twist of a cell: 4 mm per 20 cm cell at 0.4 /m.
   double height_m(double x_m, double y_m) const;
 
   /// Replaces each height by f(x_m, y_m, height_m).

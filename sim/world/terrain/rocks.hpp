@@ -20,7 +20,7 @@ struct RockField {
   Disc clear;  ///< no rock reaches into this disc
 };
 
-/// An ellipsoid that is buried by more than a third.
+/// A rock: an ellipsoid with more than a third below the ground.
 struct Rock {
   Eigen::Vector3d centre_W_m;
   Eigen::Vector3d half_axes_m;

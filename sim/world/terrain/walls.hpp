@@ -16,7 +16,7 @@ struct Block {
   double yaw_rad = 0.0;
 };
 
-/// Adds the block as the surface `name`.
+/// Adds a block to the world as the surface `name`.
 void add_block(mjSpec* spec, engine::World& world, const std::string& name, const Block& block, const Ground& ground,
                const Colour& colour);
 
