@@ -27,18 +27,18 @@ Estimate run_sphere(const sim::Sensors& sensors, const sim::Values& parameters) 
   estimate.frame = Frame::body;
   MergedImus imus;
   estimate.status = merge_imus(sensors, imus);
-  for (const Doubt& unit : imus.out) add_doubt(unit, estimate);
+  for (const Doubt& fault : imus.faults) add_doubt(fault, estimate);
   if (!estimate.status.ok()) return estimate;
   (void)check_imus(sensors, imus, estimate);
-  if (imus.beyond_range > 0.0) add_doubt({Doubt::About::beyond_range, imus.beyond_range}, estimate);
+  if (imus.beyond_range > 0) add_doubt({Doubt::About::beyond_range, double(imus.beyond_range)}, estimate);
   TumbleAttitude::Params params = stated(sensors);
   params.radius_m = sensors.sphere_radius_m;
-  params.lever_arm_m = imus.lever_arm_m;
+  params.lever_arm_m = imus.merged.lever_arm_m;
   attitude_tumble_settings().apply(parameters, params);
   const TumbleAttitude filter(params);
   TumbleAttitude::State state;
-  estimate.attitudes.reserve(imus.samples.size());
-  for (const ImuSample& sample : imus.samples) {
+  estimate.attitudes.reserve(imus.merged.samples.size());
+  for (const ImuSample& sample : imus.merged.samples) {
     estimate.status = filter.step(sample, state);
     if (!estimate.status.ok()) return estimate;
     estimate.attitudes.push_back({sample.time_ns, state.q_WI, TumbleAttitude::attitude_covariance_rad2(state)});

@@ -83,6 +83,16 @@ Status check_stream(const sim::ImuRecord& record, std::span<const ImuSample> sam
 
 }  // namespace
 
+ImuSheet imu_sheet(const sim::ImuRecord& record) {
+  ImuSheet sheet;
+  if (record.period_ns > 0) sheet.rate_hz = 1.0 / seconds(record.period_ns);
+  sheet.gyro_range_rad_s = record.stated_gyro_range_rad_s;
+  sheet.accel_range_m_s2 = record.stated_accel_range_m_s2;
+  if (record.gyro_noise_rad_s_sqrt_hz > 0.0) sheet.gyro_noise_rad_s_sqrt_hz = record.gyro_noise_rad_s_sqrt_hz;
+  if (record.accel_noise_m_s2_sqrt_hz > 0.0) sheet.accel_noise_m_s2_sqrt_hz = record.accel_noise_m_s2_sqrt_hz;
+  return sheet;
+}
+
 Status check_range(const sim::ImuRecord& record, const Eigen::Vector3d& gyro_rad_s, const Eigen::Vector3d& accel_m_s2) {
   const auto beyond = [](const Eigen::Vector3d& reading, double stated, const char* field) -> Status {
     const double bound = kStatedRangesMax * stated;

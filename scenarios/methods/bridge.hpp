@@ -13,6 +13,7 @@
 #include "tumble/common/imu.hpp"
 #include "tumble/common/status.hpp"
 #include "tumble/mapping/lidar.hpp"
+#include "tumble/odometry/imu_sheet.hpp"
 
 /// Converts the records of `sim` to the messages of the estimator. Every conversion between the two libraries is in
 /// this file. Each library states its conventions separately; the table compares the conventions:
@@ -38,6 +39,9 @@ inline constexpr double kStatedRangesMax = OutlierFilter::kRangesMax;
 /// A recording is refused if a larger fraction of its readings exceeds the limit, because the unit or the device must
 /// be wrong.
 inline constexpr double kWildShareMax = 0.01;
+
+/// Returns the data sheet of an IMU, with the library's defaults for what the record does not state.
+ImuSheet imu_sheet(const sim::ImuRecord& record);
 
 /// Returns `out_of_range`, with value and limit, for the first axis whose reading exceeds kStatedRangesMax times the
 /// range in the record. A stated range of 0 disables the check.

@@ -130,19 +130,20 @@ Status check_imu(const sim::Sensors& sensors, std::span<const ImuSample> samples
 
 Status check_imus(const sim::Sensors& sensors, const MergedImus& imus, Estimate& estimate) {
   bool gyros_right = false;
-  const Status own = check_turning(sensors, imus.samples, estimate, gyros_right);
-  if (imus.other_sense) {
-    estimate.health["imu_other_axes_share"] = imus.other_sense->share;
+  const MergedRecordings& merged = imus.merged;
+  const Status own = check_turning(sensors, merged.samples, estimate, gyros_right);
+  if (merged.other_sense) {
+    estimate.health["imu_other_axes_share"] = merged.other_sense->share;
     add_doubt({Doubt::About::readings}, estimate);
   }
-  if (!imus.arm_share) return own;
-  estimate.health["imu_arm_share"] = *imus.arm_share;
-  if (std::abs(*imus.arm_share - 1.0) > kArmShareOff && !gyros_right) add_doubt({Doubt::About::readings}, estimate);
-  if (!own.ok() || *imus.arm_share >= kArmShareMin) return own;
+  if (!merged.arm_share) return own;
+  estimate.health["imu_arm_share"] = *merged.arm_share;
+  if (std::abs(*merged.arm_share - 1.0) > kArmShareOff && !gyros_right) add_doubt({Doubt::About::readings}, estimate);
+  if (!own.ok() || *merged.arm_share >= kArmShareMin) return own;
   return reported(
       {Trouble::out_of_range,
        "difference between the forces of the IMUs, relative to the value predicted from rotation and lever arms",
-       *imus.arm_share, kArmShareMin},
+       *merged.arm_share, kArmShareMin},
       estimate);
 }
 

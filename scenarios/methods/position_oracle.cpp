@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/position_tumble.hpp"
 #include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/robot_presets.hpp"
 #include "scenarios/methods/sample_times.hpp"
 #include "scenarios/methods/sphere_attitude.hpp"
 
@@ -15,12 +20,65 @@ namespace {
 constexpr std::int64_t kEdgeNs = 400'000'000;
 constexpr double kLevelTiltRad = 0.005;  // smaller tilts of the floor count as level
 
-bool prepare(const char* method, const sim::Sensors& sensors, MergedImus& imus, Estimate& estimate) {
+/// The merged IMUs of a sphere and the parameters that the recording states.
+struct Prepared {
+  std::vector<ImuSample> samples;
+  RollingSmoother::Params params;
+};
+
+bool prepare(const char* method, const sim::Sensors& sensors, Prepared& out, Estimate& estimate) {
   estimate.frame = Frame::centre;
-  estimate.status = merge_imus(sensors, imus);
+  SphereImus units;
+  MergedImus imus;
+  estimate.status = sphere_imus(sensors, units);
+  if (estimate.status.ok()) estimate.status = merge_imus(sensors, imus);
   if (!estimate.status.ok()) return false;
   require_sphere(method, sensors);
+  RollingOdometry::Params params;
+  params.lag_s = RollingOdometry::kWholeRecording;
+  out.params = RollingOdometry::smoother_params(stated_params(sensors, units, params), imus.merged);
+  out.samples = std::move(imus.merged.samples);
   return true;
+}
+
+/// Returns the smoother's parameters without the `fixed` parameters, which the oracle takes from the truth.
+Settings<RollingSmoother::Params> oracle_settings(std::vector<std::string> fixed) {
+  RollingSmoother::Params params;
+  params.filter.radius_m = presets::kSphereRadius_m;
+  fixed.insert(fixed.end(), {"lag_s", "rate_max_hz", "known_distance_*"});
+  return Settings<RollingSmoother::Params>(
+      params, {.stated = {"radius_m", "gravity_m_s2", "lever_arm_x_m", "lever_arm_y_m", "lever_arm_z_m",
+                          "gyro_range_rad_s", "accel_range_m_s2", "recovered_rate_sigma_rad_s",
+                          // the following parameters depend on whether the device is known
+                          "gyro_bias_sigma_rad_s", "accel_bias_sigma_m_s2", "tilt_sigma_rad", "accel_scale_sigma",
+                          "gyro_scale_sigma", "accel_delay_sigma_s", "lever_arm_sigma_m", "incline_begins_per_s"},
+               .fixed = std::move(fixed)});
+}
+
+/// Smooths all samples; `known` states the contact modes if they are known.
+void smooth(const Prepared& prepared, std::span<const RollingMode> known, Estimate& estimate) {
+  const RollingSmoother smoother(prepared.params);
+  const auto state = std::make_unique<RollingSmoother::State>();
+  std::vector<RollingEstimate> done;
+  for (const ImuSample& sample : prepared.samples) {
+    estimate.status = smoother.step(sample, *state, done);
+    if (!estimate.status.ok()) return;
+  }
+  const auto take = [&](const RollingEstimate& e) {
+    append_pose({.pose = {e.time_ns, e.p_WG_m, e.q_WI, e.v_WG_m_s, e.covariance},
+                 .angular_velocity_rad_s = e.w_WI_I_rad_s,
+                 .mode = e.mode,
+                 .at_rest = e.at_rest,
+                 .uncertain = e.uncertain},
+                prepared.params.filter.radius_m, estimate);
+  };
+  std::for_each(done.begin(), done.end(), take);
+  if (known.empty()) {
+    smoother.finish(*state, take);
+  } else {
+    smoother.finish(known, *state, take);
+  }
+  estimate.centre_B_m = -state->constants.lever_arm_error_m;
 }
 
 std::size_t physics_index(const sim::Truth& truth, std::int64_t time_ns, std::size_t count) {
@@ -42,7 +100,7 @@ const Settings<RollingSmoother::Params>& settings_with_contact() {
 
 Estimate run_exact_attitude(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput& oracle) {
   Estimate estimate;
-  MergedImus imus;
+  Prepared imus;
   if (!prepare("position/oracle", sensors, imus, estimate)) return estimate;
   const sim::Truth& truth = *oracle.truth;
   const std::vector<std::int64_t>& times_ns = sensors.imus.front().time_ns;
@@ -57,7 +115,8 @@ Estimate run_exact_attitude(const sim::Sensors& sensors, const sim::Values& para
     while (next < times_ns.size() && times_ns[next] <= sample.time_ns) sum += truth.imus.front().rate_rad_s[next++];
     if (next > first) sample.angular_velocity_rad_s = R_BI * (sum / static_cast<double>(next - first));
   }
-  RollingSmoother::Params params = rolling_smoother_params(sensors, imus, settings_with_attitude(), parameters);
+  RollingSmoother::Params& params = imus.params;
+  settings_with_attitude().apply(parameters, params);
   params.filter.q_WI_start =
       truth.q_WB[physics_index(truth, imus.samples.front().time_ns, truth.q_WB.size())].normalized();
   params.filter.gyro_range_rad_s = 1e3;
@@ -67,7 +126,7 @@ Estimate run_exact_attitude(const sim::Sensors& sensors, const sim::Values& para
   params.filter.expert.noise.attitude_walk_rad_sqrts = 1e-9;
   params.filter.expert.noise.rate_error_sqrts = 1e-9;
   params.filter.expert.noise.gyro_bias_walk_rad_s_sqrts = 1e-9;
-  smooth(params, imus, {}, estimate);
+  smooth(imus, {}, estimate);
   return estimate;
 }
 
@@ -108,11 +167,11 @@ std::vector<RollingMode> true_modes(const sim::Truth& truth, const std::vector<I
 
 Estimate run_exact_contact(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput& oracle) {
   Estimate estimate;
-  MergedImus imus;
+  Prepared imus;
   if (!prepare("position/oracle_contact", sensors, imus, estimate)) return estimate;
   if (oracle.truth->label.empty()) throw BadInput("the truth has no contact states");
-  RollingSmoother::Params params = rolling_smoother_params(sensors, imus, settings_with_contact(), parameters);
-  smooth(params, imus, true_modes(*oracle.truth, imus.samples), estimate);
+  settings_with_contact().apply(parameters, imus.params);
+  smooth(imus, true_modes(*oracle.truth, imus.samples), estimate);
   return estimate;
 }
 

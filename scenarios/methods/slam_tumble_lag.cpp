@@ -45,12 +45,7 @@ const Settings<TumblingOdometry::Params>& slam_tumble_lag_settings() {
 TumblingOdometry::Params stated_params(const sim::Sensors& sensors, const sim::Values& parameters) {
   const sim::ImuRecord& imu = sensors.imus.front();
   TumblingOdometry::Params params = slam_tumble_lag_settings().defaults();
-  ImuSheet& sheet = params.imu;
-  if (imu.period_ns > 0) sheet.rate_hz = 1.0 / seconds(imu.period_ns);
-  sheet.gyro_range_rad_s = imu.stated_gyro_range_rad_s;
-  sheet.accel_range_m_s2 = imu.stated_accel_range_m_s2;
-  if (imu.gyro_noise_rad_s_sqrt_hz > 0.0) sheet.gyro_noise_rad_s_sqrt_hz = imu.gyro_noise_rad_s_sqrt_hz;
-  if (imu.accel_noise_m_s2_sqrt_hz > 0.0) sheet.accel_noise_m_s2_sqrt_hz = imu.accel_noise_m_s2_sqrt_hz;
+  params.imu = bridge::imu_sheet(imu);
   params.lever_arm_I_m = bridge::lever_arm_I_m(imu);
   params.T_IL = bridge::T_IL(imu, sensors.lidars.front());
   params.own_body_L = presets::rig_body_L();

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace tumble {
 
@@ -165,6 +166,41 @@ Eigen::Vector3d FrozenAxes::rate_variance_rad2_s2(TimeNs time_ns, const State& s
     const Axis& axis = state.axes[c];
     if (axis.frozen && time_ns >= axis.since_ns) out[static_cast<int>(c)] = state.fastest_rad_s * state.fastest_rad_s;
   }
+  return out;
+}
+
+namespace {
+
+/// Appends the axes that are frozen at `time_ns`, or extends the last interval of these axes.
+void extend(const FrozenAxes::State& state, TimeNs time_ns, std::vector<FrozenAxis>& out) {
+  for (const Triad triad : {Triad::gyro, Triad::accelerometer}) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const FrozenAxes::Axis& now = FrozenAxes::axis(triad, axis, state);
+      if (!now.frozen) continue;
+      const auto known = std::find_if(out.begin(), out.end(), [&](const FrozenAxis& found) {
+        return found.triad == triad && found.axis == axis && found.from_ns == now.since_ns;
+      });
+      if (known != out.end()) {
+        known->to_ns = time_ns;
+      } else {
+        out.push_back({triad, axis, now.since_ns, time_ns});
+      }
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<FrozenAxis> find_frozen_axes(const FrozenAxes& detector, std::span<const ImuSample> samples) {
+  FrozenAxes::State state;
+  std::vector<FrozenAxis> out;
+  for (const ImuSample& sample : samples) {
+    detector.step(sample, state);
+    extend(state, sample.time_ns, out);
+  }
+  std::sort(out.begin(), out.end(), [](const FrozenAxis& a, const FrozenAxis& b) {
+    return std::tie(a.triad, a.axis, a.from_ns) < std::tie(b.triad, b.axis, b.from_ns);
+  });
   return out;
 }
 

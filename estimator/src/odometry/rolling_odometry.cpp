@@ -11,6 +11,11 @@ namespace {
 
 constexpr std::size_t kRecoveringUnits = 3;  // number of IMUs needed to recover a rate beyond the range
 constexpr double kRecoveredSigma_rad_s = 1.0;
+constexpr double kUnknownRadiusShare = 0.05;  // prior of a radius that a known distance determines
+// Prior standard deviations of an IMU without a data sheet, mounted anywhere in the sphere.
+constexpr double kUnknownGyroBias_rad_s = 5e-3, kUnknownAccelBias_m_s2 = 0.4, kUnknownScale = 0.01,
+                 kUnknownDelay_s = 5e-3, kUnknownLeverArm_m = 0.05;
+constexpr double kLevelInclinePerS = 1e-9;  // rate at which slopes begin on a level floor
 
 constexpr std::array<std::array<const char*, 6>, ImuMerge::kImus> kFrozenFields = {
     {{{"seconds for which unit 1's gyro x repeats one reading", "seconds for which unit 1's gyro y repeats one reading",
@@ -57,19 +62,22 @@ ImuMerge::Params merge_params(const RollingOdometry::Params& params) {
   return out;
 }
 
+/// `units` IMUs are in use; `lever_arm_m` is the position of the merged IMU.
 RollingSmoother::Params rolling_params(const RollingOdometry::Params& params, const ImuMerge::Params& merged,
-                                       const ImuMerge& merge) {
+                                       std::size_t units, const Eigen::Vector3d& lever_arm_m) {
   RollingSmoother::Params out = params.expert.rolling;
   out.filter.radius_m = params.radius_m;
   out.filter.gravity_m_s2 = params.gravity_m_s2;
-  out.filter.lever_arm_m = merge.p_C_m();
+  out.filter.lever_arm_m = lever_arm_m;
   out.filter.lever_arm_sigma_m = params.centre_sigma_m;
   out.filter.gyro_range_rad_s = merged.gyro_range_rad_s;
   out.filter.accel_range_m_s2 = merged.accel_range_m_s2;
-  if (params.units.size() >= kRecoveringUnits)
+  if (units >= kRecoveringUnits)
     out.filter.expert.rails.recovered_rate_sigma_rad_s = kRecoveredSigma_rad_s;
   out.lag_s = std::max(params.lag_s, out.filter.expert.node_s);
   out.rate_max_hz = std::max(out.rate_max_hz, 1.1 * params.units.front().sheet.rate_hz);
+  if (out.known_distance_m > 0.0 && out.filter.radius_sigma_m == 0.0)
+    out.filter.radius_sigma_m = kUnknownRadiusShare * out.filter.radius_m;
   return out;
 }
 
@@ -115,6 +123,7 @@ bool any_reading(std::span<const ImuSample> samples) {
 RollingOdometry::Pose as_pose(const RollingEstimate& estimate) {
   RollingOdometry::Pose out;
   out.pose = {estimate.time_ns, estimate.p_WG_m, estimate.q_WI, estimate.v_WG_m_s, estimate.covariance};
+  out.angular_velocity_rad_s = estimate.w_WI_I_rad_s;
   out.mode = estimate.mode;
   out.at_rest = estimate.at_rest;
   out.uncertain = estimate.uncertain;
@@ -123,14 +132,29 @@ RollingOdometry::Pose as_pose(const RollingEstimate& estimate) {
 
 }  // namespace
 
+void RollingOdometry::Params::assume_unknown_imus() {
+  const auto widen = [](double& sigma, double least) { sigma = std::max(sigma, least); };
+  RollingParams& filter = expert.rolling.filter;
+  widen(filter.expert.prior.gyro_bias_sigma_rad_s, kUnknownGyroBias_rad_s);
+  widen(filter.expert.prior.accel_bias_sigma_m_s2, kUnknownAccelBias_m_s2);
+  widen(filter.expert.prior.tilt_sigma_rad, kUnknownAccelBias_m_s2 / gravity_m_s2);
+  widen(filter.expert.prior.accel_scale_sigma, kUnknownScale);
+  widen(filter.expert.prior.gyro_scale_sigma, kUnknownScale);
+  widen(filter.expert.prior.accel_delay_sigma_s, kUnknownDelay_s);
+  widen(centre_sigma_m, kUnknownLeverArm_m);
+  double& inclines = filter.expert.modes.incline_begins_per_s;
+  inclines = std::min(inclines, kLevelInclinePerS);
+}
+
 RollingOdometry::RollingOdometry(const Params& params) : RollingOdometry(params, merge_params(params)) {}
 
 RollingOdometry::RollingOdometry(const Params& params, const ImuMerge::Params& merged)
     : params_(params),
       clock_(params.expert.stamps),
       merge_(merged),
-      smoother_(rolling_params(params, merged, merge_)),
+      smoother_(rolling_params(params, merged, params.units.size(), merge_.p_C_m())),
       rails_(sheets_of(params)),
+      alignment_(params.units.size()),
       merge_state_(std::make_unique<ImuMerge::State>()),
       merged_state_(std::make_unique<ImuMerge::State>()),
       state_(std::make_unique<RollingSmoother::State>()),
@@ -147,6 +171,9 @@ RollingOdometry::RollingOdometry(const RollingOdometry& other)
       merge_(other.merge_),
       smoother_(other.smoother_),
       rails_(other.rails_),
+      alignment_(other.alignment_),
+      alignment_state_(other.alignment_state_),
+      recorded_(other.recorded_),
       merge_state_(std::make_unique<ImuMerge::State>(*other.merge_state_)),
       merged_state_(std::make_unique<ImuMerge::State>()),
       state_(std::make_unique<RollingSmoother::State>(*other.state_)),
@@ -171,6 +198,13 @@ Status RollingOdometry::add_imus(std::span<const ImuSample> samples) {
   if (finished_) return {Trouble::out_of_range, "samples after finish()", 1.0, 0.0};
   if (samples.size() != params_.units.size())
     return {Trouble::too_few, "samples", double(samples.size()), double(params_.units.size())};
+  if (is_whole()) {
+    if (!any_reading(samples)) return check_sample(samples.front());
+    Status status;
+    for (std::size_t k = 0; k < samples.size() && status.ok(); ++k)
+      status = record(k, at_time(samples.front().time_ns, samples[k]));
+    return status;
+  }
   // for a time that does not increase, and for units without any reading, add_inliers() returns the error
   if (!any_reading(samples) || (stamps_.stamp_ns && samples.front().time_ns <= *stamps_.stamp_ns))
     return add_inliers(samples);
@@ -190,6 +224,36 @@ Status RollingOdometry::add_imus(std::span<const ImuSample> samples) {
   if (holds) held_ = judged;
   const std::span<const ImuSample> inliers = std::span(judged).first(samples.size());
   return holds || !any_reading(inliers) ? Status{} : add_inliers(inliers);
+}
+
+Status RollingOdometry::add_imu(std::size_t unit, const ImuSample& sample) {
+  if (finished_) return {Trouble::out_of_range, "samples after finish()", 1.0, 0.0};
+  const std::size_t units = params_.units.size();
+  if (unit >= units) return {Trouble::out_of_range, "unit", double(unit), double(units - 1)};
+  if (is_whole()) return record(unit, sample);
+  if (Status status = alignment_.push(unit, sample, alignment_state_); !status.ok()) return status;
+  return add_aligned(false);
+}
+
+/// Adds the readings of all complete common times; `ended` states that no further readings follow.
+Status RollingOdometry::add_aligned(bool ended) {
+  Status first;
+  UnitAlignment::Readings readings;
+  while (alignment_.next(alignment_state_, readings, ended)) {
+    const Status status = add_imus(std::span(readings).first(params_.units.size()));
+    if (first.ok()) first = status;
+  }
+  return first;
+}
+
+/// Stores a reading until finish(). A reading that is not finite is ignored.
+Status RollingOdometry::record(std::size_t unit, ImuSample sample) {
+  if (!check_sample(sample).ok()) return {};
+  std::vector<ImuSample>& samples = recorded_[unit];
+  if (!samples.empty() && sample.time_ns <= samples.back().time_ns)
+    return {Trouble::time_order, "time_ns", double(sample.time_ns), double(samples.back().time_ns)};
+  samples.push_back(sample);
+  return {};
 }
 
 /// Adds the delayed samples, without the readings that the next samples do not confirm.
@@ -296,15 +360,55 @@ std::optional<RollingOdometry::Pose> RollingOdometry::take() {
   return out;
 }
 
-void RollingOdometry::finish() {
+RollingSmoother::Params RollingOdometry::smoother_params(const Params& params, const MergedRecordings& merged) {
+  return rolling_params(params, merge_params(params), merged.units.size(), merged.lever_arm_m);
+}
+
+RollingOdometry::Calibration RollingOdometry::calibration() const {
+  const RollingNominal& constants = live_ ? state_->live.nominal : state_->constants;
+  return {-constants.lever_arm_error_m, params_.radius_m + constants.radius_error_m, state_->radius_sigma_m};
+}
+
+Status RollingOdometry::finish() {
+  if (finished_) return {};
+  const Status status = is_whole() ? finish_whole() : add_aligned(true);
   for (OutlierFilter::State& unit : outliers_) OutlierFilter::finish(unit);
   held_.reset();
-  if (!live_ && !finished_) smoother_.finish(*state_, done_);
+  if (!live_ && !is_whole()) smoother_.finish(*state_, done_);
   finished_ = true;
+  return status;
+}
+
+/// Estimates all poses from the recorded readings.
+Status RollingOdometry::finish_whole() {
+  std::vector<UnitRecording> recordings;
+  for (std::size_t k = 0; k < params_.units.size(); ++k) {
+    std::vector<ImuSample>& samples = recorded_[k];
+    const std::vector<bool> inlier = find_inliers(filters_[k], samples);
+    outliers_[k].rejected += static_cast<std::size_t>(std::count(inlier.begin(), inlier.end(), false));
+    std::size_t next = 0;
+    std::erase_if(samples, [&](const ImuSample&) { return !inlier[next++]; });
+    std::vector<TimeNs> stamps;
+    for (const ImuSample& sample : samples) stamps.push_back(sample.time_ns);
+    double jitter_s = 0.0;
+    if (Status status = to_sample_times(clock_, stamps, jitter_s); !status.ok()) return status;
+    for (std::size_t j = 0; j < samples.size(); ++j) samples[j].time_ns = stamps[j];
+    recordings.push_back({params_.units[k].sheet, params_.units[k].T_BI, std::move(samples)});
+  }
+  MergedRecordings merged;
+  if (Status status = merge_recordings(recordings, merge_params(params_), merged); !status.ok()) return status;
+  smoother_ = RollingSmoother(smoother_params(params_, merged));
+  for (const ImuSample& sample : merged.samples) {
+    if (Status status = smoother_.step(sample, *state_, done_); !status.ok()) return status;
+  }
+  smoother_.finish(*state_, done_);
+  return {};
 }
 
 void RollingOdometry::reset() {
   stamps_ = {};
+  alignment_state_ = {};
+  recorded_ = {};
   merge_state_ = std::make_unique<ImuMerge::State>();
   state_ = std::make_unique<RollingSmoother::State>();
   rails_state_ = rails_.start();

@@ -18,6 +18,14 @@ void members(Self& s, Visitor& visit) {
   visit("unit.before", s.before);
 }
 
+template <StateOf<UnitAlignment::State> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("alignment.readings", s.readings);
+  visit("alignment.reference", s.reference, 0.0, ImuMerge::kImus - 1);
+  visit("alignment.first_ns", s.first_ns);
+  visit("alignment.common_ns", s.common_ns);
+}
+
 template <StateOf<RollingOdometry::Unit> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit_params(s.sheet, visit);
@@ -38,6 +46,9 @@ void RollingOdometry::members(Self& s, Visitor& visit) {
   visit.scratch(s.merge_);
   visit.scratch(s.smoother_);
   visit.scratch(s.rails_);
+  visit.scratch(s.alignment_);
+  visit("alignment", s.alignment_state_);
+  visit("recorded", s.recorded_);
   visit("stamps", s.stamps_);
   visit("merge", *s.merge_state_);
   visit.scratch(s.merged_state_);

@@ -15,6 +15,7 @@ namespace tumble {
 namespace {
 
 constexpr double kSlowRateTau_s = 0.3;
+constexpr double kEventProbability = 0.5;  // of slip or bump, over all hypotheses, from which an event is reported
 constexpr double kSpinSigmas = 4.0;  // a rate at rest above this many sigmas is not a bias
 
 static_assert(RollingFilter::kStates == rolling::kStates);
@@ -215,10 +216,13 @@ void RollingFilter::rebase(bool lost_heading, State& state) const {
   }
 }
 
+const Eigen::Vector3d& RollingFilter::newest_rate_rad_s(const State& state) {
+  return state.average.readings > 0 ? state.average.mean.angular_velocity_rad_s : state.last_rate_rad_s;
+}
+
 void RollingFilter::report(State& state) const {
   const RollingNominal nominal = rolling::carried_on(params_, state.average, state.nominal);
-  const Eigen::Vector3d& rate =
-      state.average.readings > 0 ? state.average.mean.angular_velocity_rad_s : state.last_rate_rad_s;
+  const Eigen::Vector3d& rate = newest_rate_rad_s(state);
   const Eigen::Vector3d arm_W = nominal.q_WI * (params_.lever_arm_m + nominal.lever_arm_error_m);
   const Eigen::Vector3d w_W = nominal.q_WI * (rate - nominal.gyro_bias_rad_s);
   state.q_WI = nominal.q_WI;
@@ -228,14 +232,24 @@ void RollingFilter::report(State& state) const {
   state.contact_velocity_m_s = state.hypotheses[0].u_W_m_s;
 }
 
+/// Returns the most probable mode, over all hypotheses. The best hypothesis can be one of several that agree only in
+/// whether the contact moves.
+RollingMode RollingFilter::most_probable_mode(const State& state) {
+  const bool event = state.slip_probability >= kEventProbability;
+  if (event == slips(state.mode)) return state.mode;
+  if (!event) return RollingMode::grip;
+  return 2.0 * state.bump_probability > state.slip_probability ? RollingMode::bump : RollingMode::slip;
+}
+
 RollingEstimate RollingFilter::estimate(const State& state) {
   RollingEstimate out;
   out.time_ns = state.last_time_ns;
   out.p_WG_m = state.p_WG_m;
   out.q_WI = state.q_WI;
   out.v_WG_m_s = state.v_WG_m_s;
+  out.w_WI_I_rad_s = newest_rate_rad_s(state) - state.nominal.gyro_bias_rad_s;
   out.covariance.topLeftCorner<3, 3>() = state.position_covariance_m2;
-  out.mode = state.mode;
+  out.mode = most_probable_mode(state);
   out.at_rest = state.at_rest;
   out.uncertain = state.uncertain;
   return out;

@@ -130,6 +130,7 @@ void members(Self& s, Visitor& visit) {
   visit("estimate.p_WG_m", s.p_WG_m);
   visit("estimate.q_WI", s.q_WI);
   visit("estimate.v_WG_m_s", s.v_WG_m_s);
+  visit("estimate.w_WI_I_rad_s", s.w_WI_I_rad_s);
   visit("estimate.covariance", s.covariance);
   visit("estimate.mode", s.mode, RollingMode::rough);
   visit("estimate.at_rest", s.at_rest);

@@ -135,7 +135,8 @@ RollingEstimate estimate_at(const RollingSmoother::Params& params, const rolling
   estimate.q_WI = (so3::exp(at.error.head<3>()) * point.q_WI).normalized();
   const Eigen::Vector3d arm_W =
       estimate.q_WI * (params.filter.lever_arm_m + at.nominal.lever_arm_error_m + at.error.tail<3>());
-  const Eigen::Vector3d w_W = estimate.q_WI * (point.rate_I_rad_s - at.nominal.gyro_bias_rad_s);
+  estimate.w_WI_I_rad_s = point.rate_I_rad_s - at.nominal.gyro_bias_rad_s;
+  const Eigen::Vector3d w_W = estimate.q_WI * estimate.w_WI_I_rad_s;
   estimate.p_WG_m = point.p_WI_m + at.error.segment<3>(6) - arm_W;
   estimate.v_WG_m_s = point.v_WI_m_s + at.error.segment<3>(3) - w_W.cross(arm_W);
   if (at.node == nullptr) return estimate;

@@ -47,9 +47,9 @@ sim::Sensors three(const sim::ImuRecord& second, const sim::ImuRecord& third) {
 
 double worst_rate_error(const MergedImus& merged) {
   double worst = 0.0;
-  for (std::size_t k = 10; k + 10 < merged.samples.size(); ++k) {
-    const double time_s = 1e-9 * static_cast<double>(merged.samples[k].time_ns);
-    worst = std::max(worst, (merged.samples[k].angular_velocity_rad_s - rate_at(time_s)).norm());
+  for (std::size_t k = 10; k + 10 < merged.merged.samples.size(); ++k) {
+    const double time_s = 1e-9 * static_cast<double>(merged.merged.samples[k].time_ns);
+    worst = std::max(worst, (merged.merged.samples[k].angular_velocity_rad_s - rate_at(time_s)).norm());
   }
   return worst;
 }
@@ -58,9 +58,8 @@ TEST(SphereImus, UnitsWithStampsOfTheirOwnAreReadAtThePrimaryOnes) {
   const sim::Sensors sensors = three(unit("imu_2", 1'300'000, 0.0), unit("imu_3", -2'700'000, 0.0));
   MergedImus merged;
   ASSERT_TRUE(merge_imus(sensors, merged).ok());
-  EXPECT_EQ(merged.units, 3);
-  EXPECT_EQ(merged.resampled, 2);
-  ASSERT_EQ(merged.samples.size(), static_cast<std::size_t>(kSamples));
+  EXPECT_EQ(merged.merged.units.size(), 3U);
+  ASSERT_EQ(merged.merged.samples.size(), static_cast<std::size_t>(kSamples));
   // between two samples a line departs from w by w'' T^2 / 8 = 30 rad/s^3 * 2e-6 s^2, a third of it in the mean of
   // three
   EXPECT_LT(worst_rate_error(merged), 1e-4);
@@ -74,14 +73,13 @@ TEST(SphereImus, ATimeOffsetOfOneUnitIsLearntAndTold) {
   const sim::Sensors sensors = three(unit("imu_2", 0, 0.0), unit("imu_3", 0, kLate_s));
   MergedImus merged;
   ASSERT_TRUE(merge_imus(sensors, merged).ok());
-  ASSERT_EQ(merged.each.size(), 3U);
-  EXPECT_EQ(merged.each[2].name, "imu_3");
+  ASSERT_EQ(merged.merged.units.size(), 3U);
+  EXPECT_EQ(merged.merged.units[2].unit, 2U);
   // about the mean of the three, which is a third of it late itself
-  EXPECT_NEAR(merged.each[2].time_offset_s, -2.0 / 3.0 * kLate_s, 1e-4);
-  EXPECT_NEAR(merged.each[0].time_offset_s, 1.0 / 3.0 * kLate_s, 1e-4);
-  EXPECT_GT(merged.each[2].time_offset_sigma_s, 0.0);
-  EXPECT_LT(merged.each[2].time_offset_sigma_s, 1e-4);
-  EXPECT_NEAR(merged.offset_max_s, 2.0 / 3.0 * kLate_s, 1e-4);
+  EXPECT_NEAR(merged.merged.units[2].time_offset_s, -2.0 / 3.0 * kLate_s, 1e-4);
+  EXPECT_NEAR(merged.merged.units[0].time_offset_s, 1.0 / 3.0 * kLate_s, 1e-4);
+  EXPECT_GT(merged.merged.units[2].time_offset_sigma_s, 0.0);
+  EXPECT_LT(merged.merged.units[2].time_offset_sigma_s, 1e-4);
 }
 
 TEST(SphereImus, AUnitThatEndsEarlyIsLeftOutFromThereOnAndNamed) {
@@ -93,10 +91,10 @@ TEST(SphereImus, AUnitThatEndsEarlyIsLeftOutFromThereOnAndNamed) {
   nan.gyro_rad_s[7].x() = std::nan("");  // one reading: made up for
   MergedImus merged;
   ASSERT_TRUE(merge_imus(three(ends, nan), merged).ok());
-  EXPECT_EQ(merged.units, 3);
-  ASSERT_EQ(merged.out.size(), 1U);
-  EXPECT_EQ(row_of(merged.out[0]), "imu_2_silent_since_s");
-  EXPECT_NEAR(merged.out[0].value, 5.0, 0.06);
+  EXPECT_EQ(merged.merged.units.size(), 3U);
+  ASSERT_EQ(merged.faults.size(), 1U);
+  EXPECT_EQ(row_of(merged.faults[0]), "imu_2_silent_since_s");
+  EXPECT_NEAR(merged.faults[0].value, 5.0, 0.06);
   EXPECT_LT(worst_rate_error(merged), 1e-3);
 }
 
@@ -105,9 +103,9 @@ TEST(SphereImus, ThePrimaryUnitMayDieToo) {
   for (std::size_t k = kSamples / 3; k < kSamples; ++k) sensors.imus[0].gyro_rad_s[k].x() = std::nan("");
   MergedImus merged;
   ASSERT_TRUE(merge_imus(sensors, merged).ok());
-  ASSERT_EQ(merged.samples.size(), static_cast<std::size_t>(kSamples));
-  ASSERT_EQ(merged.out.size(), 1U);
-  EXPECT_EQ(row_of(merged.out[0]), "imu_silent_since_s");
+  ASSERT_EQ(merged.merged.samples.size(), static_cast<std::size_t>(kSamples));
+  ASSERT_EQ(merged.faults.size(), 1U);
+  EXPECT_EQ(row_of(merged.faults[0]), "imu_silent_since_s");
   EXPECT_LT(worst_rate_error(merged), 1e-6);
 }
 
@@ -121,9 +119,9 @@ TEST(SphereImus, ThePrimaryUnitMayBeSilent) {
     lose(primary.time_ns), lose(primary.gyro_rad_s), lose(primary.accel_m_s2), lose(primary.clip_flags);
     MergedImus merged;
     ASSERT_TRUE(merge_imus(sensors, merged).ok());
-    ASSERT_EQ(merged.samples.size(), static_cast<std::size_t>(kSamples));
-    ASSERT_EQ(merged.out.size(), 1U);
-    EXPECT_EQ(row_of(merged.out[0]), "imu_silent_since_s");
+    ASSERT_EQ(merged.merged.samples.size(), static_cast<std::size_t>(kSamples));
+    ASSERT_EQ(merged.faults.size(), 1U);
+    EXPECT_EQ(row_of(merged.faults[0]), "imu_silent_since_s");
     EXPECT_LT(worst_rate_error(merged), 1e-4);
   }
 }
@@ -133,16 +131,16 @@ TEST(SphereImus, AFrozenUnitIsLeftOutFromTheBeginningOfItAndNamed) {
     sim::Sensors sensors = three(unit("imu_2", 0, 0.0), unit("imu_3", 0, 0.0));
     MergedImus merged;
     ASSERT_TRUE(merge_imus(sensors, merged).ok());
-    EXPECT_TRUE(merged.out.empty());
+    EXPECT_TRUE(merged.faults.empty());
     sim::ImuRecord& record = sensors.imus[frozen];
     for (std::size_t k = kSamples / 3; k < kSamples; ++k) {
       record.gyro_rad_s[k] = record.gyro_rad_s[kSamples / 3];
       record.accel_m_s2[k] = record.accel_m_s2[kSamples / 3];
     }
     ASSERT_TRUE(merge_imus(sensors, merged).ok());
-    ASSERT_EQ(merged.out.size(), 1U) << frozen;
-    EXPECT_EQ(row_of(merged.out[0]), record.name + "_frozen_since_s");
-    EXPECT_NEAR(merged.out[0].value, 1e-9 * static_cast<double>(record.time_ns[kSamples / 3]), 1e-9);
+    ASSERT_EQ(merged.faults.size(), 1U) << frozen;
+    EXPECT_EQ(row_of(merged.faults[0]), record.name + "_frozen_since_s");
+    EXPECT_NEAR(merged.faults[0].value, 1e-9 * static_cast<double>(record.time_ns[kSamples / 3]), 1e-9);
     EXPECT_LT(worst_rate_error(merged), 1e-6) << frozen;  // nothing was learnt from it
   }
 }
@@ -152,10 +150,10 @@ TEST(SphereImus, AUnitOfOtherUnitsIsLeftOutAndNamed) {
   for (Eigen::Vector3d& force : sensors.imus[1].accel_m_s2) force /= 9.80665;
   MergedImus merged;
   ASSERT_TRUE(merge_imus(sensors, merged).ok());
-  ASSERT_EQ(merged.out.size(), 1U);
-  EXPECT_EQ(row_of(merged.out[0]), "imu_2_disagrees_since_s");
-  EXPECT_EQ(merged.units, 2);
-  EXPECT_NEAR(merged.samples[100].specific_force_m_s2.z(), 9.80665, 1e-9);
+  ASSERT_EQ(merged.faults.size(), 1U);
+  EXPECT_EQ(row_of(merged.faults[0]), "imu_2_disagrees_since_s");
+  EXPECT_EQ(merged.merged.units.size(), 2U);
+  EXPECT_NEAR(merged.merged.samples[100].specific_force_m_s2.z(), 9.80665, 1e-9);
 }
 
 /// Of a gyro of 5 rad/s, whose axis z repeats its reading from a third of the run on.
@@ -169,9 +167,9 @@ TEST(SphereImus, AUnitOfWhichOneAxisFreezesIsLeftOutAndTheAxisNamed) {
   const sim::Sensors sensors = three(frozen_z(unit("imu_2", 0, 0.0)), unit("imu_3", 0, 0.0));
   MergedImus merged;
   ASSERT_TRUE(merge_imus(sensors, merged).ok());
-  ASSERT_EQ(merged.out.size(), 1U);
-  EXPECT_EQ(row_of(merged.out[0]), "imu_2_gyro_z_frozen_since_s");
-  EXPECT_NEAR(merged.out[0].value, 1e-9 * static_cast<double>(sensors.imus[0].time_ns[kSamples / 3]), 1e-9);
+  ASSERT_EQ(merged.faults.size(), 1U);
+  EXPECT_EQ(row_of(merged.faults[0]), "imu_2_gyro_z_frozen_since_s");
+  EXPECT_NEAR(merged.faults[0].value, 1e-9 * static_cast<double>(sensors.imus[0].time_ns[kSamples / 3]), 1e-9);
   EXPECT_LT(worst_rate_error(merged), 1e-6);
 }
 
@@ -182,7 +180,7 @@ TEST(SphereImus, WhereOneAxisFreezesInAllUnitsTheRunIsRefused) {
   const Status status = merge_imus(sensors, merged);
   EXPECT_EQ(status.trouble, Trouble::out_of_range);
   EXPECT_NE(std::string(status.field).find("gyro z"), std::string::npos) << status.message();
-  EXPECT_EQ(merged.out.size(), 3U);
+  EXPECT_EQ(merged.faults.size(), 3U);
 }
 
 TEST(SphereImus, AnAxisAtItsRailOrThatIsReadMoreSlowlyIsNotFrozen) {
@@ -192,7 +190,7 @@ TEST(SphereImus, AnAxisAtItsRailOrThatIsReadMoreSlowlyIsNotFrozen) {
   for (std::size_t k = 0; k < kSamples; ++k) slow.gyro_rad_s[k].z() = slow.gyro_rad_s[k - k % 20].z();
   MergedImus merged;
   ASSERT_TRUE(merge_imus(three(clips, slow), merged).ok());
-  for (const Doubt& doubt : merged.out) EXPECT_EQ(doubt.unit.find_first_of("xyz"), std::string::npos) << doubt.unit;
+  for (const Doubt& doubt : merged.faults) EXPECT_EQ(doubt.unit.find_first_of("xyz"), std::string::npos) << doubt.unit;
 }
 
 TEST(SphereImus, ReadingsOfOneUnitBeyondItsRangeAreLeftOutAndCounted) {
@@ -201,7 +199,7 @@ TEST(SphereImus, ReadingsOfOneUnitBeyondItsRangeAreLeftOutAndCounted) {
   for (std::size_t k = 100; k < kSamples; k += 301) spikes.gyro_rad_s[k].x() = 3e5;
   MergedImus merged;
   ASSERT_TRUE(merge_imus(three(spikes, unit("imu_3", 0, 0.0)), merged).ok());
-  EXPECT_EQ(merged.beyond_range, 8.0);
+  EXPECT_EQ(merged.beyond_range, 8);
   EXPECT_LT(worst_rate_error(merged), 1e-3);
 }
 

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -15,6 +16,8 @@
 #include "tumble/common/detail/outlier_filter.hpp"
 #include "tumble/common/pose.hpp"
 #include "tumble/common/sample_clock.hpp"
+#include "tumble/odometry/detail/merge_recordings.hpp"
+#include "tumble/odometry/detail/unit_alignment.hpp"
 #include "tumble/odometry/detail/unit_rails.hpp"
 #include "tumble/odometry/imu_sheet.hpp"
 #include "tumble/rolling/rolling_smoother.hpp"
@@ -22,8 +25,9 @@
 namespace tumble {
 
 /// Estimates the pose of a rolling sphere from one to four IMUs, through grip, slip, bumps and slopes. The poses are
-/// live, or smoothed with the data of the following `lag_s`. UnitRails flags readings that a device clips without
-/// reporting saturation, ImuMerge fuses the IMUs, and RollingSmoother (with its RollingFilter) estimates the motion.
+/// live, smoothed with the data of the following `lag_s`, or smoothed with the whole recording. UnitRails flags readings
+/// that a device clips without reporting saturation, ImuMerge fuses the IMUs, and RollingSmoother (with its
+/// RollingFilter) estimates the motion. With the whole recording, merge_recordings() flags and fuses.
 ///
 /// World: z up, origin at the sphere's centre at the first sample, yaw 0 at the first sample. Start with one second at
 /// rest.
@@ -35,6 +39,8 @@ namespace tumble {
 /// apply.
 class RollingOdometry {
  public:
+  static constexpr double kWholeRecording = RollingSmoother::kWholeRun;  ///< value of Params::lag_s
+
   /// One IMU of the sphere.
   struct Unit {
     ImuSheet sheet;
@@ -47,7 +53,9 @@ class RollingOdometry {
     /// Standard deviation of the origin of T_BI about the sphere's true centre. The offset is estimated.
     double centre_sigma_m = 6e-3;
     double gravity_m_s2 = 9.80665;
-    double lag_s = 0.0;  ///< lag of the smoothed poses of take(); 0: live poses
+    /// Lag of the poses of take(). 0: live poses; kWholeRecording: add_imus() stores the readings, newest() returns
+    /// nothing, and finish() estimates all poses with knowledge of the whole recording.
+    double lag_s = 0.0;
 
     /// Parameters that few users change. If Params and Expert contain the same number, the value in Params has
     /// priority.
@@ -56,6 +64,10 @@ class RollingOdometry {
       RollingSmoother::Params rolling;
       SampleClock::Params stamps;  ///< correction of stamps that a host assigned
     } expert;
+
+    /// Widens the priors for IMUs that have no data sheet and no calibration, mounted anywhere in the sphere. Assumes a
+    /// level floor, because the accelerometer bias of such an IMU resembles a slope.
+    void assume_unknown_imus();
 
     /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
     template <class Self, class Visitor>
@@ -66,14 +78,23 @@ class RollingOdometry {
              "standard deviation of the stated centre: reference point of the IMU positions", Rank::first});
       visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 0.1, 100.0, "strength of gravity", Rank::first});
       visit(p.lag_s,
-            {"lag_s", "s", 0.0, 1e3, "time that a pose waits for later data before it is smoothed", Rank::first});
+            {"lag_s", "s", 0.0, kWholeRecording,
+             "time that a pose waits for later data before it is smoothed; 0: live; 1e9: the whole recording",
+             Rank::first});
       visit.group("merge_", p.expert.merge);
       visit.group("rolling_", p.expert.rolling);
       visit.group("stamps_", p.expert.stamps);
     }
   };
+  /// Estimated properties of the sphere.
+  struct Calibration {
+    Eigen::Vector3d centre_B_m = Eigen::Vector3d::Zero();  ///< sphere's centre, from the reference point of T_BI
+    double radius_m = 0.0;
+    double radius_sigma_m = 0.0;  ///< 0: the radius is not estimated (expert.rolling.filter.radius_sigma_m)
+  };
   struct Pose {
     PoseState pose;  ///< sphere's centre, sphere axes; live poses have no attitude covariance
+    Eigen::Vector3d angular_velocity_rad_s = Eigen::Vector3d::Zero();  ///< of the sphere, sphere axes
     RollingMode mode = RollingMode::grip;
     bool at_rest = false;
     bool uncertain = false;  ///< an event made the position uncertain (RollingModeParams::uncertain_m)
@@ -97,6 +118,11 @@ class RollingOdometry {
   /// Adds the sample of a sphere with one IMU. Errors are those of add_imus().
   Status add_imu(const ImuSample& sample) { return add_imus({&sample, 1}); }
 
+  /// Adds a sample of one unit whose stamps differ from the other units' stamps. UnitAlignment resamples the units to
+  /// common times, at most 0.05 s late; a unit without readings is absent. The errors are those of add_imus();
+  /// `time_order` also if the stamp is not later than the unit's last stamp, and `out_of_range` if there is no such unit.
+  Status add_imu(std::size_t unit, const ImuSample& sample);
+
   /// Returns the pose at the newest sample from all data so far. Returns nothing before the first sample.
   std::optional<Pose> newest() const;
 
@@ -104,8 +130,10 @@ class RollingOdometry {
   /// lag is 0.
   std::optional<Pose> take();
 
-  /// Ends the run and smooths the poses still within the lag. add_imus() then rejects samples until reset().
-  void finish();
+  /// Ends the run and smooths the poses still within the lag, or of the whole recording. add_imus() then rejects samples
+  /// until reset(). Returns the first error of the samples that it processes; with kWholeRecording also that of
+  /// merge_recordings().
+  Status finish();
 
   /// Starts a new run at the origin and at rest. Poses not yet fetched by take() remain available.
   void reset();
@@ -115,6 +143,15 @@ class RollingOdometry {
   /// (RestGravity). The readings of a frozen unit are ignored. If no unfrozen unit has readings, add_imus() rejects the
   /// sample.
   Status health() const;
+
+  /// Returns the estimated centre and radius. With a lag, the estimates are those of the newest smoothed pose.
+  Calibration calibration() const;
+
+  /// Returns the number of gaps in the samples that were bridged, and the longest one [s].
+  std::int64_t gaps() const { return state_->live.gaps; }
+  double longest_gap_s() const { return state_->live.gap_longest_s; }
+  /// Returns true if the first samples were not at rest.
+  bool started_in_motion() const { return state_->live.started_in_motion; }
 
   /// Returns the state of the IMU fusion: frozen, disagreeing and delayed units.
   const ImuMerge::State& units() const { return *merge_state_; }
@@ -130,6 +167,9 @@ class RollingOdometry {
   Status load(std::span<const std::byte> bytes);
   static Status saved_params(std::span<const std::byte> bytes, Params& params);
 
+  /// Returns the parameters with which RollingSmoother processes merged readings, for users of RollingSmoother alone.
+  static RollingSmoother::Params smoother_params(const Params& params, const MergedRecordings& merged);
+
   /// Passes every member of the state to the visitor. The definition is in the library's sources (state_visitor.hpp).
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
@@ -143,6 +183,10 @@ class RollingOdometry {
   Status add_held(std::span<const ImuSample> next);
   Status add_inliers(std::span<const ImuSample> samples);
   Status take_in(const ImuSample& merged);
+  Status add_aligned(bool ended);
+  Status record(std::size_t unit, ImuSample sample);
+  Status finish_whole();
+  bool is_whole() const { return params_.lag_s >= kWholeRecording; }
   Status exclude_frozen(const Frozen& frozen, std::span<ImuSample> samples) const;
   Status frozen_axis(const Frozen& frozen) const;
 
@@ -152,6 +196,9 @@ class RollingOdometry {
   ImuMerge merge_;
   RollingSmoother smoother_;
   UnitRails rails_;
+  UnitAlignment alignment_;
+  UnitAlignment::State alignment_state_;
+  std::array<std::vector<ImuSample>, ImuMerge::kImus> recorded_;  ///< readings of each unit, with kWholeRecording
   std::unique_ptr<ImuMerge::State> merge_state_;
   std::unique_ptr<ImuMerge::State> merged_state_;  ///< buffer for the next state
   std::unique_ptr<RollingSmoother::State> state_;

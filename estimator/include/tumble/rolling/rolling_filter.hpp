@@ -135,6 +135,8 @@ class RollingFilter {
   void report(State& state) const;
   void call_uncertain(State& state) const;
   void constrain_position(State& state) const;
+  static RollingMode most_probable_mode(const State& state);
+  static const Eigen::Vector3d& newest_rate_rad_s(const State& state);
   static Eigen::Matrix3d position_spread(const State& state);
   static void weigh_events(State& state);
   static void keep_first(std::size_t count, State& state);

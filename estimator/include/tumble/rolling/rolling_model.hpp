@@ -29,6 +29,7 @@ struct RollingEstimate {
   Eigen::Vector3d p_WG_m = Eigen::Vector3d::Zero();
   Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
   Eigen::Vector3d v_WG_m_s = Eigen::Vector3d::Zero();
+  Eigen::Vector3d w_WI_I_rad_s = Eigen::Vector3d::Zero();  ///< reading of the gyro minus the bias
   /// Covariance of (position error [m], attitude error [rad]), W, at the following node.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
   RollingMode mode = RollingMode::grip;

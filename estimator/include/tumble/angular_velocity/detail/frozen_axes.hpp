@@ -4,6 +4,8 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <span>
+#include <vector>
 
 #include "tumble/angular_velocity/detail/triad.hpp"
 #include "tumble/common/imu.hpp"
@@ -100,5 +102,15 @@ class FrozenAxes {
 
   Params params_;
 };
+
+/// Interval in which one axis repeats one reading.
+struct FrozenAxis {
+  Triad triad = Triad::gyro;
+  int axis = 0;
+  TimeNs from_ns = 0, to_ns = 0;  ///< first and last sample with this reading
+};
+
+/// Returns the intervals in which axes of a recording are frozen, sorted by axis and time. O(N).
+std::vector<FrozenAxis> find_frozen_axes(const FrozenAxes& detector, std::span<const ImuSample> samples);
 
 }  // namespace tumble

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "tumble/angular_velocity/detail/frozen_axes.hpp"
+#include "tumble/attitude/detail/unit_senses.hpp"
+#include "tumble/attitude/imu_merge.hpp"
+#include "tumble/common/imu.hpp"
+#include "tumble/common/status.hpp"
+#include "tumble/odometry/imu_sheet.hpp"
+
+namespace tumble {
+
+/// All readings of one of several IMUs on a body, in order of time.
+struct UnitRecording {
+  ImuSheet sheet;
+  Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();
+  std::vector<ImuSample> samples;
+};
+
+/// A fault because of which the readings of a unit are not used.
+struct UnitFault {
+  enum class Kind : std::uint8_t {
+    silent,      ///< no readings for half a second or until the end
+    frozen,      ///< a triad repeats one reading while the other units' readings change
+    frozen_axis, ///< `axis` repeats one reading; only the readings of its interval are not used
+    disagrees,   ///< the unit contradicts the others; none of its readings is used
+  };
+  Kind kind = Kind::silent;
+  std::size_t unit = 0;  ///< index of the unit
+  TimeNs since_ns = 0;
+  FrozenAxis axis;
+};
+
+/// One IMU that replaces several.
+struct MergedRecordings {
+  /// Calibration of one unit relative to the mean of all units.
+  struct Unit {
+    std::size_t unit = 0;                                   ///< index of the unit
+    double time_offset_s = 0.0, time_offset_sigma_s = 0.0;  ///< positive is later
+    double rate_bias_rad_s = 0.0;                           ///< norm
+  };
+  std::vector<ImuSample> samples;                         ///< body axes
+  Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< position of the merged IMU, body axes
+  std::vector<Unit> units;                                ///< units in use
+  std::vector<UnitFault> faults;
+  std::size_t readings_excluded = 0;                ///< readings that ImuMerge excluded
+  std::optional<double> arm_share;                  ///< ImuMerge::arm_share
+  std::optional<UnitSenses::Detected> other_sense;  ///< axes of the units that ImuMerge found mislabelled
+};
+
+/// Merges the recordings of up to ImuMerge::kImus units on one body with knowledge of the whole recording. ClippingFinder
+/// flags the clipped readings, UnitAlignment resamples the units to common times, and ImuMerge merges them. A unit is
+/// excluded while an axis is frozen or no readings exist. If ImuMerge finds a frozen or contradicting unit, a second
+/// pass excludes the unit from the start of the fault. Units without samples are ignored. `params` states ranges and
+/// gaps; the units' number, mountings and sensing elements are set here.
+///
+/// Errors: `empty` if no unit has a sample; `out_of_range` with the axis if frozen axes leave no unit (`out.faults` lists
+/// the excluded units); the errors of ImuMerge. O(N).
+Status merge_recordings(std::span<const UnitRecording> recordings, ImuMerge::Params params, MergedRecordings& out);
+
+}  // namespace tumble
