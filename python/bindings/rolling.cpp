@@ -226,7 +226,7 @@ void bind_rolling_odometry(nb::module_& m) {
       m, "RollingOdometry",
       "Estimates the pose of a rolling sphere from one to four IMUs, through grip, slip, bumps and slopes. Poses are "
       "live,\n"
-      "and smoothed with a lag of lag_s.\n\n"
+      "smoothed with a lag of lag_s, or smoothed with the whole recording (lag_s=1e9: all poses come after finish()).\n\n"
       "RollingOdometry(units=[(ImuSheet, T_BI), ...], radius_m=..., **options): T_BI (4, 4) is the pose of a unit in\n"
       "sphere axes, relative to the centre. Options: see parameters(). World: z up, origin at the centre at the first\n"
       "sample, yaw 0. The sphere must be stationary for the first second.");
@@ -284,8 +284,13 @@ void bind_rolling_odometry(nb::module_& m) {
           },
           nb::sig("def health(self) -> tumble.errors.TumbleError | None"), kHealth)
       .def(
-          "finish", [](Object& self) { self.run([](BoundRollingOdometry& rolling) { rolling.odometry.finish(); }); },
-          "Ends the run and smooths the poses within the lag, which take() returns. reset() starts the next run.")
+          "finish",
+          [](Object& self) {
+            require(self.run([](BoundRollingOdometry& rolling) { return rolling.odometry.finish(); }));
+          },
+          "Ends the run and smooths the poses within the lag, or of the whole recording, which take() returns. reset() "
+          "starts\n"
+          "the next run.")
       .def(
           "reset", [](Object& self) { self.run([](BoundRollingOdometry& rolling) { rolling.odometry.reset(); }); },
           "Starts a new run, stationary at the origin.")
