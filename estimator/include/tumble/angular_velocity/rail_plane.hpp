@@ -58,8 +58,7 @@ struct RailPlanes {
 /// Clipped sensing elements provide a lower bound of the component along their sensing directions.
 struct ElementRows {
   Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d slope_sigma =
-      Eigen::Vector3d::Zero();  ///< standard deviation of a row's two cross-axis sensitivities
+  Eigen::Vector3d slope_sigma = Eigen::Vector3d::Zero();  ///< deviation of both cross-axis sensitivities
   bool tilted() const { return rows != Eigen::Matrix3d::Identity(); }
   bool operator==(const ElementRows&) const = default;
 };

@@ -105,9 +105,8 @@ void discount_unobservable(double share, SensorErrorEvidence& evidence);
 /// SensorErrorFit contains the sensor errors that were estimated from readings and prior.
 struct SensorErrorFit {
   KnownSensorErrors known;
-  double in_sheet_probability = 1.0;  ///< probability that scale and misalignment are within the data sheet
-  double synchronous_probability =
-      1.0;  ///< probability that gyro and accelerometer are synchronous as in the data sheet
+  double in_sheet_probability = 1.0;     ///< probability that scale and misalignment are within the data sheet
+  double synchronous_probability = 1.0;  ///< probability that the triads are as synchronous as in the data sheet
 };
 
 /// Estimates the sensor errors by Bayesian model averaging over prior standard deviations. The models combine data

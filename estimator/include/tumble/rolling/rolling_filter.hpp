@@ -63,9 +63,8 @@ class RollingFilter {
     Eigen::Vector3d p_WG_m = Eigen::Vector3d::Zero();
     Eigen::Vector3d v_WG_m_s = Eigen::Vector3d::Zero();
     Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
-    Eigen::Matrix3d position_covariance_m2 =
-        Eigen::Matrix3d::Zero();  ///< covariance at the last node, over all hypotheses
-    Eigen::Vector3d contact_velocity_m_s = Eigen::Vector3d::Zero();  ///< contact velocity at the last node, W
+    Eigen::Matrix3d position_covariance_m2 = Eigen::Matrix3d::Zero();  ///< last node, over all hypotheses
+    Eigen::Vector3d contact_velocity_m_s = Eigen::Vector3d::Zero();    ///< contact velocity at the last node, W
     RollingMode mode = RollingMode::grip;
     double slip_probability = 0.0;  ///< probability that the contact point moves, at the last node
     double bump_probability = 0.0;  ///< part of slip_probability for modes in which the sphere hops
@@ -78,9 +77,8 @@ class RollingFilter {
     // Linearisation point that all hypotheses share.
     RollingNominal nominal;
     RollingSums sums;
-    ImuAverage average;  ///< average of the readings that are not yet processed
-    Eigen::Matrix3d pruned_spread_m2 =
-        Eigen::Matrix3d::Zero();  ///< position spread of the hypotheses removed at the last node
+    ImuAverage average;                                          ///< average of the readings that are not yet processed
+    Eigen::Matrix3d pruned_spread_m2 = Eigen::Matrix3d::Zero();  ///< position spread of the pruned hypotheses
     RestDetector::State rest;
     Eigen::Vector3d slow_rate_rad_s = Eigen::Vector3d::Zero();
     bool position_constrained = false;      ///< the sphere is at rest and the reported position is constant

@@ -51,8 +51,7 @@ struct RollingParams {
   double radius_sigma_m = 0.0;                            ///< 0: exactly known
   Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< lever arm from the centre to the IMU, sensor axes
   double lever_arm_sigma_m = 2e-3;
-  std::optional<Eigen::Quaterniond> q_WI_start =
-      {};  ///< attitude at the first sample; empty: levelled by the specific force
+  std::optional<Eigen::Quaterniond> q_WI_start = {};  ///< attitude at the first sample; empty: levelled by gravity
   double gravity_m_s2 = 9.80665;
   /// Readings at or above this rate are clipped, in addition to readings that the device flags.
   double gyro_range_rad_s = 1e3;
