@@ -11,11 +11,11 @@
 
 namespace tumble {
 
-/// RailPlane describes the saturation of one sensing element of a gyro by two planes in the compensated readings y: row
-/// . y = b - r and row . y = b + r. The sensing element measures the component of the rate along `row` and clips at the
-/// saturation level r. After clipping, the device compensates scale and misalignment, which tilts the two planes by a
-/// few percent. The device also subtracts the element's bias, so the saturation levels of the two signs differ by 2 b.
-/// For a sensing element of an accelerometer, the unit is m/s^2 instead of rad/s.
+/// RailPlane describes the saturation of one sensing element of a gyro. The compensated readings y saturate at two
+/// planes, row . y = b - r and row . y = b + r. The sensing element measures the component of the rate along `row` and
+/// clips at the saturation level r. After clipping, the device compensates scale and misalignment, which tilts the two
+/// planes by a few percent. The device also subtracts the element's bias, so the saturation levels of the two signs
+/// differ by 2 b. For a sensing element of an accelerometer, the unit is m/s^2 instead of rad/s.
 struct RailPlane {
   /// Direction m_j: 1 along axis j of the element, and the cross-axis sensitivities along the other two axes.
   Eigen::Vector3d row = Eigen::Vector3d::Zero();
@@ -66,8 +66,8 @@ struct ElementRows {
 /// plane has an axis-aligned direction with the standard deviation `unknown_sigma`.
 ElementRows element_rows(const RailPlanes& planes, double unknown_sigma);
 
-/// ElementClipping contains the state of each sensing element in a sample: -1 if clipped at the negative saturation
-/// level, 1 if clipped at the positive saturation level, 0 if unsaturated.
+/// ElementClipping contains the state of each sensing element in a sample. The state is -1 if clipped at the negative
+/// saturation level, 1 if clipped at the positive saturation level, and 0 if unsaturated.
 struct ElementClipping {
   std::array<std::int8_t, 3> sign{};
   bool any() const { return sign[0] != 0 || sign[1] != 0 || sign[2] != 0; }

@@ -43,9 +43,9 @@ struct RateModelParams {
   double accel_noise_density = 5.9e-4;
   /// Known sensor errors, for which the readings are corrected.
   SensorErrors errors = {};
-  /// Largest possible rate and angular acceleration of the body. The maximum rate and acceleration limit the estimate
-  /// where no measurement limits it. Allowed values are [1, 1e4] rad/s for the rate and [1, 1e7] rad/s^2 for the
-  /// angular acceleration.
+  /// Largest possible rate and angular acceleration of the body. Where the readings do not limit the rate, the maximum
+  /// rate and acceleration limit the estimate. Allowed values are [1, 1e4] rad/s for the rate and [1, 1e7] rad/s^2 for
+  /// the angular acceleration.
   double rate_max_rad_s = 50.0;
   double acceleration_max_rad_s2 = 5000.0;
 

@@ -94,14 +94,12 @@ struct RateReport {
 /// recording.
 ///
 /// The unknowns are the rate and angular acceleration of each sample, and the RigConstants of the run. A Gauss-Newton
-/// solver uses these factors:
-/// - Unclipped gyro readings measure the rate, and clipped readings limit the rate from below, for any number of axes.
-/// - In flight, the specific force at the lever arm follows the complete rigid-body equation, and Euler's equation
-///   holds without torque.
-/// During contact, the weights of the force equation and of Euler's equation are reduced.
-/// - Between samples, the angular jerk is white noise. The density of the jerk noise grows with the contact force.
-/// An impact therefore decouples the samples before the impact from the samples after the impact.
-/// - At rest (RestDetector), the rate is zero, which determines the gyro's bias.
+/// solver uses the following factors. Unclipped gyro readings measure the rate, and clipped readings limit the rate
+/// from below, for any number of axes. In flight, the specific force at the lever arm follows the complete rigid-body
+/// equation, and Euler's equation holds without torque. holds without torque. During contact, the weights of the force
+/// equation and of Euler's equation are reduced. Between samples, the angular jerk is white noise. The density of the
+/// jerk noise grows with the contact force. An impact therefore decouples the samples before the impact from the
+/// samples after the impact. At rest (RestDetector), the rate is zero, which determines the gyro's bias.
 ///
 /// The normal equations are an arrow matrix, so an iteration costs O(N), including the covariance. The initial values
 /// come from the published method (Saave), extended by the lower bounds of clipped readings.
@@ -114,13 +112,13 @@ struct RateReport {
 /// along the contact force is 1.4 %. The contact point of the previous sample leaves 66 % of the torque unexplained
 /// (tests/bench/rate_contact; docs/maths/rate_smoother.md).
 ///
-/// SensorErrors (scale, misalignment, g-sensitivity, and delay and window of the accelerometer relative to the gyro)
-/// are partly correlated with the other constants. Repeated optimisations with corrected readings estimate the sensor
-/// errors, as far as the run determines the errors. The function fit_sensor_errors chooses the prior magnitude of the
-/// sensor errors that fits the readings. The covariances of rates and calibration include the remaining uncertainty of
-/// the sensor errors, as considered parameters (Schmidt, 1966). Without considered parameters, the covariance would
-/// shrink as if constant sensor errors were independent noise. The function guess_triad_delay computes an initial
-/// delay. If gyro and accelerometer are not synchronous, RateSmoother assumes that the later triad is delayed.
+/// SensorErrors (scale, misalignment, g-sensitivity, accelerometer delay and accelerometer window) are partly
+/// correlated with the RigConstants. Repeated optimisations with corrected readings estimate the sensor errors, as far
+/// as the run determines the errors. The function fit_sensor_errors chooses the prior magnitude of the sensor errors
+/// that fits the readings. The covariances of rates and calibration include the remaining uncertainty of the sensor
+/// errors, as considered parameters (Schmidt, 1966). Without considered parameters, the covariance would shrink as if
+/// constant sensor errors were independent noise. The function guess_triad_delay computes an initial delay. If gyro and
+/// accelerometer are not synchronous, RateSmoother assumes that the later triad is delayed.
 ///
 /// The sensing elements of a gyro clip along their own axes, which are not quite orthogonal. The compensation of the
 /// device then mixes the clipped values into all output axes (RailPlaneFinder). While a sensing element clips,
@@ -140,14 +138,14 @@ class RateSmoother {
   explicit RateSmoother(const Params& params);
 
   /// Computes one RateState per sample, and the diagnostics of the run. On error nothing is written. The returned
-  /// status contains field, value and bound. It is `ok`, `empty`, `too_few` (less than two samples), `non_finite`,
-  /// `time_order`, `gap` or `diverged`.
+  /// status contains field, value and bound. The kind of error is `empty`, `too_few` (less than two samples),
+  /// `non_finite`, `time_order`, `gap` or `diverged`.
   Status estimate(std::span<const ImuSample> samples, std::vector<RateState>& out, RateReport& report) const {
     return estimate(samples, {}, out, report);
   }
   /// Estimates the rates with additional IMUs on the body. `auxiliary_imus` contains one list per entry of
-  /// RateModelParams::auxiliary_imus, with one reading per sample (see align()). Returns `too_few` if `auxiliary_imus`
-  /// does not have these sizes.
+  /// RateModelParams::auxiliary_imus, with one reading per sample (see align()). Returns `too_few` if the number of
+  /// lists or of readings differs.
   Status estimate(std::span<const ImuSample> samples, std::span<const std::vector<AuxiliaryReading>> auxiliary_imus,
                   std::vector<RateState>& out, RateReport& report) const;
 

@@ -32,13 +32,14 @@ namespace tumble {
 /// sample rate below 200 Hz. RateStream allocates no memory after the State is created.
 ///
 /// RailWatch detects saturation levels and planes from the readings. After each detection of a saturation level, the
-/// samples in the window are classified again. A clipped sample is therefore accepted as a measurement only if it left
-/// the window before the detection. With the calibration of an earlier run, the rate error of RateStream is 1.1 times
-/// the rate error of RateSmoother. With the calibration of an earlier run, 99 % of the rate errors are within three
-/// standard deviations. If the calibration is estimated during the same tumble, the rate error is 1.6 times that of
-/// RateSmoother, or 1.2 times with 0.5 s of lag (data: docs/maths/rate_stream.md). The errors of the samples of one
-/// flight are correlated. RateStream therefore increases the covariance of calibration and rates until enough flight
-/// samples are processed (`rig_inflation`). The limitations of RateSmoother also apply to RateStream.
+/// samples in the window are classified again. A clipped sample is therefore accepted as a measurement only if the
+/// sample left the window before the detection. With the calibration of an earlier run, the rate error of RateStream is
+/// 1.1 times the rate error of RateSmoother. With the calibration of an earlier run, 99 % of the rate errors are within
+/// three standard deviations. With a calibration that is estimated during the tumble itself, the rate error is 1.6
+/// times that of RateSmoother, or 1.2 times with 0.5 s of lag. All factors of the rate error are from
+/// docs/maths/rate_stream.md. The errors of the samples of one flight are correlated. RateStream therefore increases
+/// the covariance of calibration and rates until enough flight samples are processed (`rig_inflation`). The limitations
+/// of RateSmoother also apply to RateStream.
 class RateStream {
  public:
   using Params = RateStreamParams;

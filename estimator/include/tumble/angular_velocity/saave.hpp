@@ -18,11 +18,11 @@ namespace tumble {
 /// force.
 ///
 /// Saave implements a published method in two stages (Deschenes et al., "Saturation-Aware Angular Velocity Estimation",
-/// ICRA 2024, eqs 5-7). In the recursive stage, Saave processes the samples in order. The rotation axis e of the last
-/// accepted sample and the lever arm t give the vector l = (t.e)e - t from the IMU to the rotation axis. In free
+/// ICRA 2024, eqs 5-7). In the recursive stage, Saave processes the samples in order. Let e be the rotation axis of the
+/// last accepted sample, and t the lever arm. The vector from the IMU to the rotation axis is l = (t.e)e - t. In free
 /// flight, the component of the specific force along l is |l| |w|^2, with the rate w. The clipped axis of the rate
-/// follows from this force component and from the two unclipped axes. In the smoothing stage, WnojSmoother smooths all
-/// samples.
+/// follows from the force component along l and from the two unclipped axes. In the smoothing stage, WnojSmoother
+/// smooths all samples.
 ///
 /// The published method does not model a second clipped axis. Saave recovers the first clipped axis in the order x, y,
 /// z. Further clipped axes keep the variance of an unclipped reading. The published method does not model angular
@@ -35,9 +35,9 @@ class Saave {
     /// Lever arm t from the centre of mass to the IMU in IMU axes [m], with |t_j| <= 10. The lever arm is required and
     /// has no default. The lever arm must be accurate to about a millimetre.
     Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
-    /// Readings strictly above this rate are clipped [rad/s]. The saturation point is required and has no default. If
-    /// the readings of a saturated device equal the saturation point, they never exceed it, and nothing is recovered.
-    /// Choose a saturation point slightly below the largest reading of the device.
+    /// Readings strictly above saturation_point_rad_s are clipped. The saturation point is required and has no default.
+    /// If the plateau of a saturated device equals the saturation point, no reading exceeds the saturation point, and
+    /// nothing is recovered. Choose a saturation point slightly below the largest reading of the device.
     double saturation_point_rad_s = 0.0;
     /// Variance of an unclipped reading [(rad/s)^2]. The default variance of an unclipped reading is (0.03
     /// deg/s/sqrt(Hz) * sqrt(100 Hz))^2.

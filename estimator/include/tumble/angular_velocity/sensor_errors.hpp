@@ -7,8 +7,8 @@
 
 namespace tumble {
 
-/// SensorErrors contains the constant errors of gyro and accelerometer other than bias and noise: 29 numbers, in the
-/// order of the members, matrices row by row.
+/// SensorErrors contains the constant errors of gyro and accelerometer other than bias and noise. The 29 numbers are in
+/// the order of the members, matrices row by row.
 struct SensorErrors {
   static constexpr int kSize = 29, kAccel = 9, kGSensitivity = 18, kDelay = 27, kFilterTimeVariance = 28;
   using Vector = Eigen::Matrix<double, kSize, 1>;
@@ -40,7 +40,7 @@ struct KnownSensorErrors {
 /// is invalid, because the filter would treat its direction as perfectly known.
 void require_known(const KnownSensorErrors& learnt);
 
-/// SensorErrorSizes contains prior standard deviations of sensor errors, both for a device as in its data sheet and for
+/// SensorErrorSizes contains the prior standard deviations of sensor errors, for a device as in its data sheet and for
 /// an uncalibrated device. SensorErrorFit determines from the readings whether the data sheet applies. If the standard
 /// deviation of the uncalibrated device does not exceed that of the data sheet, the data sheet always applies. Each
 /// standard deviation is in [0, 0.1], in the units of SensorErrors.
@@ -53,9 +53,9 @@ struct SensorErrorSizes {
   /// Standard deviations of the g-sensitivity: 0.003 deg/s/g by the data sheet, and 0.1 deg/s/g for an uncalibrated
   /// device.
   double g_sensitivity_s_m = 5.3e-6, g_sensitivity_uncalibrated_s_m = 1.8e-4;
-  /// Standard deviations of the accelerometer's delay. By the data sheet both sensors have filters of about 400 Hz; an
-  /// uncalibrated device has separate windows and filters. The prior of the window difference scales with the square of
-  /// the delay.
+  /// Standard deviations of the accelerometer's delay. By the data sheet, gyro and accelerometer have filters of about
+  /// 400 Hz. An uncalibrated device has separate windows and filters. The prior of the window difference scales with
+  /// the square of the delay.
   double delay_s = 1e-4, delay_uncalibrated_s = 5e-3;
 
   /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).

@@ -14,8 +14,8 @@
 namespace tumble {
 
 /// CarriedElements contains the clipped sensing elements of each sample of a recording, as input of CarriedSmoother.
-/// carried_elements() finds clipped elements from flags of the device, and from plateaus and tilted planes in the
-/// readings.
+/// The function carried_elements() finds clipped elements from flags of the device, and from plateaus and tilted planes
+/// in the readings.
 struct CarriedElements {
   Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();  ///< sensing directions of the gyro's elements, one per row
   std::vector<ClipSigns> signs;                        ///< one per sample

@@ -45,12 +45,12 @@ struct ClippedElements {
 ///
 /// Hand-held motion is bounded: accelerations are short, and the velocity and displacement of the hand return to zero.
 /// The specific force is therefore the sum of gravity, the centripetal and tangential force at the lever arm, and a
-/// bounded remainder. The direction of gravity rotates in sensor axes, and this rotation determines the rate while the
-/// gyro is saturated. Nodes at equal time steps contain attitude, rate, angular acceleration, and the held point's
-/// acceleration, velocity and position. Biases and lever arm of the device are additional unknowns. A Gauss-Newton
-/// solver uses the arrow structure of the normal equations (ArrowSystem). The inverse of the normal equations gives the
-/// covariances. Memory (about 7 kB per node) and computation grow in proportion to the duration, whatever the IMU's
-/// sample rate.
+/// bounded remainder. The direction of gravity rotates in sensor axes, and the rotation of gravity determines the rate
+/// while the gyro is saturated. Nodes at equal time steps contain attitude, rate, angular acceleration, and the held
+/// point's acceleration, velocity and position. Biases and lever arm of the device are additional unknowns. A
+/// Gauss-Newton solver uses the arrow structure of the normal equations (ArrowSystem). The inverse of the normal
+/// equations gives the covariances. Memory (about 7 kB per node) and computation grow in proportion to the duration,
+/// whatever the IMU's sample rate.
 ///
 /// CarriedSmoother does not model flight of a thrown body (see `hand_mahalanobis`), contact forces beyond hand-held
 /// motion, drift of the biases, or heading.

@@ -21,16 +21,13 @@ namespace tumble {
 /// further apart than `period_s`, a node may leave the window before its rate is reported; the rate is then stored. The
 /// function start() allocates all memory. A run that is split and continues from the State gives bit-identical results.
 ///
-/// CarriedStream differs from CarriedSmoother as follows.
-/// While no sample in the window is clipped, the solver runs for each fifth node only.
-/// The initial attitude comes from a single force reading, not from a filter.
-/// The density of the hand's acceleration adapts to the nodes that have left the window, with the time constant
-/// `hand_window_s` / 2.
-/// Nodes in the window have no influence on the density of the hand's acceleration.
-/// CarriedStream does not test other numbers of full revolutions in a clipped segment. The rate covariance instead
-/// includes the error of one additional revolution (C42, C43 of carried.md).
-/// The counter `revolutions_open` counts segments that may contain an additional revolution.
-/// Readings that have left the window are not classified again when a saturation level is detected later.
+/// CarriedStream differs from CarriedSmoother as follows. While no sample in the window is clipped, the solver runs for
+/// each fifth node only. The initial attitude comes from a single force reading, not from a filter. The density of the
+/// hand's acceleration adapts to the nodes that have left the window, with the time constant `hand_window_s` / 2. Nodes
+/// in the window have no influence on the density of the hand's acceleration. CarriedStream does not test whether a
+/// clipped segment has an additional full revolution. The rate covariance instead includes the error of one additional
+/// revolution (C42, C43 of carried.md). The counter `revolutions_open` counts segments that may contain an additional
+/// revolution. Readings that have left the window are not classified again when a saturation level is detected later.
 /// The prior from marginalised nodes uses the assumed jerk, but reported covariances use the increased jerk
 /// (`jerk_inflation`).
 ///
@@ -103,15 +100,14 @@ class CarriedStream {
   /// their values.
   void restart(State& state) const;
 
-  /// Processes one sample, and computes the rate of the sample that is `lag_s` old.
-  /// `known` contains the current clip signs of the newest samples; the last entry belongs to `sample`. Samples of the
-  /// window whose clip signs changed are processed again.
-  /// `out` is the rate of the sample that is `lag_s` old; it is empty while the window fills, or if `wanted` is false.
-  /// If `wanted` is false, no rate is computed, which saves most of the computation.
+  /// Processes one sample, and computes the rate of the sample that is `lag_s` old. `known` contains the current clip
+  /// signs of the newest samples; the last entry belongs to `sample`. Samples of the window whose clip signs changed
+  /// are processed again. `out` is the rate of the sample that is `lag_s` old; `out` is empty while the window fills,
+  /// or if `wanted` is false. If `wanted` is false, no rate is computed, which saves most of the computation.
   /// `repeated` describes repeated readings (sample and hold) of the log. A repeated reading counts once, at the time
-  /// when the sensor took the reading (R95 of rate_stream.md).
-  /// Returns `ok`, `non_finite`, `time_order`, `gap`, `out_of_range` (no signs) or `degenerate` (sensing directions
-  /// that do not span the axes). On error `state` is unchanged and `out` is empty.
+  /// when the sensor took the reading (R95 of rate_stream.md). Returns `ok`, `non_finite`, `time_order`, `gap`,
+  /// `out_of_range` (no signs) or `degenerate` (sensing directions that do not span the axes). On error `state` is
+  /// unchanged and `out` is empty.
   Status push(const ImuSample& sample, const ClippedElements& known, State& state, std::optional<RateState>& out,
               bool wanted = true, const RepeatDetector::State& repeated = {}) const;
 

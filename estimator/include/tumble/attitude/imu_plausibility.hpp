@@ -54,22 +54,23 @@ struct ImuPlausibilityParams {
 /// compared only if the magnitude of the force is close to g. Windows with a saturated gyro are not compared.
 ///
 /// ImuPlausibility regresses the rotation of the force on the rotation of the gyro. The slope of the regression is 1
-/// for a correct IMU, 2 for a half-scale gyro, -1 for an inverted gyro, and about 0 for swapped axes. Pushes, and a
-/// force along a rod, scatter the measured rotations about the regression line but change its slope little. Rotation
-/// about some axes does not reveal swapped axis labels. For example, a sphere that rolls along x = y does not reveal
-/// that x and y are swapped. If axes are swapped, the correct axis labels leave a smaller residual. ImuPlausibility
-/// therefore compares the residuals of all possible axis labels. A force that does not rotate although the body rotates
-/// is detected separately.
+/// for a correct IMU, 2 for a half-scale gyro, and -1 for an inverted gyro. If axes are swapped, the slope of the
+/// regression is about 0. Pushes, and a force along a rod, scatter the measured rotations about the regression line but
+/// change its slope little. Rotation about some axes does not reveal swapped axis labels. For example, a sphere that
+/// rolls along x = y does not reveal that x and y are swapped. If axes are swapped, the correct axis labels leave a
+/// smaller residual. ImuPlausibility therefore compares the residuals of all possible axis labels. A force that does
+/// not rotate although the body rotates is detected separately.
 ///
-/// A gyro or an accelerometer is frozen if it repeats one reading bit for bit, for a second and for ten times its
-/// longest earlier repetition. The rule of repeated readings applies only to a sensor whose readings have changed before. A sensor whose
-/// readings often repeat for long is not reported as frozen (coarse quantisation at rest, a simulation without noise).
-/// A gyro whose readings never changed is frozen if gravity rotates, or if forces differ from gravity for long enough.
-/// An accelerometer that always reads 0 is frozen if the gyro measures motion.
+/// A gyro or an accelerometer is frozen if it repeats one reading bit for bit for long enough. The repetition must last
+/// a second, and ten times longer than any earlier repetition. The rule of repeated readings applies only to a sensor
+/// whose readings have changed before. A sensor whose readings often repeat for long is not reported as frozen (coarse
+/// quantisation at rest, a simulation without noise). A gyro whose readings never changed is frozen if gravity rotates,
+/// or if forces differ from gravity for long enough. An accelerometer that always reads 0 is frozen if the gyro
+/// measures motion.
 ///
-/// ImuPlausibility does not detect errors of a few per cent, errors of axes about which the body does not rotate, or
-/// any error of a body that is pushed all the time. ImuPlausibility does not detect an accelerometer whose three axes
-/// are all inverted. With several IMUs, ImuMerge::arm_share() detects inverted accelerometers.
+/// ImuPlausibility does not detect errors of a few per cent, or errors of axes about which the body does not rotate. If
+/// the body is pushed all the time, ImuPlausibility detects no error. ImuPlausibility does not detect an accelerometer
+/// whose three axes are all inverted. With several IMUs, ImuMerge::arm_share() detects inverted accelerometers.
 class ImuPlausibility {
  public:
   using Params = ImuPlausibilityParams;
@@ -119,8 +120,8 @@ class ImuPlausibility {
   /// Returns the force's rotation as a fraction of the gyro's rotation, or 1 while unknown. The sums include windows in
   /// which the force did not rotate.
   double force_rotated_share(const State& state) const;
-  /// Returns the axis labels for which the rotation of gravity fits the gyro, if these labels fit clearly better than
-  /// the current labels (I22).
+  /// Returns the axis labels for which the rotation of gravity fits the gyro clearly better than for the current labels
+  /// (I22).
   std::optional<AxisLabels> other_labels(const State& state) const;
   /// Returns the longest time for which the gyro or the accelerometer was frozen [s], or 0 if neither was frozen.
   double frozen_s(const State& state) const;

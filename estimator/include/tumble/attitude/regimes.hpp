@@ -21,7 +21,7 @@ struct RegimeShares {
 
 /// Estimates the kind of motion (flight, contact or hand-held) of each sample of a recording from the specific force.
 ///
-/// The residual force e = f - a x r - w x (w x r) is the specific force without the effect of rotation at the lever
+/// The residual force is e = f - a x r - w x (w x r), the specific force without the effect of rotation at the lever
 /// arm. Here f is the specific force, w the rate, a the angular acceleration and r the lever arm. The residual force e
 /// is zero in flight. In hand-held motion, e is gravity plus the acceleration of a hand, in any direction. In contact,
 /// the residual force e can have any magnitude; the logarithm of the magnitude has a flat density. A Markov chain

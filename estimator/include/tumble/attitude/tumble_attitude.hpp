@@ -65,15 +65,15 @@ struct TumbleAttitudeParams {
 /// adapts to the sensor's errors. When the body is at rest, its velocity and rate are zero up to noise. At rest, the
 /// gyro measures its bias and the attitude is kept constant, so that noise changes neither tilt nor heading.
 ///
-/// The extent of the motion is not known in advance: a few centimetres, or the way down a hill. A velocity or
-/// displacement is accepted as real motion if it exceeds its assumed standard deviation and the tilt variance does not
-/// explain the excess. The assumed standard deviation of velocity or displacement then increases for `motion_tau_s`.
+/// The extent of the motion is not known in advance: a few centimetres, or the way down a hill. A large velocity or
+/// displacement is accepted as real motion if the tilt variance does not explain the excess over the assumed standard
+/// deviation. The assumed standard deviation of velocity or displacement then increases for `motion_tau_s`.
 ///
-/// The centre of a rolling sphere of radius r = radius_m > 0 has the velocity r w x n, with the rate w and the floor's
-/// normal n. The IMU's velocity differs from the centre's velocity by w x (R rho), with the attitude R and the lever
-/// arm rho. The rolling constraint then predicts the integral of the specific force, so that tilt and bias can be
-/// estimated without the derivative of the rate. A velocity that does not fit the rolling constraint indicates slip.
-/// During slip, corrections pause until the velocity fits the rolling constraint again, for at most slip_timeout_s.
+/// The centre of a rolling sphere of radius r has the velocity r w x n, with the rate w and the floor's normal n. The
+/// IMU's velocity differs from the centre's velocity by w x (R rho), with the attitude R and the lever arm rho. The
+/// rolling constraint then predicts the integral of the specific force, so that tilt and bias can be estimated without
+/// the derivative of the rate. A velocity that does not fit the rolling constraint indicates slip. During slip,
+/// corrections pause until the velocity fits the rolling constraint again, for at most slip_timeout_s.
 ///
 /// Readings of a fast IMU are averaged over reading_s before they are processed. Between two averages, the attitude is
 /// extrapolated. In a gap (longer than `gap_least_s`), the rate is interpolated and the velocity is kept, with

@@ -37,7 +37,8 @@ inline bool is_finite(const ImuSample& sample) {
 }
 
 /// Checks one reading for invalid components. Returns `non_finite` or `out_of_range` for the first invalid component. A
-/// magnitude above 1e6 is out of range because no sensor reports it. Returns `ok` if all components are valid.
+/// magnitude above 1e6 is out of range, because no sensor reports such a value. Returns `ok` if all components are
+/// valid.
 Status check_sample(const ImuSample& sample);
 
 /// Checks the time stamps of two consecutive samples. Returns `time_order` unless time_ns > previous_ns, with the value

@@ -11,15 +11,15 @@
 #include "tumble/common/status.hpp"
 
 /// A `Params` struct describes each of its numbers in one place, the function `fields`. Range checks, tables, readers
-/// and comparisons are visitors of these descriptions.
+/// and comparisons are visitors of the function `fields`.
 ///
 /// A `Params` struct has `template <class Self, class Visitor> static void fields(Self& p, Visitor& visit)`. The
 /// function `fields` calls `visit(p.member, Field)` for each double, int, std::size_t, bool, enumeration (by its
 /// number) and Vector3d. For each nested `Params`, the function `fields` calls `visit.group("prefix_", p.member)`. The
 /// type `Self` may be const.
 ///
-/// Poses, planes and earlier calibrations are not fields, because users do not set them as numbers. The bounds of a
-/// Field are plain numbers, so constructors check relations between fields separately.
+/// Poses, planes and earlier calibrations are not fields, because users do not set poses, planes and calibrations as
+/// numbers. The bounds of a Field are plain numbers, so constructors check relations between fields separately.
 namespace tumble {
 
 /// Rank determines the order of fields in a listing. The rank `first` marks the numbers that users usually set before

@@ -21,19 +21,19 @@ namespace tumble {
 /// SampleClock fits a line to the stamps as a function of the sample number. The weights of older samples decrease
 /// exponentially. The method is the fading-memory polynomial filter of first degree (Morrison, Introduction to
 /// Sequential Smoothing and Prediction, 1969, ch. 13). The error of an estimated time is 1.1 sqrt(T / memory_s) times
-/// the jitter of the stamps, with the sample period T. A constant delay of the host is not observable. SampleClock
-/// detects dropped samples and counts them in the sample number.
+/// the jitter of the stamps, with the sample period T. A constant delay of the host is not observable. The sample
+/// number also counts dropped samples.
 ///
-/// SampleClock returns a stamp unchanged, bit for bit, in each of these cases:
-/// - The stamp is among the first 32.
-/// - The jitter is below `jitter_min` of the period, which indicates stamps of the sensor's own clock.
-/// - The jitter is above `jitter_max`, or successive errors are correlated, which indicates a variable sample period.
+/// SampleClock returns a stamp unchanged, bit for bit, in three cases. First, the first 32 stamps are unchanged.
+/// Second, a stamp is unchanged if the jitter is below `jitter_min` of the period, which indicates stamps of the
+/// sensor's own clock. Third, a stamp is unchanged if the jitter is above `jitter_max` or successive errors are
+/// correlated, which indicates a variable sample period.
 ///
 /// The estimated time differs from the stamp by at most half a period.
 ///
-/// SampleClock does not model a sensor that takes samples when the host requests them, if the host is irregular but
-/// assigns exact stamps. Stamps of a sensor sampled on request look like delayed stamps but are correct. Set
-/// `jitter_max` to 0 to keep every stamp unchanged.
+/// SampleClock does not model a sensor that takes samples on irregular requests of a host computer that assigns exact
+/// stamps. Stamps of a sensor sampled on request look like delayed stamps but are correct. Set `jitter_max` to 0 to
+/// keep every stamp unchanged.
 class SampleClock {
  public:
   struct Params {

@@ -9,7 +9,7 @@
 namespace tumble {
 
 /// SweepCalibration contains the calibration between lidar, IMU and world. The initial values come from an external
-/// calibration, and the registration refines them during the motion. The error vector of a calibration contains
+/// calibration, and the registration refines the values during the motion. The error vector of a calibration contains
 /// rotation of T_IL, translation of T_IL, time offset and gravity, in this order. The rotation error phi is a left
 /// perturbation in IMU axes: R_true = Exp(phi) R.
 struct SweepCalibration {

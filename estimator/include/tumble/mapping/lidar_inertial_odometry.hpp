@@ -29,11 +29,11 @@ class StateLayout;
 /// and velocity at the start of a sweep together. The refined velocity also improves the deskewing.
 ///
 /// The world has its z axis up, levelled by the specific force at rest. The earliest sweep with `matches_min` points
-/// starts the map. If the first sweep of the map begins within half a second of the IMU's first sample, origin and yaw
-/// are those of the IMU at its first sample. If the first sweep of the map begins later, origin and yaw are those of
-/// the IMU at the start of the sweep. Dead reckoning from the first IMU sample then gives the velocity and the tilt.
-/// Pass IMU samples in time order, and pass each sweep when the IMU samples reach the end of the sweep.
-/// LidarInertialOdometry starts no threads, uses no files and prints nothing.
+/// starts the map. Origin and yaw of the world are those of the IMU at its first sample, if the map starts within half
+/// a second. If the map starts later than half a second after the first sample, origin and yaw are those of the IMU at
+/// the map's first sweep. Dead reckoning from the first IMU sample then gives the velocity and the tilt. Pass IMU
+/// samples in time order, and pass each sweep when the IMU samples reach the end of the sweep. LidarInertialOdometry
+/// starts no threads, uses no files and prints nothing.
 ///
 /// The lidar's mounting, its time offset and gravity are estimated if their standard deviations are not 0. All unknowns
 /// form one state with one covariance. LidarInertialOdometry is an iterated error-state filter over sweeps. A fixed-lag
@@ -71,10 +71,10 @@ class LidarInertialOdometry {
   /// end of the last sweep, for the prediction of the next sweep only. Returns `non_finite`, or `out_of_range` if the
   /// standard deviation is not above 0. On error nothing changes.
   Status add_velocity(const Eigen::Vector3d& v_WI_I_m_s, double sigma_m_s);
-  /// Sets an odometer's reading for the next sweep. The times of the reading must be between the end of the last sweep
-  /// and the end of the next sweep, with a margin of 20 ms. The reading is fused with the IMU's prediction, weighted by
-  /// the covariances (check_reading). A new reading replaces an earlier reading and the velocity of add_velocity(). A
-  /// reading that covers other times than the next sweep has no effect.
+  /// Sets an odometer's reading for the next sweep. The reading must be between the end of the last sweep and the end
+  /// of the next sweep, with a margin of 20 ms. The reading is fused with the IMU's prediction, weighted by the
+  /// covariances (check_reading). A new reading replaces an earlier reading and the velocity of add_velocity(). A
+  /// reading that does not cover the next sweep has no effect.
   Status add_reading(const OdometerReading& reading);
   /// Excludes the accelerometer from the prediction of the next sweep. The velocity is then predicted as in a gap; the
   /// gyro is still used. A call of exclude_force() replaces earlier odometer readings for the next sweep.
@@ -124,9 +124,9 @@ class LidarInertialOdometry {
   std::vector<MapPoint> map() const;
 
   /// Save or load the complete state, except `parallel_for`. The caller must ensure that the loading object has the
-  /// parameters of the saving object. The loading object then continues with bit-identical results. Mounting, time
-  /// offset and their standard deviations are part of the saved state, because an earlier run may have estimated them.
-  /// If loading fails, the StateReader reports an error and the loading object is unchanged.
+  /// parameters of the saving object. The loading object then continues with bit-identical results. The saved state
+  /// contains mounting, time offset and their standard deviations, because an earlier run may have estimated the
+  /// calibration. If loading fails, the StateReader reports an error and the loading object is unchanged.
   void save(StateWriter& out) const;
   void load(StateReader& in);
   void describe(StateLayout& out) const;

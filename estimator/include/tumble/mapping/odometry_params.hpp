@@ -20,8 +20,8 @@ struct OdometryExpertParams {
   /// Standard deviation of gravity's horizontal part. If the standard deviation is 0, gravity's direction is exact and
   /// not estimated.
   double gravity_sigma_m_s2 = 0.0;
-  /// Number of sweeps that are refined together: the newest sweep and the window_sweeps - 1 sweeps before it (see
-  /// SweepReport::smoothed). With window_sweeps = 1, later sweeps do not refine earlier sweeps.
+  /// Number of sweeps that are refined together (see SweepReport::smoothed): the newest sweep and the window_sweeps - 1
+  /// sweeps before the newest sweep. With window_sweeps = 1, later sweeps do not refine earlier sweeps.
   int window_sweeps = 2;
   RestBoundsParams rest = {};
   OdometryStartParams start = {};

@@ -25,8 +25,8 @@ struct PlaneFit {
 /// PlaneBounds limits the eigenvalues l0 <= l1 <= l2 of the covariance of neighbouring map points.
 struct PlaneBounds {
   int neighbours_min = 5;
-  /// The neighbours are collinear if l1 is below this fraction of l2. Collinear neighbours (a ring of a lidar at rest)
-  /// would give a wrong normal.
+  /// The neighbours are collinear if l1 is below the fraction collinear_share of l2. Collinear neighbours (a ring of a
+  /// lidar at rest) would give a wrong normal.
   double collinear_share = 0.03;
   double rough_share = 0.1;  ///< the neighbours do not form a plane if l0 is above this fraction of l1
   /// Minimum number of neighbours that are not on the most frequent scan line. If fewer neighbours are off the scan

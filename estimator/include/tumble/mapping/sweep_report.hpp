@@ -32,7 +32,7 @@ struct SweepReport {
   std::vector<PoseState> smoothed;
   double inlier_share = 0.0;  ///< fraction of the registered points that are inliers
   double conditioning = 0.0;  ///< smallest over largest eigenvalue of the scaled normal matrix
-  /// Standard deviation of the pose in the least constrained direction, from the surfaces of this sweep alone. A
+  /// Standard deviation of the pose in the least constrained direction, from the surfaces of the current sweep alone. A
   /// standard deviation of zero means that the sweep was not aligned.
   double weakest_sigma_m = 0.0;
   /// Normalised innovation: correction of pose and velocity in standard deviations of the inertial prediction, divided
@@ -41,9 +41,9 @@ struct SweepReport {
   double innovation = 0.0;
   int iterations = 0;
   int lost_sweeps = 0;  ///< consecutive rejected sweeps up to this one, inclusive
-  /// True if this sweep relocalised after tracking failure at a pose that inertial prediction did not expect, and two
-  /// further sweeps have not yet confirmed the pose. A further sweep that contradicts the relocalisation reverts the
-  /// relocalisation.
+  /// True if the sweep relocalised after tracking failure, at a pose that inertial prediction did not expect, without
+  /// confirmation so far. Two further sweeps must confirm the pose. A further sweep that contradicts the relocalisation
+  /// reverts the relocalisation.
   bool unconfirmed = false;
   /// Direction in W in which the surfaces constrain the pose least. The unit vector contains position, and attitude
   /// scaled to metres by the root-mean-square lever arm.

@@ -56,11 +56,11 @@ struct MotionState {
 ///
 /// The saturation deficit e is the part of the rate that saturation hides, and corrects the clipped axes. The
 /// saturation deficit is linear in time between kKnots knots, at equal steps from the start to the end of the segment.
-/// If axis j is clipped, the corrected rate is w_j + s_j e_j(t). The factor s_j has the sign of w_j and the magnitude
-/// sigma_j / (largest sigma_j of the segment's clipped samples), with the rate's standard deviation sigma_j. A rate
-/// with a small standard deviation is therefore corrected only a little by the saturation deficit. The magnitude of s_j
-/// is 1 if all sigma_j are 0. Within a sample, the saturation deficit is constant and has the value at the middle of
-/// the sample. SweepTrajectory does not model sculling within a sample or the earth's rotation.
+/// If axis j is clipped, the corrected rate is w_j + s_j e_j(t). The factor s_j has the sign of w_j. The magnitude of
+/// s_j is sigma_j / (largest sigma_j of the segment's clipped samples), with the rate's standard deviation sigma_j. A
+/// rate with a small standard deviation is therefore corrected only a little by the saturation deficit. The magnitude
+/// of s_j is 1 if all sigma_j are 0. Within a sample, the saturation deficit is constant and has the value at the
+/// middle of the sample. SweepTrajectory does not model sculling within a sample or the earth's rotation.
 class SweepTrajectory {
  public:
   static constexpr int kKnots = 3;
@@ -114,8 +114,7 @@ class SweepTrajectory {
     return start_.p_WI_m + t_s * start_.v_WI_m_s + (0.5 * t_s * t_s) * gravity_W_m_s2_;
   }
 
-  /// Evaluates the motion at `t_s` seconds after the start, and the velocity in W of a point that is fixed at x_I in
-  /// the IMU's axes.
+  /// Evaluates the motion at `t_s` seconds after the start, and the velocity in W of a point at x_I in the IMU's axes.
   Instant at(double t_s, const Eigen::Vector3d& x_I_m, std::size_t& hint, Eigen::Vector3d& velocity_m_s) const;
 
   /// Returns the full state at t_s within the segment, with the covariance propagated without process noise.

@@ -25,10 +25,11 @@ namespace tumble {
 /// TumblingOdometry reports three poses of increasing accuracy. The function newest() predicts the IMU's pose at the
 /// newest sample by inertial integration from the last registered sweep. The function take() returns a pose registered
 /// to the map (`report.pose`), at most lag_s after the end of the sweep. The report of the following sweep contains the
-/// final pose (`report.smoothed`), at most 0.3 s after the end of the sweep at ten sweeps per second. The time stamps
-/// of poses are in the IMU's clock. The axes of the world are those of LidarInertialOdometry. The earliest sweep with
-/// enough points starts the map, and its pose is exact by definition. Before the map starts, TumblingOdometry reports
-/// no poses. The body should be at rest for at least half a second at the start, so that the attitude can be levelled.
+/// final pose (`report.smoothed`). With ten sweeps per second, the final pose is available at most 0.3 s after the end
+/// of its sweep. The time stamps of poses are in the IMU's clock. The axes of the world are those of
+/// LidarInertialOdometry. The earliest sweep with enough points starts the map, and its pose is exact by definition.
+/// Before the map starts, TumblingOdometry reports no poses. The body should be at rest for at least half a second at
+/// the start, so that the attitude can be levelled.
 ///
 /// Some seconds after motion starts, SecondPass processes the first seconds of motion again with the calibration
 /// estimated so far. TumblingOdometry then continues with the map and pose of SecondPass; poses that were already
@@ -66,16 +67,16 @@ class TumblingOdometry {
   /// Processes a sweep of points fired in [start_ns, end_ns], at any time after the sweep's last point. The function
   /// copies the points. Points from before the end of the last sweep are dropped, because time stamps of sweeps may
   /// overlap by jitter. On error the state is unchanged. The error `time_order` means that the end is before the start,
-  /// or that half of the sweep is before the end of the last sweep. The error `out_of_range` means that the time of a
-  /// point is beyond the sweep, that the end is a second after the newest IMU sample, that a stamp is beyond 109 years,
-  /// or that too many sweeps wait.
+  /// or that half of the sweep is before the end of the last sweep. The error `out_of_range` means that a point is
+  /// beyond the sweep, or that the end is a second after the newest IMU sample. A stamp beyond 109 years, or too many
+  /// waiting sweeps, also return `out_of_range`.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points);
   /// Processes an odometer reading (detail/odometer_reading.hpp). The reading must arrive before its sweep is
   /// registered, which happens lag_s after the end of the sweep. If a sweep has several odometer readings, only the
   /// last reading is used. On error the state is unchanged. Returns `empty` (no IMU sample yet), `non_finite`,
   /// `time_order` (the sweep is already registered) or `out_of_range` on error. The error `out_of_range` means that the
-  /// standard deviation is not above 0, that the stamp is a second ahead of the newest sample, or that 1024 readings
-  /// wait.
+  /// standard deviation is not above 0, or that the stamp is a second ahead of the newest sample. If 1024 readings
+  /// wait, the functions also return `out_of_range`.
   Status add_velocity(const VelocityReading& velocity);
   Status add_motion(const MotionReading& motion);
   /// Returns the next registered sweep, in time order. The result is empty if no registered sweep waits.
@@ -91,13 +92,13 @@ class TumblingOdometry {
   /// since the last sweep).
   Status newest(PoseState& pose) const;
   /// Reports whether inputs and pose are currently plausible. Estimation continues after any finding of health().
-  /// Returns `ok`, or `out_of_range` with one of these findings:
-  /// - a frozen axis of the IMU, with the duration of the freeze,
-  /// - an accelerometer with inverted sign (FlightSense),
-  /// - a wrong unit of the accelerometer, after a second of rest (RestGravity),
-  /// - a wrong scale of the lidar's ranges (SweepScale),
-  /// - tracking failure (Localisation), which remains reported permanently,
-  /// - too large a change of the lidar's calibration (StatedCalibration).
+  /// Returns `ok`, or `out_of_range` with one finding.
+  /// The finding can be a frozen axis of the IMU, with the duration of the freeze.
+  /// The finding can be an accelerometer with inverted sign (FlightSense), or with a wrong unit after a second of rest
+  /// (RestGravity).
+  /// The finding can be a wrong scale of the lidar's ranges (SweepScale), or too large a change of the lidar's
+  /// calibration (StatedCalibration).
+  /// A tracking failure (Localisation) is reported until the end of the run.
   Status health() const;
   /// Returns the estimated scale of the lidar's ranges relative to the IMU, as far as the motion determines the scale.
   const SweepScale& sweep_scale() const { return pass_.sweep_scale(); }
@@ -117,9 +118,12 @@ class TumblingOdometry {
   std::size_t rejected_readings() const { return outliers_.rejected; }
   /// Returns whether SecondPass has replaced map and pose.
   bool second_pass_applied() const { return second_pass_.taken(); }
-  /// The following counters are 0 in normal operation. The functions count IMU samples that the mapper rejected, sweeps
-  /// that take() returned too late, sweeps that ended before the first IMU sample, and odometer readings that span two
-  /// sweeps.
+  /// The counters rejected_samples(), dropped_sweeps(), early_sweeps() and unused_odometer_readings() are 0 in normal
+  /// operation.
+  /// The function rejected_samples() counts IMU samples that the mapper rejected.
+  /// The function dropped_sweeps() counts sweeps that take() did not return in time.
+  /// The function early_sweeps() counts sweeps that ended before the first IMU sample.
+  /// The function unused_odometer_readings() counts odometer readings that span two sweeps.
   std::size_t rejected_samples() const { return pass_.rejected_samples(); }
   std::size_t dropped_sweeps() const { return dropped_sweeps_; }
   std::size_t early_sweeps() const { return early_sweeps_; }

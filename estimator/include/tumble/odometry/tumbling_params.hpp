@@ -22,8 +22,8 @@ namespace tumble {
 /// and of the map.
 struct TumblingExpertParams {
   double gravity_m_s2 = 9.80665;
-  /// Maximum number of sweeps that wait for IMU samples, in addition to the sweeps within the lag. The same limit
-  /// applies to sweeps that wait for take(); beyond sweeps_max, the oldest sweep is dropped.
+  /// Maximum number of sweeps that wait for IMU samples, in addition to the sweeps within the lag. The limit sweeps_max
+  /// also applies to sweeps that wait for take(); beyond the limit, the oldest sweep is dropped.
   std::size_t sweeps_max = 16;
   /// Parameters of the rate estimation. The default `uncalibrated` = 0.003 assumes the device's data sheet until
   /// readings contradict the data sheet. The uncertainty of the calibration increases the covariance of each rate,
@@ -34,8 +34,7 @@ struct TumblingExpertParams {
   OdometryParams mapping = mapping_defaults();
   /// Parameters of SampleClock, which corrects IMU time stamps that a host computer assigned.
   SampleClock::Params stamps;
-  /// Parameters of SecondPass, which processes the first seconds of motion again with the calibration estimated from
-  /// this motion.
+  /// Parameters of SecondPass, which processes the first seconds of motion again with a better calibration.
   SecondPass::Params second_pass;
   static OdometryParams mapping_defaults();
   static RegimeStream::Params rate_defaults();
@@ -66,8 +65,8 @@ struct TumblingParams {
   double mount_sigma_m = 0.006;
   double time_offset_sigma_s = 0.003;
   LidarSheet lidar;
-  /// Lidar returns inside this box hit the robot itself and are dropped. An empty box of Eigen, the default, keeps all
-  /// returns. A box with swapped corners is rejected.
+  /// Lidar returns inside the box own_body_L hit the robot itself and are dropped. An empty box of Eigen, the default,
+  /// keeps all returns. A box with swapped corners is rejected.
   Eigen::AlignedBox3d own_body_L;
   double lag_s = 0.2;  ///< delay of reported rates and sweeps; at least two samples
 

@@ -53,8 +53,8 @@ struct RollingNominal {
   bool operator==(const RollingNominal&) const = default;
 };
 
-/// RollingSums contains the integrals since the last node of R, R f, R (x) f^T, R (x) w^T, R (w x f), w, f and |w|^2,
-/// with attitude R, specific force f and rate w.
+/// RollingSums contains integrals since the last node, with attitude R, specific force f and rate w. The integrands are
+/// R, R f, R (x) f^T, R (x) w^T, R (w x f), w, f and |w|^2.
 struct RollingSums {
   Eigen::Matrix3d R_s = Eigen::Matrix3d::Zero();
   Eigen::Vector3d f_W_m_s = Eigen::Vector3d::Zero();

@@ -15,8 +15,8 @@ namespace tumble {
 /// have the names that are used in tables and on command lines.
 struct RollingExpertParams {
   double node_s = 0.02;  ///< time between two measurement updates
-  /// Averaging time of readings. The thresholds of RollingExpertParams are set for this averaging time. An averaging
-  /// time of zero disables averaging. Readings of an IMU with a longer sample period are used unchanged.
+  /// Averaging time of readings. The thresholds of RollingExpertParams are valid for the default averaging time. An
+  /// averaging time of zero disables averaging. Readings of an IMU with a longer sample period are used unchanged.
   double reading_s = 4e-3;
   /// Parameters of rest detection, which processes the mean readings of nodes. The rate limit of 0.0115 rad/s per axis
   /// is 0.02 rad/s in total, which is 3 mm/s of the sphere. A limit of 0.02 rad/s per axis would increase the drift of
@@ -53,7 +53,7 @@ struct RollingParams {
   double lever_arm_sigma_m = 2e-3;
   std::optional<Eigen::Quaterniond> q_WI_start = {};  ///< attitude at the first sample; empty: levelled by gravity
   double gravity_m_s2 = 9.80665;
-  /// Readings at or above this rate are clipped, in addition to readings that the device flags.
+  /// Readings at or above gyro_range_rad_s are clipped, in addition to readings that the device flags.
   double gyro_range_rad_s = 1e3;
   double accel_range_m_s2 = 1e5;
   double speed_max_m_s = 2.5;  ///< maximum speed of the sphere; grip at a higher speed is rejected

@@ -27,8 +27,8 @@ namespace tumble {
 /// rest are applied when motion resumes, because the earlier poses are already reported. When a whole run is smoothed,
 /// the path before a rest is corrected itself.
 ///
-/// The method follows this project's reference study on slip. RollingSmoother does not model uncertainty of the contact
-/// modes, except the spread of positions that RollingFilter prunes at rest.
+/// RollingSmoother does not model uncertainty of the contact modes, except the spread of positions that RollingFilter
+/// prunes at rest.
 class RollingSmoother {
  public:
   static constexpr double kWholeRun = 1e9;
@@ -110,8 +110,8 @@ class RollingSmoother {
   /// unchanged. The first sample allocates the memory of the lag. After the first sample, only `out` and the processing
   /// of a block allocate memory. The memory grows with the duration (64 bytes per sample, 152 per node) beyond
   /// rate_max_hz, beyond a million samples, or with kWholeRun. The last sample of a block does the computations of the
-  /// block. The computations of a block need 14 KiB of memory per node of lag and block, or 4 MiB plus 0.3 KiB per node
-  /// if there are many nodes.
+  /// block. The computations of a block need 14 KiB of memory per node of lag and block. If there are many nodes, a
+  /// block needs 4 MiB plus 0.3 KiB per node.
   Status step(const ImuSample& sample, State& state, std::vector<RollingEstimate>& out) const;
 
   /// Ends the run, and passes the remaining estimates to `take`, in time order, smoothed with all data. For a whole run
