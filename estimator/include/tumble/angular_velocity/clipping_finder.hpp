@@ -65,7 +65,7 @@ class ClippingFinder {
     RailPlaneFinder::Params planes = {};  ///< without a stated range, the range of `upright_rails` applies
     /// Parameters of the search for saturation planes of the accelerometer.
     RailPlaneFinder::Params accel_planes = RailPlaneFinder::Params::for_accelerometer();
-    /// If false, clipping is detected only from flags and equal readings, as in the published methods.
+    /// If `tilted` is false, clipping is detected only from flags and equal readings, as in the published methods.
     bool tilted = true;
 
     /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).

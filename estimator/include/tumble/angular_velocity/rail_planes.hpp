@@ -24,9 +24,9 @@ namespace tumble {
 /// (Occam factor) accounts for the free choice of cross-axis sensitivities and saturation level.
 ///
 /// Repeated readings (sample and hold) count as one reading. RailPlaneFinder does not resolve structure below the
-/// quantisation or the noise. RailPlaneFinder assumes that the three sensing elements of a triad are of one type. A
-/// saturation level far below readings of another axis is therefore rejected. A level that equals the level of another
-/// sensing element is more likely. Sensing elements without a saturation plane count as unsaturated.
+/// quantisation or the noise. RailPlaneFinder assumes that the three sensing elements of a gyro or accelerometer are of
+/// one type. A saturation level far below readings of another axis is therefore rejected. A level that equals the level
+/// of another sensing element is more likely. Sensing elements without a saturation plane count as unsaturated.
 ///
 /// RailPlaneFinder does not model saturation levels that drift or recover slowly, overflow, or several levels of one
 /// sensing element.

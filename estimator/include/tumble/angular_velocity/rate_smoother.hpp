@@ -107,18 +107,18 @@ struct RateReport {
 /// In contact, the contact force at the centre of mass is the part of the measured force that flight does not explain.
 /// A force through one point of the cage has no torque about the direction of the force. The component of Euler's
 /// equation along the contact force therefore remains in use. The size of the cage determines the uncertainty of the
-/// two components across the contact force (RateContactParams::lever_rad_m). RateSmoother does not estimate the contact
-/// point, because a cage strikes with several bars and rolls on within 10 ms. For clipped samples, the median torque
-/// along the contact force is 1.4 %. The contact point of the previous sample leaves 66 % of the torque unexplained
-/// (tests/bench/rate_contact; docs/maths/rate_smoother.md).
+/// two components of Euler's equation across the contact force (RateContactParams::lever_rad_m). RateSmoother does not
+/// estimate the contact point, because a cage strikes with several bars and rolls on within 10 ms. For clipped samples,
+/// the median torque along the contact force is 1.4 %. The contact point of the previous sample leaves 66 % of the
+/// torque unexplained (tests/bench/rate_contact; docs/maths/rate_smoother.md).
 ///
-/// SensorErrors (scale, misalignment, g-sensitivity, accelerometer delay and accelerometer window) are partly
-/// correlated with the RigConstants. Repeated optimisations with corrected readings estimate the sensor errors, as far
-/// as the run determines the errors. The function fit_sensor_errors chooses the prior magnitude of the sensor errors
-/// that fits the readings. The covariances of rates and calibration include the remaining uncertainty of the sensor
-/// errors, as considered parameters (Schmidt, 1966). Without considered parameters, the covariance would shrink as if
-/// constant sensor errors were independent noise. The function guess_triad_delay computes an initial delay. If gyro and
-/// accelerometer are not synchronous, RateSmoother assumes that the later triad is delayed.
+/// SensorErrors (scale, misalignment, g-sensitivity, accelerometer delay and window) are partly correlated with
+/// RigConstants (lever arm, biases, inertia). Repeated optimisations with corrected readings estimate the sensor
+/// errors, as far as the run determines the errors. The function fit_sensor_errors chooses the prior magnitude of the
+/// sensor errors that fits the readings. The covariances of rates and calibration include the remaining uncertainty of
+/// the sensor errors, as considered parameters (Schmidt, 1966). Without considered parameters, the covariance would
+/// shrink as if constant sensor errors were independent noise. The function guess_triad_delay computes an initial
+/// delay. If gyro and accelerometer are not synchronous, RateSmoother assumes that the later triad is delayed.
 ///
 /// The sensing elements of a gyro clip along their own axes, which are not quite orthogonal. The compensation of the
 /// device then mixes the clipped values into all output axes (RailPlaneFinder). While a sensing element clips,

@@ -18,11 +18,11 @@ namespace tumble {
 /// force.
 ///
 /// Saave implements a published method in two stages (Deschenes et al., "Saturation-Aware Angular Velocity Estimation",
-/// ICRA 2024, eqs 5-7). In the recursive stage, Saave processes the samples in order. Let e be the rotation axis of the
-/// last accepted sample, and t the lever arm. The vector from the IMU to the rotation axis is l = (t.e)e - t. In free
-/// flight, the component of the specific force along l is |l| |w|^2, with the rate w. The clipped axis of the rate
-/// follows from the force component along l and from the two unclipped axes. In the smoothing stage, WnojSmoother
-/// smooths all samples.
+/// ICRA 2024, eqs 5-7). In the recursive stage, Saave processes the samples in order. The recursive stage assumes the
+/// rotation axis of the last accepted sample. The vector from the IMU to the rotation axis is l = (t.e)e - t, with the
+/// axis direction e and the lever arm t. In free flight, the component of the specific force along l is |l| |w|^2, with
+/// the rate w. The clipped axis of the rate follows from the force component along l and from the two unclipped axes.
+/// In the smoothing stage, WnojSmoother smooths all samples.
 ///
 /// The published method does not model a second clipped axis. Saave recovers the first clipped axis in the order x, y,
 /// z. Further clipped axes keep the variance of an unclipped reading. The published method does not model angular

@@ -37,9 +37,9 @@ class StateLayout;
 ///
 /// The lidar's mounting, its time offset and gravity are estimated if their standard deviations are not 0. All unknowns
 /// form one state with one covariance. LidarInertialOdometry is an iterated error-state filter over sweeps. A fixed-lag
-/// smoother refines the last window_sweeps sweeps with the data of later sweeps, and moves their map points. Map points
-/// of sweeps older than the window are not moved. To get a consistent map, a caller can process its recording a second
-/// time, starting from calibration().
+/// smoother refines the last window_sweeps sweeps with the data of later sweeps, and moves the map points of the
+/// refined sweeps. Map points of sweeps older than the window are not moved. To get a consistent map, a caller can
+/// process its recording a second time, starting from calibration().
 ///
 /// The reported covariances propagate the errors through the gains of the filter. The residuals of the registration
 /// determine its contribution to the covariance (Registration::Result::score_covariance).

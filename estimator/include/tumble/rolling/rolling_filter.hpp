@@ -24,9 +24,9 @@ namespace tumble {
 /// corrects the displacement during the slip or bump. RollingFilter does not revise earlier estimates; RollingSmoother
 /// revises earlier estimates.
 ///
-/// While the sphere is at rest, the reported position is constant. Measurements at rest may correct the earlier path;
-/// RollingFilter applies the corrections when motion resumes. If a different hypothesis becomes the most probable at
-/// rest, RollingFilter applies the corrections immediately.
+/// While the sphere is at rest, the reported position is constant. Measurements at rest may correct the path before the
+/// rest; RollingFilter applies the corrections when motion resumes. If a different hypothesis becomes the most probable
+/// at rest, RollingFilter applies the corrections immediately.
 ///
 /// Readings of a fast IMU are averaged over RollingExpertParams::reading_s before they are processed. Between two
 /// averages, the estimate is extrapolated. Over a gap of up to gap_max_s, RollingFilter interpolates the rate and
