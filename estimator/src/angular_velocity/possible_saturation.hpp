@@ -19,7 +19,7 @@ void inflate_possible_saturation(const RailPlanes& planes, const LeastRails& lea
 /// Marks whole segments near a maximum, which may hide a peak between the slopes before and after. `offset_share` is
 /// the difference between elements as a fraction of the saturation level (RailPlaneFinder::Params). The function has no
 /// effect for a device that flags clipping, without a known saturation level, or if the sensing element has read far
-/// higher values. Sets RateObservation::suspect. O(N).
+/// higher values. Sets RateObservation::suspect. Cost: O(N).
 void inflate_motion_plateaus(const RailPlanes& planes, const LeastRails& least, double offset_share, double noise_rad_s,
                              std::span<RateObservation> observations);
 

@@ -49,7 +49,7 @@ struct Extreme {
 };
 
 /// Returns nothing if the readings of the axis are too small for saturation. Stores the samples close to the extreme in
-/// the workspace. O(N).
+/// the workspace. Cost: O(N).
 std::optional<Extreme> find_extreme(const RailPlaneFinder::Params& params, const DistinctReadings& readings, int axis,
                                     int sign, const FacetPrior& prior, double slope_range,
                                     RailPlaneFinder::Workspace& workspace);

@@ -22,7 +22,7 @@ struct RateReadings {
 };
 
 /// Classifies at least two samples with the detected saturation levels: clipped elements, partly saturated axes,
-/// suspect axes, rest, and repeated readings. Sets levels, units and repetitions in `health`. O(N).
+/// suspect axes, rest, and repeated readings. Sets levels, units and repetitions in `health`. Cost: O(N).
 RateReadings read_samples(const RateSmoother::Params& params, const ClippingFinder& rails,
                           const ClippingFinder::Found& found, const std::vector<bool>& rest,
                           std::span<const ImuSample> samples,

@@ -39,7 +39,7 @@ struct Neighbours {
   const ImuSample *before = nullptr, *after = nullptr;
 };
 /// Returns the neighbours of each sample. All samples of a run of equal readings (repetition, rest, saturation) have
-/// equal neighbours. O(N).
+/// equal neighbours. Cost: O(N).
 std::vector<Neighbours> other_readings(std::span<const ImuSample> samples, Triad triad);
 
 }  // namespace tumble

@@ -53,7 +53,7 @@ inline constexpr double kLongest = 1.5;  ///< longest window, in periods
 
 /// Estimates the root density of the angular jerk near each of `nodes` nodes from readings [rad/s^3 sqrt(s)]. The
 /// estimate uses the curvature of unsaturated readings, and the change of slope across clipped segments. The estimate
-/// is 0 without information. carried.md (C24), (C25). O(N).
+/// is 0 without information. carried.md (C24), (C25). Cost: O(N).
 std::vector<double> seen_jerk(const GyroReadings& rates, const Eigen::Matrix3d& rows, double noise_rad_s, double node_s,
                               std::size_t nodes);
 

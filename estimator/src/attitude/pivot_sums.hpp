@@ -20,7 +20,7 @@ struct PivotFit {
 /// Normal equations of imu_merge.md (I27) for one alternative of the gyro.
 class PivotSums {
  public:
-  /// Adds a mean reading over `dt_s`, whose middle is `at_s` after the segment's start. O(1).
+  /// Adds a mean reading over `dt_s`, whose middle is `at_s` after the segment's start. Cost: O(1).
   void add(double at_s, double dt_s, const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& force_m_s2) {
     const Eigen::Quaterniond half = so3::exp(0.5 * dt_s * rate_rad_s);
     const Eigen::Quaterniond middle = turned_ * half;

@@ -18,7 +18,7 @@ class SightGrid {
   void add(const Eigen::Vector3f& return_W_m);
 
   enum class Verdict { unknown, seen, seen_through };
-  /// Checks a map point, with the standard deviation of its position. O(1).
+  /// Checks a map point, with the standard deviation of its position. Cost: O(1).
   Verdict verdict(const Eigen::Vector3f& point_W_m, float sigma_m) const;
 
  private:

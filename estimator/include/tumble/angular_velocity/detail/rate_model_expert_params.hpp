@@ -84,8 +84,8 @@ struct RateContactParams {
   }
 };
 
-/// Parameters of RateModelParams that few users change, grouped by meaning. Field names equal the names in tables and
-/// on command lines.
+/// Parameters of RateModelParams that few users change, grouped by meaning. The fields have the names that are used in
+/// tables and on command lines.
 struct RateModelExpertParams {
   /// Duration for which the model error of a force, a torque or a rate is constant. All samples within model_error_s
   /// share one model error, so averaging reduces only their noise.

@@ -35,8 +35,8 @@ struct RateDescentParams {
   }
 };
 
-/// Parameters of RateSmootherParams that few users change, grouped by meaning. Field names equal the names in tables
-/// and on command lines.
+/// Parameters of RateSmootherParams that few users change, grouped by meaning. The fields have the names that are used
+/// in tables and on command lines.
 struct RateSmootherExpertParams {
   RailPlaneFinder::Params planes = {};  ///< without a stated range, the range of RateSmootherParams::rails applies
   /// parameters of the search for the accelerometer's saturation planes

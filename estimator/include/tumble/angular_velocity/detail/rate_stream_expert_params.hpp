@@ -38,8 +38,8 @@ struct RigInflationParams {
   }
 };
 
-/// Parameters of RateStreamParams that few users change, grouped by meaning. Field names equal the names in tables and
-/// on command lines.
+/// Parameters of RateStreamParams that few users change, grouped by meaning. The fields have the names that are used in
+/// tables and on command lines.
 struct RateStreamExpertParams {
   RailPlaneFinder::Params planes = {};  ///< without a stated range, the range of RateStreamParams::rails applies
   /// parameters of the search for the accelerometer's saturation planes

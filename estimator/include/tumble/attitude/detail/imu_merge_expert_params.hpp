@@ -75,8 +75,8 @@ struct DisagreeingImuParams {
   }
 };
 
-/// Parameters of ImuMergeParams that few users change, grouped by meaning. Field names equal the names in tables and on
-/// command lines.
+/// Parameters of ImuMergeParams that few users change, grouped by meaning. The fields have the names that are used in
+/// tables and on command lines.
 struct ImuMergeExpertParams {
   ImuOutlierParams outliers = {};
   FrozenImuParams frozen = {};

@@ -71,8 +71,8 @@ struct AttitudeGapParams {
   }
 };
 
-/// Parameters of TumbleAttitudeParams that few users change, grouped by meaning. Field names equal the names in tables
-/// and on command lines.
+/// Parameters of TumbleAttitudeParams that few users change, grouped by meaning. The fields have the names that are
+/// used in tables and on command lines.
 struct TumbleAttitudeExpertParams {
   double bias_walk_rad_s_sqrts = 2e-6;         ///< random walk of the bias per sqrt(s)
   double acceleration_noise_m_s_sqrts = 0.01;  ///< velocity random walk
