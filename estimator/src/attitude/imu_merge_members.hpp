@@ -4,7 +4,8 @@
 #include "../angular_velocity/rails_members.hpp"
 #include "tumble/attitude/imu_merge.hpp"
 
-/// Members of ImuMerge's state, and members of ImuMerge::Params that are not Fields, as state_visitor.hpp describes.
+/// imu_merge_members.hpp lists the members of ImuMerge's state, and members of ImuMerge::Params that are not Fields, as
+/// state_visitor.hpp describes.
 namespace tumble {
 
 template <StateOf<ForceErrors::State> Self, class Visitor>
