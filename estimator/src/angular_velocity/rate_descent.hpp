@@ -30,9 +30,9 @@ class RateIteration {
     }
   }
 
-  /// Moved contains the derivative of all unknowns by the sensor errors, and the information of the readings about the
-  /// sensor errors after all unknowns are optimised. The derivatives refer to the last factorisation, with its
-  /// `estimates` and `rig`, before apply().
+  /// Moved contains the derivative of all unknowns by the sensor errors. Moved also contains the information of the
+  /// readings about the sensor errors, after all unknowns are optimised. The derivatives refer to the last
+  /// factorisation, with its `estimates` and `rig`, before apply().
   struct Moved {
     std::vector<arrow::ErrorMatrix> of_sample;
     arrow::BorderErrors of_rig;

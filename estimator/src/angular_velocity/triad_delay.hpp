@@ -22,9 +22,9 @@ namespace tumble {
 ///
 /// The second method uses flight, if impacts give no estimate. The estimate is the delay for which most accelerometer
 /// readings equal the force of flight at a rigid body's lever arm. The force of flight is alpha x t + w x (w x t) +
-/// bias, with lever arm t, rate w, and angular acceleration alpha from the neighbouring gyro readings. For each delay,
-/// lever arm (prior `lever_arm_m`, 0.02 m) and bias are fitted robustly (Geman-McClure). The result is empty with fewer
-/// than 20 unclipped readings faster than 2 rad/s, or if the improvement may be due to chance.
+/// bias, with lever arm t, rate w and angular acceleration alpha. For each delay, lever arm (prior `lever_arm_m`, 0.02
+/// m) and bias are fitted robustly (Geman-McClure). The result is empty with fewer than 20 unclipped readings faster
+/// than 2 rad/s, or if the improvement may be due to chance.
 TriadDelay guess_triad_delay(std::span<const ImuSample> samples, std::span<const Clipping> clippings,
                              const Eigen::Vector3d& lever_arm_m);
 

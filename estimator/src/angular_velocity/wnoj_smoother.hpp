@@ -14,9 +14,9 @@ namespace tumble {
 /// Smooths angular velocity with a white-noise-on-jerk prior, exactly and linearly in the number of samples.
 ///
 /// The state of each sample (knot) is angle, rate and angular acceleration. The prior between knots is that of Tang,
-/// Yoon and Barfoot (RA-L 2019), with transition matrix Phi and noise Q of order three and density `jerk_psd`. Each
-/// knot measures the rate with a separate variance per axis. The angle is not measured, and the angle of the first knot
-/// is fixed. Eliminating the angle from the last knot backwards is therefore exact. The remaining prior of (rate,
+/// Yoon and Barfoot (RA-L 2019). It has a transition matrix Phi and noise Q of order three, with density `jerk_psd`.
+/// Each knot measures the rate with a separate variance per axis. The angle is not measured, and the angle of the first
+/// knot is fixed. Eliminating the angle from the last knot backwards is therefore exact. The remaining prior of (rate,
 /// acceleration) has the noise Q = q [dt^3/3, dt^2/2; dt^2/2, dt]. WnojSmoother computes only rate and angular
 /// acceleration. Orthogonal (square-root information) elimination and back-substitution give mean and variance of the
 /// rate at every knot. The variances of different knots may differ by many orders of magnitude.

@@ -31,8 +31,8 @@ struct Message {
   double add(const Node& node, System::Block& block) const;
 };
 
-/// Part consists of the nodes [first, last] of a problem. It includes the information from all other nodes about the
-/// ends of the part, for fixed constants.
+/// Part consists of the nodes [first, last] of a problem. A Part includes the information from all other nodes about
+/// the ends of the part, for fixed constants.
 struct Part {
   std::size_t first = 0, last = 0;
   Message before = {}, after = {};

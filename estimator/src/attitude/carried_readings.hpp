@@ -9,8 +9,8 @@
 /// carried_readings.hpp sums the IMU readings of a hand-held body by node, as input of Problem.
 namespace tumble::carried {
 
-/// Minimum determinant of the matrix of sensing directions. Below this determinant, the sensing directions do not span
-/// the axes.
+/// Minimum determinant of the matrix of sensing directions. Below the minimum determinant, the sensing directions do
+/// not span the axes.
 inline constexpr double kRowsMin = 0.1;
 /// Standard deviation of the time of a repeated reading, which is uniform within the previous sample: 1/sqrt(12).
 inline constexpr double kTaken_samples = 0.29;

@@ -31,8 +31,8 @@ double revolution_cost(double span_s, double jerk_rad_s3_sqrts);
 /// unchanged.
 ///
 /// The covariances of `problem` must be computed. The function sets the counters in `report`. The test does not model
-/// correlated revolutions of two segments, modes other than whole revolutions about the clipped element's axis, or the
-/// effect of a revolution on the constants.
+/// correlated revolutions of two segments, or the effect of a revolution on the constants. Alternatives are only whole
+/// revolutions about the clipped element's axis.
 void test_revolutions(Problem& problem, CarriedSmoother::Report& report);
 
 /// Tests the revolutions, and uses `again` to solve the whole problem, so that a unit test can let the solver fail.

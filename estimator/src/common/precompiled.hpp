@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // precompiled.hpp includes the headers that nearly every source uses, and instantiates types of Eigen expressions that
 // at least a dozen sources use. The compiler needs longer for the classes of an expression than for the machine code of
-// the expression (docs/figures.md). CMakeLists.txt precompiles this header, and no source includes the header.
+// the expression (docs/figures.md). CMakeLists.txt precompiles precompiled.hpp, and no source includes the file.
 // Precompiling affects only the compile time.
 #pragma once
 

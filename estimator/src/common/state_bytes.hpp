@@ -58,8 +58,8 @@ class StateWriter : public StateVisitor<StateWriter> {
 };
 
 /// StateReader reads states from untrusted bytes. After the first error, status() returns the error, nothing more is
-/// read, and the values read so far are invalid. The errors are `too_few` (the bytes end within `field`), `non_finite`,
-/// and `out_of_range` (an index, a count, an enumeration, or a length larger than the remaining bytes).
+/// read, and the values read so far are invalid. Errors are `too_few` (the bytes end within `field`), `non_finite` and
+/// `out_of_range` (an index, a count, an enumeration or a length).
 class StateReader : public StateVisitor<StateReader> {
  public:
   static constexpr bool kReads = true;

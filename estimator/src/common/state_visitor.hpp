@@ -20,13 +20,14 @@
 namespace tumble {
 
 /// StateVisitor visits the members of a state. `Derived` has the following members.
-/// - numbers(name, data, count): processes contiguous numbers.
-/// - length(name, count): processes the size of a sequence or an optional (0 or 1), and returns the size to use.
-/// - bounded(name, value, low, high): checks a visited number.
-/// - going(): returns false to stop.
-/// - whole(name, value), optional: processes a member that serialises itself.
-/// - kReads: true if visited members are overwritten.
-/// - kDescribes: true to visit a sequence as one element in its initial state.
+/// The function numbers(name, data, count) processes contiguous numbers.
+/// The function length(name, count) processes the size of a sequence or an optional (0 or 1), and returns the size to
+/// use.
+/// The function bounded(name, value, low, high) checks a visited number.
+/// The function going() returns false to stop.
+/// The optional function whole(name, value) processes a member that serialises itself.
+/// The constant kReads is true if visited members are overwritten.
+/// The constant kDescribes is true to visit a sequence as one element in its initial state.
 template <class Derived>
 class StateVisitor {
  public:

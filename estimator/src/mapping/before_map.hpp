@@ -16,9 +16,9 @@ StateEstimate belief_before_map(const LidarInertialOdometry::Params& params, con
 /// velocity over minutes of motion.
 StateEstimate without_place(const StateEstimate& reckoned, double step_s);
 
-/// Returns the state at the start of the sweep that starts the map. The lidar's pose at the start of this sweep defines
-/// the map's frame and has no error. The tilt error of dead reckoning therefore becomes an error of gravity's
-/// direction. `reckoned` is the result of without_place() or belief_before_map().
+/// Returns the state at the start of the sweep that starts the map. The lidar's pose at the start of the map's first
+/// sweep defines the map's frame and has no error. The tilt error of dead reckoning therefore becomes an error of
+/// gravity's direction. `reckoned` is the result of without_place() or belief_before_map().
 StateEstimate belief_at_first_sweep(const LidarInertialOdometry::Params& params, const StateEstimate& reckoned);
 
 /// Returns a world whose vertical is as uncertain as the tilt of `reckoned`.

@@ -23,11 +23,11 @@ struct WindowRate {
   static void members(Self& s, Visitor& visit);
 };
 
-/// Appends samples from the end of `before` to the start of `after`. The rate is interpolated linearly. Its standard
-/// deviation is that of a random walk known at both ends, see mapping.md (R44). All axes of the appended samples count
-/// as clipped. A registration that estimates the saturation deficit then also estimates the interpolation error. The
-/// force of the appended samples is unknown (`bridges_gap`). The samples are 10 ms long, or longer in gaps beyond 0.64
-/// s.
+/// Appends samples from the end of `before` to the start of `after`. The rate is interpolated linearly. The standard
+/// deviation of the interpolated rate is that of a random walk known at both ends, see mapping.md (R44). All axes of
+/// the appended samples count as clipped. A registration that estimates the saturation deficit then also estimates the
+/// interpolation error. The force of the appended samples is unknown (`bridges_gap`). The samples are 10 ms long, or
+/// longer in gaps beyond 0.64 s.
 void bridge_gap(const InertialNoiseParams& params, const WindowRate& before, const WindowRate& after,
                 std::vector<MotionSample>& samples);
 

@@ -9,11 +9,11 @@
 
 namespace tumble::mapping {
 
-/// Returns the errors of inertial integration over one segment as uncertainty of the state at the start of the segment,
-/// where the registration estimates the motion. A rate error is assumed constant over the segment, because the error
-/// comes from saturation, not from white noise. The standard deviation of the attitude is therefore the time integral
-/// of the rate's standard deviation. Axes in `deficit_axes` (bits) are excluded, because the registration estimates the
-/// saturation deficit of these axes separately.
+/// Returns the errors of inertial integration over one segment as uncertainty of the state at the start of the segment.
+/// A rate error is assumed constant over the segment, because the error comes from saturation, not from white noise.
+/// The standard deviation of the attitude is therefore the time integral of the rate's standard deviation. Axes in
+/// `deficit_axes` (bits) are excluded, because the registration estimates the saturation deficit of the axes
+/// separately.
 Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& params,
                                            const SweepTrajectory& trajectory, std::span<const MotionSample> samples,
                                            unsigned deficit_axes);

@@ -8,7 +8,8 @@
 /// The resulting s is sin(x) / x with the half angle x.
 namespace tumble::rotation_series {
 
-/// Square of the largest whole angle for which the series is accurate. Angles above this limit would need more terms.
+/// Square of the largest whole angle for which the series is accurate. Angles above kAngle2_rad2 would need more terms
+/// of the series.
 inline constexpr double kAngle2_rad2 = 1.0;
 /// Ratios of successive terms of the series of cos(x) and of sin(x) / x, last term first.
 inline constexpr std::pair<double, double> kRatios[] = {

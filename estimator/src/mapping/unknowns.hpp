@@ -28,7 +28,7 @@ inline constexpr Block<Registration::kCalibration + 7, 3> gravity;
 
 /// Variance of an unknown whose prior is exact; the variance is above 0 so that the prior can be inverted.
 inline constexpr double kLeastVariance = 1e-12;
-/// Largest squared Mahalanobis distance at which a sweep's motion agrees with its prior, which is the 95 % quantile of
+/// Largest squared Mahalanobis distance at which a sweep's motion agrees with its prior: the 95 % quantile of
 /// chi-square with nine degrees of freedom. See mapping.md (R25), (R71).
 inline constexpr double kAgrees = 16.9;
 static_assert(SweepUnknowns::kMotion == 9);

@@ -16,8 +16,8 @@ class WorldCovariance {
   WorldCovariance(const WorldCovarianceParams& params, const Eigen::Quaterniond& q_WI, const Eigen::Vector3d& p_IL_m)
       : params_(params), start_by_mounting_(pose_by_mounting(q_WI, p_IL_m)) {}
 
-  /// Returns the covariance of a pose's error in the world, given the joint covariance of all unknowns in the map at
-  /// the time of the pose.
+  /// Returns the covariance of a pose's error in the world. `joint` is the covariance of all unknowns in the map at the
+  /// time of the pose.
   Pose in_world(const Registration::Matrix& joint, const Eigen::Vector3d& p_WI_m) const;
 
   /// Adds the drift of a moving sweep, given the standard deviation and the direction (position, scaled attitude) that

@@ -98,7 +98,7 @@ void SecondPass::members(Self& s, Visitor& visit) {
     s.pass_.reset();
     if (under_way && visit.going()) s.pass_.emplace(s.lagging_rate(), s.mapping_);
   }
-  // the layout already contains the members of the second pass, which equal those of the first pass
+  // the layout already contains the members of a pass, so that the second pass is not described
   if (s.pass_ && !Visitor::kDescribes) visit("second_pass.pass", *s.pass_);
   visit.scratch(s.pass_);
   visit("second_pass.next_sample", s.next_sample_, 0.0, double(s.samples_.all().size()));

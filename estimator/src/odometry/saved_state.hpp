@@ -13,6 +13,8 @@
 
 /// saved_state.hpp serialises complete odometry objects and states of streams. All numbers are little-endian.
 ///
+/// The bytes are:
+///
 /// | bytes | |
 /// | --- | --- |
 /// | 0 | "tumblest" |

@@ -24,9 +24,9 @@ namespace tumble {
 /// of the stated range on. A saturated axis is frozen if all other axes of the IMU indicate rest for
 /// `rail_stationary_s`, because a saturating rate or force contradicts rest. If the body is never at rest, a saturated
 /// axis is frozen after `rail_repeated_s` while another axis of the same sensor changes. A repetition of
-/// `rail_repeated_s` means that the axis is frozen, or that the range is too small for the spin. In both cases, the
-/// rate of the axis is unknown. A body that spins so evenly about a saturated axis that no other axis changes is
-/// mistaken for a frozen axis.
+/// `rail_repeated_s` means that the axis is frozen, or that the range is too small for the spin. If the axis is frozen
+/// or the range is too small, the rate of the axis is unknown. A body that spins so evenly about a saturated axis that
+/// no other axis changes is mistaken for a frozen axis.
 class FrozenAxes {
  public:
   struct Params {

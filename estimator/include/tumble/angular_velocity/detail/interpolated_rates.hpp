@@ -23,8 +23,7 @@ struct InterpolatedRate {
 };
 
 /// Returns the interpolated rate of sample `k` of a stream's window. Cost: O(samples of three readings). The result is
-/// empty if each sample has its own reading, if the next reading has not yet arrived, or if a reading is not fully
-/// usable.
+/// empty if each sample has its own reading, the next reading has not yet arrived, or a reading is not fully usable.
 std::optional<InterpolatedRate> rate_between_readings(std::span<const RateStreamKnot> window, std::size_t k,
                                                       double period_s);
 

@@ -16,7 +16,7 @@ inline constexpr double kStatedRailMin = 0.85;
 /// rails.md (R54), (R75), rate_stream.md (R93).
 inline constexpr double kBesideRail = 0.02;
 
-/// Readings whose difference is below this fraction of the saturation level are equal, as in RailDetector.
+/// Readings whose difference is below the fraction kEqualShare of the saturation level are equal, as in RailDetector.
 inline constexpr double kEqualShare = 2e-5;
 
 }  // namespace tumble

@@ -34,8 +34,7 @@ class RateModel {
   double jump(const RateKnot& from, const RateKnot& to, double dt_s) const;
 
   /// Moves the unmeasured rates of a sample in contact to the minimum of the contact force, if the minimum is far below
-  /// the force at the current estimate. Between two impacts, a body may fly for a single sample, which local solver
-  /// steps do not find.
+  /// the current force. Between two impacts, a body may fly for a single sample, which local solver steps do not find.
   void seek_flight(const RateObservation& observation, const RigConstants& rig, RateEstimate& estimate) const;
 
   /// Initialises the lower bounds of a sample's clipped rates near the current estimate or near the reading, whichever

@@ -57,8 +57,8 @@ struct RateContactParams {
   /// Factor on the standard deviation during impacts, because the errors of impacts are not Gaussian.
   double sigma_factor = 1.3;
   /// Largest angular acceleration across the direction of a contact force, per unit of force, in Euler's equation. The
-  /// largest angular acceleration is mass times the distance of the contact from the centre of mass, over a third of
-  /// the trace of the inertia.
+  /// largest angular acceleration is mass times the distance of the contact point, over a third of the trace of the
+  /// inertia.
   double lever_rad_m = 5.0;
   /// Angular acceleration about the direction of a contact force, as a fraction of the angular acceleration across the
   /// direction. Torque about the direction of the contact force is caused by several contacts, or by a contact that

@@ -16,11 +16,11 @@ struct RigInflationParams {
   double covariance = 60.0;
   double samples = 30.0;
   /// Rates beyond saturation that are recovered during contact depend on the calibration. The standard deviation of a
-  /// recovered rate is at least this fraction of the saturation deficit, divided by 1 + n / samples.
+  /// recovered rate is at least the fraction `contact` of the saturation deficit, divided by 1 + n / samples.
   double contact = 0.5;
   /// Uncertainty of a run of clipped samples in contact. A parabola with the slopes of the rate at the ends of the run
-  /// predicts a saturation deficit. The standard deviation is at least this fraction of the predicted saturation
-  /// deficit, minus the estimated saturation deficit.
+  /// predicts a saturation deficit. The standard deviation is at least the fraction `slopes` of the predicted
+  /// saturation deficit, minus the estimated saturation deficit.
   double slopes = 1.0;
 
   template <class Self, class Visitor>

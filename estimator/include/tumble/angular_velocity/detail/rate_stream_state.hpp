@@ -41,8 +41,8 @@ struct RateStreamKnot {
   Clipping by_upright_rails;  ///< clipping by flags and equal readings; the observation also uses planes
   RateEstimate estimate;
   Eigen::Matrix3d covariance_rad2_s2 = Eigen::Matrix3d::Zero();
-  /// Growth of each axis's magnitude per step, for the two steps up to the sample. approach_rad_s is the smaller growth
-  /// of the two steps, and at least 0.
+  /// Growth of each axis's magnitude per step up to the sample: the smaller growth of the last two steps, and at least
+  /// 0.
   Eigen::Vector3d approach_rad_s = Eigen::Vector3d::Zero();
   int age = 0;
   bool repeats = false;      ///< the gyro repeats the previous reading: RepeatDetector
@@ -100,7 +100,7 @@ struct RateStreamState {
   /// largest and smallest readings so far
   std::array<Eigen::Vector3d, 2> extremes{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   LeastRails least;  ///< lower bounds from the readings so far
-  /// Data of a run of readings at a possible saturation level that has partly left the window:
+  /// Data of a run of readings at a possible saturation level that has partly left the window. The data are
   /// RateStreamKnot::approach_rad_s before the run, and the number of samples that left.
   Eigen::Vector3d entry_rad_s = Eigen::Vector3d::Zero(), entry_samples = Eigen::Vector3d::Zero();
   std::optional<RateKnot> left;  ///< the sample that left the window last, and its time

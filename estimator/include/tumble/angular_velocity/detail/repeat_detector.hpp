@@ -10,8 +10,7 @@
 namespace tumble {
 
 /// RepeatedReading describes the reading of the gyro or accelerometer that a sample contains. If the sensor is slower
-/// than the log (sample and hold), the sample repeats an earlier reading, or contains a reading that arrived since the
-/// last sample.
+/// than the log (sample and hold), the sample may repeat an earlier reading.
 struct RepeatedReading {
   bool repeats = false;                              ///< repeats the reading of the previous sample
   double age_samples = 0.0;                          ///< mean age of the reading

@@ -21,8 +21,8 @@ struct StrokeSums {
   /// Number, sum and sum of squares of the angular acceleration x over intervals between adjacent unsaturated gyro
   /// readings.
   double intervals = 0.0, turn = 0.0, turn_squared = 0.0;
-  /// Sums per tried delay: sum and sum of squares of the force z, sum of products x z, number of intervals with an
-  /// impact, number of intervals with almost no force.
+  /// Sums per tried delay: sum and sum of squares of the force z, sum of products x z, intervals with an impact,
+  /// intervals almost without force.
   Tried force = Tried::Zero(), force_squared = Tried::Zero(), product = Tried::Zero(), strokes = Tried::Zero(),
         flying = Tried::Zero();
 

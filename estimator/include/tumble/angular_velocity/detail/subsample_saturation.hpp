@@ -17,13 +17,13 @@ struct SubsampleSaturation {
 };
 
 /// Estimates the saturation deficit of a flagged reading from its unsaturated neighbour. The model is a rate with
-/// constant slope (D per window) that passes the saturation level c within the windows of the reading and its
-/// neighbour. If the fraction p of the window is clipped, the reading is m = c - (1-p)^2 D/2. The saturation deficit is
-/// p^2 D/2, and the neighbour reads m + p^2 D/2 - D. The fraction p follows from (c - m) / (m - neighbour) in closed
-/// form. The saturation deficit is zero if the reading is at the saturation level or within noise of the neighbour. The
-/// saturation deficit is also zero if more than kShareMax of the window is clipped. `neighbour_rad_s` is the smaller of
-/// the neighbours' readings, with a sign for which the saturation level is positive. A slope that changes within the
-/// two windows is not modelled; sigma_rad_s covers a change of slope (measured on impacts of tumbling bodies).
+/// constant slope (D per window) that passes the saturation level c within two successive windows. If the fraction p of
+/// the window is clipped, the reading is m = c - (1-p)^2 D/2. The saturation deficit is p^2 D/2, and the neighbour
+/// reads m + p^2 D/2 - D. The fraction p follows from (c - m) / (m - neighbour) in closed form. The saturation deficit
+/// is zero if the reading is at the saturation level or within noise of the neighbour. The saturation deficit is also
+/// zero if more than kShareMax of the window is clipped. `neighbour_rad_s` is the smaller of the neighbours' readings,
+/// with a sign for which the saturation level is positive. A slope that changes within the two windows is not modelled;
+/// sigma_rad_s covers a change of slope (measured on impacts of tumbling bodies).
 SubsampleSaturation subsample_saturation(double reading_rad_s, double neighbour_rad_s, double rail_rad_s,
                                          double noise_rad_s);
 

@@ -18,8 +18,8 @@ struct NormalSite {
 };
 
 /// Returns the Gaussian factor (site) that gives `marginal` the moments of a distribution truncated at `bound`. `now`
-/// is the current site. `share` in (0, 1] damps the update: it is the weight of the new site. The standard deviation of
-/// the marginal without its site is limited to sqrt(`widest2`).
+/// is the current site. `share` in (0, 1] is the weight of the new site, which damps the update. The standard deviation
+/// of the marginal without its site is limited to sqrt(`widest2`).
 NormalSite refined_bound(const NormalMoments& marginal, const NormalSite& now, double bound, double softness2,
                          double widest2, double share);
 

@@ -10,7 +10,7 @@ namespace tumble {
 
 /// The functions of carried_model.hpp describe hand-held motion as a least-squares problem: a chain of nodes at equal
 /// time steps, and constants of the device. Each function adds one factor to the normal equations H d = g and returns
-/// the factor's cost (minus two times the logarithm of the factor).
+/// the factor's cost (minus two times its logarithm).
 namespace carried {
 
 inline constexpr int kState = 18;  ///< size of a node's error: see Index
@@ -84,9 +84,9 @@ struct ReadingNoise {
 double add_gyro(const NodeReadings& readings, const Eigen::Matrix3d& rows, const ReadingNoise& noise, const Node& node,
                 const Constants& constants, System::Block& block, System::Corner& corner);
 
-/// Adds the factor of the specific force of one node at the mean time of the readings: f = R'(a - g) + alpha x r + w x
-/// (w x r) + bias. Here R is the attitude, a the held point's acceleration, g gravity, w the rate, alpha the angular
-/// acceleration and r the lever arm.
+/// Adds the factor of the specific force of one node: f = R'(a - g) + alpha x r + w x (w x r) + bias. Here R is the
+/// attitude, a the held point's acceleration, g gravity, w the rate, alpha the angular acceleration and r the lever
+/// arm.
 double add_force(const NodeReadings& readings, const Eigen::Vector3d& g_W_m_s2, const ReadingNoise& noise,
                  const Node& node, const Constants& constants, System::Block& block, System::Corner& corner);
 

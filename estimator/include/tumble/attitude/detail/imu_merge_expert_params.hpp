@@ -11,7 +11,8 @@ struct ImuOutlierParams {
   double rate_rad_s = 0.15;  ///< difference from the median
   double rate_share = 0.03;  ///< additional difference, as a fraction of the rate
   double force_m_s2 = 3.0;   ///< difference from the median
-  /// A reading above this fraction of the range may have been saturated for a part of its sample.
+  /// A reading above the fraction subsample_saturation_share of the range may have been saturated for a part of its
+  /// sample.
   double subsample_saturation_share = 0.15;
   double hidden_force_m_s2 = 3.0;  ///< largest force difference that subsample saturation explains
 

@@ -14,13 +14,13 @@ namespace tumble {
 /// Estimates the rate of a body beyond the range of its gyros from the force differences between several
 /// accelerometers.
 ///
-/// An extended Kalman filter estimates rate w, angular acceleration a, specific force c at the mean position of the
-/// units, and the error of each unit's lever arm r_k. The measurement model of unit k is f_k = c + a x r_k + w x (w x
-/// r_k). In body axes, the specific force c rotates as gravity does. The filter runs while a gyro is clipped or reads
-/// more than the fraction kFast of its range. The lever arms are therefore calibrated before a gyro saturates.
-/// RateRecovery treats a reading as clipped if the reading is flagged or beyond the range. ClippingFinder sets the
-/// flags for devices that clip below their range without reporting saturation. Clipped readings of gyro and
-/// accelerometer are lower bounds, not measurements.
+/// An extended Kalman filter estimates rate w, angular acceleration a and specific force c at the mean position of the
+/// units, and the error of each lever arm r_k. The measurement model of unit k is f_k = c + a x r_k + w x (w x r_k). In
+/// body axes, the specific force c rotates as gravity does. The filter runs while a gyro is clipped or reads more than
+/// the fraction kFast of its range. The lever arms are therefore calibrated before a gyro saturates. RateRecovery
+/// treats a reading as clipped if the reading is flagged or beyond the range. ClippingFinder sets the flags for devices
+/// that clip below their range without reporting saturation. Clipped readings of gyro and accelerometer are lower
+/// bounds, not measurements.
 ///
 /// RateRecovery does not model scale errors; the lever arms are calibrated relative to the gyro's scale. Units at one
 /// position provide no information about the rate. An impact increases the uncertainty of the rate, and does not change

@@ -49,9 +49,8 @@ struct AttitudeRollingParams {
 /// Motion during a gap of the readings.
 struct AttitudeGapParams {
   double least_s = 0.05;  ///< a longer time between two samples is a gap
-  /// Random walks of the true rate and velocity of tumbling bodies during a gap. On hills, stairs and cliffs over 0.05
-  /// to 0.5 s, the true walks are 3.0 to 11.4 rad/s and 2.4 to 4.1 m/s per sqrt(s) (docs/figures.md, "Gaps of the
-  /// IMU").
+  /// Random walks of the true rate and velocity of tumbling bodies during a gap. On hills, stairs and cliffs, the true
+  /// walks over 0.05 to 0.5 s are 3.0 to 11.4 rad/s and 2.4 to 4.1 m/s per sqrt(s) (docs/figures.md).
   double rate_walk_rad_s_sqrts = 7.0, velocity_walk_m_s_sqrts = 3.3;
   /// Standard deviations of the tilt, one axis. Above lost_tilt_rad, the linearisation of the filter is not valid and
   /// coarse alignment starts. Below aligned_tilt_rad, the coarse alignment is complete.
@@ -78,8 +77,8 @@ struct TumbleAttitudeExpertParams {
   double acceleration_noise_m_s_sqrts = 0.01;  ///< velocity random walk
   double recovered_tau_s = 0.05;               ///< correlation time of the error of a recovered rate
   double node_s = 0.04;                        ///< time between two corrections
-  /// Averaging time of readings. The thresholds of TumbleAttitude are set for this averaging time. An averaging time of
-  /// zero disables averaging.
+  /// Averaging time of readings. The thresholds of TumbleAttitude are valid for the default averaging time. An
+  /// averaging time of zero disables averaging.
   double reading_s = 4e-3;
   double gap_max_s = 1.0;
   /// Parameters of rest detection. The mean rate may differ by 2 deg/s from the bias, and each reading by 2 deg/s from

@@ -24,8 +24,8 @@ struct ArrowSystem {
   using BorderMatrix = Eigen::Matrix<double, Border, Border>;
   using BorderVector = Eigen::Matrix<double, Border, 1>;
 
-  /// Block is one block row. Before elimination, it contains D, E, B and g; after elimination, it contains L^-1, L^-1
-  /// E, L^-1 B and L^-1 g, with D = L L'.
+  /// Block is one block row. Before elimination, a Block contains D, E, B and g; after elimination, L^-1, L^-1 E, L^-1
+  /// B and L^-1 g, with D = L L'.
   struct Block {
     StateMatrix diagonal = StateMatrix::Zero();
     StateMatrix coupling = StateMatrix::Zero();  ///< coupling of this block (rows) to the next block (columns)
@@ -41,8 +41,8 @@ struct ArrowSystem {
     }
   };
 
-  /// Corner is the border. Before elimination, it contains C and its gradient; after elimination, it contains their
-  /// Schur complement.
+  /// Corner is the border. Before elimination, a Corner contains C and its gradient; after elimination, their Schur
+  /// complement.
   struct Corner {
     BorderMatrix matrix = BorderMatrix::Zero();
     BorderVector gradient = BorderVector::Zero();

@@ -13,10 +13,10 @@ namespace tumble {
 
 /// Rejects single wild readings of an IMU, which bus faults cause. A rejected reading counts as missing.
 ///
-/// A reading is an outlier if it differs in one direction from two neighbours that agree with each other. In addition,
-/// the other sensor (gyro or accelerometer) must show no cause. A change of the force can cause a jump of the gyro, and
-/// a change of the rate can cause a jump of the accelerometer. A time stamp that is later than the next time stamp is
-/// also an outlier. The equations of OutlierFilter are outliers.md (O1) to (O6).
+/// A reading is an outlier if it jumps in one direction from two neighbours that agree with each other, and no cause
+/// explains the jump. A change of the force explains a jump of the gyro, and a change of the rate explains a jump of
+/// the accelerometer. A time stamp that is later than the next time stamp is also an outlier. The equations of
+/// OutlierFilter are outliers.md (O1) to (O6).
 ///
 /// OutlierFilter is causal. OutlierFilter delays a suspicious reading by one sample, until the next reading confirms or
 /// contradicts the reading. All other readings pass immediately and unchanged. Readings beyond kRateMax_rad_s or
@@ -52,7 +52,7 @@ class OutlierFilter {
   /// sample was delayed. After the call, no sample is delayed.
   std::optional<ImuSample> settle(const ImuSample& next, State& state) const;
 
-  /// Returns true if a finite sample must not be used now. The sample is either delayed, or rejected because no sensor
+  /// Returns true if a finite sample must not be used now. An unusable sample is delayed, or rejected because no sensor
   /// reads such large values. Call settle() before keeps_back().
   bool keeps_back(const ImuSample& sample, State& state) const;
 

@@ -20,7 +20,7 @@ struct FlyingBody {
 Eigen::Vector3d torque_free_acceleration(const FlyingBody& body, const Eigen::Vector3d& w_WI_I_rad_s);
 
 /// Returns the reading of an accelerometer off the centre of mass while only gravity acts on the body. The reading is
-/// -(a x r + w x (w x r)), with r from the IMU to the centre of mass, the rate w and the angular acceleration a.
+/// -(a x r + w x (w x r)), with r from the IMU to the centre of mass, rate w and angular acceleration a.
 Eigen::Vector3d flight_force(const FlyingBody& body, const Eigen::Vector3d& w_WI_I_rad_s,
                              const Eigen::Vector3d& angular_acceleration_I_rad_s2);
 

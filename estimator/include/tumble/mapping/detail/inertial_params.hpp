@@ -22,8 +22,8 @@ struct InertialNoiseParams {
   /// Velocity error as a fraction of the integral of the specific force. The velocity error matters at impacts.
   double force_share = 0.03;
   /// Velocity and rate are random walks over a gap of the IMU, see mapping.md (R43), (R44). For tumbling rigs and gaps
-  /// of 0.05 to 0.5 s, the true velocity walks are 2.4 to 4.1 m/s per sqrt(s). For a rate that is known at both ends of
-  /// the gap, the true rate walks are 3 to 11 rad/s per sqrt(s).
+  /// of 0.05 to 0.5 s, the true velocity walks are 2.4 to 4.1 m/s per sqrt(s). If the rate is known at both ends of the
+  /// gap, the true rate walks are 3 to 11 rad/s per sqrt(s).
   double gap_velocity_walk_m_s_sqrt_s = 3.0;
   double gap_rate_walk_rad_s_sqrt_s = 9.0;
   double rate_sigma_max_rad_s = 5.0;  ///< upper bound of the standard deviation in RateState

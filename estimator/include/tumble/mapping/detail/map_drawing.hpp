@@ -15,8 +15,8 @@ namespace tumble::mapping {
 /// therefore share line numbers. After a rotation of the sensor, the scan lines have new numbers.
 class ScanLines {
  public:
-  /// Returns the number of ring 0 of a sweep with this spin axis, or VoxelMap::kNoLine if the device does not report
-  /// rings.
+  /// Returns the line number of ring 0 of a sweep with the given spin axis, or VoxelMap::kNoLine if the device does not
+  /// report rings.
   std::uint32_t base(const Eigen::Vector3d& spin_axis_W, bool rings_differ);
   static std::uint32_t line(std::uint32_t base, std::uint16_t ring) {
     return base == VoxelMap::kNoLine ? base : base | ring;

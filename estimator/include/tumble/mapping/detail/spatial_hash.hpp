@@ -51,8 +51,8 @@ class SpatialHash {
   static constexpr std::uint64_t kFree = ~std::uint64_t{0};
 
   std::size_t slot_of(std::uint64_t key) const {
-    // The eight cubes of a 2 x 2 x 2 block are adjacent in memory and thus in one cache line, because successive
-    // queries are usually close together. Fibonacci hashing distributes the blocks.
+    // The eight cubes of a 2 x 2 x 2 block are in one cache line, because successive queries are usually close
+    // together. Fibonacci hashing distributes the blocks.
     constexpr std::uint64_t kInside = 1 | (std::uint64_t{1} << 21) | (std::uint64_t{1} << 42);
     const std::uint64_t block = key & ~kInside;
     const std::uint64_t hash = (block ^ (block >> 29)) * 0x9e3779b97f4a7c15u;

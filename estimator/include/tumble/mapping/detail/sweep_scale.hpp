@@ -32,10 +32,11 @@ struct SweepScale {
 /// velocities of two consecutive spans of 0.4 s. The difference of the two mean velocities equals the integrated
 /// acceleration, from gravity in flight and from impacts, for any velocity. The function regresses the lidar's velocity
 /// differences on the IMU's velocity differences robustly (Huber, 1964); the expected slope is 1. Ranges that are 10 %
-/// too long give a slope of 1.1, reduced by the weight of the IMU in the mapper. The attitudes are those that the run
-/// estimated. Intervals with a saturated accelerometer or with unconstrained sweeps are skipped. The standard deviation
-/// of the slope is heteroscedasticity-consistent (White, 1980). `gravity_m_s2` is the magnitude of gravity. Without
-/// acceleration, the scale is not observable. RestGravity detects an accelerometer's scale error from gravity at rest.
+/// too long give a slope of 1.1, reduced by the weight of the IMU in the mapper. The attitudes come from the estimate
+/// of the run. Intervals with a saturated accelerometer or with unconstrained sweeps are skipped. The standard
+/// deviation of the slope is heteroscedasticity-consistent (White, 1980). `gravity_m_s2` is the magnitude of gravity.
+/// Without acceleration, the scale is not observable. RestGravity detects an accelerometer's scale error from gravity
+/// at rest.
 SweepScale find_sweep_scale(std::span<const ImuSample> samples, std::span<const SweepReport> sweeps,
                             double gravity_m_s2);
 

@@ -19,9 +19,9 @@ namespace tumble {
 /// The first pass maps the start of a tumble with a lever arm, a mounting and a time offset that are still uncertain.
 /// SecondPass therefore buffers samples and sweeps from the end of the initial rest. After `after_s` of motion,
 /// SecondPass processes the buffer with the current calibration, and with rates that are smoothed with a lag of
-/// `lag_s`. SecondPass processes `sweeps` buffered sweeps per new sweep. When SecondPass has processed all buffered
-/// sweeps, its map and pose replace those of the first pass, and the buffer is freed. The result is discarded if
-/// tracking of the second pass has failed or if it has rejected clearly more sweeps than the first pass.
+/// `lag_s`. SecondPass processes `sweeps` buffered sweeps per new sweep. When all buffered sweeps are processed, map
+/// and pose of the second pass replace those of the first pass, and the buffer is freed. The result is discarded if
+/// tracking of the second pass has failed, or if the second pass has rejected clearly more sweeps than the first pass.
 ///
 /// If tracking of the first pass has failed for `lost_s`, SecondPass processes the whole buffer immediately, one time.
 /// The regular second pass still follows after `after_s`. SecondPass does not change earlier poses: the reported pose

@@ -37,7 +37,7 @@ class WaitingReadings {
   /// `end_ns`.
   std::optional<OdometerReading> take(TimeNs from_ns, TimeNs end_ns);
 
-  /// Returns the number of readings that were dropped because they span two sweeps.
+  /// Returns the number of dropped readings that span two sweeps.
   std::size_t straddling() const { return straddling_; }
 
   /// Passes every member of the state to the visitor. The source file state_visitor.hpp defines the function.

@@ -62,8 +62,8 @@ struct RollingModeParams {
   double incline_begins_per_s = 0.001, incline_ends_per_s = 0.1;  ///< rates of change from and to the level floor
   double rough_begins_per_s = 0.02, rough_ends_per_s = 0.1;
   double event_shortest_s = 0.06;  ///< minimum duration of slip or bump
-  /// The position is uncertain after an event that increases its horizontal standard deviation by more than this
-  /// distance.
+  /// The position is uncertain after an event that increases the horizontal standard deviation by more than
+  /// uncertain_m.
   double uncertain_m = 0.03;
 
   template <class Self, class Visitor>
