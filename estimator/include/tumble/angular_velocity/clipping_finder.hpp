@@ -22,11 +22,11 @@ struct KnownRails {
   bool accel_upright = false;         ///< the accelerometer clips after compensation
 
   /// Returns the saturation planes that are used to classify readings. If the device clips its output after
-  /// compensation, a run of equal readings identifies clipped samples exactly. The function then returns planes only
-  /// for sensing elements whose saturation level is not known from equal readings.
+  /// compensation, a run of equal readings identifies clipped samples exactly. If equal readings identify clipped
+  /// samples, the function returns planes only for sensing elements without a known saturation level.
   RailPlanes planes_in_use(Triad triad = Triad::gyro) const;
-  /// Returns the directions along which the triad's sensing elements measure. `unknown_sigma` is the standard deviation
-  /// of a cross-axis sensitivity that no saturation plane determines.
+  /// Returns the directions along which the sensing elements of the triad (gyro or accelerometer) measure.
+  /// `unknown_sigma` is the standard deviation of a cross-axis sensitivity that no saturation plane determines.
   ElementRows rows(Triad triad, double unknown_sigma) const;
   bool operator==(const KnownRails&) const = default;
 };

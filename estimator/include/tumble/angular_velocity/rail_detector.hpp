@@ -132,8 +132,8 @@ class RailDetector {
   void classify_all(std::span<const ImuSample> samples, State& state, std::span<Clipping> out) const;
 
   /// Adds the rising edge of a plateau to `clipping`. The edge consists of the axes of `sample` that are near the
-  /// saturation level before a clipped `next`. The maximum distance from the saturation level is the same before and
-  /// after a plateau.
+  /// saturation level before a clipped `next`. The largest distance of an edge from the saturation level is equal
+  /// before and after a plateau.
   void add_edge(const ImuSample& sample, const ImuSample& next, const Clipping& of_next, const State& state,
                 Clipping& clipping) const;
 

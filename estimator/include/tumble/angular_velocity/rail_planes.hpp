@@ -13,8 +13,8 @@
 
 namespace tumble {
 
-/// Finds the saturation planes of a triad's sensing elements in a whole recording, without clip flags and without a
-/// stated range.
+/// Finds the saturation planes of the sensing elements of a gyro or accelerometer in a whole recording, without clip
+/// flags and without a stated range.
 ///
 /// A saturation plane limits the readings, is nearly axis-aligned, and has many samples in a thin slab below the plane.
 /// Two kinds of motion look like saturation: the rounded maximum of a motion, and a constant rate (torque-free spin,
@@ -91,8 +91,9 @@ class RailPlaneFinder {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit RailPlaneFinder(const Params& params);
 
-  /// Finds the saturation planes in the readings of one triad of a recording. The samples must be finite and in time
-  /// order. Cost: O(N), plus a search of some hundred cross-axis sensitivities over the samples near the extremes.
+  /// Finds the saturation planes in the gyro or accelerometer readings of a recording. The samples must be finite and
+  /// in time order. Cost: O(N), plus a search of some hundred cross-axis sensitivities over the samples near the
+  /// extremes.
   RailPlanes find(std::span<const ImuSample> samples, Triad triad = Triad::gyro) const;
   /// Finds the saturation planes in readings without time stamps [rad/s]. `before` contains the planes that were found
   /// in a subset of `readings_rad_s`.

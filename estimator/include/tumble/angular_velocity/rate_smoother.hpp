@@ -27,7 +27,7 @@ struct RateSmootherParams {
   RailDetector::Params rails = {};
   double recovered_sigma_rad_s = 0.5;  ///< a clipped axis with a smaller standard deviation is recovered
   /// Largest accepted distance of the calibration constants from their prior (RateReport::calibration_mahalanobis). If
-  /// the distance is larger, the run is estimated again with the calibration constants fixed at the prior.
+  /// the distance exceeds the limit, the run is estimated again with the calibration constants fixed at the prior.
   double calibration_mahalanobis_max = 1.5;
   /// Sensor errors that an earlier run estimated (RateReport::sensor_errors). The calibrated errors are used only if
   /// the estimation of sensor errors is enabled.
@@ -74,8 +74,8 @@ struct RateReport {
   /// Estimated sensor errors.
   KnownSensorErrors sensor_errors;
   double in_sheet_probability = 1.0, synchronous_probability = 1.0;  ///< see SensorErrorFit
-  /// Standard deviation of a delay common to gyro and accelerometer [s]. The standard deviation is above 0 only if the
-  /// device deviates from its data sheet.
+  /// Standard deviation of a delay common to gyro and accelerometer [s]. The standard deviation of the common delay is
+  /// above 0 only if the device deviates from its data sheet.
   double common_delay_sigma_s = 0.0;
   double gyro_update_s = 0.0, accel_update_s = 0.0;  ///< update interval of repeated readings; 0: none
   int error_rounds = 0;                              ///< number of optimisations with corrected readings
@@ -94,23 +94,24 @@ struct RateReport {
 /// recording.
 ///
 /// The unknowns are the rate and angular acceleration of each sample, and the RigConstants of the run. A Gauss-Newton
-/// solver uses the following factors. Unclipped gyro readings measure the rate, and clipped readings limit the rate
-/// from below, for any number of axes. In flight, the specific force at the lever arm follows the complete rigid-body
-/// equation, and Euler's equation holds without torque. holds without torque. During contact, the weights of the force
-/// equation and of Euler's equation are reduced. Between samples, the angular jerk is white noise. The density of the
-/// jerk noise grows with the contact force. An impact therefore decouples the samples before the impact from the
-/// samples after the impact. At rest (RestDetector), the rate is zero, which determines the gyro's bias.
+/// solver uses the following factors.
+/// Unclipped gyro readings measure the rate, and clipped readings limit the rate from below, for any number of axes.
+/// In flight, the specific force at the lever arm follows the complete rigid-body equation, and Euler's equation holds
+/// without torque. During contact, the weights of the force equation and of Euler's equation are reduced.
+/// Between samples, the angular jerk is white noise. The density of the jerk noise grows with the contact force. An
+/// impact therefore decouples the samples before the impact from the samples after the impact.
+/// At rest (RestDetector), the rate is zero, which determines the gyro's bias.
 ///
 /// The normal equations are an arrow matrix, so an iteration costs O(N), including the covariance. The initial values
 /// come from the published method (Saave), extended by the lower bounds of clipped readings.
 ///
-/// In contact, the contact force at the centre of mass is the part of the measured force that flight does not explain.
-/// A force through one point of the cage has no torque about the direction of the force. The component of Euler's
-/// equation along the contact force therefore remains in use. The size of the cage determines the uncertainty of the
-/// two components of Euler's equation across the contact force (RateContactParams::lever_rad_m). RateSmoother does not
-/// estimate the contact point, because a cage strikes with several bars and rolls on within 10 ms. For clipped samples,
-/// the median torque along the contact force is 1.4 %. The contact point of the previous sample leaves 66 % of the
-/// torque unexplained (tests/bench/rate_contact; docs/maths/rate_smoother.md).
+/// In contact, the contact force at the centre of mass is the part of the measured force that the equations of flight
+/// do not explain. A force through one point of the cage has no torque about the direction of the force. The component
+/// of Euler's equation along the contact force therefore remains in use. The size of the cage determines the
+/// uncertainty of the two components of Euler's equation across the contact force (RateContactParams::lever_rad_m).
+/// RateSmoother does not estimate the contact point, because a cage strikes with several bars and rolls on within 10
+/// ms. For clipped samples, the median torque along the contact force is 1.4 %. The contact point of the previous
+/// sample leaves 66 % of the torque unexplained (tests/bench/rate_contact; docs/maths/rate_smoother.md).
 ///
 /// SensorErrors (scale, misalignment, g-sensitivity, accelerometer delay and window) are partly correlated with
 /// RigConstants (lever arm, biases, inertia). Repeated optimisations with corrected readings estimate the sensor

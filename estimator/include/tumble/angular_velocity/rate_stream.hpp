@@ -36,7 +36,7 @@ namespace tumble {
 /// sample left the window before the detection. With the calibration of an earlier run, the rate error of RateStream is
 /// 1.1 times the rate error of RateSmoother. With the calibration of an earlier run, 99 % of the rate errors are within
 /// three standard deviations. With a calibration that is estimated during the tumble itself, the rate error is 1.6
-/// times that of RateSmoother, or 1.2 times with 0.5 s of lag. All factors of the rate error are from
+/// times that of RateSmoother, or 1.2 times with 0.5 s of lag. The measured error ratios are in
 /// docs/maths/rate_stream.md. The errors of the samples of one flight are correlated. RateStream therefore increases
 /// the covariance of calibration and rates until enough flight samples are processed (`rig_inflation`). The limitations
 /// of RateSmoother also apply to RateStream.

@@ -26,9 +26,9 @@ namespace tumble {
 ///
 /// The published method does not model a second clipped axis. Saave recovers the first clipped axis in the order x, y,
 /// z. Further clipped axes keep the variance of an unclipped reading. The published method does not model angular
-/// acceleration across the rotation axis, contact, clipped accelerometers, or bias. Close to |l| = 0, the estimate has
-/// a large error that Saave does not detect; only |l| = 0 is rejected. All recovered rates have the same assumed
-/// variance. Smoothed rates may be below the saturation level.
+/// acceleration across the rotation axis, contact, clipped accelerometers, or bias. If the IMU is close to the rotation
+/// axis (small |l|), the estimate has a large error that Saave does not detect; only |l| = 0 is rejected. All recovered
+/// rates have the same assumed variance. Smoothed rates may be below the saturation level.
 class Saave {
  public:
   struct Params {
@@ -48,7 +48,7 @@ class Saave {
     double variance_rejected_rad2_s2 = 1e6;
     /// Power spectral density of the white angular jerk [rad^2/s^5].
     double jerk_psd_rad2_s5 = 1e6;
-    /// A longer time between two samples is an error [s].
+    /// Longest allowed time between two samples [s].
     double gap_max_s = 1.0;
 
     /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).

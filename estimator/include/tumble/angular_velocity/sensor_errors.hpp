@@ -37,7 +37,7 @@ struct KnownSensorErrors {
 };
 
 /// Throws InvalidParams if an error is above 0.2 or the covariance is invalid. A covariance with a negative eigenvalue
-/// is invalid, because the filter would treat its direction as perfectly known.
+/// is invalid, because the filter would treat the direction of the eigenvector as perfectly known.
 void require_known(const KnownSensorErrors& learnt);
 
 /// SensorErrorSizes contains the prior standard deviations of sensor errors, for a device as in its data sheet and for

@@ -17,9 +17,9 @@
 
 namespace tumble {
 
-/// ClipSigns states for each sensing element of an IMU whether one sample is clipped. The value is -1 at the negative
-/// saturation level, 1 at the positive saturation level, and 0 if the element is unsaturated. The value kMissing marks
-/// a gyro reading that has overflowed and provides neither a measurement nor a lower bound.
+/// ClipSigns states for each sensing element of an IMU whether one sample is clipped. An element of ClipSigns is -1 at
+/// the negative saturation level, 1 at the positive saturation level, and 0 if unsaturated. The value kMissing marks a
+/// gyro reading that has overflowed and provides neither a measurement nor a lower bound.
 struct ClipSigns {
   static constexpr std::int8_t kMissing = 2;
   std::array<std::int8_t, 3> gyro{}, accel{};
@@ -46,11 +46,11 @@ struct ClippedElements {
 /// Hand-held motion is bounded: accelerations are short, and the velocity and displacement of the hand return to zero.
 /// The specific force is therefore the sum of gravity, the centripetal and tangential force at the lever arm, and a
 /// bounded remainder. The direction of gravity rotates in sensor axes, and the rotation of gravity determines the rate
-/// while the gyro is saturated. Nodes at equal time steps contain attitude, rate, angular acceleration, and the held
-/// point's acceleration, velocity and position. Biases and lever arm of the device are additional unknowns. A
-/// Gauss-Newton solver uses the arrow structure of the normal equations (ArrowSystem). The inverse of the normal
-/// equations gives the covariances. Memory (about 7 kB per node) and computation grow in proportion to the duration,
-/// whatever the IMU's sample rate.
+/// while the gyro is saturated. Nodes at equal time steps contain attitude, rate and angular acceleration, and the
+/// motion of the held point (the point of the body at the hand). Biases and lever arm of the device are additional
+/// unknowns. A Gauss-Newton solver uses the arrow structure of the normal equations (ArrowSystem). The inverse of the
+/// normal equations gives the covariances. Memory (about 7 kB per node) and computation grow in proportion to the
+/// duration, whatever the IMU's sample rate.
 ///
 /// CarriedSmoother does not model flight of a thrown body (see `hand_mahalanobis`), contact forces beyond hand-held
 /// motion, drift of the biases, or heading.
@@ -64,9 +64,9 @@ class CarriedSmoother {
     int iterations = 0;
     bool converged = false;
     double cost = 0.0;
-    /// Largest mean acceleration of the held point over a quarter of a second, divided by the assumed standard
-    /// deviation. The ratio exceeds 2 if the body was thrown (specific force about 0) or handled roughly. The value
-    /// hand_mahalanobis is a diagnostic and does not influence the estimate.
+    /// Largest mean acceleration of the held point (at the hand) over a quarter of a second, divided by the assumed
+    /// standard deviation. The value of hand_mahalanobis exceeds 2 if the body was thrown (specific force about 0) or
+    /// handled roughly. The value hand_mahalanobis is a diagnostic and does not influence the estimate.
     double hand_mahalanobis = 0.0;
     /// Number of clipped segments whose number of full revolutions is ambiguous. The counter revolutions_asked counts
     /// clipped segments that are long and uncertain enough for a test of another number of revolutions. The counter

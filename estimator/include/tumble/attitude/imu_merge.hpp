@@ -79,9 +79,9 @@ struct ImuMergeParams {
 ///
 /// A unit whose reading is not finite is treated as absent. A unit is frozen if its gyro or accelerometer repeats one
 /// reading while the readings of other units change. A unit is also frozen if its accelerometer repeats one reading
-/// while the direction of gravity rotates. A frozen unit is excluded until its readings have changed for `Expert`'s
-/// minimum time. A unit that disagrees for long (scale, axes, unit of measurement) is excluded permanently, as long as
-/// two other units remain. Repeated readings of a body at rest do not count as freezing or disagreement.
+/// while the direction of gravity rotates. A frozen unit is excluded until its readings have changed for
+/// `thawed_after_s`. A unit that disagrees for long (scale, axes, unit of measurement) is excluded permanently, as long
+/// as two other units remain. Repeated readings of a body at rest do not count as freezing or disagreement.
 ///
 /// ImuMerge does not model clocks of different rates, or an error that all units share.
 class ImuMerge {

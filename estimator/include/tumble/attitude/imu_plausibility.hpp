@@ -115,10 +115,10 @@ class ImuPlausibility {
   double rotation_slope(const State& state) const;
   /// Returns the correlation of the gyro's rotation with the force's rotation, from -1 to 1. The correlation is 1 for a
   /// gyro of any scale, -1 for an inverted gyro, and about 0 for swapped axes. Pushes that are mistaken for gravity
-  /// reduce the correlation to a value between 0 and 1. Returns 1 while the rotation is too small.
+  /// reduce the correlation to a value between 0 and 1. Returns a correlation of 1 while the rotation is too small.
   double rotation_agreement(const State& state) const;
-  /// Returns the force's rotation as a fraction of the gyro's rotation, or 1 while unknown. The sums include windows in
-  /// which the force did not rotate.
+  /// Returns the force's rotation as a fraction of the gyro's rotation, or 1 while unknown. The fraction includes
+  /// windows in which the force did not rotate.
   double force_rotated_share(const State& state) const;
   /// Returns the axis labels for which the rotation of gravity fits the gyro clearly better than for the current labels
   /// (I22).

@@ -12,9 +12,9 @@
 
 namespace tumble {
 
-/// RegimeShares contains the probabilities of one sample's kind of motion (regime). The kinds are free flight (zero
-/// specific force at the centre of mass), contact (any force), and hand-held (bounded acceleration about gravity). The
-/// three probabilities of RegimeShares sum to 1.
+/// RegimeShares contains the probabilities of one sample's kind of motion (regime). The kinds of motion are free flight
+/// (zero specific force at the centre of mass), contact (any force), and hand-held (bounded acceleration about
+/// gravity). The three probabilities of RegimeShares sum to 1.
 struct RegimeShares {
   double flight = 0.0, contact = 0.0, carried = 0.0;
 };
@@ -26,7 +26,7 @@ struct RegimeShares {
 /// is zero in flight. In hand-held motion, e is gravity plus the acceleration of a hand, in any direction. In contact,
 /// the residual force e can have any magnitude; the logarithm of the magnitude has a flat density. A Markov chain
 /// connects the samples: flight and contact alternate several times per second, but a body is rarely thrown or caught.
-/// The Markov chain prevents that an impact or a quiet moment of rolling is mistaken for hand-held motion. Readings
+/// The Markov chain prevents an impact or a quiet moment of rolling from being mistaken for hand-held motion. Readings
 /// within `memory_s` are correlated and count as one reading. Readings without rotation do not change the
 /// probabilities.
 ///

@@ -75,9 +75,9 @@ struct VqfParams {
 ///
 /// Vqf integrates the gyro, which rotates the specific force into a nearly inertial frame N. A low-pass in frame N
 /// averages out the acceleration of a bounded motion. The averaged force levels frame N in the world W by the smallest
-/// rotation. A Kalman filter of three states estimates the bias of the gyro. Its measurement is the low-passed gyro at
-/// rest, and the rate of the levelling in motion. Vqf does not model a heading reference, bias about the vertical in
-/// motion, or adaptation to the magnitude of the acceleration.
+/// rotation. A Kalman filter of three states estimates the bias of the gyro. The bias filter measures the bias by the
+/// low-passed gyro at rest, and by the rate of the levelling in motion. Vqf does not model a heading reference, bias
+/// about the vertical in motion, or adaptation to the magnitude of the acceleration.
 class Vqf {
  public:
   using Params = VqfParams;

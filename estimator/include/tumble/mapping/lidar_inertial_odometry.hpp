@@ -31,9 +31,9 @@ class StateLayout;
 /// The world has its z axis up, levelled by the specific force at rest. The earliest sweep with `matches_min` points
 /// starts the map. Origin and yaw of the world are those of the IMU at its first sample, if the map starts within half
 /// a second. If the map starts later than half a second after the first sample, origin and yaw are those of the IMU at
-/// the map's first sweep. Dead reckoning from the first IMU sample then gives the velocity and the tilt. Pass IMU
-/// samples in time order, and pass each sweep when the IMU samples reach the end of the sweep. LidarInertialOdometry
-/// starts no threads, uses no files and prints nothing.
+/// the map's first sweep. If the map starts later, dead reckoning from the first IMU sample gives the velocity and the
+/// tilt. Pass IMU samples in time order, and pass each sweep when the IMU samples reach the end of the sweep.
+/// LidarInertialOdometry starts no threads, uses no files and prints nothing.
 ///
 /// The lidar's mounting, its time offset and gravity are estimated if their standard deviations are not 0. All unknowns
 /// form one state with one covariance. LidarInertialOdometry is an iterated error-state filter over sweeps. A fixed-lag
@@ -76,25 +76,26 @@ class LidarInertialOdometry {
   /// covariances (check_reading). A new reading replaces an earlier reading and the velocity of add_velocity(). A
   /// reading that does not cover the next sweep has no effect.
   Status add_reading(const OdometerReading& reading);
-  /// Excludes the accelerometer from the prediction of the next sweep. The velocity is then predicted as in a gap; the
-  /// gyro is still used. A call of exclude_force() replaces earlier odometer readings for the next sweep.
+  /// Excludes the accelerometer from the prediction of the next sweep. Without the accelerometer, the velocity is
+  /// predicted as in a gap; the gyro is still used. A call of exclude_force() replaces earlier odometer readings for
+  /// the next sweep.
   void exclude_force();
 
-  /// Registers a sweep of points fired in [start_ns, end_ns]. Sweeps must not overlap. Returns with NaN coordinates are
+  /// Registers a sweep of points fired in [start_ns, end_ns]. Sweeps must not overlap. Points with NaN coordinates are
   /// misses.
   ///
   /// Three errors of add_sweep() leave the state unchanged. `time_order` means that the end is before the start, or
   /// that the start is before the end of the last sweep. `too_few` means that the IMU samples do not cover the sweep.
   /// `out_of_range` means that the firing time of a point is beyond the sweep. If the points are unusable, the pose is
-  /// the inertial prediction and the verdict is `rejected`. The status is then `empty` (no points), `non_finite` (no
-  /// finite point), `too_few` (no point in range) or `degenerate` (all points have one time stamp). Before the map
+  /// the inertial prediction and the verdict is `rejected`. For unusable points, the status is `empty` (no points),
+  /// `non_finite` (no finite point), `too_few` (no point in range) or `degenerate` (one time stamp). Before the map
   /// starts, a sweep with unusable points or too few points has no pose, and `report.trajectory` is empty.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points, SweepReport& report);
 
   /// Predicts pose and velocity with covariance at the last of `samples`, by inertial integration from the end of the
   /// last sweep. The function does not add the samples to the state. If no sample is later than the last sweep,
   /// predict() returns the pose at the end of the last sweep. A caller needs predict() before a sweep or its rates are
-  /// available. Errors are those of add_imu(), and `empty` before the first sweep. Cost: O(samples since the last
+  /// available. Returns the errors of add_imu(), or `empty` before the first sweep. Cost: O(samples since the last
   /// sweep).
   Status predict(std::span<const ImuSample> samples, std::span<const RateState> rates, PoseState& pose) const;
 
@@ -124,9 +125,9 @@ class LidarInertialOdometry {
   std::vector<MapPoint> map() const;
 
   /// Save or load the complete state, except `parallel_for`. The caller must ensure that the loading object has the
-  /// parameters of the saving object. The loading object then continues with bit-identical results. The saved state
-  /// contains mounting, time offset and their standard deviations, because an earlier run may have estimated the
-  /// calibration. If loading fails, the StateReader reports an error and the loading object is unchanged.
+  /// parameters of the saving object. A loading object with equal parameters continues with bit-identical results. The
+  /// saved state contains mounting, time offset and their standard deviations, because an earlier run may have
+  /// estimated the calibration. If loading fails, the StateReader reports an error and the loading object is unchanged.
   void save(StateWriter& out) const;
   void load(StateReader& in);
   void describe(StateLayout& out) const;

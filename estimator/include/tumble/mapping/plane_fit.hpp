@@ -17,8 +17,8 @@ struct PlaneFit {
   Eigen::Vector3f normal_W = Eigen::Vector3f::Zero();  ///< unit length, arbitrary sign
   Eigen::Vector3f centre_W_m = Eigen::Vector3f::Zero();
   float thickness2_m2 = 0.0f;  ///< smallest eigenvalue of the neighbours' covariance
-  /// Standard deviation of the normal's error along the two axes of the plane, as columns. The standard deviation is
-  /// that of a linear regression whose residuals equal the thickness of the plane.
+  /// Standard deviation of the normal's error along the two axes of the plane, as columns. The standard deviation of
+  /// the normal is that of a linear regression whose residuals equal the thickness of the plane.
   Eigen::Matrix<float, 3, 2> tilt_W = Eigen::Matrix<float, 3, 2>::Zero();
 };
 

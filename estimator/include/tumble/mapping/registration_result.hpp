@@ -23,8 +23,8 @@ struct RegistrationResult {
   SweepUnknowns::Estimate mean;
   SweepUnknowns::Matrix covariance = SweepUnknowns::Matrix::Zero();  ///< covariance of all unknowns
   /// Covariance of the gradient of the surfaces' cost by the unknowns, measured from the residuals. Points within
-  /// RegistrationExpertParams::cluster_m share the map's errors, and points farther apart are independent
-  /// (cluster-robust covariance, Liang and Zeger, 1986). If all points were independent, the covariance would equal
+  /// RegistrationExpertParams::cluster_m share the map's errors; points farther apart are independent (cluster-robust
+  /// covariance, Liang and Zeger, 1986). If all points were independent, the covariance would equal
   /// correlation_discount times the points' contribution to the normal matrix.
   SweepUnknowns::Matrix score_covariance = SweepUnknowns::Matrix::Zero();
   /// Part of the normal matrix that is caused by noise, for all free unknowns. Normals are fitted to few points, and

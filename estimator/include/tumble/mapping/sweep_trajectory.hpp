@@ -51,16 +51,18 @@ struct MotionState {
 /// The attitude is R(t) = R_k Exp(w_k (t - t_k)) with the rate w_k of sample k. The formula is exact if the rate is
 /// constant in body axes over each sample. The position is p(t) = p_0 + v_0 t + g t^2 / 2 + S(t). Here p_0 and v_0 are
 /// position and velocity at the start, g is gravity, and S is the double integral of the specific force. The mean force
-/// over a sample of length dt is R_k J_l(w_k dt) f_k, with the measured force f_k and the left Jacobian J_l. The mean
-/// force is exact if the force is constant in body axes, for example the centripetal force of a spin.
+/// over a sample of length dt is R_k J_l(w_k dt) f_k, with attitude R_k, rate w_k, measured force f_k and left Jacobian
+/// J_l. The mean force is exact if the force is constant in body axes, for example the centripetal force of a spin.
 ///
 /// The saturation deficit e is the part of the rate that saturation hides, and corrects the clipped axes. The
 /// saturation deficit is linear in time between kKnots knots, at equal steps from the start to the end of the segment.
-/// If axis j is clipped, the corrected rate is w_j + s_j e_j(t). The factor s_j has the sign of w_j. The magnitude of
-/// s_j is sigma_j / (largest sigma_j of the segment's clipped samples), with the rate's standard deviation sigma_j. A
-/// rate with a small standard deviation is therefore corrected only a little by the saturation deficit. The magnitude
-/// of s_j is 1 if all sigma_j are 0. Within a sample, the saturation deficit is constant and has the value at the
-/// middle of the sample. SweepTrajectory does not model sculling within a sample or the earth's rotation.
+/// If axis j is clipped, the corrected rate is w_j + s_j e_j(t), with the measured rate w_j, a factor s_j and the
+/// saturation deficit e_j. The factor s_j of the saturation deficit has the sign of the rate w_j. The magnitude of the
+/// factor s_j is the rate's standard deviation sigma_j, divided by the largest sigma_j of the segment's clipped
+/// samples. A rate with a small standard deviation is therefore corrected only a little by the saturation deficit. The
+/// magnitude of the factor s_j is 1 if all standard deviations sigma_j are 0. Within a sample, the saturation deficit
+/// is constant and has the value at the middle of the sample. SweepTrajectory does not model sculling within a sample
+/// or the earth's rotation.
 class SweepTrajectory {
  public:
   static constexpr int kKnots = 3;

@@ -29,11 +29,11 @@ namespace tumble {
 /// The world has z up, its origin at the sphere's centre at the first sample, and yaw 0 at the first sample. The sphere
 /// should be at rest for one second at the start.
 ///
-/// The state takes half a megabyte, plus 0.1 MB per IMU and 11 KiB per 0.02 s of lag. Poses are computed in blocks of
-/// RollingSmoother::Params::block_s. After start-up, a sample inside a block allocates no memory, except for poses that
-/// take() has not yet returned. A call needs at most 64 KiB of stack. RollingOdometry uses no threads and no files and
-/// prints nothing. A copy of a RollingOdometry contains the complete state. The limitations of ImuMerge, RollingFilter
-/// and RollingSmoother apply to RollingOdometry.
+/// The state of RollingOdometry takes half a megabyte, plus 0.1 MB per IMU and 11 KiB per 0.02 s of lag. Poses are
+/// computed in blocks of RollingSmoother::Params::block_s. After start-up, a sample inside a block allocates no memory,
+/// except for poses that take() has not yet returned. A call needs at most 64 KiB of stack. RollingOdometry uses no
+/// threads and no files and prints nothing. A copy of a RollingOdometry contains the complete state. The limitations of
+/// ImuMerge, RollingFilter and RollingSmoother apply to RollingOdometry.
 class RollingOdometry {
  public:
   /// Unit is one IMU inside the sphere.

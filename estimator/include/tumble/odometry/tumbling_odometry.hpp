@@ -92,13 +92,11 @@ class TumblingOdometry {
   /// since the last sweep).
   Status newest(PoseState& pose) const;
   /// Reports whether inputs and pose are currently plausible. Estimation continues after any finding of health().
-  /// Returns `ok`, or `out_of_range` with one finding.
-  /// The finding can be a frozen axis of the IMU, with the duration of the freeze.
-  /// The finding can be an accelerometer with inverted sign (FlightSense), or with a wrong unit after a second of rest
-  /// (RestGravity).
-  /// The finding can be a wrong scale of the lidar's ranges (SweepScale), or too large a change of the lidar's
-  /// calibration (StatedCalibration).
-  /// A tracking failure (Localisation) is reported until the end of the run.
+  /// Returns `ok`, or `out_of_range` with one finding. A finding of health() can be a frozen axis of the IMU, with the
+  /// duration of the freeze. A finding of health() can be an accelerometer with inverted sign (FlightSense), or with a
+  /// wrong unit after a second of rest (RestGravity). A finding of health() can be a wrong scale of the lidar's ranges
+  /// (SweepScale), or too large a change of the lidar's calibration (StatedCalibration). A tracking failure
+  /// (Localisation) is reported by health() until the end of the run.
   Status health() const;
   /// Returns the estimated scale of the lidar's ranges relative to the IMU, as far as the motion determines the scale.
   const SweepScale& sweep_scale() const { return pass_.sweep_scale(); }

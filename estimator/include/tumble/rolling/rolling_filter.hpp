@@ -46,7 +46,7 @@ class RollingFilter {
   using Vector = Eigen::Matrix<double, kStates, 1>;
   using Covariance = Eigen::Matrix<double, kStates, kStates>;
 
-  /// Hypothesis is one assumption about the sequence of contact modes, with the estimate under this assumption.
+  /// Hypothesis is one possible sequence of contact modes, with the estimate for this sequence.
   struct Hypothesis {
     Vector x = Vector::Zero();  ///< errors: attitude (W), velocity and position of the IMU, constants
     Covariance P = Covariance::Zero();
