@@ -34,7 +34,7 @@ struct KnownRails {
 /// ElementReading describes what information the reading of one sensing element provides.
 enum class ElementReading : std::uint8_t {
   measured,
-  clipped_high,  ///< lower bound: the true value along the element's row is at this level or beyond
+  clipped_high,  ///< lower bound: the true component is at or beyond the saturation level
   clipped_low,
   unreadable  ///< no information
 };

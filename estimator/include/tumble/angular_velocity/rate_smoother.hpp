@@ -25,7 +25,7 @@ namespace tumble {
 struct RateSmootherParams {
   RateModelParams model = {};
   RailDetector::Params rails = {};
-  double recovered_sigma_rad_s = 0.5;  ///< a clipped axis with a smaller standard deviation is recovered
+  double recovered_sigma_rad_s = 0.5;  ///< clipped rates below this standard deviation count as recovered
   /// Largest accepted distance of the calibration constants from their prior (RateReport::calibration_mahalanobis). If
   /// the distance exceeds the limit, the run is estimated again with the calibration constants fixed at the prior.
   double calibration_mahalanobis_max = 1.5;

@@ -12,7 +12,7 @@ namespace tumble {
 enum class RateSource : std::uint8_t {
   measured,           ///< no gyro axis is clipped or suspect
   recovered_flight,   ///< clipped; recovered from the centripetal specific force in free flight
-  recovered_contact,  ///< clipped; recovered during contact
+  recovered_contact,  ///< clipped; recovered from the force during contact
   bounded_only,       ///< clipped or suspect; only a lower bound and smoothness of motion are known
 };
 

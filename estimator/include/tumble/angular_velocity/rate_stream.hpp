@@ -141,7 +141,7 @@ class RateStream {
   std::size_t capacity_;
   std::size_t samples_per_step_;  ///< number of samples between steps
   double prior_delay_s_;          ///< prior delay of the accelerometer
-  bool delay_open_;               ///< whether a delay other than the prior one is possible
+  bool delay_open_;               ///< whether the delay may differ from the prior delay
 };
 
 }  // namespace tumble

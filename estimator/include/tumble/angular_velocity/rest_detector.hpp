@@ -25,8 +25,8 @@ class RestDetector {
   struct Params {
     double rate_max_rad_s = 0.05;     ///< maximum of the run's mean rate minus the bias, each axis
     double rate_spread_rad_s = 0.03;  ///< maximum distance of a reading from the mean of the run, per axis
-    double force_min_m_s2 = 5.0;      ///< excludes flight
-    double force_max_m_s2 = 1e3;      ///< excludes impacts
+    double force_min_m_s2 = 5.0;      ///< minimum force at rest, which excludes flight
+    double force_max_m_s2 = 1e3;      ///< maximum force at rest, which excludes impacts
     double force_spread_m_s2 = 0.15;  ///< maximum distance of a reading from the mean of the run, per axis
     double rest_s = 0.4;              ///< minimum duration of a rest
     double reading_s = 0.01;          ///< averaging time of a reading; 0: each sample

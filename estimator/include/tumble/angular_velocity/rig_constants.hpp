@@ -16,8 +16,8 @@ struct RigConstants {
   using Matrix = Eigen::Matrix<double, kSize, kSize>;
 
   Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();      ///< vector t from the centre of mass to the IMU, IMU axes
-  Eigen::Vector3d gyro_bias_rad_s = Eigen::Vector3d::Zero();  ///< reading minus truth
-  Eigen::Vector3d accel_bias_m_s2 = Eigen::Vector3d::Zero();  ///< reading minus truth
+  Eigen::Vector3d gyro_bias_rad_s = Eigen::Vector3d::Zero();  ///< bias: reading minus true value
+  Eigen::Vector3d accel_bias_m_s2 = Eigen::Vector3d::Zero();  ///< bias: reading minus true value
   /// Shape of the inertia about the centre of mass in IMU axes, without scale: J = 1 + sum_i inertia_i S_i. The
   /// matrices S_i are an orthonormal basis of the traceless symmetric matrices. Zero means that all principal moments
   /// of inertia are equal.

@@ -54,7 +54,7 @@ class CarriedStream {
   struct Reading {
     ImuSample sample;
     ClipSigns signs;
-    double centre_s = 0.0, end_s = 0.0;  ///< start and end of the sample's window, from the first sample's centre
+    double centre_s = 0.0, end_s = 0.0;  ///< centre and end of the sample's window, from the first sample's centre
     std::int64_t node = 0;               ///< node closest to the centre
     bool rest = false;
     RepeatedReading gyro, accel;        ///< state of repeated readings

@@ -71,7 +71,7 @@ struct OdometryParams {
   double range_min_m = 0.3;        ///< minimum range of a usable return
   double range_max_m = 100.0;      ///< maximum range of a usable return
   Eigen::AlignedBox3d own_body_L;  ///< returns inside hit the robot; an empty box, the default, keeps all returns
-  double sweep_voxel_m = 0.25;     ///< registration uses one point of the sweep per voxel of this edge
+  double sweep_voxel_m = 0.25;     ///< edge of the voxels; one point per voxel is registered
   /// Threads that the registration may use, if any. The results do not depend on the number of threads.
   ParallelFor parallel_for;
 

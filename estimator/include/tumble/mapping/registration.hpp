@@ -108,7 +108,7 @@ class Registration {
   std::vector<SweepPoint> moved_;
   std::vector<Match> matches_;
   std::vector<float> distances_, sorted_;
-  std::vector<Sums> parts_;  // per block of points
+  std::vector<Sums> parts_;  // one per block of points
   SpatialHash cluster_of_{1 << 10};
   std::vector<Vector> pulls_;  // gradients of the clusters
 };

@@ -20,7 +20,7 @@ struct RegistrationExpertParams {
   /// Factor on the weight of each point's information. The factor is below 1 because neighbouring returns share the
   /// map's errors and are therefore correlated.
   double correlation_discount = 0.1;
-  double cluster_m = 1.0;          ///< points within one cube of this edge are correlated
+  double cluster_m = 1.0;          ///< edge of a cube whose points have correlated errors
   double matched_share_min = 0.1;  ///< minimum number of matches as a fraction of the points
   /// A registration with fewer matches than matches_min and matched_share_min is accepted if it agrees with the prior
   /// and has at least agreeing_min matches. The default of agreeing_min is so large that the exception for agreeing

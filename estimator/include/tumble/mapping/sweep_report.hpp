@@ -40,7 +40,7 @@ struct SweepReport {
   /// have the stated accuracy. An innovation of zero means that the sweep was not aligned.
   double innovation = 0.0;
   int iterations = 0;
-  int lost_sweeps = 0;  ///< consecutive rejected sweeps up to this one, inclusive
+  int lost_sweeps = 0;  ///< consecutive rejected sweeps, including the current sweep
   /// True if the sweep relocalised after tracking failure, at a pose that inertial prediction did not expect, without
   /// confirmation so far. Two further sweeps must confirm the pose. A further sweep that contradicts the relocalisation
   /// reverts the relocalisation.

@@ -145,9 +145,9 @@ class SweepTrajectory {
     Eigen::Quaterniond q_WI;
     Eigen::Vector3d w_I, a_W;                          // rate in body axes; mean specific force in W
     Eigen::Vector3d preintegrated_v, preintegrated_p;  // integrals of the specific force up to start_s
-    Eigen::Vector3d deficit_share;                     // s_j where axis j is clipped, 0 elsewhere
+    Eigen::Vector3d deficit_share;                     // factor s_j where axis j is clipped, 0 elsewhere
     Eigen::Matrix<double, kKnots, 1> knot_weight =
-        Eigen::Matrix<double, kKnots, 1>::Zero();                 // of each knot's deficit in this interval
+        Eigen::Matrix<double, kKnots, 1>::Zero();                 // weight of each knot's deficit in the interval
     ByDeficit deficit_attitude, deficit_v, deficit_p, deficit_a;  // derivatives at start_s
   };
   const Interval& interval_at(double t_s, std::size_t& hint) const;

@@ -141,12 +141,12 @@ class VoxelMap {
 
   Params params_;
   float cells_per_m_ = 0.0f;
-  float cubes_per_m_ = 0.0f;  // for cubes of the spacing; for cells if all points are kept
+  float cubes_per_m_ = 0.0f;  // cubes per metre, or cells per metre if all points are kept
   SpatialHash groups_of_;
   SpatialHash taken_;
   std::vector<Group> groups_;
   std::vector<Chunk> chunks_;
-  std::vector<float> sigma_m_;  // per slot of the chunks; negative: free
+  std::vector<float> sigma_m_;  // one per slot of the chunks; negative: free slot
   std::vector<std::uint32_t> sweep_, line_;
   std::vector<std::uint8_t> seen_through_;
   std::size_t vacant_ = 0;

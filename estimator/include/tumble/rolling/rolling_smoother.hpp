@@ -97,7 +97,7 @@ class RollingSmoother {
     std::vector<ImuSample> samples;  ///< samples after the committed node
     std::vector<Step> steps;
     RollingNominal constants;     ///< constants at the newest smoothed node
-    double radius_sigma_m = 0.0;  ///< standard deviation of the radius at that node
+    double radius_sigma_m = 0.0;  ///< standard deviation of the radius at the newest smoothed node
     bool operator==(const State& other) const;
   };
 
