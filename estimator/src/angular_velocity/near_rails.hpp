@@ -10,14 +10,15 @@
 
 namespace tumble {
 
-/// Finds readings that may have been saturated for a part of their window. Bit j of a sample is set if the reading of
-/// sensing element j of the gyro is unsaturated, but not certainly a full measurement. A reading is suspect if it is
-/// below the saturation level by less than its larger step to its neighbours. Within 3 % of the saturation level, the
-/// largest step within two readings counts: rails.md (R76). Sides without an observed saturation level are excluded, so
-/// nothing is returned without clipping. Repeated readings count once. O(N).
+/// Finds readings that may have been saturated for a part of their window. Cost: O(N). Bit j of a sample is set if the
+/// reading of the gyro's sensing element j is unsaturated, but not certainly a full measurement. A reading is suspect
+/// if its distance below the saturation level is smaller than its larger step to a neighbour. Within 3 % of the
+/// saturation level, the largest step within two readings replaces the step to a neighbour, see rails.md (R76). Sides
+/// without an observed saturation level are excluded, so that all bits are zero without clipping. Repeated readings
+/// count once.
 std::vector<std::uint8_t> may_meet_rails(std::span<const ImuSample> samples, const RailPlanes& planes);
 
-/// Checks one reading of a stream, from the steps to its neighbours (null at the ends). O(1).
+/// Checks one reading of a stream, from the steps to its neighbours (null at the ends). Cost: O(1).
 std::uint8_t may_meet_rails(const ImuSample* before, const ImuSample& now, const ImuSample* after,
                             const RailPlanes& planes);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Readings that may be at a saturation level with too few samples for detection.
+// possible_saturation.hpp finds readings at a saturation level that has too few samples for detection.
 #pragma once
 
 #include <span>
@@ -10,16 +10,18 @@
 
 namespace tumble {
 
-/// Marks readings of an element without a known saturation level that are near the levels of other elements. Too few
-/// saturated samples reveal no plane. The possible saturation deficit of a marked reading is its step to the
-/// neighbours. Readings refuted by `least` are excluded. Resets RateObservation::lone.
+/// Marks readings of a sensing element without a known saturation level if the readings are near the levels of other
+/// elements. Marking is needed because few saturated samples do not reveal a saturation plane. The possible saturation
+/// deficit of a marked reading is its step to the neighbours. Readings that `least` excludes as saturation levels are
+/// not marked. The function resets RateObservation::lone.
 void inflate_possible_saturation(const RailPlanes& planes, const LeastRails& least, double noise_rad_s,
                                  const ImuSample* before, RateObservation& now, const ImuSample* after);
 
-/// Marks whole segments near a maximum, which may hide a peak between the slopes before and after. `offset_share` is
-/// the difference between elements as a fraction of the saturation level (RailPlaneFinder::Params). The function has no
-/// effect for a device that flags clipping, without a known saturation level, or if the sensing element has read far
-/// higher values. Sets RateObservation::suspect. O(N).
+/// Marks whole segments of readings near a maximum, which may hide a peak between the slopes before and after the
+/// segment. Cost: O(N). `offset_share` is the difference between sensing elements as a fraction of the saturation level
+/// (RailPlaneFinder::Params). The function has no effect if the device flags clipping or no saturation level is known.
+/// The function also has no effect if the sensing element has read far higher values. The function sets
+/// RateObservation::suspect.
 void inflate_motion_plateaus(const RailPlanes& planes, const LeastRails& least, double offset_share, double noise_rad_s,
                              std::span<RateObservation> observations);
 

@@ -7,10 +7,11 @@
 
 namespace tumble {
 
-/// The readings of a gyro without repetitions (sample and hold), and properties of the gyro derived from them.
+/// DistinctReadings contains the readings of a gyro without repetitions (sample and hold), and properties of the gyro
+/// derived from the readings.
 struct DistinctReadings {
   std::vector<Eigen::Vector3d>& rates;
-  Eigen::Vector3d noise = Eigen::Vector3d::Zero();  ///< of a reading, from the slowest motion [rad/s]
+  Eigen::Vector3d noise = Eigen::Vector3d::Zero();  ///< noise of a reading, from the slowest motion [rad/s]
   Eigen::Vector3d digit = Eigen::Vector3d::Zero();  ///< smallest change between two readings [rad/s]
   Eigen::Vector3d peak = Eigen::Vector3d::Zero();   ///< largest magnitude of each axis [rad/s]
 };
@@ -19,18 +20,18 @@ struct DistinctReadings {
 DistinctReadings distinct_readings(std::span<const Eigen::Vector3d> readings, std::vector<Eigen::Vector3d>& rates,
                                    std::vector<double>& noises);
 
-/// A plane that limits the readings, sign * row . y = level, and the readings in the slab at the plane.
+/// RailFacet is a plane that limits the readings, sign * row . y = level, with the readings in the slab at the plane.
 struct RailFacet {
   int axis = 0, sign = 1;
   Eigen::Vector3d row = Eigen::Vector3d::Zero();
   double level = 0.0;
   double deviation = 0.0, tolerance = 0.0;
-  int segments = 0;  ///< runs of inliers that no rounded maximum explains
+  int segments = 0;  ///< number of runs of inliers that no rounded maximum explains
 };
 
 /// Returns the log likelihood ratio of the facet's samples: saturation against maxima of a motion or constant rates.
-/// Counts the segments of `facet`. `slope_information` is the prior information of the cross-axis sensitivities.
-/// `inliers` contains ascending indices of the facet's readings in DistinctReadings::rates.
+/// The function counts the segments of `facet`. `slope_information` is the prior information of the cross-axis
+/// sensitivities. `inliers` contains ascending indices of the facet's readings in DistinctReadings::rates.
 double segment_evidence(const DistinctReadings& readings, const Eigen::Matrix2d& slope_information,
                         std::span<const std::size_t> inliers, RailFacet& facet);
 

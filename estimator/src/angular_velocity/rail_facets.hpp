@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Search for the facet of one sign of one sensing element: the plane at which the element's readings are saturated.
+// rail_facets.hpp searches, for one sign of one sensing element, the plane (facet) at which the element's readings are
+// saturated.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,7 +12,7 @@
 
 namespace tumble::rails {
 
-/// Condition for readings of a facet: along `row` not below `from`, and close to the extreme for cross-axis
+/// Gate is the condition for readings of a facet: not below `from` along `row`, and close to the extreme for cross-axis
 /// sensitivities up to `steepest`.
 struct Gate {
   Eigen::Vector3d row = Eigen::Vector3d::Zero();
@@ -41,26 +42,27 @@ inline double highest_value(const Eigen::Vector3d& y, int axis, int sign, double
   return sign * y[axis] + steepest * others(y, axis).lpNorm<1>();
 }
 
-/// One sign of an axis: its samples close to the extreme, and the slab for the search.
+/// Extreme describes one sign of an axis: its samples close to the extreme, and the slab for the search.
 struct Extreme {
   int axis = 0, sign = 1;
   double slab = 0.0;
   double steepest = 0.0, near_from = 0.0;
 };
 
-/// Returns nothing if the readings of the axis are too small for saturation. Stores the samples close to the extreme in
-/// the workspace. O(N).
+/// Finds the readings close to the extreme, and stores their indices in the workspace. Cost: O(N). Returns nothing if
+/// the readings of the axis are too small for saturation.
 std::optional<Extreme> find_extreme(const RailPlaneFinder::Params& params, const DistinctReadings& readings, int axis,
                                     int sign, const FacetPrior& prior, double slope_range,
                                     RailPlaneFinder::Workspace& workspace);
 
 /// Returns the cross-axis sensitivities, on a grid about the prior, whose slab contains the most samples of
-/// find_extreme(). A penalty for unlikely sensitivities is subtracted: rails.md (R57).
+/// find_extreme(). A penalty for unlikely cross-axis sensitivities is subtracted from the number of samples, see
+/// rails.md (R57).
 Eigen::Vector2d search_slopes(const DistinctReadings& readings, const Extreme& extreme, double slope_max,
                               const FacetPrior& prior, RailPlaneFinder::Workspace& workspace);
 
-/// Fits the facet from initial cross-axis sensitivities. The robust fit (rails.md (R58)) starts with `deviation`.
-/// Stores the facet's samples in the workspace.
+/// Fits the facet, starting from the cross-axis sensitivities `slopes`. The robust fit of rails.md (R58) starts with
+/// the standard deviation `deviation`. The function stores the facet's samples in the workspace.
 Side fit_facet(const DistinctReadings& readings, const Extreme& extreme, const FacetPrior& prior,
                const Eigen::Vector2d& slopes, double deviation, RailPlaneFinder::Workspace& workspace);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Gauss-Newton optimisation of RateSmoother over a recording.
+// RateIteration is the Gauss-Newton optimisation of RateSmoother over a recording.
 #pragma once
 
 #include <span>
@@ -15,12 +15,12 @@ class RateIteration {
   explicit RateIteration(std::span<const RateObservation> observations)
       : observations_(observations), blocks_(observations.size()) {}
 
-  /// Returns false if the system is not positive definite.
+  /// Returns false if the normal equations are not positive definite.
   bool factorise(const RateModel& model, std::span<const RateEstimate> estimates, const RigConstants& rig);
-  /// Adds the step, limited to step_max. Returns the largest change of a rate.
+  /// Adds the solution step, limited to step_max. Returns the largest change of a rate.
   double apply(const RateModel& model, double step_max, std::span<RateEstimate> estimates, RigConstants& rig) const;
 
-  /// Calls use(k, conditional) for the last factorisation, from the last sample to the first.
+  /// Calls use(k, conditional) for the last factorisation, from the last sample to the first sample.
   template <typename Use>
   void for_each_conditional(Use use) const {
     arrow::Conditional conditional;
@@ -30,9 +30,9 @@ class RateIteration {
     }
   }
 
-  /// Derivative of all unknowns by the sensor errors, and information of the readings about the errors after all
-  /// unknowns are optimised. The values refer to the last factorisation, with its `estimates` and `rig`, before
-  /// apply().
+  /// Moved contains the derivative of all unknowns by the sensor errors. Moved also contains the information of the
+  /// readings about the sensor errors, after all unknowns are optimised. The derivatives refer to the last
+  /// factorisation, with its `estimates` and `rig`, before apply().
   struct Moved {
     std::vector<arrow::ErrorMatrix> of_sample;
     arrow::BorderErrors of_rig;
@@ -42,7 +42,7 @@ class RateIteration {
 
   const RigConstants::Matrix& rig_covariance() const { return rig_covariance_; }
   /// Returns twice the predicted decrease of the cost, for the last factorisation. The result is also the square of the
-  /// largest change of any combination of unknowns in standard deviations.
+  /// largest change of any combination of unknowns, in standard deviations.
   double decrement() const;
 
  private:
@@ -61,9 +61,9 @@ struct RateSolution {
 };
 
 /// Runs the optimisation. If most clipped samples are classified as contact, solve() repeats the optimisation with
-/// larger and smaller contact thresholds. With a wrong lever arm, the first optimisation may end in a minimum without
-/// flight. Returns false if a system is not positive definite. Sets iterations, restarts, convergence and Mahalanobis
-/// distance in `health`.
+/// larger and smaller contact thresholds. The repetition is needed because with a wrong lever arm, the first
+/// optimisation may end in a minimum without flight. Returns false if the normal equations are not positive definite.
+/// The function sets iterations, restarts, convergence and Mahalanobis distance in `health`.
 bool solve(const RateSmoother::Params& params, const RateModel& model, std::span<const RateObservation> observations,
            RateSolution& solution, RateReport& health);
 

@@ -8,8 +8,8 @@
 
 namespace tumble {
 
-/// Computes initial values of RateSmoother's iteration: the published estimate (Saave), limited by the lower bounds of
-/// clipped readings, and smoothed. The samples must be checked.
+/// Computes the initial values of RateSmoother: the published estimate (Saave), limited by the lower bounds of clipped
+/// readings, and smoothed. The caller must have checked the samples.
 std::vector<RateEstimate> first_guess(std::span<const RateObservation> observations, const RateModelParams& model,
                                       const RateModel& derived, double gap_max_s);
 

@@ -114,7 +114,7 @@ void members(Self& s, Visitor& visit) {
 
 template <StateOf<RateModelParams> Self, class Visitor>
 void others(Self& p, Visitor& visit) {
-  visit.with_nan("nominal", p.nominal);  // NaN if the user of the class sets it
+  visit.with_nan("nominal", p.nominal);  // NaN until the caller sets the value
   visit("calibration", p.calibration);
   visit("auxiliary_imus", p.auxiliary_imus);
   visit("errors", p.errors);

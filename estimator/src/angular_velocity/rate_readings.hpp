@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Classification of a recording's samples for RateSmoother.
+// rate_readings.hpp classifies the samples of a recording for RateSmoother.
 #pragma once
 
 #include <optional>
@@ -13,16 +13,17 @@
 
 namespace tumble {
 
-/// A recording as input of the model, with the prior calibration including information from saturation planes.
+/// RateReadings is a recording as input of RateModel, with the prior calibration that includes information from
+/// saturation planes.
 struct RateReadings {
   std::vector<RateObservation> observations;  ///< one per sample
   RateModelParams known;
-  RailPlanes planes;  ///< of the gyro's elements, in use
+  RailPlanes planes;  ///< saturation planes of the gyro that are used
   std::optional<RepeatedReadings> gyro_repeated;
 };
 
-/// Classifies at least two samples with the detected saturation levels: clipped elements, partly saturated axes,
-/// suspect axes, rest, and repeated readings. Sets levels, units and repetitions in `health`. O(N).
+/// Classifies at least two samples: clipped elements, partly saturated axes, suspect axes, rest, and repeated readings.
+/// Cost: O(N). The function sets saturation levels, units and repetitions in `health`.
 RateReadings read_samples(const RateSmoother::Params& params, const ClippingFinder& rails,
                           const ClippingFinder::Found& found, const std::vector<bool>& rest,
                           std::span<const ImuSample> samples,

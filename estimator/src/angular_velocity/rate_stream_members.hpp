@@ -11,8 +11,8 @@
 
 #include "tumble/angular_velocity/rate_stream.hpp"
 
-/// Members of RateStream's state, and members of RateStream::Params that are not Fields, as state_visitor.hpp
-/// describes.
+/// rate_stream_members.hpp lists the members of RateStream's state, and members of RateStream::Params that are not
+/// Fields, as state_visitor.hpp describes.
 namespace tumble {
 
 template <StateOf<RateStreamForce> Self, class Visitor>

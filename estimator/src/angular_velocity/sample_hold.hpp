@@ -12,14 +12,15 @@
 
 namespace tumble {
 
-/// Readings of a triad that is slower than the log, so that some are repeated (sample and hold).
+/// RepeatedReadings describes the readings of a gyro or accelerometer that is slower than the log, so that the log
+/// repeats readings (sample and hold).
 struct RepeatedReadings {
   double period_s = 0.0;      ///< time between two readings
-  double agreement = 0.0;     ///< fraction of samples whose novelty or repetition a regular clock explains
-  std::vector<double> age_s;  ///< per sample: additional age of its reading
+  double agreement = 0.0;     ///< fraction of samples that a regular clock explains
+  std::vector<double> age_s;  ///< per sample: age of its reading in addition to window_lag_s
   std::vector<bool> repeats;  ///< the reading equals the previous sample's
   /// Time from the middle of a reading's window to the middle of the sample's window, if both windows end together. A
-  /// gyro integrates over its period; an accelerometer integrates over an unknown part of its period.
+  /// gyro integrates over its period; an accelerometer integrates over an unknown part of its period. See
   /// docs/maths/carried.md (C11), (C12).
   double window_lag_s = 0.0;
 
@@ -28,18 +29,18 @@ struct RepeatedReadings {
   double behind_s(std::size_t sample) const { return age_s[sample] + window_lag_s; }
 };
 
-/// Detects repeated readings. Returns nothing if less than a twentieth of the moving samples (faster than 0.3 rad/s, at
-/// least 30) repeat all three numbers. Period and phase belong to the regular clock that best explains the repetitions.
-/// Ages and window lag follow from the clock, or are zero if no clock explains the repetitions (agreement below 0.9).
-/// O(N) for each of some 5000 clocks, on at most 1000 samples.
+/// Detects repeated readings in a recording. Cost: O(N) for each of about 5000 clocks, on at most 1000 samples. Returns
+/// nothing if less than a twentieth of the moving samples (faster than 0.3 rad/s, at least 30) repeat all three
+/// numbers. Period and phase are those of the regular clock that best explains the repetitions. Ages and window lag
+/// follow from the clock, or are zero if no clock explains the repetitions (agreement below 0.9).
 std::optional<RepeatedReadings> find_repeated(std::span<const ImuSample> samples, Triad triad);
 
-/// The nearest samples with a different reading, or null.
+/// Neighbours are the nearest samples with a different reading, or null.
 struct Neighbours {
   const ImuSample *before = nullptr, *after = nullptr;
 };
-/// Returns the neighbours of each sample. All samples of a run of equal readings (repetition, rest, saturation) have
-/// equal neighbours. O(N).
+/// Returns the neighbours of each sample. Cost: O(N). All samples of a run of equal readings (repetition, rest,
+/// saturation) have equal neighbours.
 std::vector<Neighbours> other_readings(std::span<const ImuSample> samples, Triad triad);
 
 }  // namespace tumble

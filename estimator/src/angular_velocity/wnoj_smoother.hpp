@@ -11,20 +11,20 @@
 
 namespace tumble {
 
-/// Smooths angular velocity with a white-noise-on-jerk prior, exact and linear in the number of samples.
+/// Smooths angular velocity with a white-noise-on-jerk prior, exactly and linearly in the number of samples.
 ///
-/// The state per knot is angle, rate and angular acceleration. The prior between knots is that of Tang, Yoon and
-/// Barfoot (RA-L 2019), with transition matrix Phi and noise Q of order three and density `jerk_psd`. Each knot
-/// measures the rate with a separate variance per axis. The angle is not measured, and its value at the first knot is
-/// fixed. Eliminating the angle from the last knot backwards is therefore exact. The prior of (rate, acceleration)
-/// remains, with Q = q [dt^3/3, dt^2/2; dt^2/2, dt]. Only rate and acceleration are computed. Orthogonal (square-root
-/// information) elimination and back-substitution give mean and variance of the rate at every knot, also for variances
-/// many orders of magnitude apart.
+/// The state of each sample (knot) is angle, rate and angular acceleration. The prior between knots is that of Tang,
+/// Yoon and Barfoot (RA-L 2019). It has a transition matrix Phi and noise Q of order three, with density `jerk_psd`.
+/// Each knot measures the rate with a separate variance per axis. The angle is not measured, and the angle of the first
+/// knot is fixed. Eliminating the angle from the last knot backwards is therefore exact. The remaining prior of (rate,
+/// acceleration) has the noise Q = q [dt^3/3, dt^2/2; dt^2/2, dt]. WnojSmoother computes only rate and angular
+/// acceleration. Orthogonal (square-root information) elimination and back-substitution give mean and variance of the
+/// rate at every knot. The variances of different knots may differ by many orders of magnitude.
 ///
 /// WnojSmoother does not model the coupling of the three axes. The commutators of SO(3) would add about dt^2 |w x
-/// alpha| / 4. The published code feeds +gyro although its convention requires -gyro. The sign of the gyro only acts
-/// through the commutators, since negating angle, rate and acceleration together does not change this linear problem.
-/// The sign therefore has no parameter here.
+/// alpha| / 4 to the angular acceleration. The published code uses +gyro although its convention requires -gyro. The
+/// sign of the gyro acts only through the commutators, because negating angle, rate and acceleration together does not
+/// change the linear problem. WnojSmoother therefore has no parameter for the sign of the gyro.
 class WnojSmoother {
  public:
   struct Params {
@@ -40,7 +40,7 @@ class WnojSmoother {
   struct Measurement {
     TimeNs time_ns;
     Eigen::Vector3d rate_rad_s;
-    Eigen::Vector3d variance_rad2_s2;  ///< per axis, > 0
+    Eigen::Vector3d variance_rad2_s2;  ///< variance of each axis, > 0
   };
   struct Smoothed {
     Eigen::Vector3d rate_rad_s;
@@ -51,9 +51,9 @@ class WnojSmoother {
   /// Throws InvalidParams if the density is out of bounds.
   explicit WnojSmoother(const Params& params);
 
-  /// Computes one result per measurement. On error `out` is unchanged: `empty`, `time_order` (time stamps must increase
-  /// strictly), `non_finite`, `out_of_range` (variances must be in [1e-18, 1e18]). A single measurement is returned
-  /// unchanged, with acceleration zero. O(N) in time and memory.
+  /// Computes one result per measurement. Cost: O(N) in time and memory. Returns `empty`, `time_order` (time stamps
+  /// must increase strictly), `non_finite`, or `out_of_range` (variances must be in [1e-18, 1e18]). On error `out` is
+  /// unchanged. A single measurement is returned unchanged, with acceleration zero.
   Status smooth(std::span<const Measurement> measurements, std::vector<Smoothed>& out) const;
 
  private:

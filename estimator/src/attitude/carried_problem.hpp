@@ -10,10 +10,10 @@
 
 namespace tumble::carried {
 
-/// Returns the weights of motion and reading factors; `jerk` multiplies the root density of the jerk.
+/// Returns the weights of motion factors; `jerk` multiplies the root density of the jerk.
 Motion::Params motion_params(const CarriedSmoother::Params& params, double jerk = 1.0);
 ReadingNoise reading_noise(const CarriedSmoother::Params& params, double period_s);
-/// Adds the factors of gyro, force, velocity and position limits, and rest of one node.
+/// Adds the factors of one node: gyro, force, limits of velocity and position, and rest.
 double add_node(const NodeReadings& readings, const Eigen::Matrix3d& rows, const ReadingNoise& noise,
                 const Eigen::Vector3d& g_W_m_s2, const Motion& motion, const Node& node, const Constants& constants,
                 System::Block& block, System::Corner& corner);
@@ -22,7 +22,8 @@ double add_constants_prior(const CarriedSmoother::Params& params, const Constant
 /// Returns the difference of two nodes, in the form that Node::move takes.
 System::StateVector moved(const Node& from, const Node& to);
 
-/// Information from all nodes on one side of a node: a quadratic about the node's current value.
+/// Message contains the information from all nodes on one side of a node, as a quadratic about the node's current
+/// value.
 struct Message {
   Node about;
   System::StateMatrix information = System::StateMatrix::Zero();
@@ -30,8 +31,8 @@ struct Message {
   double add(const Node& node, System::Block& block) const;
 };
 
-/// Nodes [first, last] of a problem, with the information from all other nodes about the ends of the part, for fixed
-/// constants.
+/// Part consists of the nodes [first, last] of a problem. A Part includes the information from all other nodes about
+/// the ends of the part, for fixed constants.
 struct Part {
   std::size_t first = 0, last = 0;
   Message before = {}, after = {};
@@ -41,15 +42,15 @@ class Problem {
  public:
   Problem(const CarriedSmoother::Params& params, const Eigen::Matrix3d& rows, const Collected& collected,
           std::vector<Node> nodes);
-  /// Constructs a part of another problem; tell() must have set `part.before` and `part.after`. Constants and density
-  /// of the held point's acceleration are copied and fixed.
+  /// Constructs a part of another problem; condense_rest() must have set `part.before` and `part.after`. The constants
+  /// and the density of the held point's acceleration are copied and fixed.
   Problem(const Problem& whole, const Part& part);
 
-  /// Solves the problem by Gauss-Newton. Returns `diverged` if the equations are not positive definite.
+  /// Solves the problem by Gauss-Newton. Returns `diverged` if the normal equations are not positive definite.
   Status solve(CarriedSmoother::Report& report);
   /// Computes the covariances of all nodes at the solution.
   Status covariances(CarriedSmoother::Report& report);
-  /// Copy of the solution and its covariances, to be restored later.
+  /// Answer is a copy of the solution and its covariances, which restore() restores.
   struct Answer {
     std::vector<Node> nodes;
     Constants constants;
@@ -59,14 +60,14 @@ class Problem {
   };
   Answer answer() const { return {nodes_, constants_, constants_covariance_, hand_, covariances_}; }
   void restore(Answer answer);
-  /// Computes the information about each part's ends, with one sweep from either side. Returns false if a system is not
-  /// positive definite.
+  /// Computes the information about the ends of each part, with one elimination from either end of the chain. Returns
+  /// false if the normal equations are not positive definite.
   bool condense_rest(std::span<Part> parts) const;
   /// Solves a part by Gauss-Newton. Returns the cost at the solution, or infinity without convergence.
   double converge();
 
   const Eigen::Matrix3d& rows() const { return rows_; }
-  /// Returns rate plus bias of a node: the expected gyro reading.
+  /// Returns rate plus bias of a node, which is the expected gyro reading.
   Eigen::Vector3d gyro_rad_s(std::size_t node) const { return nodes_[node].w_WI_I_rad_s + constants_.gyro_bias_rad_s; }
   double rail_sigma_rad_s() const { return noise_.rail_rad_s; }
   double jerk_rad_s3_sqrts() const { return params_.jerk_rad_s3_sqrts; }
@@ -74,10 +75,10 @@ class Problem {
   const Eigen::Vector3d& gravity_W_m_s2() const { return g_W_m_s2_; }
   const NodeReadings& readings(std::size_t node) const { return readings_[node]; }
   std::span<const Node> nodes() const { return nodes_; }
-  /// Replaces the nodes from `first` on, to start from other initial values.
+  /// Replaces the nodes from index `first` on, to start from other initial values.
   void place(std::size_t first, std::span<const Node> nodes);
   void widen(std::size_t node, const Eigen::Matrix<double, 9, 9>& by) { covariances_[node] += by; }
-  /// Returns the covariance of attitude (error in sensor axes), rate and angular acceleration.
+  /// Returns the covariance of attitude error (sensor axes), rate and angular acceleration.
   const Eigen::Matrix<double, 9, 9>& covariance(std::size_t node) const { return covariances_[node]; }
 
  private:
@@ -85,7 +86,7 @@ class Problem {
   double add_node(std::size_t i, System::Block& block, System::Corner& corner) const;
   bool eliminate(System::BorderVector& step);
   bool step(double& largest);
-  /// State of the problem before a Gauss-Newton step.
+  /// Iterate is the state of the problem before a Gauss-Newton step.
   struct Iterate {
     std::vector<Node> nodes;
     Constants constants;
@@ -99,9 +100,9 @@ class Problem {
   CarriedSmoother::Params params_;
   Eigen::Matrix3d rows_;
   std::span<const NodeReadings> readings_;
-  std::span<const double> jerk_seen_;  // of Collected
+  std::span<const double> jerk_seen_;  // jerk density of each node, from Collected
   Motion motion_;
-  double period_s_ = 0.0;  // of the gyro's distinct readings
+  double period_s_ = 0.0;  // period of the gyro's distinct readings
   ReadingNoise noise_;
   Eigen::Vector3d g_W_m_s2_;
   std::optional<Part> part_;  // if set, a part of another problem with fixed constants
@@ -109,7 +110,7 @@ class Problem {
   Constants constants_;
   std::vector<double> jerk_;        // multiplier of the jerk's root density, per node
   std::vector<double> hand_;        // multiplier of the density of the held point's acceleration, per step
-  std::vector<double> hand_power_;  // cumulative sum of its square
+  std::vector<double> hand_power_;  // cumulative sum of the squared multipliers
   std::vector<System::Block> blocks_;
   std::vector<System::StateVector> steps_;
   System::BorderVector border_step_ = System::BorderVector::Zero();

@@ -6,8 +6,8 @@
 #include "tumble/attitude/carried_stream.hpp"
 #include "tumble/attitude/detail/carried_live.hpp"
 
-/// Members of the states of CarriedStream and CarriedLive, and members of their Params that are not Fields, as
-/// state_visitor.hpp describes.
+/// carried_stream_members.hpp lists the members of the states of CarriedStream and CarriedLive, and members of their
+/// Params that are not Fields, as state_visitor.hpp describes.
 namespace tumble {
 
 namespace carried {

@@ -4,7 +4,8 @@
 #include "../angular_velocity/rails_members.hpp"
 #include "tumble/attitude/imu_merge.hpp"
 
-/// Members of ImuMerge's state, and members of ImuMerge::Params that are not Fields, as state_visitor.hpp describes.
+/// imu_merge_members.hpp lists the members of ImuMerge's state, and members of ImuMerge::Params that are not Fields, as
+/// state_visitor.hpp describes.
 namespace tumble {
 
 template <StateOf<ForceErrors::State> Self, class Visitor>
@@ -88,7 +89,7 @@ void members(Self& s, Visitor& visit) {
   visit("merge.all_frozen", s.all_frozen);
 }
 
-/// Visits the members without the mountings, which are those of RollingOdometry's units.
+/// Visits the members except the poses of the units, which RollingOdometry's units contain.
 template <StateOf<ImuMerge::Params> Self, class Visitor>
 void others(Self& p, Visitor& visit) {
   visit.scratch(p.T_CI);

@@ -10,17 +10,18 @@
 
 namespace tumble {
 
-/// Fit of a segment of motion by rotation about a point of the body that keeps its velocity. imu_merge.md (I27).
+/// PivotFit is the fit of a segment of motion by a rotation about a point of the body that moves at constant velocity.
+/// See imu_merge.md (I27).
 struct PivotFit {
-  double residual_m_s = 0.0;  ///< root mean square of the velocity residual, all components together
+  double residual_m_s = 0.0;  ///< root mean square of the velocity residual over all components
   double gravity_m_s2 = 0.0;  ///< magnitude of the force that does not rotate
-  double arm_m = 0.0;         ///< from the pivot to the sensor
+  double arm_m = 0.0;         ///< distance from the pivot to the sensor
 };
 
-/// Normal equations of imu_merge.md (I27) for one alternative of the gyro.
+/// PivotSums contains the normal equations of imu_merge.md (I27) for one alternative of the gyro.
 class PivotSums {
  public:
-  /// Adds a mean reading over `dt_s`, whose middle is `at_s` after the segment's start. O(1).
+  /// Adds a mean reading over `dt_s`, whose middle is `at_s` after the start of the segment. Cost: O(1).
   void add(double at_s, double dt_s, const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& force_m_s2) {
     const Eigen::Quaterniond half = so3::exp(0.5 * dt_s * rate_rad_s);
     const Eigen::Quaterniond middle = turned_ * half;
@@ -56,7 +57,7 @@ class PivotSums {
 
  private:
   Eigen::Quaterniond turned_ = Eigen::Quaterniond::Identity();
-  Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();  ///< integral of the forces, in the axes of the start
+  Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();  ///< integral of the forces, in the axes at the start
   double n_ = 0.0, t_ = 0.0, tt_ = 0.0, vv_ = 0.0;
   Eigen::Matrix3d a_ = Eigen::Matrix3d::Zero(), ta_ = Eigen::Matrix3d::Zero(), aa_ = Eigen::Matrix3d::Zero();
   Eigen::Vector3d v_ = Eigen::Vector3d::Zero(), tv_ = Eigen::Vector3d::Zero(), av_ = Eigen::Vector3d::Zero();

@@ -5,8 +5,8 @@
 #include "carried_stream_members.hpp"
 #include "tumble/attitude/regime_stream.hpp"
 
-/// Members of RegimeStream's state, and members of RegimeStream::Params that are not Fields, as state_visitor.hpp
-/// describes.
+/// regime_stream_members.hpp lists the members of RegimeStream's state, and members of RegimeStream::Params that are
+/// not Fields, as state_visitor.hpp describes.
 namespace tumble {
 
 template <StateOf<RegimeShares> Self, class Visitor>

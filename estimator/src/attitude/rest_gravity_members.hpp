@@ -4,7 +4,7 @@
 #include "../angular_velocity/rails_members.hpp"
 #include "tumble/attitude/detail/rest_gravity.hpp"
 
-/// Members of RestGravity's states, as state_visitor.hpp describes.
+/// rest_gravity_members.hpp lists the members of RestGravity's states, as state_visitor.hpp describes.
 namespace tumble {
 
 template <StateOf<RestGravity::Size> Self, class Visitor>

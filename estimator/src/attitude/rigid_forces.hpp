@@ -12,19 +12,19 @@
 
 namespace tumble {
 
-/// Specific forces of units at different positions of one rigid body over a window, body axes. Finds units whose force
-/// contradicts the common motion. imu_merge.md (I6), (I7).
+/// RigidForces contains the specific forces of IMUs (units) at different positions of one rigid body over a window, in
+/// body axes. RigidForces finds units whose force contradicts the common motion. See imu_merge.md (I6), (I7).
 struct RigidForces {
   static constexpr std::size_t kUnits = ImuMergeState::kImus;
 
   std::array<bool, kUnits> present{};
   std::array<Eigen::Vector3d, kUnits> position_m{}, force_m_s2{};
-  std::array<double, kUnits> peak_m_s2{};    ///< largest component of the readings
+  std::array<double, kUnits> peak_m_s2{};    ///< largest component of the unit's readings
   std::array<double, kUnits> change_m_s2{};  ///< change of the force since the last window
   Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero(), acceleration_rad_s2 = Eigen::Vector3d::Zero();
-  double uncertainty_rad_s2 = 0.0;  ///< of the acceleration
+  double uncertainty_rad_s2 = 0.0;  ///< standard deviation of the angular acceleration
   double small_peak_m_s2 = 0.0;     ///< two units with smaller readings are not saturated
-  double hidden_force_m_s2 = 0.0;   ///< tolerated disagreement of the others
+  double hidden_force_m_s2 = 0.0;   ///< tolerated disagreement of all other units
 
   struct Agreed {
     std::size_t unit = 0;
@@ -43,7 +43,8 @@ struct RigidForces {
            e.norm() <= hidden_force_m_s2 + uncertainty_rad_s2 * d.norm();
   }
 
-  /// Returns the unit with which most other units agree. Among equals, returns the unit whose force changed least.
+  /// Returns the unit with which most other units agree. If several units have equally many agreeing units, the
+  /// function returns the unit whose force changed least.
   Agreed most_agreed() const {
     Agreed best;
     for (std::size_t k = 0; k < kUnits; ++k) {
@@ -56,7 +57,7 @@ struct RigidForces {
     return best;
   }
 
-  /// Returns the correction of the acceleration that minimises all differences. (I7)
+  /// Returns the correction of the angular acceleration that minimises all force differences, imu_merge.md (I7).
   Eigen::Vector3d common_acceleration() const {
     Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
     Eigen::Vector3d b = Eigen::Vector3d::Zero();

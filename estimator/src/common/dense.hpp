@@ -3,16 +3,16 @@
 
 #include <Eigen/Core>
 
-/// Decompositions of large symmetric matrices, compiled once. Eigen's fixed-size versions would be instantiated per
-/// file and size, which doubles the compile time of files that use them. Factorisations equal those of fixed size bit
-/// for bit; eigenvalues are equal up to rounding. Each call allocates, so call a decomposition at most once per sweep
-/// or run.
+/// dense.hpp declares decompositions of large symmetric matrices that are compiled once. Eigen's fixed-size versions
+/// would be instantiated per file and size, which doubles the compile time of files that use them. Factorisations equal
+/// those of fixed size bit for bit; eigenvalues are equal up to rounding. Each call allocates memory, so call a
+/// decomposition at most once per sweep or run.
 namespace tumble::dense {
 
 using Symmetric = Eigen::Ref<const Eigen::MatrixXd>;  ///< only the lower triangle is read
 
-/// Computes A^-1 B in place for positive definite A, by Cholesky. If A is not positive definite, `ok()` is false and
-/// the results are undefined.
+/// Computes A^-1 B in place for positive definite A, by Cholesky factorisation. If A is not positive definite, `ok()`
+/// is false and the results are undefined.
 class Cholesky {
  public:
   explicit Cholesky(const Symmetric& A);
@@ -35,7 +35,7 @@ class Cholesky {
   bool ok_ = false;
 };
 
-/// Computes A^-1 B in place for a semidefinite A, by pivoted Cholesky without roots (LDLT).
+/// Computes A^-1 B in place for a semidefinite A, by pivoted Cholesky factorisation without roots (LDLT).
 void solve_semidefinite(const Symmetric& A, Eigen::Ref<Eigen::MatrixXd> B);
 void solve_semidefinite_vector(const Symmetric& A, Eigen::Ref<Eigen::VectorXd> b);
 

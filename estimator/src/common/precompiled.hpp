@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Headers used by nearly every source, and types of Eigen expressions used by at least a dozen sources. The compiler
-// needs longer for the classes of an expression than for its code (docs/figures.md). CMakeLists.txt precompiles this
-// header, and no source includes it. Precompiling only reduces the compile time.
+// precompiled.hpp includes the headers that nearly every source uses, and instantiates types of Eigen expressions that
+// at least a dozen sources use. The compiler needs longer for the classes of an expression than for the machine code of
+// the expression (docs/figures.md). CMakeLists.txt precompiles precompiled.hpp, and no source includes the file.
+// Precompiling affects only the compile time.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -15,12 +16,12 @@
 
 namespace tumble::precompiled {
 
-/** True of whatever expressions of Eigen: asking instantiates their classes and what evaluates them. */
+/// Is true for any expressions of Eigen, and instantiates the classes and evaluators of the expressions.
 template <class... Expressions>
 constexpr bool known = (... && (sizeof(std::remove_cvref_t<Expressions>) > 0 &&
                                 sizeof(Eigen::internal::evaluator<std::remove_cvref_t<Expressions>>) > 0));
 
-/** The same of matrices, with their constants and identities. */
+/// Is true for any matrices, and instantiates the matrices with their constants and identities.
 template <class... Matrices>
 constexpr bool known_matrices = (... && known<Matrices, decltype(Matrices::Zero()), const Matrices>);
 template <class... Matrices>
@@ -29,7 +30,7 @@ constexpr bool known_squares = known_matrices<Matrices...>&& known<decltype(Matr
 template <int rows, int columns = 1>
 using Real = Eigen::Matrix<double, rows, columns>;
 
-// Operands of the expressions below. The variables are never defined.
+// Operands of the following expressions. The operands are declared but never defined.
 extern const Eigen::Vector3d a, b;
 extern Eigen::Vector3d c;
 extern const Eigen::Matrix3d R;
@@ -39,7 +40,7 @@ extern const double s;
 
 static_assert(known_matrices<Real<2>, Real<3>, Real<4>, Real<5>, Real<6>, Real<9>, Real<Eigen::Dynamic>, Real<3, 6>>);
 static_assert(known_squares<Real<2, 2>, Real<3, 3>, Real<4, 4>, Real<6, 6>, Real<9, 9>>);
-// the sizes of the rate model's states
+// matrices with the sizes of the rate model's states
 static_assert(known_matrices<Real<20>, Real<29>, Real<3, 20>, Real<29, 29>> && known_squares<Real<20, 20>>);
 // sums, differences, multiples, norms and products of 3-vectors
 static_assert(known<decltype(a + b), decltype(a - b), decltype(s * a), decltype(a / s), decltype(a + s * b),

@@ -12,12 +12,12 @@
 #include "state_visitor.hpp"
 #include "tumble/common/status.hpp"
 
-/// Serialisation of states: numbers of fixed width, little-endian on every machine, in the order in which they are
-/// visited. A sequence is preceded by its length (8 bytes).
+/// state_bytes.hpp serialises states as numbers of fixed width, little-endian on every machine, in the order in which
+/// the numbers are visited. The length of a sequence (8 bytes) precedes the sequence.
 namespace tumble {
 
-/// Returns a 64-bit checksum that changes with any one byte: FNV-1a (G. Fowler, L. Noll, K.-P. Vo, RFC 9923). Detects
-/// accidental damage, not manipulation.
+/// Returns the 64-bit checksum FNV-1a (Fowler, Noll and Vo, RFC 9923), which changes if any one byte changes. The
+/// checksum detects accidental damage, not manipulation.
 std::uint64_t checksum(std::span<const std::byte> bytes, std::uint64_t before = 0xcbf29ce484222325u);
 
 namespace detail {
@@ -57,9 +57,9 @@ class StateWriter : public StateVisitor<StateWriter> {
   std::vector<std::byte>& out_;
 };
 
-/// Reads states from untrusted bytes. After the first error, which status() returns, nothing more is read, and the
-/// values read so far are invalid. Errors: `too_few` (the bytes end within `field`), `non_finite`, `out_of_range` (an
-/// index, a count, an enumeration, or a length larger than the remaining bytes).
+/// StateReader reads states from untrusted bytes. After the first error, status() returns the error, nothing more is
+/// read, and the values read so far are invalid. Errors are `too_few` (the bytes end within `field`), `non_finite` and
+/// `out_of_range` (an index, a count, an enumeration or a length).
 class StateReader : public StateVisitor<StateReader> {
  public:
   static constexpr bool kReads = true;
@@ -84,7 +84,7 @@ class StateReader : public StateVisitor<StateReader> {
   requires requires(T& value, StateReader& in) { value.load(in); }
   void whole(const char* /*name*/, T& value) { value.load(*this); }
 
-  /// Requires a relation between members that holds in every saved state.
+  /// Requires a relation between members that every saved state fulfils.
   void require(const char* name, bool holds, double value = 0.0, double bound = 1.0) {
     if (going() && !holds) status_ = {Trouble::out_of_range, name, value, bound};
   }

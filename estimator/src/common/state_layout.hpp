@@ -12,11 +12,11 @@
 #include "state_visitor.hpp"
 #include "tumble/common/status.hpp"
 
-/// Checks that bytes belong to given parameters and a given layout.
+/// state_layout.hpp checks that saved bytes match given parameters and a given layout.
 namespace tumble {
 
-/// Compares visited members with bytes. Returns `out_of_range` with the name of the first number that differs, the
-/// stored and the visited value. Returns `too_few` if the bytes end.
+/// StateMatcher compares visited members with saved bytes. StateMatcher reports `out_of_range` with the name of the
+/// first number that differs, the stored value and the visited value. StateMatcher reports `too_few` if the bytes end.
 class StateMatcher : public StateVisitor<StateMatcher> {
  public:
   static constexpr bool kReads = false;
@@ -57,8 +57,8 @@ class StateMatcher : public StateVisitor<StateMatcher> {
   Status status_;
 };
 
-/// Computes a 64-bit digest of the names, widths and order of visited members. A reader rejects bytes with another
-/// digest.
+/// StateLayout computes a 64-bit digest of the names, widths and order of visited members. A reader rejects bytes with
+/// another digest.
 class StateLayout : public StateVisitor<StateLayout> {
  public:
   static constexpr bool kReads = false;

@@ -8,25 +8,26 @@
 
 #include "state_kinds.hpp"
 
-/// Description of an estimator's state, member by member, in one place. Saving, loading and comparing are visitors of
-/// the description.
+/// An estimator's state is described member by member, in one place. Saving, loading and comparing a state are visitors
+/// of the description.
 ///
-/// A state has a function `members(Self& s, Visitor& visit)` in its namespace, or a static function if its members are
-/// private. The function calls `visit("name", s.member)` for each member: numbers, fixed-size Eigen types, arrays,
-/// vectors, deques, optionals and nested states. Indices and counts are visited with their bounds, enumerations with
-/// their last value. Values that may be NaN use `with_nan`, buffers `scratch`. Self may be const. A `Params` that is
-/// part of a state is visited by `visit_params`: its Fields, and its members that are not Fields by `others(Self& p,
-/// Visitor& visit)`.
+/// A state has a function `members(Self& s, Visitor& visit)` in its namespace, or a static function `members` if its
+/// members are private. The function `members` calls `visit("name", s.member)` for each member: numbers, fixed-size
+/// Eigen types, arrays, vectors, deques, optionals and nested states. Indices and counts are visited with their bounds,
+/// and enumerations with their last value. Values that may be NaN are visited by `with_nan`, and buffers by `scratch`.
+/// The type `Self` may be const. The function `visit_params` visits a `Params` that is part of a state. The function
+/// `others(Self& p, Visitor& visit)` visits the members of the `Params` that are not Fields.
 namespace tumble {
 
-/// Visits the members of a state. `Derived` has
-/// - numbers(name, data, count): contiguous numbers
-/// - length(name, count): size of a sequence or an optional (0 or 1); returns the size to use
-/// - bounded(name, value, low, high): checks a visited number
-/// - going(): false to stop
-/// - whole(name, value), optional: a member that serialises itself
-/// - kReads: true if visited members are overwritten
-/// - kDescribes: true to visit a sequence as one element in its initial state.
+/// StateVisitor visits the members of a state. `Derived` has the following members.
+/// The function numbers(name, data, count) processes contiguous numbers.
+/// The function length(name, count) processes the size of a sequence or an optional (0 or 1), and returns the size to
+/// use.
+/// The function bounded(name, value, low, high) checks a visited number.
+/// The function going() returns false to stop.
+/// The optional function whole(name, value) processes a member that serialises itself.
+/// The constant kReads is true if visited members are overwritten.
+/// The constant kDescribes is true to visit a sequence as one element in its initial state.
 template <class Derived>
 class StateVisitor {
  public:
@@ -61,7 +62,7 @@ class StateVisitor {
     }
   }
 
-  /// A number with bounds: an index or a count.
+  /// Visits a number with bounds, which is an index or a count.
   template <class T>
   void operator()(const char* name, T& value, double low, double high) {
     (*this)(name, value);
@@ -76,14 +77,14 @@ class StateVisitor {
     if constexpr (Derived::kReads) value = static_cast<T>(number);
   }
 
-  /// Visits the first `count` elements of an array. The remaining elements are in their initial state.
+  /// Visits the first `count` elements of an array. The remaining elements of the array are in their initial state.
   template <class Array>
   void leading(const char* name, Array& array, std::size_t count) {
     if (Derived::kDescribes) count = 1;
     for (std::size_t k = 0; k < count && k < array.size(); ++k) (*this)(name, array[k]);
   }
 
-  /// A value that may be NaN.
+  /// Visits a value that may be NaN.
   template <class T>
   void with_nan(const char* name, T& value) {
     const bool before = nan_allowed_;
@@ -92,7 +93,7 @@ class StateVisitor {
     nan_allowed_ = before;
   }
 
-  /// A buffer, not part of the state.
+  /// Ignores a buffer, which is not part of the state.
   template <class T>
   void scratch(T& /*value*/) {}
 
@@ -113,7 +114,7 @@ class StateVisitor {
       for (const Element& element : value) (*this)(name, element);
     } else {
       value.clear();
-      // visits elements one by one, so that no more memory is requested than there are bytes
+      // visits elements one by one, so that no more memory is allocated than there are bytes
       for (std::size_t k = 0; k < count && self().going(); ++k) (*this)(name, value.emplace_back());
     }
   }

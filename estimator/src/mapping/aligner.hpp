@@ -9,33 +9,34 @@
 
 namespace tumble::mapping {
 
-/// Input of an alignment.
+/// Scene is the input of an alignment.
 struct Scene {
   std::span<const MotionSample> samples;
   TimeNs end_ns;
-  std::span<const SweepPoint> points;  ///< selected points
+  std::span<const SweepPoint> points;  ///< selected points of the sweep
   const VoxelMap& map;
 };
 
-/// Registers a sweep in stages. The verdict of `found` indicates success. After success, `trajectory` is the registered
-/// motion. After a failure, `trajectory` is that of a failed attempt.
+/// Registers a sweep in stages. The verdict of `found` states whether the registration succeeded. After success,
+/// `trajectory` is the registered motion. After a failure, `trajectory` is that of a failed attempt.
 class Aligner {
  public:
   explicit Aligner(const LidarInertialOdometry::Params& params);
 
-  /// Registers with all points and few iterations. Without convergence, the stages with fewer points continue at lower
-  /// cost.
+  /// Registers a sweep with all points and few iterations. Without convergence, the stages with fewer points continue
+  /// at lower cost.
   void in_full(const Registration::Prior& prior, const Scene& scene, SweepTrajectory& trajectory,
                Registration::Result& found);
-  /// Registers with some of the points until convergence, then with all points from the converged pose.
+  /// Registers a sweep with some of the points until convergence, then with all points from the converged pose.
   void to_convergence(const Registration::Prior& prior, const Scene& scene, SweepTrajectory& trajectory,
                       Registration::Result& found);
-  /// Registers from a start that may be far from the solution: coarsely with few points, then to convergence if the
-  /// coarse stage succeeds. A failed start thus costs a fraction of a registration and returns only its verdict.
+  /// Registers a sweep from a start that may be far from the solution: coarsely with few points, then to convergence if
+  /// the coarse stage succeeds. A failed start therefore costs only a fraction of a registration, and returns only its
+  /// verdict.
   void from_afar(const Registration::Prior& start, const Registration::Prior& prior, const Scene& scene,
                  SweepTrajectory& trajectory, Registration::Result& found);
 
-  /// Returns the registration that computes a return's variance.
+  /// Returns the Registration that computes the variance of a lidar return.
   const Registration& registration() const { return full_; }
 
  private:

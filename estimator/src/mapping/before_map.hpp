@@ -4,21 +4,21 @@
 #include "state_estimate.hpp"
 #include "world_covariance.hpp"
 
-/// The IMU's state before the sweep that starts the map: mapping.md, section 6.
+/// before_map.hpp computes the IMU's state before the sweep that starts the map, see mapping.md, section 6.
 namespace tumble::mapping {
 
-/// Returns the state of a levelled IMU. The frame is vertical, so gravity is exact and the tilt is an error of the
-/// attitude.
+/// Returns the state estimate of a levelled IMU. The world frame is vertical, so gravity is exact and the tilt is an
+/// error of the attitude.
 StateEstimate belief_before_map(const LidarInertialOdometry::Params& params, const MotionState& levelled);
 
-/// Returns the reckoned state, `step_s` after the last call, with the origin and yaw of the frame moved to the IMU.
-/// Without a map, origin and yaw cannot be observed. A weak prior on the speed bounds the errors of tilt and velocity
-/// over minutes of motion.
+/// Returns the dead-reckoned state, `step_s` after the last call, with the origin and yaw of the world frame moved to
+/// the IMU. Without a map, origin and yaw are not observable. A weak prior on the speed limits the errors of tilt and
+/// velocity over minutes of motion.
 StateEstimate without_place(const StateEstimate& reckoned, double step_s);
 
-/// Returns the state at the start of the sweep that starts the map. The lidar's pose at this start defines the map's
-/// frame and has no error. The tilt error of dead reckoning therefore becomes an error of gravity's direction.
-/// `reckoned` is from without_place() or belief_before_map().
+/// Returns the state at the start of the sweep that starts the map. The lidar's pose at the start of the map's first
+/// sweep defines the map's frame and has no error. The tilt error of dead reckoning therefore becomes an error of
+/// gravity's direction. `reckoned` is the result of without_place() or belief_before_map().
 StateEstimate belief_at_first_sweep(const LidarInertialOdometry::Params& params, const StateEstimate& reckoned);
 
 /// Returns a world whose vertical is as uncertain as the tilt of `reckoned`.

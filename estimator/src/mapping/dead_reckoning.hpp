@@ -9,13 +9,14 @@
 
 namespace tumble::mapping {
 
-/// Alternative pose by inertial prediction. During an unconfirmed relocalisation, the alternative is the pose without
-/// the relocalisation. After a contradicted relocalisation, the alternative is the contradicted pose.
+/// DeadReckoning is an alternative pose by inertial prediction. During an unconfirmed relocalisation, the alternative
+/// is the pose without the relocalisation. After a contradicted relocalisation, the alternative is the contradicted
+/// pose.
 struct DeadReckoning {
   SweepBoundary boundary;
   LagWindow window;
   WorldCovariance world;
-  std::uint32_t inserted_from = 0;  ///< first of the map's sweeps that were inserted after the relocalisation
+  std::uint32_t inserted_from = 0;  ///< first sweep that was inserted into the map after the relocalisation
 };
 
 }  // namespace tumble::mapping

@@ -9,10 +9,10 @@
 
 namespace tumble::mapping {
 
-/// IMU windows longer than this do not describe the motion inside.
+/// Longest IMU window whose reading describes the motion inside the window.
 inline constexpr TimeNs kGap_ns = 50'000'000;
 
-/// Rate of one window of the IMU, in IMU axes, with its standard deviation.
+/// WindowRate is the rate of one window of the IMU, in IMU axes, with its standard deviation.
 struct WindowRate {
   Eigen::Vector3d rate_rad_s;
   Eigen::Vector3d sigma_rad_s;
@@ -23,10 +23,11 @@ struct WindowRate {
   static void members(Self& s, Visitor& visit);
 };
 
-/// Appends samples from the end of `before` to the start of `after`. The rate is interpolated linearly, with the
-/// standard deviation of a random walk that is known at both ends; mapping.md (R44). All axes count as clipped. A
-/// registration that estimates the saturation deficit then also estimates the interpolation error. The force is unknown
-/// (`bridges_gap`). The samples are 10 ms long, or longer over gaps beyond 0.64 s.
+/// Appends samples from the end of `before` to the start of `after`. The rate is interpolated linearly. The standard
+/// deviation of the interpolated rate is that of a random walk known at both ends, see mapping.md (R44). All axes of
+/// the appended samples count as clipped. A registration that estimates the saturation deficit then also estimates the
+/// interpolation error. The force of the appended samples is unknown (`bridges_gap`). The samples are 10 ms long, or
+/// longer in gaps beyond 0.64 s.
 void bridge_gap(const InertialNoiseParams& params, const WindowRate& before, const WindowRate& after,
                 std::vector<MotionSample>& samples);
 

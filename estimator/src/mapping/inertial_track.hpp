@@ -11,29 +11,30 @@
 
 namespace tumble::mapping {
 
-/// Stores the IMU's samples since the last sweep's end. Detects the initial rest and flight, and bridges gaps.
+/// Stores the IMU's samples since the end of the last sweep. InertialTrack detects the initial rest and flight, and
+/// bridges gaps.
 class InertialTrack {
  public:
   using Params = LidarInertialOdometry::Params;
 
   explicit InertialTrack(const Params& params);
 
-  /// Returns `time_order` unless the sample is later than all samples before.
+  /// Returns `time_order` unless the sample is later than all earlier samples.
   Status check(const ImuSample& sample) const;
-  /// Adds a checked sample with its angular velocity.
+  /// Adds a sample that check() accepted, with its angular velocity.
   void take(const Params& params, const ImuSample& sample, const RateState& rate);
 
-  /// Returns the stored samples, starting with the window that contains the last sweep's end.
+  /// Returns the stored samples, starting with the window that contains the end of the last sweep.
   std::span<const MotionSample> samples() const { return samples_; }
   /// Returns the samples that end after `from_ns`.
   std::span<const MotionSample> samples_from(TimeNs from_ns) const;
-  /// Returns the end of the last sweep. Returns nothing before the first sweep.
+  /// Returns the end of the last sweep, or nothing before the first sweep.
   std::optional<TimeNs> border_ns() const { return boundary_ns_; }
-  /// Returns the mean specific force of the current rest, if it had lasted for `lasted_s` by `time_ns`.
+  /// Returns the mean specific force of the current rest, if the rest had lasted for `lasted_s` by `time_ns`.
   std::optional<Eigen::Vector3d> resting_force(TimeNs time_ns, double lasted_s) const;
-  /// Returns whether the rest at the start continues.
+  /// Returns whether the rest at the start of the recording continues.
   bool has_not_moved() const { return initial_.lasts; }
-  /// Returns the time of the newest sample, or of the last sweep's end.
+  /// Returns the time of the newest sample, or the end of the last sweep without samples.
   std::optional<TimeNs> last_ns() const;
   /// Returns whether the IMU measures only gravity up to `end_ns`.
   bool rests_until(TimeNs end_ns) const;
@@ -47,11 +48,12 @@ class InertialTrack {
   static void members(Self& s, Visitor& visit);
 
  private:
-  /// Rest at the start of a recording. The initial rest cannot resume after its end, and its results remain.
+  /// InitialRest is the rest at the start of a recording. The initial rest cannot resume after its end, and its results
+  /// remain.
   struct InitialRest {
     bool lasts = true;
     std::optional<TimeNs> first_ns;  ///< first sample of the recording
-    std::optional<TimeNs> run_ns;    ///< first sample of the detector's run
+    std::optional<TimeNs> run_ns;    ///< first sample of the current run of the rest detector
     Eigen::Vector3d gyro_bias_rad_s = Eigen::Vector3d::Zero();
     template <class Self, class Visitor>
     static void members(Self& s, Visitor& visit);
@@ -68,7 +70,7 @@ class InertialTrack {
   RestDetector rests_;
   RestDetector::State rest_;
   InitialRest initial_;
-  std::vector<Eigen::Vector3d> undecided_rad_s_;  // rates since the detector's last complete reading
+  std::vector<Eigen::Vector3d> undecided_rad_s_;  // rates since the last averaged reading of the rest detector
   std::optional<WindowRate> before_newest_, newest_;
 };
 

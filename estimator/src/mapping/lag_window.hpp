@@ -14,7 +14,8 @@ struct Estimated {
   Registration::Matrix errors = Registration::Matrix::Zero();
 };
 
-/// A sweep that later sweeps still refine. The unknowns refer to the start of the sweep.
+/// WindowSweep is a sweep that later sweeps still refine. The unknowns of a WindowSweep refer to the start of the
+/// sweep.
 struct WindowSweep {
   Estimated predicted;
   Registration::Matrix by_before = Registration::Matrix::Identity();  ///< derivative by the previous sweep
@@ -23,25 +24,25 @@ struct WindowSweep {
   TimeNs end_ns = 0;
   std::vector<InsertedPoint> inserted;
 
-  /// Builds the smoothed motion. Returns the errors of SweepTrajectory::build.
+  /// Builds the smoothed motion of the sweep. Returns the errors of SweepTrajectory::build.
   Status motion(SweepTrajectory& trajectory) const;
 };
 
-/// Fixed-lag smoother over the newest sweeps.
+/// LagWindow is a fixed-lag smoother over the newest sweeps.
 class LagWindow {
  public:
   LagWindow() = default;
   explicit LagWindow(int sweeps) : length_(static_cast<std::size_t>(sweeps)) {}
 
-  /// Adds an empty sweep. If the window is full, the oldest sweep leaves.
+  /// Adds an empty sweep. If the window is full, the oldest sweep leaves the window.
   WindowSweep& enter();
   /// Returns whether the oldest sweep has its final estimate.
   bool is_full() const { return sweeps_.size() == length_; }
-  /// Smooths each sweep but the newest with the later sweeps: mapping.md (R63).
+  /// Smooths each sweep except the newest with the data of later sweeps, see mapping.md (R63).
   void smooth();
-  /// Moves the map points of all sweeps but the newest to their smoothed positions.
+  /// Moves the map points of all sweeps except the newest to their smoothed positions.
   void move_inserted(LocalMap& map) const;
-  /// Fixes the positions of all inserted points, because indices of the map changed.
+  /// Fixes the positions of all inserted points, because indices of the map have changed.
   void clear_inserted();
 
   std::size_t length() const { return length_; }

@@ -13,22 +13,22 @@
 
 namespace tumble::mapping {
 
-/// A point of a sweep in the map.
+/// InsertedPoint is a point of a sweep in the map.
 struct InsertedPoint {
-  std::uint32_t index;  ///< in the map
-  SweepPoint point;     ///< by the calibration at insertion
+  std::uint32_t index;  ///< index of the point in the map
+  SweepPoint point;     ///< point with the calibration at insertion
 };
 
-/// A sweep whose points will be inserted into the map.
+/// SweepToInsert is a sweep whose points will be inserted into the map.
 struct SweepToInsert {
   const SweepTrajectory& trajectory;
   const Registration::Matrix& covariance;
   std::span<const SweepPoint> points;
   bool rings_differ;
-  bool pose_certain;  ///< its free space may remove points of the map
+  bool pose_certain;  ///< the sweep's free space may remove points of the map
 };
 
-/// The map around the sensor: its points, the sensor position at each observation, and their scan lines.
+/// LocalMap is the map around the sensor: its points, the sensor position at each observation, and their scan lines.
 class LocalMap {
  public:
   using Params = LidarInertialOdometry::Params;
@@ -38,28 +38,28 @@ class LocalMap {
   const VoxelMap& voxels() const { return map_; }
   bool empty() const { return map_.size() == 0; }
 
-  /// Adds the points of a sweep and appends the added points to `inserted`. `noise` computes a return's variance. If
-  /// the sweep's pose is certain, each point of the map is checked against the sweep's free space: O(points of the
-  /// map).
+  /// Adds the points of a sweep to the map, and appends the added points to `inserted`. `noise` computes the variance
+  /// of a lidar return. If the sweep's pose is certain, each point of the map is checked against the sweep's free
+  /// space. Cost: O(points of the map).
   std::size_t insert(const Params& params, const SweepToInsert& sweep, const Registration& noise,
                      std::vector<InsertedPoint>& inserted);
-  /// Moves points to their refined positions, with `later_s` added to their times, mapping.md (R3).
+  /// Moves points to their refined positions, with `later_s` added to their times, see mapping.md (R3).
   void move(const SweepTrajectory& trajectory, const Eigen::Isometry3d& T_IL, double later_s,
             std::span<const InsertedPoint> inserted);
 
   /// Returns the number of sweeps that contributed points. Each point stores the number of its sweep.
   std::uint32_t sweeps() const { return static_cast<std::uint32_t>(seen_from_W_m_.size()); }
-  /// Removes the points of `first_sweep` and all later sweeps. Indices change. O(number of points).
+  /// Removes the points of `first_sweep` and all later sweeps. Cost: O(number of points). The indices of points change.
   void withdraw(std::uint32_t first_sweep);
 
-  /// Removes distant points once the sensor has moved far enough. Returns whether points were removed. A removal
-  /// changes the indices.
+  /// Removes distant points once the sensor has moved far enough. Returns whether points were removed; a removal
+  /// changes the indices of points.
   bool prune(const Params& params, const Eigen::Vector3d& p_WI_m);
 
   std::size_t bytes() const { return map_.bytes() + seen_from_W_m_.capacity() * sizeof(Eigen::Vector3f); }
   std::vector<MapPoint> with_normals(const Params& params) const;
 
-  /// Returns whether each point has a valid sweep number. Checks loaded maps.
+  /// Returns whether each point of a loaded map has a valid sweep number.
   bool has_sweep_origins() const;
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
@@ -69,7 +69,7 @@ class LocalMap {
   void look_through(const SightGrid& sight);
 
   VoxelMap map_;
-  std::vector<Eigen::Vector3f> seen_from_W_m_;  // per sweep that contributed points
+  std::vector<Eigen::Vector3f> seen_from_W_m_;  // sensor position per sweep that contributed points
   Eigen::Vector3f pruned_at_W_m_ = Eigen::Vector3f::Zero();
   ScanLines scan_lines_;
   std::vector<Eigen::Vector3f> levers_W_m_;

@@ -9,28 +9,29 @@
 
 namespace tumble {
 
-/// Standard deviation of a range: the larger of a length and a fraction of the range.
+/// RangeNoise is the standard deviation of a range: the larger of a length and a fraction of the range.
 struct RangeNoise {
   double sigma_m, share;
 };
 
 /// Detects lone returns, which no neighbouring beam confirms: dust, rain, snow, blades of grass, birds.
 ///
-/// A surface returns many neighbouring beams. A neighbour on the ring confirms a return in one of three ways. The range
-/// of one of the two returns before or after is equal within noise. Or the line to an adjacent return is steep enough
-/// against the beam to be a surface (I. Bogoslavskyi, C. Stachniss, IROS 2016). Or the return is on the line between a
-/// return before and a return after, as on ground at a grazing angle: mapping.md (R13), (R14), (R15). Neighbours are
-/// within the sweep's angular step, so a return among misses is alone. All returns are kept if successive returns are
-/// too far apart to be compared. All returns are also kept if there are no more lone returns than in clear air. Larger
-/// moving objects (people, cars) are not lone returns.
+/// A surface reflects many neighbouring beams. A neighbour on the same ring of the lidar confirms a return in one of
+/// three ways. First, the range of one of the two returns before or after is equal within noise. Second, the line to an
+/// adjacent return is steep enough against the beam to be a surface (Bogoslavskyi and Stachniss, IROS 2016). Third, the
+/// return is on the line between a return before and a return after, as on ground at a grazing angle. See mapping.md
+/// (R13), (R14), (R15). Neighbours are within the angular step of the sweep, so a return among misses is a lone return.
+/// All returns are kept if successive returns are too far apart to be compared. All returns are also kept if the number
+/// of lone returns is not larger than in clear air. Returns of larger moving objects (people, cars) are not lone
+/// returns.
 class LoneReturns {
  public:
-  /// Removes the lone returns from `points` and returns their number. The remaining order is kept: firing order per
-  /// ring. Cost: O(number of points). Memory is allocated only for a sweep larger than all sweeps before.
+  /// Removes the lone returns from `points` and returns their number. Cost: O(number of points). The remaining points
+  /// are in firing order per ring. Memory is allocated only for a sweep larger than all earlier sweeps.
   std::size_t drop(const RangeNoise& noise, std::vector<SweepPoint>& points);
 
  private:
-  /// Data of a return for the comparison of neighbours; contiguous per ring.
+  /// Beam contains the data of a return for the comparison of neighbours; beams are contiguous per ring.
   struct Beam {
     Eigen::Vector3f x_L_m;
     float range_m;
@@ -50,8 +51,8 @@ class LoneReturns {
   bool is_confirmed(const RangeNoise& noise, std::size_t at, float reach2) const;
 
   std::vector<std::uint32_t> ring_next_, order_;
-  std::vector<Beam> beams_;                    // ring by ring, in order within each
-  std::vector<float> steps2_, sorted_steps2_;  // squared sines of the angle to the previous beam on the ring
+  std::vector<Beam> beams_;                    // beams ring by ring, in firing order
+  std::vector<float> steps2_, sorted_steps2_;  // squared sines of the angle between successive beams on a ring
   std::vector<std::uint8_t> alone_;
 };
 

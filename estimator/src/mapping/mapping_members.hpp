@@ -7,8 +7,8 @@
 #include "odometry_members.hpp"
 #include "sweep_members.hpp"
 
-/// Members of the odometry's parts that persist between sweeps, as state_visitor.hpp describes. README.md explains the
-/// parts.
+/// mapping_members.hpp describes the members of the odometry's parts that persist between sweeps, as state_visitor.hpp
+/// explains. The parts are explained in README.md.
 namespace tumble {
 
 namespace mapping {
@@ -81,7 +81,7 @@ void LocalMap::members(Self& s, Visitor& visit) {
 
 }  // namespace mapping
 
-/// Visits the members without the parameters, which are set at construction.
+/// Visits the members except the parameters, which are set at construction.
 template <class Self, class Visitor>
 void LidarInertialOdometry::Impl::members(Self& s, Visitor& visit) {
   visit.scratch(s.params);

@@ -12,23 +12,25 @@ struct SweepBoundary;
 struct MotionWindow;
 struct Prediction;
 
-/// Kinds of information about a sweep's motion, in addition to the previous sweeps. Each kind is a type with a function
-/// `impose` or `weigh`. `impose` replaces the state at the sweep boundary, before the sweep's noise is added. `weigh`
-/// fuses a measurement with the prediction after all noise is added.
+/// motion_prior.hpp defines kinds of information about a sweep's motion, in addition to the previous sweeps. Each kind
+/// of information is a type with a function `impose` or `weigh`. The function `impose` replaces the state at the sweep
+/// boundary, before the sweep's noise is added. The function `weigh` fuses a measurement with the prediction, after all
+/// noise is added.
 
-/// No additional information: the IMU continues the velocity at the end of the last sweep.
+/// InertialPrior provides no additional information: the velocity at the end of the last sweep continues by the IMU.
 struct InertialPrior {};
 
-/// Velocity at the start of the sweep, in IMU axes, with its standard deviation per axis. The known velocity replaces
-/// the velocity of the last sweep, for example for a rolling robot.
+/// KnownVelocity is the velocity at the start of the sweep, in IMU axes, with its standard deviation per axis. The
+/// known velocity replaces the velocity of the last sweep, for example for a rolling robot.
 struct KnownVelocity {
   Eigen::Vector3d v_WI_I_m_s = Eigen::Vector3d::Zero();
   double sigma_m_s = 0.0;
 };
 
-/// Constant velocity with the uncertainty of impacts, for an accelerometer that is absent or always saturated. The gyro
-/// is used. Neither `impose` nor `weigh` is needed: the samples are treated like the samples of a gap
-/// (InertialTrack::exclude_force), which also gives the noise.
+/// ConstantVelocity assumes a constant velocity with the uncertainty of impacts, for an accelerometer that is absent or
+/// always saturated. With ConstantVelocity, the gyro is still used. ConstantVelocity needs neither `impose` nor
+/// `weigh`, because its samples are treated like the samples of a gap (InertialTrack::exclude_force). The gap also
+/// determines the noise.
 struct ConstantVelocity {};
 
 using MotionPrior = std::variant<InertialPrior, KnownVelocity, OdometerReading, ConstantVelocity>;
@@ -41,8 +43,8 @@ inline void impose(const MotionPrior& prior, Prediction& prediction) {
   if (const auto* const velocity = std::get_if<KnownVelocity>(&prior)) impose(*velocity, prediction);
 }
 
-/// Updates the prediction of a sweep by a reading from within the sweep: mapping.md (R34) to (R37). `within` is a part
-/// of the sweep's noise. An unusable reading, or a reading outside of the window, has no effect.
+/// Updates the prediction of a sweep by a reading from within the sweep, see mapping.md (R34) to (R37). `within` is a
+/// part of the sweep's noise. An unusable reading, or a reading outside of the window, has no effect.
 void weigh_reading(const OdometerReading& reading, const SweepBoundary& boundary, const MotionWindow& window,
                    const MotionNoise& within, Prediction& prediction);
 inline void weigh(const MotionPrior& prior, const SweepBoundary& boundary, const MotionWindow& window,

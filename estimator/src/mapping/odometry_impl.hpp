@@ -20,15 +20,16 @@ namespace mapping {
 
 void require_params(const LidarInertialOdometry::Params& params);
 
-/// Unknowns at a sweep's start, predicted and updated, and the motion of the updated unknowns.
+/// UpdatedSweep contains the unknowns at the start of a sweep, predicted and updated, and the motion of the updated
+/// unknowns.
 struct UpdatedSweep {
   const Prediction& prediction;
   const StateEstimate& start;
   const SweepTrajectory& trajectory;
 };
 
-/// Buffers of a sweep, kept to avoid allocations. Each sweep fills the buffers before reading them, and passes their
-/// contents between its steps as arguments.
+/// SweepScratch contains buffers of a sweep, which are kept to avoid allocations. Each sweep fills the buffers before
+/// reading the buffers, and passes their contents between its steps as arguments.
 struct SweepScratch {
   explicit SweepScratch(const LidarInertialOdometry::Params& params) : points(params), aligner(params) {}
 
@@ -39,72 +40,73 @@ struct SweepScratch {
 
 }  // namespace mapping
 
-/// State of the odometry between sweeps, and the steps of processing a sweep: README.md.
+/// Impl contains the state of the odometry between sweeps, and the steps of processing a sweep; see README.md.
 struct LidarInertialOdometry::Impl {
   explicit Impl(const Params& given);
 
-  /// Registers a sweep as LidarInertialOdometry::add_sweep does, with stamps in the IMU's clock.
+  /// Registers a sweep like LidarInertialOdometry::add_sweep, with time stamps in the IMU's clock.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns, SweepReport& report);
 
   Status check_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns) const;
-  /// Before the first sweep, initialises the state from the IMU at rest.
+  /// Initialises the state from the IMU at rest, before the first sweep.
   Status level_at_first();
-  /// Starts the map if the sweep is suitable, and returns ok. If the sweep is not suitable, the state is propagated
-  /// inertially to the sweep's end.
+  /// Starts the map and returns `ok`, if the sweep is suitable. If the sweep is not suitable, the state is propagated
+  /// inertially to the end of the sweep.
   Status start_map(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns, SweepReport& report);
   Status dead_reckon(TimeNs end_ns);
   bool rests(const mapping::InertialTrack& inertial, const SweepTrajectory& motion, TimeNs end_ns) const;
-  /// Registers a sweep. `trajectory` is the IMU's motion from the boundary on. On return, `trajectory` is that of the
-  /// alignment, or that of a failed attempt if there is no alignment.
+  /// Registers a sweep to the map. `trajectory` is the IMU's motion from the sweep boundary on. On return, `trajectory`
+  /// is that of the alignment, or that of a failed attempt without alignment.
   void register_to_map(const mapping::Prediction& prediction, const mapping::MotionWindow& motion,
                        mapping::SweepPoints& points, SweepTrajectory& trajectory, SweepReport& report,
                        mapping::Placed& placed);
-  /// Returns the updated state. After tracking failure at rest, the prediction assumes the rest.
+  /// Returns the updated state. If the robot is at rest after a tracking failure, the prediction assumes zero velocity.
   mapping::StateEstimate update(const mapping::MotionWindow& motion, const mapping::Placed& placed,
                                 mapping::Prediction& prediction) const;
   std::vector<mapping::InsertedPoint> insert(const mapping::UpdatedSweep& sweep, mapping::SweepPoints& points,
                                              bool rings_differ, const mapping::Placed& placed, SweepReport& report);
   void propagate(const mapping::UpdatedSweep& sweep, const mapping::Placed& placed, const mapping::MotionWindow& motion,
                  std::vector<mapping::InsertedPoint> inserted, SweepReport& report);
-  /// Adds a sweep to the window that continues from the updated sweep's start.
+  /// Adds a sweep to the window that continues from the start of the updated sweep.
   static mapping::WindowSweep& enter_window(const mapping::UpdatedSweep& sweep, const mapping::MotionWindow& motion,
                                             const mapping::SweepBoundary& from, mapping::LagWindow& into);
-  /// Stops the predicted motion at rest, after tracking failure, if only the IMU provides the motion.
+  /// Sets the predicted motion to zero if the robot is at rest after a tracking failure and only the IMU provides the
+  /// motion.
   void stop_at_rest(const mapping::MotionWindow& motion, const mapping::SweepBoundary& from,
                     mapping::Prediction& prediction) const;
   void propagate_alternative(const mapping::MotionWindow& motion, bool unconfirmed_before);
   Status go_on_by_inertia(const mapping::MotionWindow& motion, bool rests, mapping::SweepBoundary& at,
                           mapping::LagWindow* into) const;
   void go_back_to_inertia();
-  /// Returns the state at the boundary by the contradicted relocalisation, after tracking failure. Returns null if no
-  /// relocalisation was contradicted.
+  /// Returns the state at the sweep boundary according to a contradicted relocalisation, after tracking failure.
+  /// Returns null if no relocalisation was contradicted.
   const MotionState* rejected_relocalisation() const;
   void add_map_drift(const mapping::UpdatedSweep& sweep, const SweepReport& report);
   void prune_until(TimeNs end_ns);
 
   PoseState pose_along(const SweepTrajectory& motion, double t_s, const Registration::Matrix& errors) const;
   /// Returns the poses at the ends of the IMU's windows, and at `end_ns` for the last window. `errors` is the
-  /// covariance of the unknowns at the sweep's start.
+  /// covariance of the unknowns at the start of the sweep.
   std::vector<PoseState> poses_along(const SweepTrajectory& motion, TimeNs end_ns,
                                      const Registration::Matrix& errors) const;
   std::vector<PoseState> poses_of(const mapping::WindowSweep& sweep) const;
 
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
-  /// Checks the invariants between the members. Returns the first violated invariant.
+  /// Checks the invariants that relate several members. Returns the first violated invariant.
   Status check_state() const;
   Status check_other() const;
 
   Params params;
   mapping::TrackingState tracking;
   mapping::InertialTrack track;
-  mapping::SweepBoundary boundary;  // between the last sweep and the next
-  mapping::MotionPrior known;       // of the next sweep
-  int resting_sweeps = 0;           // consecutive sweeps at rest, by the IMU
+  mapping::SweepBoundary boundary;  // boundary between the last sweep and the next sweep
+  mapping::MotionPrior known;       // additional information about the next sweep
+  int resting_sweeps = 0;           // number of consecutive sweeps at rest, detected by the IMU
   mapping::LagWindow window;
   mapping::LocalMap map;
   mapping::WorldCovariance world;
-  std::optional<mapping::DeadReckoning> other;  // during an unconfirmed relocalisation, or after a contradicted one
+  std::optional<mapping::DeadReckoning> other;  // alternative for an unconfirmed or a contradicted relocalisation
   mapping::SweepScratch scratch;
 };
 

@@ -10,8 +10,9 @@
 namespace tumble::mapping {
 
 /// Computes a sum of outer products of columns of up to `Rows` numbers. The result equals
-/// SelfAdjointView<Lower>::rankUpdate bit for bit. Eigen's function stores its blocks by value: 86 KiB of stack for 128
-/// columns of 28 numbers. OuterProducts stores the blocks on the heap and therefore calls Eigen's kernel directly.
+/// SelfAdjointView<Lower>::rankUpdate bit for bit. Eigen's function stores its blocks by value, which needs 86 KiB of
+/// stack for 128 columns of 28 numbers. OuterProducts therefore stores the blocks on the heap and calls Eigen's kernel
+/// directly.
 template <int Rows, int Columns>
 class OuterProducts {
  public:
@@ -43,7 +44,7 @@ class OuterProducts {
   Blocks blocks_{Rows, Rows, Columns, 1, false};
 };
 
-/// Pool of buffers for threads; grows to the number of concurrent users.
+/// Spare is a pool of buffers for threads, which grows to the number of concurrent users.
 template <class Work>
 class Spare {
  public:

@@ -11,13 +11,14 @@
 
 namespace tumble::mapping {
 
-/// Derivative of a sweep's point by the unknowns, one direction at a time.
+/// PointMotion is the derivative of a sweep's point by the unknowns, one direction at a time.
 class PointMotion {
  public:
   PointMotion(const SweepTrajectory& trajectory, const SweepCalibration& calibration, const SweepPoint& point,
               std::size_t& hint);
 
-  /// Computes the derivative of the point's position along a direction of the world by all unknowns: mapping.md (R17).
+  /// Computes the derivative of the point's position along a direction of the world by all unknowns, see mapping.md
+  /// (R17).
   void along(const Eigen::Vector3d& direction_W, SweepUnknowns::Vector& derivative) const;
 
   /// Returns the lever arm vector u of SweepTrajectory::base_m, in W.
@@ -28,7 +29,7 @@ class PointMotion {
   bool clipped_;
   SweepTrajectory::Instant now_;
   Eigen::Vector3d turned_, lever_, from_lidar_I_, velocity_m_s_;
-  SweepTrajectory::DeficitDerivative by_deficit_;  // used if an axis clips
+  SweepTrajectory::DeficitDerivative by_deficit_;  // used if an axis of the gyro is clipped
 };
 
 }  // namespace tumble::mapping

@@ -6,46 +6,46 @@
 #include "aligner.hpp"
 #include "tracking.hpp"
 
-/// Choice of the registration's starting poses, including all restarts.
+/// relocalizer.hpp chooses the starting poses of a registration, including all restarts.
 namespace tumble::mapping {
 
 struct Attempt {
-  bool too_few_matches = false;  ///< reason without an alignment: too few map points
+  bool too_few_matches = false;  ///< whether an alignment failed because of too few map points
   int iterations = 0;
-  double inlier_share = 0.0;  ///< fraction of the points of the last registration
+  double inlier_share = 0.0;  ///< inlier fraction of the last registration
 };
 
-/// Candidates for the start of a sweep.
+/// SearchContext contains the candidates for the start of a sweep.
 struct SearchContext {
   const TrackingState& tracking;
   const Registration::Prior& prior;
-  /// State by a relocalisation that the sweep contradicted, as a start of the search. Null if no relocalisation was
-  /// contradicted.
+  /// State according to a relocalisation that the sweep contradicted, as a start of the search. The pointer is null if
+  /// no relocalisation was contradicted.
   const MotionState* contradicted = nullptr;
 };
 
-/// Aligns a sweep by all means that its tracking state allows. `trajectory` is that of the alignment, or of a failed
-/// attempt. `alignment` is that of the sweep's start, and is empty if no alignment was found.
+/// Aligns a sweep by all methods that its tracking state allows. `trajectory` is that of the alignment, or of a failed
+/// attempt. `alignment` refers to the start of the sweep, and is empty if no alignment was found.
 Attempt attempt(const LidarInertialOdometry::Params& params, const SearchContext& from, const Scene& scene,
                 Aligner& aligner, SweepTrajectory& trajectory, std::optional<Registration::Result>& alignment);
 
-/// Result of registering a sweep to the map.
+/// Placed is the result of registering a sweep to the map.
 struct Placed {
   SweepVerdict verdict = SweepVerdict::rejected;
   bool expected = true;  ///< the alignment agrees with the inertial prediction
   Placement placement = Placement::not_tried;
-  bool map_too_sparse = false;                    ///< the sweep has points, but the map has too few nearby
-  std::optional<Registration::Result> alignment;  ///< of its start
+  bool map_too_sparse = false;                    ///< the sweep has points, but the map has too few nearby points
+  std::optional<Registration::Result> alignment;  ///< alignment at the start of the sweep
 };
 
-/// Sets the verdict of an attempt with `points` points. `placed` already contains the alignment and whether the
-/// alignment was expected. If the map had too few points, or after enough failed searches, the motion continues by
-/// inertial prediction as `degenerate`.
+/// Sets the verdict of an attempt with `points` points. `placed` must contain the alignment, and whether the alignment
+/// was expected. If the map has too few points, or after enough failed searches, the motion continues by inertial
+/// prediction with the verdict `degenerate`.
 void judge(const LidarInertialOdometry::Params& params, const TrackingState& before, std::size_t points,
            bool prior_certain, const Attempt& attempt, Placed& placed);
 
-/// Computes start number `index` of a search. Start 0 is the prior. The further starts are shifts along each axis by
-/// its uncertainty, closest first, mapping.md (R66).
+/// Computes starting pose number `index` of a search. Starting pose 0 is the prior. Further starting poses are shifted
+/// along each axis by the uncertainty of the axis, closest first, see mapping.md (R66).
 void move_start(const RelocalizationParams& params, int index, Registration::Prior& prior);
 
 }  // namespace tumble::mapping

@@ -3,13 +3,15 @@
 
 #include <utility>
 
-/// Cosine and sine of half a small angle by their series. The computation starts with c = s = 1, and h is the half
-/// angle squared. Each pair of ratios (a, b) gives c = 1 - h a c and s = 1 - h b s. The result s is sin(x) / x.
+/// rotation_series.hpp computes cosine and sine of half a small angle by their series. The computation starts with c =
+/// s = 1, and h is the square of the half angle. Each pair of ratios (a, b) updates c to 1 - h a c and s to 1 - h b s.
+/// The resulting s is sin(x) / x with the half angle x.
 namespace tumble::rotation_series {
 
-/// Maximum whole angle, squared. Larger angles would need more terms.
+/// Square of the largest whole angle for which the series is accurate. Angles above kAngle2_rad2 would need more terms
+/// of the series.
 inline constexpr double kAngle2_rad2 = 1.0;
-/// Ratios of successive terms of the series of cos and of sin(x) / x, last term first.
+/// Ratios of successive terms of the series of cos(x) and of sin(x) / x, last term first.
 inline constexpr std::pair<double, double> kRatios[] = {
     {1.0 / 182, 1.0 / 210}, {1.0 / 132, 1.0 / 156}, {1.0 / 90, 1.0 / 110}, {1.0 / 56, 1.0 / 72},
     {1.0 / 30, 1.0 / 42},   {1.0 / 12, 1.0 / 20},   {1.0 / 2, 1.0 / 6}};

@@ -7,9 +7,9 @@
 
 namespace tumble::mapping {
 
-/// Free space of a sweep: the nearest return per direction, in bins of a cube around one position, axes of the world. A
-/// map point closer than all returns around its direction is no longer present, mapping.md (R65). Directions with few
-/// returns, and directions at an edge of the cube, give no information.
+/// SightGrid is the free space of a sweep: the nearest return per direction, in bins of a cube around one position,
+/// with world axes. A map point that is closer than all returns around its direction is no longer present, see
+/// mapping.md (R65). Directions with few returns, and directions at an edge of the cube, provide no information.
 class SightGrid {
  public:
   /// Sets the ray origin for the following points, and the distance that the sensor moved around the origin during the
@@ -18,11 +18,12 @@ class SightGrid {
   void add(const Eigen::Vector3f& return_W_m);
 
   enum class Verdict { unknown, seen, seen_through };
-  /// Checks a map point, with the standard deviation of its position. O(1).
+  /// Checks whether the sweep saw a map point or saw through the point. `sigma_m` is the standard deviation of the
+  /// point's position. Cost: O(1).
   Verdict verdict(const Eigen::Vector3f& point_W_m, float sigma_m) const;
 
  private:
-  static constexpr int kBins = 60;  // along an edge: 1 to 2 deg
+  static constexpr int kBins = 60;  // number of bins along an edge: 1 to 2 deg per bin
   struct Direction {
     int face, u, v;
     std::size_t bin() const { return static_cast<std::size_t>((face * kBins + v) * kBins + u); }
@@ -32,7 +33,7 @@ class SightGrid {
 
   Eigen::Vector3f from_W_m_ = Eigen::Vector3f::Zero();
   float least_m_ = 0.0f;
-  std::vector<float> nearest_m_;  // infinity without a return
+  std::vector<float> nearest_m_;  // infinity for a direction without a return
 };
 
 }  // namespace tumble::mapping

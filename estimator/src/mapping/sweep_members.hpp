@@ -5,7 +5,8 @@
 #include "odometry_impl.hpp"
 #include "odometry_members.hpp"
 
-/// Members of the odometry's parts that belong to sweeps and readings, as state_visitor.hpp describes.
+/// sweep_members.hpp describes the members of the odometry's parts that belong to sweeps and readings, as
+/// state_visitor.hpp explains.
 namespace tumble {
 
 template <StateOf<MotionSample> Self, class Visitor>

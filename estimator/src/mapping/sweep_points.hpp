@@ -11,7 +11,8 @@
 
 namespace tumble::mapping {
 
-/// Usable returns of a sweep, and the subset to be registered. Stores only the current sweep.
+/// SweepPoints contains the usable returns of a sweep, and the subset of returns to be registered. SweepPoints stores
+/// only the current sweep.
 class SweepPoints {
  public:
   using Params = LidarInertialOdometry::Params;
@@ -19,11 +20,12 @@ class SweepPoints {
   explicit SweepPoints(const Params& params);
 
   struct Counts {
-    std::size_t used = 0;  ///< finite, in range, not on the robot itself
-    std::size_t lone = 0;  ///< of these, lone returns that were dropped
+    std::size_t used = 0;  ///< finite returns in range that do not hit the robot itself
+    std::size_t lone = 0;  ///< number of dropped lone returns
     bool rings_differ = false;
   };
-  /// Processes a sweep that starts `start_s` after its trajectory. Returns the errors of check_selection.
+  /// Selects the usable returns of a sweep that starts `start_s` after the start of its trajectory. Returns the errors
+  /// of check_selection().
   Status select(const Params& params, std::span<const LidarPoint> returns, TimeNs span_ns,
                 const SweepCalibration& calibration, double start_s, Counts& counts);
   /// Selects the points to register by the predicted motion, one per cube in the world.

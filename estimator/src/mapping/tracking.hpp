@@ -5,13 +5,13 @@
 
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 
-/// Tracking state of the sensor relative to the map, and its transitions.
+/// tracking.hpp defines the tracking state of the sensor relative to the map, and the transitions of the state.
 namespace tumble::mapping {
 
 struct WaitingForStart {};
 
-/// Normal tracking. A sweep without registration may still be accepted, by a certain prior or after the search was
-/// abandoned.
+/// Tracking is the normal state. A sweep without registration may still be accepted, by a certain prior or after the
+/// search was abandoned.
 struct Tracking {
   int failed_searches = 0;  ///< consecutive sweeps with points but without registration
 };
@@ -21,21 +21,22 @@ struct Lost {
   int failed_searches = 0;
 };
 
-/// Unconfirmed relocalisation. Inertial prediction continues in parallel (DeadReckoning) and replaces the
-/// relocalisation if a sweep contradicts it. mapping.md (R67), (R68).
+/// Relocalised is the state after a relocalisation that is not yet confirmed. Inertial prediction continues in parallel
+/// (DeadReckoning), and replaces the relocalisation if a sweep contradicts the relocalisation. See mapping.md (R67),
+/// (R68).
 struct Relocalised {
-  int after_sweeps = 0;  ///< rejected sweeps before it
+  int after_sweeps = 0;  ///< number of rejected sweeps before the relocalisation
   int failed_searches = 0;
-  int agreeing = 0;  ///< confirming sweeps since
+  int agreeing = 0;  ///< number of confirming sweeps
 };
 
 using TrackingState = std::variant<WaitingForStart, Tracking, Lost, Relocalised>;
 
-/// Result of a sweep.
+/// Placement is the result of registering one sweep.
 enum class Placement : std::uint8_t {
   not_tried,  ///< no points, or no map yet
   failed,
-  unconfirmed,  ///< found by a search against the inertial prediction, or surfaces fit too badly to confirm
+  unconfirmed,  ///< found by a search, but not yet confirmed
   found,
 };
 
@@ -50,6 +51,6 @@ bool has_started(const TrackingState& state);
 bool is_lost(const TrackingState& state);
 bool is_unconfirmed(const TrackingState& state);
 int lost_sweeps(const TrackingState& state);      ///< 0 unless tracking failed
-int failed_searches(const TrackingState& state);  ///< consecutive
+int failed_searches(const TrackingState& state);  ///< number of consecutive failed searches
 
 }  // namespace tumble::mapping

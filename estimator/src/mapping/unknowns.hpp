@@ -3,8 +3,9 @@
 
 #include "tumble/mapping/registration.hpp"
 
-/// Names for the blocks of a vector or a matrix over all unknowns of a sweep, or over their first part, as listed in
-/// docs/maths/mapping.md. Use `rows(F, velocity)` instead of an index, and `segment(step, velocity)` for a vector.
+/// unknowns.hpp names the blocks of a vector or a matrix over all unknowns of a sweep, or over their first part, as
+/// listed in docs/maths/mapping.md. Use `rows(F, velocity)` instead of an index, and `segment(step, velocity)` for a
+/// vector.
 namespace tumble::mapping::unknowns {
 
 template <int First, int Size>
@@ -25,10 +26,10 @@ inline constexpr Block<Registration::kCalibration + 3, 3> mounting_translation;
 inline constexpr Block<Registration::kCalibration + 6, 1> clock;
 inline constexpr Block<Registration::kCalibration + 7, 3> gravity;
 
-/// Variance of an unknown whose prior is exact, so that the prior can be inverted.
+/// Variance of an unknown whose prior is exact; the variance is above 0 so that the prior can be inverted.
 inline constexpr double kLeastVariance = 1e-12;
-/// Limit of the squared Mahalanobis distance at which a sweep's motion agrees with its prior: the 95 % quantile of
-/// chi-square with nine degrees of freedom. mapping.md (R25), (R71).
+/// Largest squared Mahalanobis distance at which a sweep's motion agrees with its prior: the 95 % quantile of
+/// chi-square with nine degrees of freedom. See mapping.md (R25), (R71).
 inline constexpr double kAgrees = 16.9;
 static_assert(SweepUnknowns::kMotion == 9);
 

@@ -14,7 +14,7 @@ namespace tumble {
 
 namespace odometry {
 
-/// Field names that add_sweep puts in a Status. A loaded Status needs a pointer to a static string.
+/// Names of the fields that add_sweep() may report in a Status. A loaded Status needs a pointer to a static string.
 inline constexpr std::array<const char*, 13> kSweepFields = {"",
                                                              "end_ns",
                                                              "start_ns",

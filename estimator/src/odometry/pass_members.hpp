@@ -11,12 +11,12 @@
 #include "tumble/odometry/detail/second_pass.hpp"
 #include "tumble/odometry/detail/waiting_input.hpp"
 
-/// Members of the two passes of TumblingOdometry, visited as state_visitor.hpp describes.
+/// pass_members.hpp describes the members of the two passes of TumblingOdometry, as state_visitor.hpp explains.
 namespace tumble {
 
 namespace odometry {
 
-/// Visits the parameters of the rates that may come from an earlier run.
+/// Visits the rate parameters that may come from an earlier run.
 template <StateOf<RegimeStream::Params> Self, class Visitor>
 void visit_estimated(Self& p, Visitor& visit) {
   visit("calibration", p.rate.model.calibration);
@@ -98,7 +98,7 @@ void SecondPass::members(Self& s, Visitor& visit) {
     s.pass_.reset();
     if (under_way && visit.going()) s.pass_.emplace(s.lagging_rate(), s.mapping_);
   }
-  // the second pass has the members of the first pass, which the layout already contains
+  // the layout already contains the members of a pass, so that the second pass is not described
   if (s.pass_ && !Visitor::kDescribes) visit("second_pass.pass", *s.pass_);
   visit.scratch(s.pass_);
   visit("second_pass.next_sample", s.next_sample_, 0.0, double(s.samples_.all().size()));

@@ -11,7 +11,9 @@
 #include "../common/state_layout.hpp"
 #include "../common/state_params.hpp"
 
-/// Serialisation of complete odometry objects and of stream states. Numbers are little-endian.
+/// saved_state.hpp serialises complete odometry objects and states of streams. All numbers are little-endian.
+///
+/// The bytes are:
 ///
 /// | bytes | |
 /// | --- | --- |
@@ -23,8 +25,8 @@
 /// | 32 | checksum of all other bytes |
 /// | 40 | the parameters, then the state, as StateWriter writes them |
 ///
-/// A saved state can only be loaded by a library with the same state layout. An added member changes the digest. A
-/// member whose meaning changes without a change of layout requires a new version.
+/// A saved state can be loaded only by a library with the same state layout. A new member changes the digest. If the
+/// meaning of a member changes without a change of layout, the version of the format must change.
 namespace tumble::odometry {
 
 enum class SavedKind : std::uint32_t {
@@ -42,7 +44,7 @@ inline constexpr std::size_t kSavedHeader = 40;
 
 /// Fills the header of `bytes`, whose first kSavedHeader bytes are reserved.
 void seal(SavedKind kind, std::uint64_t layout, std::vector<std::byte>& bytes);
-/// Checks the header and returns the bytes after it.
+/// Checks the header and returns the bytes after the header.
 Status open(SavedKind kind, std::uint64_t layout, std::span<const std::byte> bytes,
             std::span<const std::byte>& payload);
 
@@ -65,7 +67,8 @@ std::vector<std::byte> save(SavedKind kind, const Whole& whole, const Params& pa
   return bytes;
 }
 
-/// Loads into an object that was created with the saved parameters. On error the object must be discarded.
+/// Loads a state into an object that was created with the saved parameters. After an error, the caller must discard the
+/// object.
 template <class Whole, class Params>
 Status load(SavedKind kind, std::span<const std::byte> bytes, const Params& params, Whole& whole) {
   std::span<const std::byte> payload;
@@ -80,8 +83,8 @@ Status load(SavedKind kind, std::span<const std::byte> bytes, const Params& para
   return in.status();
 }
 
-/// Reads only the parameters. `params` are any valid parameters, with which `whole` was created. On error, `params` is
-/// unchanged.
+/// Reads only the parameters of a saved state. `params` may have any valid values; `whole` must have been created with
+/// `params`. On error, `params` is unchanged.
 template <class Whole, class Params>
 Status load_params(SavedKind kind, std::span<const std::byte> bytes, const Whole& whole, Params& params) {
   std::span<const std::byte> payload;

@@ -11,17 +11,18 @@
 
 namespace tumble::rolling {
 
-/// The smoother's final pass over stored samples: one Kalman filter with fixed modes, then the backward pass.
+/// LastPass is the final pass of RollingSmoother over stored samples: one Kalman filter with fixed modes, then the
+/// backward pass.
 ///
-/// The backward pass needs more than 10 KiB per node. Nodes are therefore cut into segments, and only the filter at the
-/// start of each segment and the adjoint at its end are stored. The records of one segment are recomputed when needed,
-/// bit for bit. A window of one segment is processed one time, a longer window three times. The object contains four
-/// filters of 13 KiB, so do not put a LastPass on the stack.
+/// The backward pass needs more than 10 KiB per node. LastPass therefore divides the nodes into segments, and stores
+/// only the filter at the start of each segment and the adjoint at its end. The records of one segment are recomputed
+/// when needed, bit for bit. A window of one segment is processed one time, and a longer window three times. A LastPass
+/// contains four filters of 13 KiB, so do not put a LastPass on the stack.
 class LastPass {
  public:
-  static constexpr std::size_t kSegment = 128;  ///< nodes; 1.6 MiB of records, 0.2 KiB of stored states per node
+  static constexpr std::size_t kSegment = 128;  ///< number of nodes; 1.6 MiB of records
 
-  /// The filter and its position in the samples, between two nodes.
+  /// Checkpoint is the filter and its position in the samples, between two nodes.
   struct Checkpoint {
     PathFilter filter;
     Readings::Cursor reading;
@@ -29,22 +30,23 @@ class LastPass {
   struct Distance {
     double distance_m = 0.0, sigma_m = 0.0;
   };
-  /// Smoothed result at one sample.
+  /// Smoothed is the smoothed result at one sample.
   struct Smoothed {
     const SamplePoint& point;
     const RollingNominal& nominal;
-    Reported error;          ///< of the sample
-    const NodeRecord* node;  ///< the node whose covariance applies; null if the window has no node
+    Reported error;          ///< error of the sample
+    const NodeRecord* node;  ///< node whose covariance applies; null if the window has no node
     std::size_t index;
   };
 
-  /// Constructs the pass. All arguments must outlive the pass. `distance`, if known, is measured at the end of the
-  /// samples. `segment` is the number of nodes whose records are stored at a time. The number of nodes affects only
-  /// memory and computing time.
+  /// Constructs the pass; all arguments must outlive the pass. If `distance` is known, the distance is measured at the
+  /// end of the samples. `segment` is the number of nodes whose records are stored at a time. The number of nodes per
+  /// segment affects only memory and computing time.
   LastPass(const RollingParams& params, std::span<const ImuSample> samples, std::span<const PathNode> path,
            std::optional<Distance> distance, std::size_t segment = kSegment);
 
-  /// Runs forward from `start`, and then backward. `cut` is the number of nodes after which cut() is taken.
+  /// Runs forward from `start`, and then backward. `cut` is the number of nodes after which the filter is copied for
+  /// cut().
   void run(const Checkpoint& start, std::size_t cut);
 
   std::size_t nodes() const { return horizontal_m2_.size(); }
@@ -78,14 +80,14 @@ class LastPass {
   std::vector<double> horizontal_m2_;
   std::size_t cut_after_ = 0;
   Checkpoint cut_, end_;
-  Checkpoint again_;  ///< in a segment that is recomputed
-  Adjoint adjoint_;   ///< of the backward pass
+  Checkpoint again_;  ///< filter in a segment that is recomputed
+  Adjoint adjoint_;   ///< adjoint of the backward pass
   // index of the loaded segment
   std::size_t loaded_ = 0;
   std::vector<NodeRecord> records_;
   std::vector<SamplePoint> points_;
   Reported smoothed_start_ = Reported::Zero();
-  Reported moved_at_end_ = Reported::Zero();  ///< due to the distance
+  Reported moved_at_end_ = Reported::Zero();  ///< correction due to the measured distance
 };
 
 }  // namespace tumble::rolling

@@ -25,42 +25,45 @@ using Moving = Eigen::Matrix<double, 9, kStates>;
 /// is constant.
 inline constexpr double kConstrainAfter_s = 0.1, kConstrainSpeed_m_s = 0.02;
 
-/// Contact velocity of the nominal trajectory and its derivative by the error state.
+/// Contact is the contact velocity of the nominal trajectory, and its derivative by the error state.
 struct Contact {
   Eigen::Vector3d u_W_m_s;
   Eigen::Matrix<double, 3, kStates> H;
   double grip_variance = 0.0;
-  double gap_variance = 0.0;       ///< additional, in every direction
-  double rolling_speed_m_s = 0.0;  ///< of the centre, assuming grip
-  Eigen::Vector3d lift_W;          ///< derivative of u by the normal's third component
-  Eigen::Vector2d slope;           ///< nominal
+  double gap_variance = 0.0;       ///< additional variance from a gap, in every direction
+  double rolling_speed_m_s = 0.0;  ///< speed of the centre, assuming grip
+  Eigen::Vector3d lift_W;          ///< derivative of u by the third component of the normal
+  Eigen::Vector2d slope;           ///< slope of the nominal
 
-  /// Returns the contact velocity for an error `x`, which is linear except for the length of the normal.
+  /// Returns the contact velocity for an error `x`. The contact velocity is linear in `x` except for the length of the
+  /// normal.
   Eigen::Vector3d velocity(const Vector& x) const;
 };
 
-/// Returns the variance of a stationary contact point's velocity. When slipping, only the vertical component is used.
+/// Returns the variance of a stationary contact point's velocity. When the sphere slips, only the vertical component is
+/// used.
 Eigen::Vector3d contact_variance(const RollingParams& params, const Contact& c, RollingMode mode);
 
 bool starts_in_motion(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s);
 
-/// Returns the initial state: levelled or stated attitude, centre at the origin, at rest, or rolling if in motion.
+/// Returns the initial state: levelled or stated attitude, centre at the origin, and zero velocity, or rolling velocity
+/// if the sphere starts in motion.
 RollingNominal start_nominal(const RollingParams& params, const Eigen::Quaterniond& q_WI,
                              const Eigen::Vector3d& rate_I_rad_s);
 void set_prior(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s, Covariance& P);
 
-/// Kind of force: measured, at least up to saturation, or unknown, as in a gap.
+/// Force states whether a force is measured (at least up to saturation) or unknown, as in a gap.
 enum class Force { read, unknown };
 
 void integrate(const RollingParams& params, const ImuAverage& reading, RollingNominal& nominal, RollingSums& sums,
                Force known = Force::read);
 
-/// Returns the nominal trajectory extrapolated by readings that are not yet processed.
+/// Returns the nominal trajectory, extrapolated by readings that are not yet processed.
 RollingNominal carried_on(const RollingParams& params, const ImuAverage& reading, const RollingNominal& nominal);
 
 int gap_pieces(const RollingParams& params, double gap_s);
 
-/// Uncertainty of a piece of a gap, with interpolated rate and without force.
+/// GapUncertainty is the uncertainty of a piece of a gap, with interpolated rate and without force.
 struct GapUncertainty {
   double rad2 = 0.0, rate_rad2_s = 0.0, speed_m2_s2 = 0.0;
 };
@@ -74,13 +77,13 @@ void integrate_gap(const RollingParams& params, const ImuAverage& piece, const G
 Moving transition(const RollingSums& sums);
 void predict(const RollingParams& params, const RollingSums& sums, const Moving& B, Vector& x, Covariance& P);
 
-/// Computes the contact at a node. `rate_I_rad_s` is the raw reading at the node. `sums` are the sums over the node;
-/// the rate's uncertainty in a gap adds to the noise of the contact.
+/// Computes the contact at a node. `rate_I_rad_s` is the unprocessed reading at the node. `sums` contains the sums over
+/// the node; the rate's uncertainty in a gap adds to the noise of the contact.
 Contact contact(const RollingParams& params, const RollingNominal& nominal, const Eigen::Vector3d& rate_I_rad_s,
                 const RollingSums& sums);
 
-/// Applies a change of mode to the floor's slope. The slope is a random walk while the mode lasts. When the contact
-/// point stops again, the slope becomes level or unknown. `h_s` is the length of the node.
+/// Updates the floor's slope for a change of mode. The slope is a random walk while the mode lasts. When the contact
+/// point stops again, the slope becomes level or unknown. `h_s` is the duration of the node.
 void change_floor(const RollingParams& params, RollingMode from, RollingMode to, double h_s,
                   const RollingNominal& nominal, Vector& x, Covariance& P);
 
@@ -91,8 +94,8 @@ std::optional<double> lost_velocity_variance(const RollingParams& params, double
 /// Returns whether a mode change from `from` to `to` makes the slope unknown.
 bool resets_slope(RollingMode from, RollingMode to);
 
-/// Levels a tilt that was lost during clipping, by the node's mean force, at rest or in motion, and resets the
-/// velocity. Returns false if levelling is not needed, or if the node's force is not usable.
+/// Levels a tilt that was lost during clipping, by the mean force of the node, at rest or in motion. The function also
+/// resets the velocity. Returns false if levelling is not needed, or if the force of the node is not usable.
 bool reset_tilt(const RollingParams& params, const RollingSums& sums, bool at_rest, RollingNominal& nominal,
                 Covariance& P);
 
@@ -102,7 +105,7 @@ void update(const Row& row, double measured, double variance, Vector& x, Covaria
 /// Applies a Kalman update by a measurement of a single state.
 void update(int index, double measured, double variance, Vector& x, Covariance& P);
 
-/// Moves the error `x` into the nominal trajectory and constants.
+/// Adds the error `x` to the nominal trajectory and constants.
 void rebase(const Vector& x, RollingNominal& nominal);
 
 }  // namespace tumble::rolling

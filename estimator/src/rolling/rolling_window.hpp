@@ -13,17 +13,17 @@ namespace tumble::rolling {
 struct PathNode {
   RollingMode mode = RollingMode::grip;
   bool at_rest = false;
-  bool spins_in_place = false;  ///< at rest, but rotating about its contact
-  bool stands = false;          ///< at rest long enough, before and after, that the position may be constant
+  bool spins_in_place = false;  ///< at rest, but rotating about the contact point
+  bool stands = false;          ///< at rest long enough that the position may be constant
   Eigen::Matrix3d spread_m2 = Eigen::Matrix3d::Zero();
 };
 
-inline constexpr int kReported = 12;  ///< states needed for a pose: attitude, velocity, position, lever arm
+inline constexpr int kReported = 12;  ///< number of states of a pose: attitude, velocity, position, lever arm
 using Reported = Eigen::Matrix<double, kReported, 1>;
 
-/// A node of the final pass, with all data for the backward pass.
+/// NodeRecord is a node of the final pass, with all data for the backward pass.
 struct NodeRecord {
-  static constexpr int kRowsMax = 7;  ///< at rest, and a known distance
+  static constexpr int kRowsMax = 7;  ///< at rest, and with a known distance
   Moving B;
   std::array<Row, kRowsMax> H;
   std::array<Vector, kRowsMax> gain;
@@ -32,36 +32,37 @@ struct NodeRecord {
   bool resets_slope = false;
   bool tilt_reset = false;
   bool lost_heading = false;
-  Eigen::Matrix<double, kReported, kStates> P_rows;  ///< after the update
+  Eigen::Matrix<double, kReported, kStates> P_rows;  ///< rows of P after the update
   Reported correction;                               ///< correction of the nominal by the update
-  Vector turned;                                     ///< for a lost heading, of that correction: turned_by_heading()
-  RollingNominal nominal;                            ///< after the update
+  Vector turned;                                     ///< turned_by_heading() of the correction, if the heading is lost
+  RollingNominal nominal;                            ///< nominal after the update
   PathNode path;
   TimeNs time_ns = 0;
   Reported smoothed;
   Eigen::Matrix<double, kReported, kReported> smoothed_P;
 };
 
-/// One input of the live filter: averaged readings, or a piece of a gap.
+/// Reading is one input of the live filter: averaged readings, or a piece of a gap.
 struct Reading {
   ImuAverage average;
   GapUncertainty uncertainty;
   bool in_gap = false;
-  bool whole = true;               ///< false: the last one of the run, too short to be processed
-  std::size_t first = 0, end = 0;  ///< its samples; in a gap, only the last piece has one
+  bool whole = true;               ///< false: last reading of the run, too short to be processed
+  std::size_t first = 0, end = 0;  ///< samples of the reading; in a gap, only the last piece has one
   TimeNs end_ns = 0;
 };
 
-/// Iterates over stored samples in the form that the live filter processes. Each step is O(1) and does not allocate.
+/// Readings iterates over stored samples in the form that the live filter processes. Each step costs O(1) and does not
+/// allocate.
 class Readings {
  public:
-  /// Position in the samples: before the next reading.
+  /// Cursor is the position in the samples before the next reading.
   struct Cursor {
     TimeNs time_ns = 0;  ///< end of the last reading
     Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero();
     std::size_t next = 0;
-    // Of the current gap.
-    Eigen::Vector3d gap_rate_rad_s = Eigen::Vector3d::Zero();  ///< before the gap
+    // Data of the current gap.
+    Eigen::Vector3d gap_rate_rad_s = Eigen::Vector3d::Zero();  ///< rate before the gap
     TimeNs gap_start_ns = 0;
     int gap_piece = 0;
     bool operator==(const Cursor&) const = default;
@@ -86,7 +87,7 @@ struct SamplePoint {
   Eigen::Quaterniond q_WI;
   Eigen::Vector3d v_WI_m_s, p_WI_m;
   Eigen::Vector3d rate_I_rad_s;
-  std::size_t node = 0;  ///< first node that closes after it
+  std::size_t node = 0;  ///< first node that closes after the sample
 };
 
 struct PathFilter {
@@ -97,7 +98,7 @@ struct PathFilter {
 
 Eigen::Matrix<double, kReported, kStates> output_covariance_rows(const Covariance& P);
 
-/// Closes a node: prediction, measurements, correction of the nominal. `record` is blank.
+/// Closes a node: prediction, measurements, and correction of the nominal. `record` must have its initial values.
 void close_node(const RollingParams& params, const RollingSums& sums, const Eigen::Vector3d& rate_I_rad_s,
                 const PathNode& path, PathFilter& filter, NodeRecord& record);
 
@@ -110,14 +111,15 @@ Reported error_before_update(const NodeRecord& node);
 Reported measure_distance(const RollingParams& params, double distance_m, double sigma_m, NodeRecord& last,
                           PathFilter& filter);
 
-/// Information of later measurements about the error at a node.
+/// Adjoint is the information of later measurements about the error at a node.
 struct Adjoint {
   Vector lambda = Vector::Zero();
   Covariance Lambda = Covariance::Zero();
 };
 
-/// Applies the modified Bryson-Fraser smoother: fills `smoothed` and `smoothed_P` of consecutive nodes. On entry,
-/// `adjoint` refers to the time after the last node. On return, `adjoint` refers to the time before the first node.
+/// Applies the modified Bryson-Fraser smoother, which computes `smoothed` and `smoothed_P` of consecutive nodes. On
+/// entry, `adjoint` refers to the time after the last node. On return, `adjoint` refers to the time before the first
+/// node.
 void smooth_back(Adjoint& adjoint, std::span<NodeRecord> nodes);
 
 }  // namespace tumble::rolling

@@ -13,52 +13,51 @@
 
 namespace tumble {
 
-/// Saturation levels of an IMU.
+/// KnownRails contains the saturation levels of an IMU.
 struct KnownRails {
   RailDetector::State upright_rails;  ///< levels found from equal readings, and stated ranges
   RailPlanes planes;                  ///< saturation planes of the gyro's sensing elements, where observed
   RailPlanes accel_planes;            ///< saturation planes of the accelerometer
-  bool upright = false;               ///< the device clips its output, so other axes are unaffected
-  bool accel_upright = false;         ///< the accelerometer's device clips its output
+  bool upright = false;               ///< the gyro clips after compensation, so other axes are unaffected
+  bool accel_upright = false;         ///< the accelerometer clips after compensation
 
-  /// Returns the saturation planes that classify readings. If the device clips its output, equal readings identify
-  /// clipped samples exactly. Planes are then used only for sensing elements whose saturation level is not known from
-  /// equal readings.
+  /// Returns the saturation planes that are used to classify readings. If the device clips its output after
+  /// compensation, a run of equal readings identifies clipped samples exactly. If equal readings identify clipped
+  /// samples, the function returns planes only for sensing elements without a known saturation level.
   RailPlanes planes_in_use(Triad triad = Triad::gyro) const;
-  /// Returns the sensing directions of the triad's elements. `unknown_sigma` is the standard deviation of a cross-axis
-  /// sensitivity that no saturation plane determines.
+  /// Returns the directions along which the sensing elements of the triad (gyro or accelerometer) measure.
+  /// `unknown_sigma` is the standard deviation of a cross-axis sensitivity that no saturation plane determines.
   ElementRows rows(Triad triad, double unknown_sigma) const;
   bool operator==(const KnownRails&) const = default;
 };
 
-/// Information that the reading of one sensing element provides.
+/// ElementReading describes what information the reading of one sensing element provides.
 enum class ElementReading : std::uint8_t {
   measured,
-  clipped_high,  ///< lower bound: the true value along the element's row is at this level or beyond
+  clipped_high,  ///< lower bound: the true component is at or beyond the saturation level
   clipped_low,
   unreadable  ///< no information
 };
-/// Returns the information that sensing element `axis` of a classified sample provides.
+/// Returns what information sensing element `axis` of a classified sample provides.
 ElementReading element_reading(const ImuSample& sample, const Clipping& clipping, Triad triad, int axis);
 
-/// Returns the ClipFlag bits of a classified sample, as a device with correct flags would set them.
+/// Returns the ClipFlag bits of a classified sample, as a device with correct flags would set the bits.
 std::uint8_t clip_flags(const Clipping& clipping);
 
-/// Saturation levels that are certain enough for tests across units, used for units that may freeze. A saturation level
-/// is not certain if it is derived from equal readings alone. Flat maxima of slow motion far below the stated range are
-/// excluded, and so are repeated readings without a stated range. Saturation planes are included because slow motion
-/// and frozen sensors do not produce planes.
+/// CertainRails contains the saturation levels that are certain enough for comparing several IMUs that may freeze. A
+/// saturation level that is derived from equal readings alone is not certain. CertainRails excludes flat maxima of slow
+/// motion far below the stated range, and repeated readings without a stated range. CertainRails includes saturation
+/// planes, because slow motion and frozen sensors do not produce planes.
 struct CertainRails {
-  RailPlanes gyro, accel;                                 ///< planes in use
+  RailPlanes gyro, accel;                                 ///< saturation planes that are used to classify readings
   double gyro_range_rad_s = 0.0, accel_range_m_s2 = 0.0;  ///< stated range; 0: not stated
   /// Returns the clip flags of a classified sample, in addition to the flags that the device set.
   std::uint8_t flags(const ImuSample& sample, const Clipping& judged) const;
 };
 
 /// Finds the clipped readings of a recording, for every estimator that processes whole recordings. ClippingFinder
-/// combines flags of the device, saturation levels from equal readings (RailDetector) and tilted planes
-/// (RailPlaneFinder), for gyro and accelerometer. RailWatch applies the rules of ClippingFinder to the window of
-/// RateStream.
+/// combines flags of the device, saturation levels from equal readings (RailDetector) and tilted saturation planes
+/// (RailPlaneFinder). RailWatch applies the rules of ClippingFinder to the window of RateStream.
 class ClippingFinder {
  public:
   struct Params {
@@ -66,7 +65,7 @@ class ClippingFinder {
     RailPlaneFinder::Params planes = {};  ///< without a stated range, the range of `upright_rails` applies
     /// Parameters of the search for saturation planes of the accelerometer.
     RailPlaneFinder::Params accel_planes = RailPlaneFinder::Params::for_accelerometer();
-    /// If false, clipping is detected only from flags and equal readings, as in the published methods.
+    /// If `tilted` is false, clipping is detected only from flags and equal readings, as in the published methods.
     bool tilted = true;
 
     /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
@@ -89,7 +88,8 @@ class ClippingFinder {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit ClippingFinder(const Params& params);
 
-  /// Classifies all samples. Samples must be finite and in time order. Cost: O(N) plus the search of RailPlaneFinder.
+  /// Classifies all samples of a recording. Cost: O(N), plus the search of RailPlaneFinder. The samples must be finite
+  /// and in time order.
   Found find(std::span<const ImuSample> samples) const;
 
   const RailDetector& upright_rails() const { return upright_rails_; }
@@ -99,7 +99,7 @@ class ClippingFinder {
                          bool& upright) const;
 
   RailDetector upright_rails_;
-  // index 0: gyro, 1: accelerometer; the inner index 1 applies if readings exceed the stated range
+  // index 0: gyro, index 1: accelerometer; inner index 1: finder for readings that exceed the stated range
   std::array<std::array<RailPlaneFinder, 2>, 2> planes_;
   bool tilted_;
 };

@@ -12,7 +12,7 @@
 
 namespace tumble {
 
-/// Clipped axes of a sample.
+/// Clipping marks the clipped axes of a sample.
 struct Clipping {
   std::uint8_t gyro = 0;          ///< bit j: axis j is saturated; the true value is at or beyond the reading
   std::uint8_t accel = 0;         ///< bit j: axis j of the accelerometer is saturated
@@ -20,17 +20,18 @@ struct Clipping {
   bool operator==(const Clipping&) const = default;
 };
 
-/// Parameters of plateaus: consecutive readings that are closer together than noise allows.
+/// RailPlateauParams defines plateaus: runs of consecutive readings that are closer together than noise allows.
 struct RailPlateauParams {
   int samples = 4;  ///< minimum number of readings
-  /// Largest spread of a plateau's readings, as a fraction of the saturation level. The spread of a plateau is below
-  /// the noise of unsaturated readings.
+  /// Largest spread of the readings of a plateau, as a fraction of the saturation level. The spread of a plateau is
+  /// smaller than the noise of unsaturated readings.
   double spread_share = 2e-5;
-  /// A plateau of the gyro below gyro_low_rad_s needs twice as many readings and a jump at its start or end.
+  /// A plateau of the gyro below gyro_low_rad_s needs twice as many readings, and a jump at its start or end.
   double gyro_low_rad_s = 1.0;
   double gyro_min_rad_s = 0.02;  ///< minimum level of a plateau
   double accel_min_m_s2 = 15.0;  ///< minimum level of a plateau of the accelerometer; above gravity
-  /// Minimum jump at the start or end of a low plateau, in digits (smallest observed change between two readings).
+  /// Minimum jump at the start or end of a low plateau, in digits. A digit is the smallest observed change between two
+  /// readings.
   double jump_digits = 8.0;
 
   template <class Self, class Visitor>
@@ -61,11 +62,11 @@ struct RailDetectorExpertParams {
 
 /// Parameters of RailDetector.
 struct RailDetectorParams {
-  /// Range stated by the data sheet or the user, if any: gyro [rad/s], (0, 1000]; accelerometer [m/s^2], (0, 1e5].
+  /// Ranges that the data sheet or the user states, if any: gyro [rad/s], (0, 1000]; accelerometer [m/s^2], (0, 1e5].
   std::optional<double> stated_gyro_rad_s = std::nullopt;
   std::optional<double> stated_accel_m_s2 = std::nullopt;
   double enter_share = 0.003;        ///< clipping starts within this fraction of the saturation level
-  double leave_share = 0.02;         ///< neighbours of a clipped reading are clipped within this fraction of the level
+  double leave_share = 0.02;         ///< readings next to a clipped reading are clipped within this fraction
   double disagreement_share = 0.02;  ///< minimum relative difference that contradicts the stated range
 
   using Expert = RailDetectorExpertParams;
@@ -85,22 +86,24 @@ struct RailDetectorParams {
   }
 };
 
-/// Finds the saturation level of each axis of an IMU from its readings. The saturation level differs from unit to unit
-/// and from the data sheet. For example, one gyro with a stated range of 450 deg/s saturated at 600 deg/s.
+/// Finds the saturation level of each axis of an IMU from the readings of the axis. The saturation level differs
+/// between devices of one type, and from the data sheet. For example, one gyro with a stated range of 450 deg/s
+/// saturated at 600 deg/s.
 ///
 /// A plateau is a run of readings of one sign that are closer together than noise allows. The readings of a plateau
-/// have the largest magnitude so far on the axis. Low plateaus must be longer and must start or end with a jump of many
-/// digits of the device. The required jump excludes the rounded maximum of a slow, coarsely quantised motion and an
-/// axis at rest. A stated range is used until a plateau is found or a reading exceeds the range. Flags of the device
-/// are always used. The classification has hysteresis, so that the irregular edge of a plateau belongs to the plateau.
-/// RailDetector does not model saturation levels that drift or differ between the two signs of an axis.
+/// have the largest magnitude so far on the axis. A plateau at a low rate must be longer, and must start or end with a
+/// jump of many digits of the device. The required jump excludes an axis at rest, and the rounded maximum of a slow,
+/// coarsely quantised motion. A stated range is used until RailDetector finds a plateau or a reading exceeds the range.
+/// RailDetector always uses the clip flags of the device. The classification has hysteresis, so that the irregular edge
+/// of a plateau belongs to the plateau. RailDetector does not model saturation levels that drift or differ between the
+/// two signs of an axis.
 class RailDetector {
  public:
   using Params = RailDetectorParams;
 
-  /// State of one channel. The channels are gyro x, y, z, then accelerometer x, y, z.
+  /// State of one channel of the IMU. The channels are gyro x, y, z, then accelerometer x, y, z.
   struct Channel {
-    double rail = 0.0;  ///< level of a plateau; 0: none found
+    double rail = 0.0;  ///< saturation level from a plateau; 0: none found
     double peak = 0.0;  ///< largest magnitude so far
     double run_first = 0.0;
     int run_length = 0;
@@ -119,22 +122,24 @@ class RailDetector {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit RailDetector(const Params& params);
 
-  /// Updates the saturation levels with one finite sample. O(1).
+  /// Updates the saturation levels with one finite sample. Cost: O(1).
   void observe(const ImuSample& sample, State& state) const;
-  /// Classifies one finite sample with the current saturation levels. `state` stores the hysteresis. O(1).
+  /// Classifies one finite sample with the current saturation levels. Cost: O(1). `state` stores the hysteresis of the
+  /// classification.
   Clipping classify(const ImuSample& sample, State& state) const;
-  /// Classifies a whole recording after processing all samples. The edges on both sides of each plateau are included.
-  /// O(N).
+  /// Classifies a whole recording after all samples have updated the saturation levels. Cost: O(N). The clipped samples
+  /// include the edges on both sides of each plateau.
   void classify_all(std::span<const ImuSample> samples, State& state, std::span<Clipping> out) const;
 
-  /// Adds the rising edge of a plateau: the axes of `sample`, before a clipped `next`, that are near the saturation
-  /// level. The maximum distance from the saturation level equals that after a plateau.
+  /// Adds the rising edge of a plateau to `clipping`. The edge consists of the axes of `sample` that are near the
+  /// saturation level before a clipped `next`. The largest distance of an edge from the saturation level is equal
+  /// before and after a plateau.
   void add_edge(const ImuSample& sample, const ImuSample& next, const Clipping& of_next, const State& state,
                 Clipping& clipping) const;
 
-  /// Returns the saturation level of channel c (0-5). The saturation level is the first available of: the plateau of
-  /// the channel, the largest plateau on another axis of its triad, and the stated range. A saturation level from
-  /// another axis or from the stated range applies only while no reading of channel c exceeds the level.
+  /// Returns the saturation level of channel c (0-5). The level comes from the plateau of the channel, else from the
+  /// largest plateau on another axis of its triad, else from the stated range. A saturation level from another axis or
+  /// from the stated range applies only while no reading of channel c exceeds the level.
   std::optional<double> rail(const State& state, int c) const;
   /// Returns whether a plateau or a larger reading contradicts the stated range.
   bool disagrees(const State& state, int c) const;

@@ -13,19 +13,20 @@
 
 namespace tumble {
 
-/// Finds the saturation planes of a triad's elements in a whole recording, without flags and without a stated range.
+/// Finds the saturation planes of the sensing elements of a gyro or accelerometer in a whole recording, without clip
+/// flags and without a stated range.
 ///
-/// A saturation plane limits the readings, is nearly axis-aligned, and has many samples in a thin slab below it. Two
-/// kinds of motion look like saturation: the rounded maximum of a motion, and a constant rate (torque-free spin,
-/// turntable). Beside a rounded maximum, the readings decrease as a parabola, whereas saturation ends with a kink. A
-/// constant rate has full sensor noise, has a different value each time, and starts with an impact on all axes.
-/// RailPlaneFinder sums the log likelihood ratio of saturation against rounded maxima and constant rates over all
-/// segments. A penalty accounts for the free choice of cross-axis sensitivities and saturation level (Occam factor).
+/// A saturation plane limits the readings, is nearly axis-aligned, and has many samples in a thin slab below the plane.
+/// Two kinds of motion look like saturation: the rounded maximum of a motion, and a constant rate (torque-free spin,
+/// turntable). Next to a rounded maximum, the readings decrease as a parabola; saturation ends with a kink. A constant
+/// rate has full sensor noise, has a different value each time, and starts with an impact on all axes. RailPlaneFinder
+/// sums the log likelihood ratio of saturation against rounded maxima and constant rates over all segments. A penalty
+/// (Occam factor) accounts for the free choice of cross-axis sensitivities and saturation level.
 ///
-/// Repeated readings (sample and hold) count once. RailPlaneFinder does not resolve structure below the quantisation or
-/// the noise. The three sensing elements of a triad are of one kind. A saturation level far below readings of another
-/// axis is therefore rejected, and a level equal to that of another sensing element is more likely. Elements without a
-/// plane count as unsaturated.
+/// Repeated readings (sample and hold) count as one reading. RailPlaneFinder does not resolve structure below the
+/// quantisation or the noise. RailPlaneFinder assumes that the three sensing elements of a gyro or accelerometer are of
+/// one type. A saturation level far below readings of another axis is therefore rejected. A level that equals the level
+/// of another sensing element is more likely. Sensing elements without a saturation plane count as unsaturated.
 ///
 /// RailPlaneFinder does not model saturation levels that drift or recover slowly, overflow, or several levels of one
 /// sensing element.
@@ -45,15 +46,17 @@ class RailPlaneFinder {
     double slope_max = 0.12;  ///< largest cross-axis sensitivity in the search
     /// Minimum saturation level [rad/s]. At rest and in slow motion, readings are constant without saturation.
     double distance_min_rad_s = 1.5;
-    /// Range stated in the data sheet [rad/s], if any. The saturation level is not far below the stated range.
+    /// Range that the data sheet states [rad/s], if any. RailPlaneFinder assumes that the saturation level is not far
+    /// below the stated range.
     std::optional<double> stated_rad_s = std::nullopt;
     double offset_share = 0.02;     ///< prior of the offset and of differences between elements, as a fraction of r
     int samples_min = 4;            ///< minimum number of samples on a plane of one sign
     double log_odds_before = -6.0;  ///< prior log odds for each element and sign
-    double log_odds_min = 1.0;      ///< minimum log odds of an accepted plane
-    double log_odds_keep = -3.0;    ///< minimum log odds of a plane that was accepted before
-    /// Saturation planes from an earlier run of the device, which are stable to a fraction of a percent. Known planes
-    /// are used from the start until readings contradict them. Known planes also make new planes near them more likely.
+    double log_odds_min = 1.0;      ///< minimum log odds for accepting a plane
+    double log_odds_keep = -3.0;    ///< minimum log odds for keeping an accepted plane
+    /// Saturation planes that an earlier run of the device found. Known planes are used from the start until readings
+    /// contradict the planes. A plane changes by a fraction of a percent between runs. RailPlaneFinder assigns a higher
+    /// prior probability to new planes near known planes.
     RailPlanes known = {};
 
     /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
@@ -76,7 +79,8 @@ class RailPlaneFinder {
     }
   };
 
-  /// Buffers of a search. If the buffers have room for all readings, the search allocates nothing.
+  /// Workspace contains the buffers of a search. If the buffers have room for all readings, the search does not
+  /// allocate.
   struct Workspace {
     std::vector<Eigen::Vector3d> rates;
     std::vector<double> values;
@@ -87,10 +91,12 @@ class RailPlaneFinder {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit RailPlaneFinder(const Params& params);
 
-  /// Finds the saturation planes in the readings of a triad. Samples must be finite and in time order. Cost: O(N) plus
-  /// a search of some hundred cross-axis sensitivities over the samples near the extremes.
+  /// Finds the saturation planes in the gyro or accelerometer readings of a recording. The samples must be finite and
+  /// in time order. Cost: O(N), plus a search of some hundred cross-axis sensitivities over the samples near the
+  /// extremes.
   RailPlanes find(std::span<const ImuSample> samples, Triad triad = Triad::gyro) const;
-  /// Finds the saturation planes in plain readings [rad/s]. `before`: planes found in a subset of these readings.
+  /// Finds the saturation planes in readings without time stamps [rad/s]. `before` contains the planes that were found
+  /// in a subset of `readings_rad_s`.
   RailPlanes find(std::span<const Eigen::Vector3d> readings_rad_s, const RailPlanes& before,
                   Workspace& workspace) const;
 
@@ -101,9 +107,9 @@ class RailPlaneFinder {
   Params params_;
 };
 
-/// Returns which sensing elements of a sample are clipped. O(1).
+/// Returns which sensing elements of a sample are clipped. Cost: O(1).
 ElementClipping classify(const ImuSample& sample, const RailPlanes& planes);
-/// Classifies each sample of a recording by its clipped sensing elements; `out` has the size of `samples`.
+/// Classifies each sample of a recording by its clipped sensing elements. `out` must have the size of `samples`.
 void classify(std::span<const ImuSample> samples, const RailPlanes& planes, std::span<ElementClipping> out);
 
 }  // namespace tumble

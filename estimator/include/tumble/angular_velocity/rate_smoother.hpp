@@ -25,12 +25,12 @@ namespace tumble {
 struct RateSmootherParams {
   RateModelParams model = {};
   RailDetector::Params rails = {};
-  double recovered_sigma_rad_s = 0.5;  ///< a clipped axis with a smaller standard deviation is recovered
-  /// Largest accepted distance of the calibration constants from their prior (RateReport::calibration_mahalanobis).
-  /// Beyond this distance, the run is estimated again with the constants fixed at the prior.
+  double recovered_sigma_rad_s = 0.5;  ///< clipped rates below this standard deviation count as recovered
+  /// Largest accepted distance of the calibration constants from their prior (RateReport::calibration_mahalanobis). If
+  /// the distance exceeds the limit, the run is estimated again with the calibration constants fixed at the prior.
   double calibration_mahalanobis_max = 1.5;
-  /// Sensor errors from an earlier run (RateReport::sensor_errors). Calibrated errors are used only if sensor errors
-  /// are estimated.
+  /// Sensor errors that an earlier run estimated (RateReport::sensor_errors). The calibrated errors are used only if
+  /// the estimation of sensor errors is enabled.
   std::optional<KnownSensorErrors> calibrated_errors = std::nullopt;
   double gap_max_s = 1.0;  ///< a longer time between samples is an error
 
@@ -59,31 +59,30 @@ struct RateSmootherParams {
 struct RateReport {
   int iterations = 0;
   bool converged = false;
-  int restarts = 0;              ///< restarts from other initial values, made if the initial solution contained almost
-                                 ///< no flight
+  int restarts = 0;              ///< restarts from other initial values, because the initial solution had no flight
   double last_step_rad_s = 0.0;  ///< largest change of a rate in the last iteration
-  RigCalibration calibration;    ///< estimated calibration, which can be passed to the next run
-  /// Distance of the constants from their prior (RateModel::calibration_mahalanobis). A value far above 1 indicates a
-  /// wrong prior, or a run without flight that was classified as one with flight.
+  RigCalibration calibration;    ///< estimated calibration, which can initialise the next run
+  /// Distance of the calibration constants from their prior, in standard deviations
+  /// (RateModel::calibration_mahalanobis). A distance far above 1 indicates a wrong prior, or a run without flight that
+  /// was classified as a run with flight.
   double calibration_mahalanobis = 0.0;
-  bool calibration_at_prior = false;          ///< calibration_mahalanobis was too large, so the constants remain at
-                                              ///< their prior
-  std::array<std::optional<double>, 6> rail;  ///< levels in use: gyro [rad/s], accelerometer [m/s^2]; empty: none
-  std::array<bool, 6> rail_observed{};        ///< level was observed on this axis, not inferred from another
+  bool calibration_at_prior = false;          ///< the constants are fixed at their prior
+  std::array<std::optional<double>, 6> rail;  ///< saturation levels: gyro [rad/s], accelerometer [m/s^2]; empty: none
+  std::array<bool, 6> rail_observed{};        ///< the level was observed on this axis, not inferred from another axis
   RailPlanes planes;                          ///< saturation planes of the gyro's elements, where observed
   RailPlanes accel_planes;                    ///< saturation planes of the accelerometer's elements, m/s^2
   /// Estimated sensor errors.
   KnownSensorErrors sensor_errors;
   double in_sheet_probability = 1.0, synchronous_probability = 1.0;  ///< see SensorErrorFit
-  /// Standard deviation of a delay common to both triads. The standard deviation is above 0 only if the device deviates
-  /// from its data sheet.
+  /// Standard deviation of a delay common to gyro and accelerometer [s]. The standard deviation of the common delay is
+  /// above 0 only if the device deviates from its data sheet.
   double common_delay_sigma_s = 0.0;
   double gyro_update_s = 0.0, accel_update_s = 0.0;  ///< update interval of repeated readings; 0: none
   int error_rounds = 0;                              ///< number of optimisations with corrected readings
-  bool rails_axis_aligned = false;                   ///< the device clips its output, so other axes are unaffected
-  std::array<bool, 6> rail_disagrees{};              ///< readings contradict the stated range
-  bool rate_unit_suspect = false;   ///< a reading exceeds RateModelParams::rate_max_rad_s: possibly degrees
-  bool force_unit_suspect = false;  ///< the median specific force is near 1: possibly in g
+  bool rails_axis_aligned = false;       ///< the gyro clips after compensation, so other axes are unaffected
+  std::array<bool, 6> rail_disagrees{};  ///< readings contradict the stated range
+  bool rate_unit_suspect = false;        ///< a reading exceeds RateModelParams::rate_max_rad_s: possibly degrees
+  bool force_unit_suspect = false;       ///< the median specific force is near 1: possibly in g
   std::size_t samples = 0, clipped = 0, recovered_flight = 0, recovered_contact = 0, bounded_only = 0;
   std::size_t missing_readings = 0;  ///< samples with an overflow (flipped sign)
   double flight_share = 0.0;         ///< fraction of samples classified as free flight
@@ -91,46 +90,47 @@ struct RateReport {
   std::vector<std::uint8_t> suspect_axes;
 };
 
-/// Estimates the angular velocity of a tumbling body through gyro saturation: a tightly coupled smoother over a
+/// Estimates the angular velocity of a tumbling body through gyro saturation, by tightly coupled smoothing over a whole
 /// recording.
 ///
-/// The unknowns are rate and angular acceleration per sample, and RigConstants for the run. The Gauss-Newton solver
-/// uses these factors:
-/// - The gyro's unclipped readings, and the lower bounds of the rate from clipped readings, for any number of axes.
-/// - In flight, the complete rigid-body equation of the specific force at the lever arm, and Euler's equation without
-///   torque. During contact, the weights of the force equation and of Euler's equation are reduced.
-/// - White noise on jerk between samples. The noise density grows with the contact force, so an impact decouples the
-///   samples before and after it.
-/// - At rest (RestDetector), zero rate, which determines the gyro's bias.
+/// The unknowns are the rate and angular acceleration of each sample, and the RigConstants of the run. A Gauss-Newton
+/// solver uses the following factors.
+/// Unclipped gyro readings measure the rate, and clipped readings limit the rate from below, for any number of axes.
+/// In flight, the specific force at the lever arm follows the complete rigid-body equation, and Euler's equation holds
+/// without torque. During contact, the weights of the force equation and of Euler's equation are reduced.
+/// Between samples, the angular jerk is white noise. The density of the jerk noise grows with the contact force. An
+/// impact therefore decouples the samples before the impact from the samples after the impact.
+/// At rest (RestDetector), the rate is zero, which determines the gyro's bias.
 ///
-/// The normal equations are an arrow matrix: O(N) per iteration, including the covariance. The initial values come from
-/// the published method (Saave), extended by the lower bounds of clipped readings.
+/// The normal equations are an arrow matrix, so an iteration costs O(N), including the covariance. The initial values
+/// come from the published method (Saave), extended by the lower bounds of clipped readings.
 ///
-/// Contact: the force at the centre of mass is the part of the reading that flight does not explain. A force through
-/// one point of the cage has no torque about its own direction. The component of Euler's equation along the force
-/// therefore remains in use. The uncertainty of the two components across the force follows from the size of the cage
-/// (RateContactParams::lever_rad_m). The position of the contact point gives no further information, because a cage
-/// strikes with several bars and rolls on within 10 ms. For clipped samples, the median torque along the force is 1.4
-/// %, but the contact point of the previous sample leaves 66 % of the torque unexplained (tests/bench/rate_contact;
-/// docs/maths/rate_smoother.md).
+/// In contact, the contact force at the centre of mass is the part of the measured force that the equations of flight
+/// do not explain. A force through one point of the cage has no torque about the direction of the force. The component
+/// of Euler's equation along the contact force therefore remains in use. The size of the cage determines the
+/// uncertainty of the two components of Euler's equation across the contact force (RateContactParams::lever_rad_m).
+/// RateSmoother does not estimate the contact point, because a cage strikes with several bars and rolls on within 10
+/// ms.
+/// The equations are in docs/maths/rate_smoother.md.
 ///
-/// Sensor errors (SensorErrors: scale, misalignment, g-sensitivity, delay and window of the accelerometer relative to
-/// the gyro) are partly correlated with other constants. Repeated optimisations with corrected readings estimate sensor
-/// errors as far as the run determines them. The prior magnitude of sensor errors is chosen to fit the readings
-/// (fit_sensor_errors). The covariances of rates and calibration include the remaining uncertainty of sensor errors as
-/// considered parameters (S. F. Schmidt, 1966). Without considered parameters, the fit would treat sensor errors as
-/// noise and average them. guess_triad_delay computes an initial delay. If gyro and accelerometer are not synchronous,
-/// the later triad is assumed to be delayed.
+/// SensorErrors (scale, misalignment, g-sensitivity, accelerometer delay and window) are partly correlated with
+/// RigConstants (lever arm, biases, inertia). Repeated optimisations with corrected readings estimate the sensor
+/// errors, as far as the run determines the errors. The function fit_sensor_errors chooses the prior magnitude of the
+/// sensor errors that fits the readings. The covariances of rates and calibration include the remaining uncertainty of
+/// the sensor errors, as considered parameters (Schmidt, 1966). Without considered parameters, the covariance would
+/// shrink as if constant sensor errors were independent noise. The function guess_triad_delay computes an initial
+/// delay. If gyro and accelerometer are not synchronous, RateSmoother assumes that the later triad is delayed.
 ///
-/// The sensing elements of a gyro clip along their own, not quite orthogonal axes. The device's compensation then mixes
-/// the clipped values (RailPlaneFinder). While a sensing element clips, RateSmoother therefore processes the gyro
-/// element by element (element_factor). Unsaturated elements measure a component of the rate, and clipped elements
-/// provide a lower bound. Readings of unclipped axes are corrected for the part of the rate hidden by saturation. The
-/// sensing directions are constants of the run, determined by saturation planes and by flight. If the device clips its
-/// output after compensation, the factors per element are not needed.
+/// The sensing elements of a gyro clip along their own axes, which are not quite orthogonal. The compensation of the
+/// device then mixes the clipped values into all output axes (RailPlaneFinder). While a sensing element clips,
+/// RateSmoother therefore processes the gyro element by element (element_factor). Unsaturated sensing elements measure
+/// a component of the rate, and clipped sensing elements provide a lower bound. RateSmoother corrects the readings of
+/// unclipped axes for the part of the rate that saturation hides. The sensing directions are constants of the run,
+/// determined by saturation planes and by flight. If the device clips its output after compensation, RateSmoother
+/// processes the gyro axis by axis.
 ///
-/// RateSmoother does not model a persistent contact point or a delay common to both triads. The rates have the time of
-/// the gyro's readings, which are means over the sample's window.
+/// RateSmoother does not model a persistent contact point, or a delay common to gyro and accelerometer. The rates refer
+/// to the time of the gyro's readings, which are means over the sample's window.
 class RateSmoother {
  public:
   using Params = RateSmootherParams;
@@ -139,13 +139,14 @@ class RateSmoother {
   explicit RateSmoother(const Params& params);
 
   /// Computes one RateState per sample, and the diagnostics of the run. On error nothing is written. The returned
-  /// status contains field, value and bound: `empty`, `too_few` (less than two samples), `non_finite`, `time_order`,
-  /// `gap`, `diverged`.
+  /// status contains field, value and bound. The kind of error is `empty`, `too_few` (less than two samples),
+  /// `non_finite`, `time_order`, `gap` or `diverged`.
   Status estimate(std::span<const ImuSample> samples, std::vector<RateState>& out, RateReport& report) const {
     return estimate(samples, {}, out, report);
   }
-  /// Estimates the rates with additional IMUs on the body: one list per RateModelParams::auxiliary_imus, one reading
-  /// per sample (see align()). Returns `too_few` if the sizes differ.
+  /// Estimates the rates with additional IMUs on the body. `auxiliary_imus` contains one list per entry of
+  /// RateModelParams::auxiliary_imus, with one reading per sample (see align()). Returns `too_few` if the number of
+  /// lists or of readings differs.
   Status estimate(std::span<const ImuSample> samples, std::span<const std::vector<AuxiliaryReading>> auxiliary_imus,
                   std::vector<RateState>& out, RateReport& report) const;
 

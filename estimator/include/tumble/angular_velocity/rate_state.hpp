@@ -10,16 +10,16 @@ namespace tumble {
 
 /// Source of an angular velocity.
 enum class RateSource : std::uint8_t {
-  measured,           ///< no axis of the gyro is clipped or suspected to be
+  measured,           ///< no gyro axis is clipped or suspect
   recovered_flight,   ///< clipped; recovered from the centripetal specific force in free flight
-  recovered_contact,  ///< clipped; recovered during contact
-  bounded_only,       ///< clipped or suspected; only the lower bound of the rate and the smoothness of motion are known
+  recovered_contact,  ///< clipped; recovered from the force during contact
+  bounded_only,       ///< clipped or suspect; only a lower bound and smoothness of motion are known
 };
 
 /// Returns the name of a rate source as used in tables ("recovered_flight").
 const char* to_string(RateSource source);
 
-/// Angular velocity of an IMU in the world, in the IMU's axes, at the time of an IMU sample.
+/// RateState contains the angular velocity of an IMU in the world, in the IMU's axes, at the time of an IMU sample.
 struct RateState {
   TimeNs time_ns = 0;
   Eigen::Vector3d w_WI_I_rad_s = Eigen::Vector3d::Zero();

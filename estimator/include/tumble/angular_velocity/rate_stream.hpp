@@ -23,22 +23,23 @@
 namespace tumble {
 
 /// Estimates angular velocity through gyro saturation, sample by sample, with a fixed lag. RateStream uses the factors
-/// of RateSmoother over a window of fixed length. One Gauss-Newton step is made per sample, or every 5 ms for faster
-/// samples. Samples that leave the window are marginalised into a Gaussian prior on the next sample and on
-/// RigConstants.
+/// of RateSmoother over a window of fixed length. RateStream makes one Gauss-Newton step per sample, or one step every
+/// 5 ms if samples are closer together. Samples that leave the window are marginalised into a Gaussian prior on the
+/// next sample and on RigConstants.
 ///
-/// An estimate is reported when its sample is `lag_s` old. A provisional estimate is available immediately. A step
-/// costs O(window): above 200 Hz in proportion to the sample rate, and below 200 Hz in proportion to its square. No
-/// memory is allocated after the State is created.
+/// An estimate is reported when its sample is `lag_s` old. The function newest() returns a provisional estimate of the
+/// newest sample. A step costs O(window): the cost grows with the sample rate above 200 Hz, and with the square of the
+/// sample rate below 200 Hz. RateStream allocates no memory after the State is created.
 ///
-/// Saturation levels and planes are detected from the readings (RailWatch). After each detection of a saturation level,
-/// the window is re-evaluated. A clipped sample is therefore accepted as a measurement only if the sample left the
-/// window before the detection. With the calibration of an earlier run, the error of the rates is 1.1 times that of
-/// RateSmoother. In this case 99 % of the errors are within three standard deviations. If the calibration is estimated
-/// during the same tumble, the error is 1.6 times that of RateSmoother, or 1.2 times with 0.5 s of lag (data:
-/// docs/maths/rate_stream.md). Errors of the samples of a flight are correlated. The covariance of the calibration and
-/// of the rates is therefore inflated while few flight samples were processed (`rig_inflation`). The limitations of
-/// RateSmoother apply.
+/// RailWatch detects saturation levels and planes from the readings. After each detection of a saturation level, the
+/// samples in the window are classified again. A clipped sample is therefore accepted as a measurement only if the
+/// sample left the window before the detection. With the calibration of an earlier run, the rate error of RateStream is
+/// 1.1 times the rate error of RateSmoother. With the calibration of an earlier run, 99 % of the rate errors are within
+/// three standard deviations. With a calibration that is estimated during the tumble itself, the rate error is 1.6
+/// times that of RateSmoother, or 1.2 times with 0.5 s of lag. The measured error ratios are in
+/// docs/maths/rate_stream.md. The errors of the samples of one flight are correlated. RateStream therefore increases
+/// the covariance of calibration and rates until enough flight samples are processed (`rig_inflation`). The limitations
+/// of RateSmoother also apply to RateStream.
 class RateStream {
  public:
   using Params = RateStreamParams;
@@ -51,35 +52,36 @@ class RateStream {
   /// Returns the state before the first sample, with all memory that push() needs.
   State start() const;
 
-  /// Processes one sample. `out` is the estimate of the sample that is lag_s old, and is empty while the window fills.
-  /// On error (`non_finite`, `time_order`, `gap`) the state is unchanged and `out` is empty.
+  /// Processes one sample. `out` is the estimate of the sample that is lag_s old; `out` is empty while the window
+  /// fills. On error (`non_finite`, `time_order`, `gap`) the state is unchanged and `out` is empty.
   Status push(const ImuSample& sample, State& state, std::optional<RateState>& out) const {
     return push(sample, {}, state, out);
   }
   /// Processes one sample together with readings of additional IMUs on the body at the sample's time. Pass one reading
-  /// per RateModelParams::auxiliary_imus, or none; any other number returns `too_few`.
+  /// per entry of RateModelParams::auxiliary_imus, or no readings; another number returns `too_few`.
   Status push(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state,
               std::optional<RateState>& out) const;
 
   /// Returns the provisional estimate of the newest sample. The result is empty before the first sample.
   std::optional<RateState> newest(const State& state) const;
 
-  /// Appends the estimates of the samples still in the window to `out`, oldest first.
+  /// Appends the estimates of the samples that are still in the window to `out`, oldest first.
   void flush(const State& state, std::vector<RateState>& out) const;
 
-  /// Reports whether the IMU is plausible now. Returns `out_of_range` with the name of a frozen axis (FrozenAxes), or
-  /// for an accelerometer with inverted sign (FlightSense). The standard deviation on a frozen gyro axis is the largest
-  /// rate read so far.
+  /// Reports whether the IMU's readings are currently plausible. Returns `out_of_range` with the name of a frozen axis
+  /// (FrozenAxes), or for an accelerometer with inverted sign (FlightSense). While a gyro axis is frozen, the standard
+  /// deviation of its rate is the largest rate read so far.
   Status health(const State& state) const;
 
   /// Returns the estimated calibration.
   RigCalibration calibration(const State& state) const { return {state.rig, inflated(state)}; }
 
-  /// Returns the sensor errors for which readings are corrected, and the covariance of these errors. A delayed
-  /// accelerometer is detected from impacts if the data sheet does not exclude a delay; see RateStreamDelay.
+  /// Returns the estimated sensor errors, for which readings are corrected, and the covariance of the errors.
+  /// RateStream detects a delayed accelerometer from impacts if the data sheet does not exclude a delay; see
+  /// RateStreamDelay.
   KnownSensorErrors sensor_errors(const State& state) const;
 
-  /// Returns whether two states will give identical results, bit for bit. Buffers are not compared.
+  /// Returns whether two states will give identical results, bit for bit. The comparison ignores buffers.
   static bool equal(const State& a, const State& b);
 
   /// Checks the invariants of a state that was loaded from a file. Returns the first violated invariant.
@@ -139,7 +141,7 @@ class RateStream {
   std::size_t capacity_;
   std::size_t samples_per_step_;  ///< number of samples between steps
   double prior_delay_s_;          ///< prior delay of the accelerometer
-  bool delay_open_;               ///< whether a delay other than the prior one is possible
+  bool delay_open_;               ///< whether the delay may differ from the prior delay
 };
 
 }  // namespace tumble

@@ -17,35 +17,38 @@ namespace tumble {
 /// Estimates the angular velocity of a tumbling body with a clipped gyro from the centripetal part of the specific
 /// force.
 ///
-/// Implements the published method (Deschenes et al., "Saturation-Aware Angular Velocity Estimation", ICRA 2024, eqs
-/// 5-7) in two stages. In the recursive stage, each sample is processed in order. The rotation axis e of the last
-/// accepted sample and the lever arm t give the vector from the IMU to the axis, l = (t.e)e - t. The component of the
-/// specific force along l is |l| |w|^2 in free flight. The clipped axis of the rate w follows from this component and
-/// from the two unclipped axes. In the smoothing stage, WnojSmoother smooths all samples.
+/// Saave implements a published method in two stages (Deschenes et al., "Saturation-Aware Angular Velocity Estimation",
+/// ICRA 2024, eqs 5-7). In the recursive stage, Saave processes the samples in order. The recursive stage assumes the
+/// rotation axis of the last accepted sample. The vector from the IMU to the rotation axis is l = (t.e)e - t, with the
+/// axis direction e and the lever arm t. In free flight, the component of the specific force along l is |l| |w|^2, with
+/// the rate w. The clipped axis of the rate follows from the force component along l and from the two unclipped axes.
+/// In the smoothing stage, WnojSmoother smooths all samples.
 ///
-/// The publication and this class do not model a second clipped axis. The first clipped axis in the order x, y, z is
-/// recovered, and further clipped axes keep the variance of an unclipped reading. Angular acceleration across the axis,
-/// contact, clipped accelerometers and bias are not modelled either. Near |l| = 0 the estimate is unprotected (|l| = 0
-/// exactly is rejected). The variance of an estimate is constant. Smoothed rates may fall below the saturation level.
+/// The published method does not model a second clipped axis. Saave recovers the first clipped axis in the order x, y,
+/// z. Further clipped axes keep the variance of an unclipped reading. The published method does not model angular
+/// acceleration across the rotation axis, contact, clipped accelerometers, or bias. If the IMU is close to the rotation
+/// axis (small |l|), the estimate has a large error that Saave does not detect; only |l| = 0 is rejected. All recovered
+/// rates have the same assumed variance. Smoothed rates may be below the saturation level.
 class Saave {
  public:
   struct Params {
-    /// t: lever arm from the centre of mass to the IMU in IMU axes [m], with |t_j| <= 10. The lever arm is required and
-    /// has no default. An accuracy of about a millimetre is needed.
+    /// Lever arm t from the centre of mass to the IMU in IMU axes [m], with |t_j| <= 10. The lever arm is required and
+    /// has no default. The lever arm must be accurate to about a millimetre.
     Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
-    /// Readings strictly above this rate are clipped [rad/s]. The value is required and has no default. Known error of
-    /// the published method: a device whose plateau equals this value never exceeds it, and nothing is recovered. Use a
-    /// value slightly below the plateau.
+    /// Readings strictly above saturation_point_rad_s are clipped. The saturation point is required and has no default.
+    /// If the plateau of a saturated device equals the saturation point, no reading exceeds the saturation point, and
+    /// nothing is recovered. Choose a saturation point slightly below the largest reading of the device.
     double saturation_point_rad_s = 0.0;
-    /// Variance of an unclipped reading [(rad/s)^2]. The default is (0.03 deg/s/sqrt(Hz) * sqrt(100 Hz))^2.
+    /// Variance of an unclipped reading [(rad/s)^2]. The default variance of an unclipped reading is (0.03
+    /// deg/s/sqrt(Hz) * sqrt(100 Hz))^2.
     double variance_measured_rad2_s2 = 2.741e-5;
-    /// Variance of an accepted estimate [(rad/s)^2]. The authors' code uses 0.2741; the paper prints 3.648.
+    /// Variance of a recovered rate [(rad/s)^2]. The published code uses a variance of 0.2741; the paper prints 3.648.
     double variance_estimated_rad2_s2 = 0.2741;
-    /// Variance of the clipped axis without an estimate [(rad/s)^2].
+    /// Variance of the clipped axis if no rate could be recovered [(rad/s)^2].
     double variance_rejected_rad2_s2 = 1e6;
     /// Power spectral density of the white angular jerk [rad^2/s^5].
     double jerk_psd_rad2_s5 = 1e6;
-    /// A longer time between two samples is an error [s].
+    /// Longest allowed time between two samples [s].
     double gap_max_s = 1.0;
 
     /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
@@ -80,7 +83,7 @@ class Saave {
     bool operator==(const State&) const = default;
   };
 
-  /// Result of the recursion for one sample, before smoothing.
+  /// Recovered is the result of the recursive stage for one sample, before smoothing.
   struct Recovered {
     Eigen::Vector3d rate_rad_s;
     Eigen::Vector3d variance_rad2_s2;  ///< variance per axis
@@ -91,12 +94,13 @@ class Saave {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit Saave(const Params& params);
 
-  /// Performs one step of the recursion. On error (`non_finite`, `time_order`, `gap`) `state` and `out` are unchanged.
-  /// O(1), no allocation.
+  /// Processes one sample in the recursive stage. Cost: O(1), no allocation. On error (`non_finite`, `time_order`,
+  /// `gap`), `state` and `out` are unchanged.
   Status step(const ImuSample& sample, State& state, Recovered& out) const;
 
-  /// Runs recursion and smoother over a whole recording. Writes one RateState per sample. O(N). Returns `empty` without
-  /// samples. On error `out` is unchanged, and the status contains the field and value of the first invalid sample.
+  /// Runs the recursive stage and the smoothing stage over a whole recording, and writes one RateState per sample.
+  /// Cost: O(N). Returns `empty` without samples. On error `out` is unchanged, and the status contains the field and
+  /// value of the first invalid sample.
   Status estimate(std::span<const ImuSample> samples, std::vector<RateState>& out) const;
 
   const Params& params() const { return params_; }

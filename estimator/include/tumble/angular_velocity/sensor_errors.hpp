@@ -7,7 +7,8 @@
 
 namespace tumble {
 
-/// Constant sensor errors other than bias and noise: 29 numbers, in the order of the members, matrices row by row.
+/// SensorErrors contains the constant errors of gyro and accelerometer other than bias and noise. The 29 numbers are in
+/// the order of the members, matrices row by row.
 struct SensorErrors {
   static constexpr int kSize = 29, kAccel = 9, kGSensitivity = 18, kDelay = 27, kFilterTimeVariance = 28;
   using Vector = Eigen::Matrix<double, kSize, 1>;
@@ -18,10 +19,10 @@ struct SensorErrors {
   Eigen::Matrix3d gyro = Eigen::Matrix3d::Zero(), accel = Eigen::Matrix3d::Zero();
   /// g-sensitivity of the gyro [rad/s per m/s^2].
   Eigen::Matrix3d g_sensitivity_s_m = Eigen::Matrix3d::Zero();
-  /// Delay of the accelerometer relative to the gyro.
+  /// Delay of the accelerometer relative to the gyro [s].
   double accel_delay_s = 0.0;
-  /// Difference in window width: variance of the time weights of an accelerometer reading minus that of the gyro [s^2].
-  /// Negative if the gyro's window is wider.
+  /// Difference in window width: variance of the time weights of an accelerometer reading minus that of a gyro reading
+  /// [s^2]. The difference is negative if the gyro's window is wider than the accelerometer's window.
   double accel_filter_time_variance_s2 = 0.0;
 
   Vector vector() const;
@@ -29,29 +30,32 @@ struct SensorErrors {
   bool operator==(const SensorErrors&) const = default;
 };
 
-/// Sensor errors with their covariance.
+/// KnownSensorErrors contains sensor errors with their covariance.
 struct KnownSensorErrors {
   SensorErrors errors;
   SensorErrors::Matrix covariance = SensorErrors::Matrix::Zero();
 };
 
-/// Throws InvalidParams for errors above 0.2 or an invalid covariance. A negative eigenvalue would make the filter
-/// treat a direction as perfectly known.
+/// Throws InvalidParams if an error is above 0.2 or the covariance is invalid. A covariance with a negative eigenvalue
+/// is invalid, because the filter would treat the direction of the eigenvector as perfectly known.
 void require_known(const KnownSensorErrors& learnt);
 
-/// Prior standard deviations of sensor errors: those stated in a data sheet, and those of an uncalibrated device.
-/// SensorErrorFit determines from the readings whether the data sheet applies. If the uncalibrated value does not
-/// exceed the data sheet's value, the data sheet always applies. Each value is in [0, 0.1], with the units of
-/// SensorErrors.
+/// SensorErrorSizes contains the prior standard deviations of sensor errors, for a device as in its data sheet and for
+/// an uncalibrated device. SensorErrorFit determines from the readings whether the data sheet applies. If the standard
+/// deviation of the uncalibrated device does not exceed that of the data sheet, the data sheet always applies. Each
+/// standard deviation is in [0, 0.1], in the units of SensorErrors.
 struct SensorErrorSizes {
-  /// Standard deviations of scale and misalignment. The data sheet of the MTi-300 states a non-orthogonality of 0.05
-  /// deg. The MPU-6050 has 3 % scale and 2 % cross-axis error, used as 3 sigma.
+  /// Standard deviations of scale and misalignment. The defaults of the calibrated device are from the data sheet of
+  /// the MTi-300: non-orthogonality 0.05 deg. The defaults of the uncalibrated device are from the MPU-6050: 3 % scale
+  /// and 2 % cross-axis error, taken as three standard deviations.
   double gyro = 5e-4, gyro_uncalibrated = 0.01;
   double accel = 5e-4, accel_uncalibrated = 0.01;
-  /// Standard deviations of the g-sensitivity: 0.003 deg/s/g by the data sheet and 0.1 deg/s/g uncalibrated.
+  /// Standard deviations of the g-sensitivity: 0.003 deg/s/g by the data sheet, and 0.1 deg/s/g for an uncalibrated
+  /// device.
   double g_sensitivity_s_m = 5.3e-6, g_sensitivity_uncalibrated_s_m = 1.8e-4;
-  /// Standard deviations of the delay: both filters at about 400 Hz, or separate windows and filters when uncalibrated.
-  /// The window difference scales with the square of the delay.
+  /// Standard deviations of the accelerometer's delay. By the data sheet, gyro and accelerometer have filters of about
+  /// 400 Hz. An uncalibrated device has separate windows and filters. The prior of the window difference scales with
+  /// the square of the delay.
   double delay_s = 1e-4, delay_uncalibrated_s = 5e-3;
 
   /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
@@ -78,43 +82,45 @@ struct SensorErrorSizes {
   }
 };
 
-/// Returns the standard deviations of all errors. `share` is between 0 (data sheet) and 1 (uncalibrated device). All
-/// returned values are above 0.
+/// Returns the prior standard deviations of all sensor errors. `share` is between 0 (data sheet) and 1 (uncalibrated
+/// device). All returned standard deviations are above 0.
 SensorErrors::Vector error_deviations(const SensorErrorSizes& sizes, double share);
 
-/// Quadratic log-likelihood of a run's readings as a function of the sensor errors, expanded at `about`. `information`
-/// is the second derivative of the cost and `gradient` its negative first derivative, with all other unknowns at their
-/// optimum.
+/// SensorErrorEvidence is the log-likelihood of a run's readings as a quadratic function of the sensor errors, expanded
+/// at `about`. `information` is the second derivative of the cost and `gradient` is its negative first derivative, with
+/// all other unknowns at their optimum.
 struct SensorErrorEvidence {
   SensorErrors about;
   SensorErrors::Matrix information = SensorErrors::Matrix::Zero();
   SensorErrors::Vector gradient = SensorErrors::Vector::Zero();
 };
 
-/// Multiplies the information by `share` in the directions that a freely moving body does not determine. The
-/// unobservable directions are a scale common to all axes of a triad, and a common rotation of gyro and accelerometer.
-/// In unobservable directions, the information comes from residuals of the motion model. Smaller motions reduce the
-/// residuals, and the information grows with the number of samples. rate_smoother.md (R39).
+/// Multiplies the information by `share` in the directions of sensor errors that the motion of a free body does not
+/// determine. See rate_smoother.md (R39). The unobservable directions are a scale common to all axes of gyro or
+/// accelerometer, and a common rotation of gyro and accelerometer. In the unobservable directions, residuals of the
+/// motion model wrongly appear as information about the sensor errors. Smaller motions reduce the residuals, so the
+/// false information grows with the number of samples.
 void discount_unobservable(double share, SensorErrorEvidence& evidence);
 
-/// Sensor errors estimated from the readings and the prior.
+/// SensorErrorFit contains the sensor errors that were estimated from readings and prior.
 struct SensorErrorFit {
   KnownSensorErrors known;
   double in_sheet_probability = 1.0;     ///< probability that scale and misalignment are within the data sheet
-  double synchronous_probability = 1.0;  ///< probability that the triads are as synchronous as the data sheet states
+  double synchronous_probability = 1.0;  ///< probability that the triads are as synchronous as in the data sheet
 };
 
-/// Estimates the sensor errors by Bayesian model averaging over prior sizes. The models combine data sheet,
-/// uncalibrated, and intermediate sizes for scale and misalignment of both triads, g-sensitivity, and sampling. For
-/// each model, the function computes the Gaussian posterior of the errors and the likelihood of the readings. The
-/// result has the mean and covariance of the mixture. A device whose readings fit the data sheet thereby keeps a small
-/// uncertainty of unobservable errors. Cost: O(1), some 30 systems of 29 unknowns.
-/// `learnt` is information from earlier runs of the device, from calibration_evidence(), used with full weight.
+/// Estimates the sensor errors by Bayesian model averaging over prior standard deviations. The models combine data
+/// sheet, uncalibrated and intermediate standard deviations for three groups: scale and misalignment, g-sensitivity,
+/// and sampling. For each model, the function computes the Gaussian posterior of the sensor errors and the likelihood
+/// of the readings. The result has the mean and the covariance of the mixture of all models. If the readings fit the
+/// data sheet, unobservable sensor errors thereby keep the small uncertainty of the data sheet. Cost: O(1), about 30
+/// systems of 29 unknowns. `learnt` is the information from earlier runs of the device, from calibration_evidence(),
+/// used with full weight.
 SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const SensorErrorSizes& sizes,
                                  const SensorErrorEvidence& learnt = {});
 
-/// Converts the sensor errors estimated in one run to measurement information for the next run. The prior of an
-/// uncalibrated device is removed from the covariance because the next run adds that prior again.
+/// Converts the sensor errors that one run estimated to measurement information for the next run. The function removes
+/// the prior of an uncalibrated device from the covariance, because the next run adds that prior again.
 SensorErrorEvidence calibration_evidence(const KnownSensorErrors& learnt, const SensorErrorSizes& sizes);
 
 }  // namespace tumble

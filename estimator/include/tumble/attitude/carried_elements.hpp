@@ -13,25 +13,26 @@
 
 namespace tumble {
 
-/// Clipped sensing elements of each sample of a recording, as input of CarriedSmoother. Clipping is found from flags of
-/// the device, and from plateaus and tilted planes in the readings.
+/// CarriedElements contains the clipped sensing elements of each sample of a recording, as input of CarriedSmoother.
+/// The function carried_elements() finds clipped elements from flags of the device, and from plateaus and tilted planes
+/// in the readings.
 struct CarriedElements {
-  Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();  ///< sensing directions of the gyro; axes without planes
+  Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();  ///< sensing directions of the gyro's elements, one per row
   std::vector<ClipSigns> signs;                        ///< one per sample
   std::vector<std::uint8_t> near;                      ///< one per sample: bits of may_meet_rails()
 
   ClippedElements clipped() const { return {rows, signs}; }
 
-  /// Treats unclipped readings of the given axes (bit j of each sample) as lower bounds because the readings may be at
-  /// an unknown saturation level.
+  /// Treats unclipped gyro readings that may be saturated at an unknown level as lower bounds instead of measurements.
+  /// `axes` contains one byte per sample; bit j is set if the reading of axis j may be saturated.
   void mark_suspect(std::span<const ImuSample> samples, std::span<const std::uint8_t> axes);
 
-  /// Marks a rate as bounded instead of measured if its reading may have been saturated for a part of the reading's
-  /// window. `rates` has one entry per sample.
+  /// Marks a rate as a lower bound if its reading may have been saturated during a part of the averaging window.
+  /// `rates` contains one rate per sample.
   void mark_near(std::span<RateState> rates) const;
 };
 
-/// Converts the result of a ClippingFinder. O(N).
+/// Converts the result of a ClippingFinder to the input of CarriedSmoother. Cost: O(N).
 CarriedElements carried_elements(std::span<const ImuSample> samples, const ClippingFinder::Found& found);
 
 }  // namespace tumble

@@ -12,9 +12,9 @@ struct CarriedHandParams {
   double velocity_tau_s = 0.3;         ///< correlation time of the held point's velocity
   double position_tau_s = 1.0;         ///< correlation time of the held point's position
   double position_leak_s = 10.0;       ///< time constant with which a position decays
-  double hand_noise_adaptation = 0.8;  ///< adaptation of the acceleration's density to its measured power, 0 to 1
+  double hand_noise_adaptation = 0.8;  ///< weight of the measured acceleration power, 0 to 1
   double hand_window_s = 2.0;          ///< averaging time of the measured acceleration power
-  double hand_floor = 1.0;             ///< minimum density as a fraction of the assumed one
+  double hand_floor = 1.0;  ///< minimum acceleration density, as a fraction of the density that `hand_m_s2` assumes
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -34,16 +34,15 @@ struct CarriedHandParams {
   }
 };
 
-/// Errors of readings other than noise, including clipped and recovered readings.
+/// Errors of IMU readings other than noise, for measured, clipped and recovered rates.
 struct CarriedReadingParams {
-  double tilt_share = 0.02;             ///< error of an unsaturated element, as a fraction of a clipped element's
-                                        ///< saturation deficit
-  double rail_sigma_rad_s = 0.01;       ///< softness of a saturation level
+  double tilt_share = 0.02;             ///< unclipped element's error per deficit of a clipped element
+  double rail_sigma_rad_s = 0.01;       ///< standard deviation of a saturation level
   double accel_error_share = 0.02;      ///< additional force noise per m/s^2 of difference from gravity
   double rotation_error_sqrts = 1e-3;   ///< random walk of the attitude per rad/s of rotation
-  double recovered_sigma_rad_s = 1.0;   ///< a clipped rate with a smaller standard deviation is recovered
+  double recovered_sigma_rad_s = 1.0;   ///< clipped rates below this standard deviation count as recovered
   double recovered_tau_s = 0.005;       ///< correlation time of the error of a recovered rate
-  double recovered_scale_share = 6e-3;  ///< scale error of rates next to recovered ones
+  double recovered_scale_share = 6e-3;  ///< scale error of measured rates near recovered rates
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -63,7 +62,7 @@ struct CarriedReadingParams {
   }
 };
 
-/// Standard deviations of the motion of a stationary node.
+/// Standard deviations of rate, velocity and acceleration while the body is stationary.
 struct CarriedStillParams {
   double rest_sigma_rad_s = 0.01;  ///< standard deviation of the rate at rest, for one node
   double rest_sigma_m_s = 0.02;    ///< standard deviation of the velocity at rest
@@ -79,13 +78,14 @@ struct CarriedStillParams {
   }
 };
 
-/// Parameters of CarriedParams that few users change, grouped by meaning. Field names equal the names in tables and on
-/// command lines.
+/// CarriedExpertParams contains the parameters of CarriedParams that few users change, grouped by meaning. The fields
+/// have the names that are used in tables and on command lines.
 struct CarriedExpertParams {
   double node_s = 0.01;  ///< time between two nodes
   int iterations_max = 15;
   double gap_max_s = 1.0;
-  /// Factor on the jerk's root density in covariances. The jerk of the actual motion is not known in advance.
+  /// Factor by which the assumed angular jerk is increased when CarriedSmoother computes covariances. The factor is
+  /// above 1 because the jerk of the actual motion is not known in advance.
   double jerk_inflation = 4.0;
   RestDetector::Params rest = {};
   CarriedHandParams hand = {};
@@ -108,7 +108,8 @@ struct CarriedExpertParams {
   }
 };
 
-/// Parameters of CarriedSmoother and CarriedStream: the IMU, and the hand-held motion.
+/// CarriedParams contains the parameters of CarriedSmoother and CarriedStream: errors of the IMU, and extent of the
+/// hand-held motion.
 struct CarriedParams {
   double gravity_m_s2 = 9.80665;
   double gyro_noise_density = 5e-4;   ///< rad/s/sqrt(Hz)
@@ -116,7 +117,7 @@ struct CarriedParams {
   double gyro_bias_sigma_rad_s = 0.02;
   double accel_bias_sigma_m_s2 = 0.02;
   double lever_arm_sigma_m = 0.03;
-  double jerk_rad_s3_sqrts = 200.0;  ///< root density of the angular jerk
+  double jerk_rad_s3_sqrts = 200.0;  ///< root of the power spectral density of the angular jerk
   double hand_m_s2 = 5.0;            ///< standard deviation of the held point's acceleration
   double velocity_m_s = 1.0;         ///< standard deviation of the held point's velocity
   double position_m = 1.0;           ///< standard deviation of the held point's position

@@ -17,39 +17,42 @@
 
 namespace tumble {
 
-/// Clipped sensing elements of an IMU in one sample: -1 at the negative saturation level, 1 at the positive one, 0
-/// unsaturated. The value kMissing marks gyro readings that have overflowed and provide neither a measurement nor a
-/// lower bound.
+/// ClipSigns states for each sensing element of an IMU whether one sample is clipped. An element of ClipSigns is -1 at
+/// the negative saturation level, 1 at the positive saturation level, and 0 if unsaturated. The value kMissing marks a
+/// gyro reading that has overflowed and provides neither a measurement nor a lower bound.
 struct ClipSigns {
   static constexpr std::int8_t kMissing = 2;
   std::array<std::int8_t, 3> gyro{}, accel{};
 };
-/// Returns the clipped sensing elements of a classified sample.
+/// Returns the clipped sensing elements of a sample that RailDetector or ClippingFinder classified.
 ClipSigns clip_signs(const ImuSample& sample, const Clipping& clipping);
 
-/// Saturation of an IMU. Sensing element i measures the component along row i of `rows`, called m_i. While element i
-/// clips, the component m_i' y of the reading y equals the saturation level. The true value m_i' (rate + bias) is then
-/// at or beyond the saturation level.
+/// ClippedElements describes the saturation of an IMU over a recording. Sensing element i of the gyro measures the
+/// component of the rate along m_i, which is row i of `rows`. While sensing element i clips, the component m_i' y of
+/// the reading y equals the saturation level. The true component m_i' (rate + bias) of a clipped element is at or
+/// beyond the saturation level.
 struct ClippedElements {
   Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();
   std::span<const ClipSigns> signs;  ///< one per sample; empty: no clipping
-  /// Covariance of each sample's rate that was recovered from other information (flight) instead of measured, sensor
-  /// axes. Zero marks a measured rate; an empty span marks all rates as measured. Elements of recovered samples must
-  /// not be marked as clipped.
+  /// Covariance of each sample's rate, in sensor axes, if the rate was recovered from the equations of flight instead
+  /// of measured. A covariance of zero marks a measured rate; an empty span marks all rates as measured. Sensing
+  /// elements of samples with a recovered rate must not be marked as clipped.
   std::span<const Eigen::Matrix3d> recovered_rad2_s2 = {};
 };
 
-/// Estimates attitude and angular velocity of a hand-held body (held, swung, twirled) from one IMU, also while its gyro
-/// is saturated. CarriedSmoother is a smoother over a whole recording.
+/// Estimates attitude and angular velocity of a hand-held body (held, swung, twirled) from one IMU, also while the gyro
+/// is saturated. CarriedSmoother processes a whole recording.
 ///
-/// Hand-held motion is bounded: accelerations are short, and velocity and position return to zero. The specific force
-/// is therefore gravity at the attitude, the contribution of the lever arm, and a bounded remainder. The rotation of
-/// gravity in the sensor determines a rate that the saturated gyro could not measure. Nodes at equal times contain
-/// attitude, rate, angular acceleration, and the held point's acceleration, velocity and position. The device's
-/// constants are additional unknowns. The Gauss-Newton solver uses the arrow matrix (ArrowSystem). Covariances come
-/// from the same factors. Memory (about 7 kB per node) and computation are O(time), whatever the IMU's rate.
+/// Hand-held motion is bounded: accelerations are short, and the velocity and displacement of the hand return to zero.
+/// The specific force is therefore the sum of gravity, the centripetal and tangential force at the lever arm, and a
+/// bounded remainder. The direction of gravity rotates in sensor axes, and the rotation of gravity determines the rate
+/// while the gyro is saturated. Nodes at equal time steps contain attitude, rate and angular acceleration, and the
+/// motion of the held point (the point of the body at the hand). Biases and lever arm of the device are additional
+/// unknowns. A Gauss-Newton solver uses the arrow structure of the normal equations (ArrowSystem). The inverse of the
+/// normal equations gives the covariances. Memory (about 7 kB per node) and computation grow in proportion to the
+/// duration, whatever the IMU's sample rate.
 ///
-/// CarriedSmoother does not model flight (a thrown body; see `hand_mahalanobis`), contact with forces beyond hand-held
+/// CarriedSmoother does not model flight of a thrown body (see `hand_mahalanobis`), contact forces beyond hand-held
 /// motion, drift of the biases, or heading.
 class CarriedSmoother {
  public:
@@ -61,26 +64,30 @@ class CarriedSmoother {
     int iterations = 0;
     bool converged = false;
     double cost = 0.0;
-    /// Largest mean acceleration of the held point over a quarter of a second, in assumed standard deviations. A thrown
-    /// body (specific force about 0) or rough handling gives 2 and more. hand_mahalanobis is only a diagnostic.
+    /// Largest mean acceleration of the held point (at the hand) over a quarter of a second, divided by the assumed
+    /// standard deviation. The value of hand_mahalanobis exceeds 2 if the body was thrown (specific force about 0) or
+    /// handled roughly. The value hand_mahalanobis is a diagnostic and does not influence the estimate.
     double hand_mahalanobis = 0.0;
-    /// Clipped segments in which the number of revolutions may differ by one from the solution. `asked`: segments that
-    /// are long and uncertain enough for a test. `taken`: segments in which another number fitted better and was used,
-    /// counted in each round. `open`: segments in which another number remains possible, at odds of at least 1 to 1000.
-    /// The covariance includes the spread of the possible numbers.
+    /// Number of clipped segments whose number of full revolutions is ambiguous. The counter revolutions_asked counts
+    /// clipped segments that are long and uncertain enough for a test of another number of revolutions. The counter
+    /// revolutions_taken counts, in each round, the segments where another number of revolutions fitted better and was
+    /// used. The counter revolutions_open counts segments where another number of revolutions remains possible, at odds
+    /// of at least 1 to 1000. The rate covariance includes the spread of the possible numbers of revolutions.
     int revolutions_asked = 0, revolutions_taken = 0, revolutions_open = 0;
-    /// Changes of revolutions after which the whole problem could not be solved. The solution without failed changes is
-    /// kept, and their segments count as open.
+    /// Number of attempted changes of revolutions for which the solver failed. CarriedSmoother keeps the solution
+    /// before a failed change, and counts the segment in revolutions_open.
     int revolutions_failed = 0;
   };
 
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit CarriedSmoother(const Params& params);
 
-  /// Computes one rate and one attitude per sample (sensor axes to world, heading 0 at the start). Errors are `empty`,
-  /// `non_finite`, `time_order`, `gap`, `out_of_range` and `diverged`. `out_of_range`: signs or recovered rates do not
-  /// have one element per sample, or a covariance is invalid. `diverged`: the normal equations are not positive
-  /// definite. On error the outputs are empty.
+  /// Computes one rate and one attitude per sample.
+  /// `rates` contains the angular velocity of each sample, in sensor axes [rad/s]. `attitudes` contains the rotation
+  /// from sensor axes to the world at each sample, with heading 0 at the start.
+  /// Returns `ok`, `empty`, `non_finite`, `time_order`, `gap`, `out_of_range` or `diverged`. On error the outputs are
+  /// empty. The error `out_of_range` means that signs or recovered rates do not have one element per sample, or that a
+  /// covariance is invalid. The error `diverged` means that the normal equations are not positive definite.
   Status estimate(std::span<const ImuSample> samples, const ClippedElements& clipped, std::vector<RateState>& rates,
                   std::vector<AttitudeState>& attitudes, Report& report) const;
 

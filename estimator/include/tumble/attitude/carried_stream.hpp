@@ -12,26 +12,26 @@
 
 namespace tumble {
 
-/// Estimates attitude and rate of hand-held motion sample by sample. CarriedStream uses the factors of CarriedSmoother
-/// over a window of nodes, with one Gauss-Newton step per node.
+/// Estimates attitude and angular velocity of hand-held motion sample by sample, with a fixed lag. CarriedStream uses
+/// the factors of CarriedSmoother over a window of nodes, and makes one Gauss-Newton step per node.
 ///
-/// The oldest node is marginalised into a Gaussian prior on the next node and on the constants, with its last
-/// derivatives. Estimates are reported when their sample is `lag_s` old. The window is longer than the lag
-/// (`window_s`), so that older nodes are relinearised in each step. `lag_s` is counted in samples of `period_s`. If
-/// samples are further apart, a node may leave the window before its rate is reported; the rate is then stored. start()
-/// allocates all memory. Splitting a recording and continuing from the State gives bit-identical results.
+/// The oldest node is marginalised into a Gaussian prior on the next node and on the device's constants. Each rate is
+/// reported when its sample is `lag_s` old. The window `window_s` is longer than the lag, so that nodes older than the
+/// lag are relinearised in each step. The lag `lag_s` is converted to a number of samples of `period_s`. If samples are
+/// further apart than `period_s`, a node may leave the window before its rate is reported; the rate is then stored. The
+/// function start() allocates all memory. A run that is split and continues from the State gives bit-identical results.
 ///
-/// Differences from CarriedSmoother:
-/// - While nothing in the window clips, a step is made for each fifth node only.
-/// - The initial attitude comes from a single force reading, not from a filter.
-/// - The density of the hand's acceleration adapts to the nodes that left the window, with the time constant
-///   `hand_window_s` / 2. Later nodes have no influence on the density.
-/// - Other numbers of revolutions are not tested. The covariance includes the deviation of an additional revolution,
-///   and segments that may contain an additional revolution are counted (C42, C43 of carried.md).
-/// - Readings that have left the window were classified with the saturation levels known at that time.
-/// - The prior from marginalised nodes uses the assumed jerk; covariances use the inflated jerk.
+/// CarriedStream differs from CarriedSmoother as follows. While no sample in the window is clipped, the solver runs for
+/// each fifth node only. The initial attitude comes from a single force reading, not from a filter. The density of the
+/// hand's acceleration adapts to the nodes that have left the window, with the time constant `hand_window_s` / 2. Nodes
+/// in the window have no influence on the density of the hand's acceleration. CarriedStream does not test whether a
+/// clipped segment has an additional full revolution. The rate covariance instead includes the error of one additional
+/// revolution (C42, C43 of carried.md). The counter `revolutions_open` counts segments that may contain an additional
+/// revolution. Readings that have left the window are not classified again when a saturation level is detected later.
+/// The prior from marginalised nodes uses the assumed jerk, but reported covariances use the increased jerk
+/// (`jerk_inflation`).
 ///
-/// Cost: each new node costs one step, O(window).
+/// Cost: each new node costs one Gauss-Newton step, O(window).
 class CarriedStream {
  public:
   struct Params {
@@ -50,11 +50,11 @@ class CarriedStream {
     }
   };
 
-  /// One sample of the window.
+  /// Reading is one IMU sample of the window, with its clip signs.
   struct Reading {
     ImuSample sample;
     ClipSigns signs;
-    double centre_s = 0.0, end_s = 0.0;  ///< start and end of the sample's window, from the first sample's centre
+    double centre_s = 0.0, end_s = 0.0;  ///< centre and end of the sample's window, from the first sample's centre
     std::int64_t node = 0;               ///< node closest to the centre
     bool rest = false;
     RepeatedReading gyro, accel;        ///< state of repeated readings
@@ -71,23 +71,23 @@ class CarriedStream {
     Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();
     carried::Constants constants;
     carried::System::BorderMatrix constants_covariance = carried::System::BorderMatrix::Zero();
-    // Prior on the oldest node and the constants from everything that left the window. The prior is linearised at
-    // `prior_node` and `prior_constants`.
+    // Gaussian prior on the oldest node and on the constants, from all data that have left the window. The prior is
+    // linearised at `prior_node` and `prior_constants`.
     carried::System::Block prior;
     carried::System::Corner prior_corner;
     carried::Node prior_node;
     carried::Constants prior_constants;
-    double hand_power = 1.0;  ///< power of the nodes that left, relative to the assumed one
+    double hand_power = 1.0;  ///< measured acceleration power of marginalised nodes, relative to the assumed power
     RestDetector::State rests;
     std::int64_t reported_node = -1;  ///< node of the last reported estimate, and its covariance
     Eigen::Matrix3d reported_covariance_rad2_s2 = Eigen::Matrix3d::Zero();
     std::int64_t start_ns = 0;
     std::size_t samples = 0;
-    std::size_t failures = 0;  ///< number of skipped steps, whose system was not positive definite
-    /// Current clipped segment of each sensing element of the gyro, up to the last reported sample: the segment's
-    /// duration, and the integral of the rate's standard deviation.
+    std::size_t failures = 0;  ///< number of Gauss-Newton steps skipped because the system was not positive definite
+    /// Duration of the current clipped segment of each gyro element up to the last reported sample, and integral of the
+    /// rate's standard deviation.
     Eigen::Vector3d hidden_s = Eigen::Vector3d::Zero(), hidden_rad = Eigen::Vector3d::Zero();
-    std::size_t revolutions_open = 0;          ///< segments in which an additional revolution could not be excluded
+    std::size_t revolutions_open = 0;  ///< number of segments in which an additional revolution could not be excluded
     std::vector<carried::System::Block> work;  ///< buffer, not part of the state
   };
 
@@ -96,21 +96,22 @@ class CarriedStream {
 
   /// Returns the state before the first sample, with all memory that push() needs.
   State start() const;
-  /// Resets a state to before the first sample and reuses the state's memory. Counters keep their values.
+  /// Resets `state` to the state before the first sample, and reuses the allocated memory. The counters in `state` keep
+  /// their values.
   void restart(State& state) const;
 
-  /// Processes one sample. On error the state is unchanged and `out` is empty: `non_finite`, `time_order`, `gap`,
-  /// `out_of_range` (no signs), `degenerate` (sensing directions that do not span the axes).
-  /// - `known.signs`: current clip signs of the newest samples; the last entry belongs to `sample`. Samples of the
-  ///   window with changed signs are processed again.
-  /// - `out`: rate of the sample that is `lag_s` old. The output is empty while the window fills, and if not `wanted`,
-  ///   which saves most of the computation.
-  /// - `repeated`: repeated readings of the log. A repeated reading counts once, at the time when the sensor took it
-  ///   (R95 of rate_stream.md).
+  /// Processes one sample, and computes the rate of the sample that is `lag_s` old. `known` contains the current clip
+  /// signs of the newest samples; the last entry belongs to `sample`. Samples of the window whose clip signs changed
+  /// are processed again. `out` is the rate of the sample that is `lag_s` old; `out` is empty while the window fills,
+  /// or if `wanted` is false. If `wanted` is false, no rate is computed, which saves most of the computation.
+  /// `repeated` describes repeated readings (sample and hold) of the log. A repeated reading counts once, at the time
+  /// when the sensor took the reading (R95 of rate_stream.md). Returns `ok`, `non_finite`, `time_order`, `gap`,
+  /// `out_of_range` (no signs) or `degenerate` (sensing directions that do not span the axes). On error `state` is
+  /// unchanged and `out` is empty.
   Status push(const ImuSample& sample, const ClippedElements& known, State& state, std::optional<RateState>& out,
               bool wanted = true, const RepeatDetector::State& repeated = {}) const;
 
-  /// Appends the rates of the samples that are not yet reported to `out`, oldest first.
+  /// Appends the rates of all samples that are not yet reported to `out`, oldest first.
   void flush(const State& state, std::vector<RateState>& out) const;
 
   /// Checks the invariants of a state that was loaded from a file. Returns the first violated invariant.

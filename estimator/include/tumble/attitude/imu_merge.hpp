@@ -21,15 +21,15 @@ namespace tumble {
 /// Parameters of ImuMerge.
 struct ImuMergeParams {
   static constexpr int kImus = ImuMergeState::kImus;
-  std::array<Eigen::Isometry3d, kImus> T_CI{};  ///< mountings; the first `count` are used
+  std::array<Eigen::Isometry3d, kImus> T_CI{};  ///< pose of each IMU in the common axes C; the first `count` are used
   int count = 1;
   double rate_noise_rad_s = 0.01;  ///< standard deviation of the mean rate over a window
-  double window_s = 4e-3;          ///< averaging time of readings
-  double offset_sigma_s = 3e-3;    ///< prior of a unit's time offset; zero: not estimated
-  double gyro_range_rad_s = 1e3;   ///< readings from this value on are saturated
+  double window_s = 4e-3;          ///< averaging time of the readings
+  double offset_sigma_s = 3e-3;    ///< prior standard deviation of each unit's time offset; 0: not estimated
+  double gyro_range_rad_s = 1e3;   ///< readings at or above this value are saturated
   double accel_range_m_s2 = 1e5;
   double gap_max_s = 1.0;
-  /// Directions along which the sensing elements of each unit measure (RailPlaneFinder).
+  /// Directions along which the sensing elements of each unit measure, as found by RailPlaneFinder.
   std::array<ElementRows, kImus> gyro_elements{}, accel_elements{};
 
   using Expert = ImuMergeExpertParams;
@@ -54,35 +54,36 @@ struct ImuMergeParams {
   }
 };
 
-/// Fuses several IMUs on one rigid body into one IMU, in common axes C, at the mean of their positions.
+/// Fuses several IMUs (units) on one rigid body into one IMU, in common axes C, at the mean position of the units.
 ///
-/// On a rigid body the specific force is linear in position. The mean of the forces is therefore exactly the force at
-/// the mean position, without the angular acceleration. If three or more units agree and one does not, the disagreeing
-/// unit is excluded from the sample. The rate of the remaining units replaces the contribution of the excluded unit's
-/// position. A small Kalman filter estimates each unit's bias, scale, misalignment and time offset relative to the mean
-/// while the body rotates. A significant time offset is corrected; the other gyro errors average out. Accelerometer
-/// errors do not average out in fast rotation, where large forces cancel in the mean. ForceErrors estimates and
-/// corrects accelerometer errors.
+/// On a rigid body, the specific force is linear in position. The mean force of all units is therefore exactly the
+/// force at the mean position, without knowledge of the angular acceleration. If one unit disagrees while three or more
+/// units agree, the disagreeing unit is excluded from the sample. ImuMerge then corrects the mean force for the missing
+/// position, using the rate of the remaining units. While the body rotates, a Kalman filter estimates each unit's bias,
+/// scale, misalignment and time offset relative to the mean of all units. ImuMerge corrects significant time offsets;
+/// averaging reduces the remaining gyro errors. Averaging does not reduce accelerometer errors in fast rotation, where
+/// large opposite forces cancel in the mean. ForceErrors therefore estimates and corrects the accelerometer errors.
 ///
-/// A unit with a saturated accelerometer is excluded from the force. A unit that may have been saturated within a
-/// sample and disagrees with the remaining units is also excluded. If most units are suspect, the merged force is
-/// flagged as clipped. If the gyros are saturated, three or more units determine the rate from the accelerometers'
-/// differences (RateRecovery). The merged clip flags show when this recovery fails. With fewer units, a clipped unit is
-/// excluded while another unit is unsaturated. If all units are saturated, the merged sample is flagged on all axes of
-/// C to which a clipped axis contributes. A reading is clipped if flagged or beyond the range. Lower saturation levels,
-/// in particular tilted planes, must be flagged beforehand (ClippingFinder).
+/// A unit with a saturated accelerometer is excluded from the mean force. A unit is also excluded if it disagrees with
+/// the remaining units and may have been saturated for a part of the sample. If most units may be saturated, the merged
+/// force is flagged as clipped. If the gyros are saturated, RateRecovery computes the rate from the force differences
+/// between three or more units. If RateRecovery fails, the merged sample has clip flags. With one or two units, a unit
+/// with a clipped gyro is excluded while another unit is unsaturated. If all gyros are saturated, the merged sample is
+/// flagged on every axis of C to which a clipped axis contributes. ImuMerge treats a reading as clipped if the reading
+/// is flagged or beyond the stated range. The caller must flag readings at lower saturation levels and at tilted planes
+/// beforehand (ClippingFinder).
 ///
-/// All decisions and estimates use means over window_s, whatever the IMUs' rate. Bandwidth and tolerances therefore do
-/// not depend on the IMUs' rate. Readings as long as window_s are used unchanged. If an axis was saturated within the
-/// window, its mean is a lower bound.
+/// All decisions and estimates use means over window_s, whatever the sample rate of the IMUs. Bandwidth and tolerances
+/// therefore do not depend on the sample rate. Readings whose period is at least window_s are used unchanged. If an
+/// axis was saturated within the window, the mean of the axis is a lower bound.
 ///
-/// A unit whose reading is not finite is absent. A unit is frozen if its gyro or accelerometer repeats a reading while
-/// the other units' readings change. A unit is also frozen if its accelerometer repeats a reading while gravity
-/// rotates. A frozen unit is excluded until its readings have changed for a while. A unit that disagrees for long
-/// (scale, axes, unit of measurement) is excluded permanently, as long as two other units remain. Equal readings at
-/// rest do not count as freezing or disagreement.
+/// A unit whose reading is not finite is treated as absent. A unit is frozen if its gyro or accelerometer repeats one
+/// reading while the readings of other units change. A unit is also frozen if its accelerometer repeats one reading
+/// while the direction of gravity rotates. A frozen unit is excluded until its readings have changed for
+/// `thawed_after_s`. A unit that disagrees for long (scale, axes, unit of measurement) is excluded permanently, as long
+/// as two other units remain. Repeated readings of a body at rest do not count as freezing or disagreement.
 ///
-/// ImuMerge does not model clocks of different rates, or an error common to all units.
+/// ImuMerge does not model clocks of different rates, or an error that all units share.
 class ImuMerge {
  public:
   static constexpr int kImus = ImuMergeState::kImus;
@@ -97,22 +98,22 @@ class ImuMerge {
 
   explicit ImuMerge(const Params& params);
 
-  /// Returns the ratio of the force differences between units to those expected from rotation and positions. The ratio
-  /// is 1 if rotation and forces agree, and -1 if the accelerometers' sign is inverted. The result is empty while the
-  /// body has not rotated enough.
+  /// Returns the ratio of the measured force differences between units to the differences expected from rotation and
+  /// positions. The ratio is 1 if forces and rotation agree, and -1 if the sign of the accelerometers is inverted. The
+  /// result is empty until the body has rotated enough.
   static std::optional<double> arm_share(const State& state);
 
-  /// Returns `out_of_range` with the duration [s] if all recently received units are frozen. The readings of frozen
-  /// units are then merged unchanged. Returns `ok` if at least one unit is not frozen.
+  /// Returns `out_of_range` with the duration [s] if all recently received units are frozen. While all units are
+  /// frozen, step() merges their readings unchanged. Returns `ok` if at least one unit is not frozen.
   Status verdict(const State& state) const;
 
   /// Returns the position of the merged IMU in C.
   Eigen::Vector3d p_C_m() const { return p_C_m_; }
 
-  /// Processes simultaneous samples of all units; the time stamp is that of the first unit. When the samples complete a
-  /// window, `merged` is the mean over the window, in C. While the window is incomplete, `merged` is empty. On error
-  /// (`too_few`: not `count` samples, or none is finite) the state is unchanged and `merged` is empty. O(count), no
-  /// allocation.
+  /// Processes simultaneous samples of all units; the time stamp of the first unit counts. `merged` is the mean over
+  /// the window, in axes C, if the samples complete a window. `merged` is empty while the window is incomplete. Returns
+  /// `too_few` if `samples` does not contain `count` samples, or if none of the samples is finite. On error the state
+  /// is unchanged and `merged` is empty. Cost: O(count), no allocation.
   Status step(std::span<const ImuSample> samples, State& state, std::optional<ImuSample>& merged) const;
 
  private:

@@ -18,11 +18,11 @@ namespace tumble {
 /// Parameters of ImuPlausibility.
 struct ImuPlausibilityParams {
   double gravity_m_s2 = 9.80665;
-  double window_s = 0.2;          ///< window over which force and rotation are compared
+  double window_s = 0.2;          ///< duration of a window in which rotation of the force and of the gyro are compared
   double reading_s = 0.02;        ///< averaging time of readings
-  double steady_share = 0.12;     ///< maximum relative change of the force's magnitude within a window
-  double near_share = 0.25;       ///< maximum relative difference from gravity for comparing directions
-  double gyro_range_rad_s = 1e6;  ///< windows with an axis beyond this are not compared
+  double steady_share = 0.12;     ///< maximum relative change of the force's magnitude in a window
+  double near_share = 0.25;       ///< maximum relative difference of the force from gravity for comparing directions
+  double gyro_range_rad_s = 1e6;  ///< windows with a faster rate on an axis are not compared
   double gap_max_s = 0.1;         ///< a longer gap restarts the window
 
   using Expert = ImuPlausibilityExpertParams;
@@ -45,35 +45,37 @@ struct ImuPlausibilityParams {
   }
 };
 
-/// Checks whether an IMU's readings are plausible: units, axes, signs, and frozen sensors.
+/// Checks whether the readings of an IMU are plausible: units, axes, signs, and frozen sensors.
 ///
-/// If the magnitude of the force is constant over a fifth of a second, the force is nearly gravity. The magnitude of
-/// the force must then be g, and the force's direction must rotate as the gyro measures: u(t + T) = R^T u(t). Here u is
-/// the direction of the force and R the rotation from t to t + T. A constant force of another magnitude is not gravity,
-/// but for example the centripetal force of a spin in flight. The direction of a force other than gravity is not
-/// compared. Windows with a saturated gyro are not compared either.
+/// If the magnitude of the force is constant for a fifth of a second, the force is probably gravity. Gravity has the
+/// magnitude g, and its direction in sensor axes must rotate as the gyro measures: u(t + T) = R^T u(t). Here u is the
+/// direction of the force, and R is the rotation of the sensor from t to t + T. A constant force of another magnitude
+/// than g is not gravity, but for example the centripetal force of a spin in flight. The direction of a force is
+/// compared only if the magnitude of the force is close to g. Windows with a saturated gyro are not compared.
 ///
-/// The rotation of the force is regressed on that of the gyro. The slope of the regression is 1 for a correct IMU, 2
-/// for a half-scale gyro, -1 for an inverted gyro, and about 0 for swapped axes. Pushes, and a force along a rod,
-/// scatter the measured rotations about the true slope and shift the slope little. Rotation about certain axes does not
-/// reveal swapped axis labels. An example is a sphere rolling along x = y with x and y swapped. For swapped axes, the
-/// correct labels leave a smaller residual, so the residuals of all labels are compared. A force that does not rotate
-/// although the body does is detected separately.
+/// ImuPlausibility regresses the rotation of the force on the rotation of the gyro. The slope of the regression is 1
+/// for a correct IMU, 2 for a half-scale gyro, and -1 for an inverted gyro. If axes are swapped, the slope of the
+/// regression is about 0. Pushes, and a force along a rod, scatter the measured rotations about the regression line but
+/// change its slope little. Rotation about some axes does not reveal swapped axis labels. For example, a sphere that
+/// rolls along x = y does not reveal that x and y are swapped. If axes are swapped, the correct axis labels leave a
+/// smaller residual. ImuPlausibility therefore compares the residuals of all possible axis labels. A force that does
+/// not rotate although the body rotates is detected separately.
 ///
-/// A gyro or an accelerometer is frozen if it repeats one reading bit for bit, for a second and for ten times its
-/// longest earlier repetition. The sensor's readings must have changed before. A sensor with equally long earlier
-/// repetitions is therefore not detected as frozen (coarse quantisation at rest, a simulation without noise). A gyro
-/// that never changed is frozen if gravity rotates, or if forces differ from gravity for long enough. An accelerometer
-/// that always reads 0 is frozen if the gyro measures motion.
+/// A gyro or an accelerometer is frozen if it repeats one reading bit for bit for long enough. The repetition must last
+/// a second, and ten times longer than any earlier repetition. The rule of repeated readings applies only to a sensor
+/// whose readings have changed before. A sensor whose readings often repeat for long is not reported as frozen (coarse
+/// quantisation at rest, a simulation without noise). A gyro whose readings never changed is frozen if gravity rotates,
+/// or if forces differ from gravity for long enough. An accelerometer that always reads 0 is frozen if the gyro
+/// measures motion.
 ///
-/// ImuPlausibility does not detect errors of some per cent, errors of axes about which the body does not rotate, or a
-/// body that is pushed all the time. An accelerometer with all three axes flipped is not detected either. With several
-/// IMUs, ImuMerge::arm_share() detects flipped accelerometers.
+/// ImuPlausibility does not detect errors of a few per cent, or errors of axes about which the body does not rotate. If
+/// the body is pushed all the time, ImuPlausibility detects no error. ImuPlausibility does not detect an accelerometer
+/// whose three axes are all inverted. With several IMUs, ImuMerge::arm_share() detects inverted accelerometers.
 class ImuPlausibility {
  public:
   using Params = ImuPlausibilityParams;
 
-  /// Duration of a triad's repeated reading.
+  /// Hold describes how long a sensor (gyro or accelerometer) has repeated one reading.
   struct Hold {
     Eigen::Vector3d reading = Eigen::Vector3d::Zero();
     double repeated_s = 0.0, longest_s = 0.0, moved_s = 0.0;
@@ -87,10 +89,10 @@ class ImuPlausibility {
     Eigen::Quaterniond turned = Eigen::Quaterniond::Identity();  ///< rotation within the window, from the gyro
     double length_s = 0.0;
     bool open = false, steady = false;
-    bool in_range = true;  ///< whether all samples of the window and of the current average are within the range
+    bool in_range = true;  ///< whether all samples of the window and average are within the range
     double force_sum_m_s2 = 0.0, windows = 0.0;
     double pushed_s = 0.0;                               ///< time with forces that exclude rest
-    std::array<double, kAxisLabels> unexplained_rad2{};  ///< residual for each labelling of the axes
+    std::array<double, kAxisLabels> unexplained_rad2{};  ///< residual for each possible assignment of axis labels
     double by_force_rad2 = 0.0, by_gyro_rad2 = 0.0;      ///< sums over the windows in which the force rotated
     double rotated_windows = 0.0;                        ///< number of windows in which the force rotated
     double all_force_rad2 = 0.0, all_gyro_rad2 = 0.0;    ///< sums over the windows in which force or gyro rotated
@@ -102,34 +104,35 @@ class ImuPlausibility {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit ImuPlausibility(const Params& params);
 
-  /// Processes a reading. Ignores readings that are not finite or out of order. O(1), no allocation.
+  /// Processes one reading. Cost: O(1), no allocation. Readings that are not finite or out of order are ignored.
   void step(const ImuSample& sample, State& state) const;
 
-  /// Returns the mean magnitude of a constant force as a fraction of gravity; 1 while unknown.
+  /// Returns the mean magnitude of a constant force as a fraction of gravity, or 1 while unknown.
   double force_share(const State& state) const;
-  /// Returns the fraction of the force's rotation that the gyro does not explain; 0 while unknown.
+  /// Returns the fraction of the force's rotation that the gyro does not explain, or 0 while unknown.
   double unexplained_share(const State& state) const;
-  /// Returns the regression slope of the force's rotation on the gyro's rotation (I20); 1 while unknown.
+  /// Returns the regression slope of the force's rotation on the gyro's rotation (I20), or 1 while unknown.
   double rotation_slope(const State& state) const;
-  /// Returns the correlation of the gyro's rotation with the force's rotation, -1 to 1. The correlation is 1 for a gyro
-  /// of any scale, -1 for an inverted gyro, and about 0 for swapped axes. Pushes mistaken for gravity cause values
-  /// between 0 and 1. Returns 1 while the rotation is too small.
+  /// Returns the correlation of the gyro's rotation with the force's rotation, from -1 to 1. The correlation is 1 for a
+  /// gyro of any scale, -1 for an inverted gyro, and about 0 for swapped axes. Pushes that are mistaken for gravity
+  /// reduce the correlation to a value between 0 and 1. Returns a correlation of 1 while the rotation is too small.
   double rotation_agreement(const State& state) const;
-  /// Returns the force's rotation as a fraction of the gyro's, including windows in which the force did not rotate; 1
-  /// while unknown.
+  /// Returns the force's rotation as a fraction of the gyro's rotation, or 1 while unknown. The fraction includes
+  /// windows in which the force did not rotate.
   double force_rotated_share(const State& state) const;
-  /// Returns the axis labels under which gravity rotates with the gyro, if these labels clearly differ from the current
-  /// ones (I22).
+  /// Returns the axis labels for which the rotation of gravity fits the gyro clearly better than for the current labels
+  /// (I22).
   std::optional<AxisLabels> other_labels(const State& state) const;
-  /// Returns the longest time for which the gyro or the accelerometer was frozen [s]; 0: never.
+  /// Returns the longest time for which the gyro or the accelerometer was frozen [s], or 0 if neither was frozen.
   double frozen_s(const State& state) const;
-  /// Returns `out_of_range` with the name of the quantity that violates its limit.
+  /// Returns `out_of_range` with the name of the implausible quantity, or `ok`.
   Status verdict(const State& state) const;
 
  private:
   /// Returns whether the force rotated far enough, in enough windows, for a decision.
   bool turned(const State& state) const;
-  /// Returns whether the gyro is inverted, or rescaling it by the regression slope leaves a far smaller residual.
+  /// Returns whether the gyro is inverted, or whether a gyro scaled by the regression slope leaves a far smaller
+  /// residual.
   bool explains_more(const State& state) const;
   void take(State& state) const;
   void compare(const Eigen::Vector3d& force_m_s2, State& state) const;

@@ -12,22 +12,23 @@
 namespace tumble {
 
 /// Estimates the angular velocity of a body in flight, in contact or hand-held over a whole recording. RateSmoother
-/// assumes flight and contact. Where RegimeEvidence indicates that the body was hand-held while its gyro clipped,
-/// CarriedSmoother is used as well. `either` combines the estimates of RateSmoother and CarriedSmoother.
-/// CarriedSmoother runs only if it can change the result. RegimeStream is the streaming form.
+/// estimates the rates under the assumption of flight and contact. CarriedSmoother estimates the rates again where
+/// RegimeEvidence indicates that the body was hand-held while the gyro clipped. The function either() combines the
+/// rates of RateSmoother and CarriedSmoother by the probability of hand-held motion. CarriedSmoother runs only if its
+/// rates can change the result. RegimeStream is the streaming form of RegimeSmoother.
 ///
-/// Samples in and near a segment of clipped or suspect samples use the smallest hand-held probability among the
-/// segment's nearby samples. The reason is a body that a hand releases: the flight determines nearby rates, but nothing
-/// about hand-held motion a second later. Additional IMUs determine the rate in any kind of motion and are not used
-/// here.
+/// All samples of a clipped segment use the smallest probability of hand-held motion within and near the segment. The
+/// smallest probability is used because a hand may release the body during the segment. Flight then determines the
+/// nearby rates, but provides no information about hand-held motion a second later. RegimeSmoother does not use
+/// additional IMUs, which determine the rate in any kind of motion.
 class RegimeSmoother {
  public:
   struct Params {
     RateSmoother::Params rate;
     RegimeEvidence::Params evidence;
     CarriedSmoother::Params carried;
-    double carried_min = 0.02;  ///< minimum probability of hand-held motion that justifies a run of CarriedSmoother
-    double near_s = 0.1;        ///< clipped samples within this time form one segment and affect each other
+    double carried_min = 0.02;  ///< minimum probability of hand-held motion for which CarriedSmoother runs
+    double near_s = 0.1;        ///< clipped samples within this time of each other form one segment
 
     /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
     template <class Self, class Visitor>
@@ -42,21 +43,22 @@ class RegimeSmoother {
   };
   struct Report {
     RateReport rate;
-    bool judged = false;               ///< kinds of motion were estimated; the following members are valid
-    RegimeShares shares{};             ///< mean over the samples
+    bool judged = false;               ///< probabilities were estimated; the following members are valid
+    RegimeShares shares{};             ///< mean probabilities over all samples
     double carried_clipped_max = 0.0;  ///< largest probability of hand-held motion in a segment of clipped samples
-    bool carried_asked = false;        ///< CarriedSmoother was run successfully; its report follows
+    bool carried_asked = false;        ///< CarriedSmoother ran successfully; its report follows
     CarriedSmoother::Report carried;
   };
 
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit RegimeSmoother(const Params& params);
 
-  /// Computes one RateState per sample. Errors are those of RateSmoother; on error `rates` is empty. If CarriedSmoother
-  /// fails, the result of RateSmoother is used.
+  /// Computes one RateState per sample. Returns the status of RateSmoother; on error `rates` is empty. If
+  /// CarriedSmoother fails, `rates` contains the result of RateSmoother.
   Status estimate(std::span<const ImuSample> samples, std::vector<RateState>& rates, Report& report) const;
 
-  /// Combines the result of RateSmoother (`rates` with `report.rate`) with that of CarriedSmoother.
+  /// Replaces `rates`, the result of RateSmoother, by the combination with the rates of CarriedSmoother. The report of
+  /// RateSmoother must be in `report.rate`.
   void join(std::span<const ImuSample> samples, std::vector<RateState>& rates, Report& report) const;
 
  private:

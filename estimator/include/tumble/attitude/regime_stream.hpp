@@ -12,29 +12,29 @@
 
 namespace tumble {
 
-/// Estimates the angular velocity of a body in flight, in contact or hand-held, sample by sample. RateStream assumes
-/// flight and contact. CarriedStream is combined with RateStream (`either`) where RegimeEvidence indicates hand-held
-/// motion while the gyro clips. RateStream detects the saturation levels.
+/// Estimates the angular velocity of a body in flight, in contact or hand-held, sample by sample. RateStream estimates
+/// the rates under the assumption of flight and contact, and detects the saturation levels. CarriedStream estimates the
+/// rates again where RegimeEvidence indicates hand-held motion while the gyro clips. The function either() combines the
+/// rates of RateStream and CarriedStream.
 ///
-/// The probabilities of flight, contact and hand-held motion come from a filter over the reported samples. Each
-/// probability therefore depends on earlier samples and, through the smoothed rate, on later samples within the lag.
-/// The weight of CarriedStream is the smallest nearby probability in the segment of clipped samples, as in
-/// RegimeSmoother, within the window. While RateStream resets its calibration in more than half of the steps of its
-/// lag, clipped samples are not used. CarriedStream is paused while the hand-held probability is below `carried_min`,
-/// and then restarts. Unclipped estimates are those of RateStream.
+/// A filter over the reported samples estimates the probabilities of flight, contact and hand-held motion. Each
+/// probability depends on earlier samples and, through the smoothed rate, on later samples within the lag. The weight
+/// of CarriedStream is the smallest probability of hand-held motion in the segment of clipped samples, as in
+/// RegimeSmoother. While RateStream resets its calibration in more than half of the steps of its lag, clipped samples
+/// do not change the probabilities. CarriedStream is paused while the probability of hand-held motion is below
+/// `carried_min`, and then restarts. Rates of unclipped samples are those of RateStream.
 ///
-/// RateStream fits clipped rates, and all angular accelerations, to the force from which the kind of motion is
-/// estimated. For an IMU far from the centre of mass, gravity in gentle hand-held motion would then be mistaken for the
-/// lever arm's force. RegimeEvidence therefore receives the time derivative of the rates instead of RateStream's
-/// angular acceleration.
+/// RateStream fits its clipped rates and all its angular accelerations to the measured force. Far from the centre of
+/// mass, fitted accelerations would explain gravity in gentle hand-held motion as a force of the lever arm.
+/// RegimeEvidence therefore receives the time derivative of the rates instead of RateStream's angular acceleration.
 class RegimeStream {
  public:
   struct Params {
     RateStream::Params rate;
     RegimeEvidence::Params evidence;
-    CarriedStream::Params carried;  ///< `period_s` and `lag_s` are those of `rate`
+    CarriedStream::Params carried;  ///< `period_s` and `lag_s` are replaced by those of `rate`
     double carried_min = 0.02;      ///< minimum probability of hand-held motion for which CarriedStream runs
-    double near_s = 0.1;            ///< clipped samples within this time form one segment and affect each other
+    double near_s = 0.1;            ///< clipped samples within this time of each other form one segment
 
     /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
     template <class Self, class Visitor>
@@ -47,7 +47,7 @@ class RegimeStream {
       visit(p.near_s, {"near_s", "s", 0.0, 10.0, "clipped samples within this time belong to one segment"});
     }
   };
-  /// Data of a reported sample.
+  /// Time and hand-held probability of a reported sample.
   struct ReportedShare {
     TimeNs time_ns = 0;
     double carried = 0.0;
@@ -64,8 +64,8 @@ class RegimeStream {
     std::size_t rig_resets = 0;  ///< last value of RateStream's counter
     double resets = 0.0;         ///< resets of RateStream's calibration, decaying over its lag
     bool carrying = false;       ///< CarriedStream is running
-    /// Samples of the last clipped segment within `near_s`, without those followed by a smaller probability. The oldest
-    /// stored sample has the smallest probability.
+    /// Samples of the last clipped segment within `near_s`, except samples followed by a smaller probability of
+    /// hand-held motion. The oldest entry of `near` has the smallest probability.
     std::vector<ReportedShare> near;
     TimeNs reported_ns = 0;            ///< time of the last reported sample
     std::optional<TimeNs> clipped_ns;  ///< last reported clipped sample
@@ -77,14 +77,15 @@ class RegimeStream {
   /// Returns the state before the first sample, with all memory that push() needs.
   State start() const;
 
-  /// Processes one sample as RateStream::push does, and combines the rate with that of CarriedStream.
+  /// Processes one sample like RateStream::push, and combines the rate with that of CarriedStream.
   Status push(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state,
               std::optional<RateState>& out) const;
   Status push(const ImuSample& sample, State& state, std::optional<RateState>& out) const {
     return push(sample, {}, state, out);
   }
 
-  /// Appends the estimates of RateStream::flush, combined with CarriedStream by the current probabilities.
+  /// Appends the rates of RateStream::flush to `out`, combined with the rates of CarriedStream by the current
+  /// probabilities.
   void flush(const State& state, std::vector<RateState>& out) const;
 
   const RateStream& rate() const { return rate_; }

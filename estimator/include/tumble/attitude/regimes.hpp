@@ -12,34 +12,37 @@
 
 namespace tumble {
 
-/// Probabilities of one sample's kind of motion (regime): free flight (zero specific force at the centre of mass),
-/// contact (any force), or hand-held (bounded acceleration about gravity). The three probabilities sum to 1.
+/// RegimeShares contains the probabilities of one sample's kind of motion (regime). The kinds of motion are free flight
+/// (zero specific force at the centre of mass), contact (any force), and hand-held (bounded acceleration about
+/// gravity). The three probabilities of RegimeShares sum to 1.
 struct RegimeShares {
   double flight = 0.0, contact = 0.0, carried = 0.0;
 };
 
-/// Estimates the kind of motion (flight, contact or hand-held) of each sample of a recording from its specific force.
-/// The force minus the effect of rotation at the lever arm is e = f - a x r - w x (w x r). Here f is the specific
-/// force, w the rate, a the angular acceleration and r the lever arm. The remaining force e is zero in flight. In
-/// hand-held motion the magnitude of e is that of gravity plus a hand's acceleration, in any direction. In contact e
-/// has any value (flat density of the logarithmic norm). A Markov chain connects the samples: flight and contact
-/// alternate several times per second, but a body is rarely thrown or caught. An impact or a quiet moment while rolling
-/// is therefore not mistaken for hand-held motion. Readings within `memory_s` are correlated and count as one. A body
-/// that does not rotate gives no information.
+/// Estimates the kind of motion (flight, contact or hand-held) of each sample of a recording from the specific force.
 ///
-/// No attitude is needed, so the kinds of motion are available before CarriedSmoother runs. RegimeEvidence does not
-/// model a body that hangs on a rope, buoyancy, or aerodynamic forces above `flight_m_s2`.
+/// The residual force is e = f - a x r - w x (w x r), the specific force without the effect of rotation at the lever
+/// arm. Here f is the specific force, w the rate, a the angular acceleration and r the lever arm. The residual force e
+/// is zero in flight. In hand-held motion, e is gravity plus the acceleration of a hand, in any direction. In contact,
+/// the residual force e can have any magnitude; the logarithm of the magnitude has a flat density. A Markov chain
+/// connects the samples: flight and contact alternate several times per second, but a body is rarely thrown or caught.
+/// The Markov chain prevents an impact or a quiet moment of rolling from being mistaken for hand-held motion. Readings
+/// within `memory_s` are correlated and count as one reading. Readings without rotation do not change the
+/// probabilities.
+///
+/// RegimeEvidence needs no attitude, so the probabilities are available before CarriedSmoother runs. RegimeEvidence
+/// does not model a body that hangs on a rope, buoyancy, or aerodynamic forces above `flight_m_s2`.
 class RegimeEvidence {
  public:
   struct Params {
     double gravity_m_s2 = 9.80665;
-    double flight_m_s2 = 0.3;          ///< standard deviation of the remaining force in flight: drag, bandwidth
+    double flight_m_s2 = 0.3;          ///< standard deviation of the residual force in flight: drag, bandwidth
     double flight_share = 0.05;        ///< additional standard deviation, as a fraction of the lever arm's force
     double hand_m_s2 = 5.0;            ///< standard deviation of a hand's acceleration
     double grip_m = 0.05;              ///< distance of the IMU from the hand
-    double contact_max_m_s2 = 1000.0;  ///< largest force of contact; the smallest force is 1 m/s^2
+    double contact_max_m_s2 = 1000.0;  ///< largest contact force; the smallest contact force is 1 m/s^2
     double memory_s = 0.05;
-    double rest_rate_rad_s = 0.5;  ///< slower rotation gives no information
+    double rest_rate_rad_s = 0.5;  ///< readings below this rate do not change the probabilities
     double contacts_hz = 5.0;      ///< rate of changes between flight and contact
     double throws_hz = 0.02;       ///< rate of changes between hand-held motion and flight or contact
 
@@ -66,14 +69,15 @@ class RegimeEvidence {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit RegimeEvidence(const Params& params);
 
-  /// Computes one RegimeShares per sample. `rates` contains one rate per sample, from a smoother that assumes flight
-  /// and contact. `lever_arm_m` is from the centre of mass to the IMU, in IMU axes, with its covariance. Errors:
-  /// `empty`; `out_of_range` if `rates` does not have one element per sample. O(N).
+  /// Computes the probabilities of flight, contact and hand-held motion of each sample. Cost: O(N).
+  /// `rates` contains the angular velocity of each sample, from a smoother that assumes flight and contact.
+  /// `lever_arm_m` is the vector from the centre of mass to the IMU, in IMU axes.
+  /// Returns `ok`, `empty` without samples, or `out_of_range` if `rates` does not have one element per sample.
   Status find(std::span<const ImuSample> samples, std::span<const RateState> rates, const Eigen::Vector3d& lever_arm_m,
               const Eigen::Matrix3d& lever_arm_covariance_m2, std::vector<RegimeShares>& out) const;
 
-  /// Filters one sample: returns the probabilities after the sample from the probabilities `dt_s` earlier. The angular
-  /// acceleration is the time derivative of the rate. O(1).
+  /// Returns the probabilities after one sample, given the probabilities `before`, which are `dt_s` older. Cost: O(1).
+  /// `angular_acceleration_rad_s2` is the time derivative of the rate, in IMU axes.
   RegimeShares next(const RegimeShares& before, double dt_s, const ImuSample& sample, const RateState& rate,
                     const Eigen::Vector3d& angular_acceleration_rad_s2, const Eigen::Vector3d& lever_arm_m,
                     const Eigen::Matrix3d& lever_arm_covariance_m2) const;
@@ -84,9 +88,8 @@ class RegimeEvidence {
   Params params_;
 };
 
-/// Combines two different estimates of a rate. The result has the mean of the more probable estimate and the covariance
-/// of the mixture.
-/// `share` is the probability of `second`.
+/// Combines two estimates of a rate, where `share` is the probability that `second` is correct. The result has the mean
+/// of the more probable estimate and the covariance of the mixture of both estimates.
 RateState either(const RateState& first, const RateState& second, double share);
 
 }  // namespace tumble

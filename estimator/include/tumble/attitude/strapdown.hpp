@@ -10,9 +10,9 @@
 
 namespace tumble {
 
-/// Integrates the gyro to an attitude: q <- q Exp(w dt), from a start levelled by the accelerometer. The integration is
-/// exact for a rate that is constant in body axes over each sample. Strapdown estimates no bias and makes no
-/// correction, so the attitude drifts.
+/// Integrates the gyro to an attitude, q <- q Exp(w dt), from a start levelled by the accelerometer. The integration is
+/// exact if the rate is constant in body axes during each sample. Strapdown estimates no bias and makes no correction,
+/// so the attitude drifts.
 class Strapdown {
  public:
   struct Params {
@@ -36,8 +36,8 @@ class Strapdown {
 
   explicit Strapdown(const Params& params);
 
-  /// Integrates a sample. The first sample levels the attitude (yaw 0) by its specific force.
-  /// On error the state is unchanged. O(1), no allocation.
+  /// Processes one sample and updates the attitude. Cost: O(1), no allocation. The first sample levels the attitude
+  /// (yaw 0) by its specific force. On error the state is unchanged.
   Status step(const ImuSample& sample, State& state) const;
 
  private:

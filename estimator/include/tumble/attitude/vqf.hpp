@@ -10,7 +10,8 @@
 
 namespace tumble {
 
-/// Parameters of Vqf for which the authors of the publication use one value for all devices.
+/// VqfExpertParams contains the parameters of Vqf for which the authors of the publication use one value for all
+/// devices.
 struct VqfExpertParams {
   double bias_sigma_motion_rad_s = 1.7453e-3;  ///< 0.1 deg/s: limit of the bias uncertainty in motion
   double bias_sigma_rest_rad_s = 5.2360e-4;    ///< 0.03 deg/s: limit of the bias uncertainty at rest
@@ -38,7 +39,7 @@ struct VqfParams {
   double bias_forgetting_s = 100.0;           ///< time in which the variance grows to (0.1 deg/s)^2
   double bias_clip_rad_s = 3.4907e-2;         ///< 2 deg/s: largest accepted bias
   double rest_time_s = 1.5;
-  double rest_rate_rad_s = 3.4907e-2;  ///< 2 deg/s from the low-passed gyro
+  double rest_rate_rad_s = 3.4907e-2;  ///< 2 deg/s: maximum difference of the gyro from its low-pass at rest
   double rest_force_m_s2 = 0.5;        ///< maximum distance of the force from the low-passed force at rest
   double gap_max_s = 1.0;
 
@@ -69,12 +70,14 @@ struct VqfParams {
   }
 };
 
-/// Estimates attitude by the versatile quaternion filter with gyro and accelerometer (D. Laidig, T. Seel, Information
-/// Fusion 91, 2023, "VQF"). The gyro alone rotates the specific force into a nearly inertial frame N. A low-pass in N
-/// averages out the acceleration of bounded motion. The averaged force levels N in W by the smallest rotation. A Kalman
-/// filter of three states estimates the gyro's bias: at rest from the low-passed gyro, in motion from the rate of the
-/// levelling. Vqf does not model a heading reference, bias about the vertical in motion, or adaptation to the magnitude
-/// of the acceleration.
+/// Estimates attitude by the versatile quaternion filter (VQF) from gyro and accelerometer. Source: Laidig and Seel,
+/// "VQF", Information Fusion 91, 2023.
+///
+/// Vqf integrates the gyro, which rotates the specific force into a nearly inertial frame N. A low-pass in frame N
+/// averages out the acceleration of a bounded motion. The averaged force levels frame N in the world W by the smallest
+/// rotation. A Kalman filter of three states estimates the bias of the gyro. The bias filter measures the bias by the
+/// low-passed gyro at rest, and by the rate of the levelling in motion. Vqf does not model a heading reference, bias
+/// about the vertical in motion, or adaptation to the magnitude of the acceleration.
 class Vqf {
  public:
   using Params = VqfParams;
@@ -98,9 +101,9 @@ class Vqf {
 
   explicit Vqf(const Params& params);
 
-  /// Processes a sample. The first sample levels the attitude (yaw 0). Each later sample is integrated and corrects the
-  /// state. With a force below 1e-6 m/s^2, only the gyro is integrated. On error the state is unchanged. O(1), no
-  /// allocation.
+  /// Processes one sample and updates the attitude. Cost: O(1), no allocation. The first sample levels the attitude
+  /// (yaw 0). Each later sample is integrated and corrects the state. If the force is below 1e-6 m/s^2, the sample only
+  /// integrates the gyro. On error the state is unchanged.
   Status step(const ImuSample& sample, State& state) const;
 
  private:

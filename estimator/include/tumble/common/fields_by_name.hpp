@@ -9,13 +9,13 @@
 
 #include "tumble/common/parameters.hpp"
 
-/// Access to the fields of a `Params` by the names that users write on a command line, in a table or as Python
-/// keywords.
+/// fields_by_name.hpp finds the fields of a `Params` by the names that users write on a command line, in a table or as
+/// Python keywords.
 namespace tumble {
 
 namespace detail {
 
-/// Visitor that prepends the prefixes of the enclosing groups to each field's name.
+/// Visitor that prepends the prefixes of the enclosing groups to the name of each field.
 template <class Each>
 class ByWholeName {
  public:
@@ -40,8 +40,8 @@ class ByWholeName {
 
 }  // namespace detail
 
-/// Calls `each(name, value, field)` for each field of `params` (const or not), in order. A value is a number (`Number`)
-/// or a whole Vector3d. `name` is a std::string that starts with the prefixes of the enclosing groups.
+/// Calls `each(name, value, field)` for each field of `params` (const or not), in order. `value` is a number (concept
+/// `Number`) or a whole Vector3d. `name` is a std::string that starts with the prefixes of the enclosing groups.
 template <class Params, class Each>
 void visit_by_name(Params& params, Each each) {
   detail::ByWholeName<Each> visitor(each);

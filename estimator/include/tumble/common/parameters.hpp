@@ -10,21 +10,23 @@
 
 #include "tumble/common/status.hpp"
 
-/// A `Params` describes each of its numbers in one place. Checks, tables, readers and comparisons are visitors of these
-/// descriptions.
+/// A `Params` struct describes each of its numbers in one place, the function `fields`. Range checks, tables, readers
+/// and comparisons are visitors of the function `fields`.
 ///
-/// A `Params` has `template <class Self, class Visitor> static void fields(Self& p, Visitor& visit)`. The function
-/// `fields` calls `visit(p.member, Field)` for each double, int, std::size_t, bool, enumeration (by its number) and
-/// Vector3d. For each nested `Params`, `fields` calls `visit.group("prefix_", p.member)`. Self may be const.
+/// A `Params` struct has `template <class Self, class Visitor> static void fields(Self& p, Visitor& visit)`. The
+/// function `fields` calls `visit(p.member, Field)` for each double, int, std::size_t, bool, enumeration (by its
+/// number) and Vector3d. For each nested `Params`, the function `fields` calls `visit.group("prefix_", p.member)`. The
+/// type `Self` may be const.
 ///
-/// Members that are not numbers set by a user are not fields: poses, planes and earlier calibrations. A Field's bounds
-/// are plain numbers, so relations between fields are checked separately.
+/// Poses, planes and earlier calibrations are not fields, because users do not set poses, planes and calibrations as
+/// numbers. The bounds of a Field are plain numbers, so constructors check relations between fields separately.
 namespace tumble {
 
-/// Order of fields in a listing. `first` marks the numbers that users usually set before any others.
+/// Rank determines the order of fields in a listing. The rank `first` marks the numbers that users usually set before
+/// any others.
 enum class Rank : std::uint8_t { first, further };
 
-/// Description of one number of a `Params`. All strings are static.
+/// Field describes one number of a `Params` struct. All strings are static.
 struct Field {
   const char* name;     ///< with its unit as suffix; used in tables, suites and messages
   const char* unit;     ///< "1" if dimensionless
@@ -38,16 +40,17 @@ inline Field on_off(const char* name, const char* meaning, Rank rank = Rank::fur
   return {name, "1", 0.0, 1.0, meaning, rank};
 }
 
-/// Limit of fields whose values only need to be finite.
+/// Limit of a field whose value only needs to be finite.
 inline constexpr double kUnbounded = std::numeric_limits<double>::max();
 
-/// Types that a visitor receives as a number, as opposed to a vector or a nested `Params`.
+/// Number is satisfied by the types that a visitor receives as a number, as opposed to a vector or a nested `Params`.
 template <class T>
 concept Number = std::is_arithmetic_v<std::remove_cvref_t<T>> || std::is_enum_v<std::remove_cvref_t<T>>;
 
 namespace detail {
 
-/// The first field whose value is not allowed. `names` holds the prefixes of the field's groups and the field's name.
+/// OutOfBounds describes the first field whose value is not allowed. `names` contains the prefixes of the field's
+/// groups, followed by the field's name.
 struct OutOfBounds {
   std::array<const char*, 8> names{};
   std::size_t depth = 0;
@@ -55,7 +58,8 @@ struct OutOfBounds {
   Status status;
 };
 
-/// Visitor that finds the first field whose value is not allowed (NaN is never allowed). Does not allocate.
+/// FindOutOfBounds is a visitor that finds the first field whose value is not allowed; NaN is never allowed. The
+/// visitor does not allocate.
 class FindOutOfBounds {
  public:
   explicit FindOutOfBounds(OutOfBounds& out) : out_(out) {}
@@ -86,8 +90,9 @@ void throw_if(const OutOfBounds& found);
 
 }  // namespace detail
 
-/// Checks the bounds of all fields. Returns `out_of_range` with name, value and bound of the first violation, or `ok`.
-/// The name of a nested field lacks its group's prefix. Does not allocate.
+/// Checks the bounds of all fields of `params`. Returns `out_of_range` with name, value and bound of the first
+/// violation, or `ok`. The returned name of a nested field lacks the prefix of the field's group. The function does not
+/// allocate.
 template <class Params>
 Status check_fields(const Params& params) {
   detail::OutOfBounds found;

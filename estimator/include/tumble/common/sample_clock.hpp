@@ -13,32 +13,32 @@
 
 namespace tumble {
 
-/// Estimates when a sensor with its own clock took each sample, causally, from stamps that a host computer assigned.
-/// The host's delay varies; the sensor's period is regular. At 300 rad/s^2, a timing error of 0.5 ms means a rate error
-/// of 0.15 rad/s.
+/// Estimates when a sensor with its own clock took each sample, causally, from time stamps that a host computer
+/// assigned. SampleClock assumes that the delay of the host varies, and that the sample period of the sensor is
+/// regular. For example, at an angular acceleration of 300 rad/s^2, a timing error of 0.5 ms causes a rate error of
+/// 0.15 rad/s.
 ///
-/// SampleClock fits a line to the stamps as a function of the sample number, with exponentially decreasing weights for
-/// older samples. The method is the fading-memory polynomial filter of first degree (N. Morrison, Introduction to
+/// SampleClock fits a line to the stamps as a function of the sample number. The weights of older samples decrease
+/// exponentially. The method is the fading-memory polynomial filter of first degree (Morrison, Introduction to
 /// Sequential Smoothing and Prediction, 1969, ch. 13). The error of an estimated time is 1.1 sqrt(T / memory_s) times
-/// the jitter, with the sample period T. A constant delay of the host is a clock offset and is not observable. The
-/// numbering of samples includes dropped samples.
+/// the jitter of the stamps, with the sample period T. A constant delay of the host is not observable. The sample
+/// number also counts dropped samples.
 ///
-/// SampleClock keeps a stamp, bit for bit, in each of these cases:
-/// - The stamp is among the first 32.
-/// - The jitter is below `jitter_min` of the period: the stamps come from the sensor's clock, possibly rounded to
-///   microseconds.
-/// - The jitter is above `jitter_max`, or successive errors are correlated: the sensor has no period, or its period
-///   drifts.
+/// SampleClock returns a stamp unchanged, bit for bit, in three cases. First, the first 32 stamps are unchanged.
+/// Second, a stamp is unchanged if the jitter is below `jitter_min` of the period, which indicates stamps of the
+/// sensor's own clock. Third, a stamp is unchanged if the jitter is above `jitter_max` or successive errors are
+/// correlated, which indicates a variable sample period.
 ///
-/// The estimated time is never further than half a period from the stamp.
+/// The estimated time differs from the stamp by at most half a period.
 ///
-/// SampleClock does not model a sensor that samples on request of a host that jitters but stamps exactly. The stamps of
-/// a sensor sampled on request look like delayed stamps but are correct. Set `jitter_max` to 0 to keep every stamp.
+/// SampleClock does not model a sensor that takes samples on irregular requests of a host computer that assigns exact
+/// stamps. Stamps of a sensor sampled on request look like delayed stamps but are correct. Set `jitter_max` to 0 to
+/// keep every stamp unchanged.
 class SampleClock {
  public:
   struct Params {
     double memory_s = 2.0;      ///< time constant of the fit; sensor clocks are stable for longer
-    double jitter_min = 0.005;  ///< standard deviation of the stamps, in periods
+    double jitter_min = 0.005;  ///< minimum standard deviation of corrected stamps, in periods
     double jitter_max = 0.15;
 
     /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
@@ -72,12 +72,13 @@ class SampleClock {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit SampleClock(const Params& params);
 
-  /// Processes a stamp and computes `time_ns`, the time at which its sample was taken. Returned times increase
+  /// Processes a stamp and computes `time_ns`, the time at which the sensor took the sample. Returned times increase
   /// strictly. If the stamp is not later than the previous stamp, push() returns `time_order` and leaves the state
-  /// unchanged. O(1), no allocation.
+  /// unchanged. Cost: O(1), no allocation.
   Status push(TimeNs stamp_ns, State& state, TimeNs& time_ns) const;
 
-  /// Returns the standard deviation of the stamps about the fitted line [s]. Returns nothing while no line is fitted.
+  /// Returns the standard deviation of the stamps about the fitted line [s]. The result is empty while no line is
+  /// fitted.
   static std::optional<double> jitter_s(const State& state);
   /// Returns whether push() currently corrects stamps.
   bool corrects_stamps(const State& state) const;
@@ -92,9 +93,9 @@ class SampleClock {
   Params params_;
 };
 
-/// Replaces stamps by the sample times that SampleClock estimates. `corrected_jitter_s` returns the largest jitter that
-/// was corrected [s]; 0 means that all stamps are unchanged. Returns `time_order` if the stamps do not increase;
-/// `stamps_ns` is then unchanged. O(N).
+/// Replaces the stamps of a recording by the sample times that SampleClock estimates. Cost: O(N). `corrected_jitter_s`
+/// returns the largest jitter that was corrected [s]; 0 means that all stamps are unchanged. If the stamps do not
+/// increase, the function returns `time_order` and leaves `stamps_ns` unchanged.
 Status to_sample_times(const SampleClock& clock, std::span<TimeNs> stamps_ns, double& corrected_jitter_s);
 
 }  // namespace tumble

@@ -8,19 +8,20 @@
 
 namespace tumble::so3 {
 
-/// Returns the skew-symmetric matrix [v]x with [v]x w = v x w.
+/// Returns the skew-symmetric matrix [v]x of a vector, with [v]x w = v x w.
 Eigen::Matrix3d hat(const Eigen::Vector3d& v);
 
-/// Returns the unit quaternion of the rotation by |phi| radians about phi, exact to the rounding of |phi|. phi = 0
-/// gives the identity.
+/// Returns the unit quaternion of the rotation by |phi| radians about phi, exact to the rounding of |phi|. The vector
+/// phi = 0 gives the identity.
 Eigen::Quaterniond exp(const Eigen::Vector3d& phi);
 
-/// Returns the shortest rotation vector (length at most pi) of a unit quaternion. q and -q give equal vectors. A half
-/// turn has two shortest vectors; log() returns the vector whose first non-zero component is positive.
+/// Returns the shortest rotation vector (length at most pi) of a unit quaternion. The quaternions q and -q give equal
+/// vectors. A half turn has two shortest rotation vectors; log() returns the vector whose first non-zero component is
+/// positive.
 Eigen::Vector3d log(const Eigen::Quaterniond& q);
 
-/// Returns the left Jacobian J_l(phi): Exp(phi + d) = Exp(J_l d) Exp(phi) to first order in d. The right Jacobian is
-/// the transpose of the left Jacobian.
+/// Returns the left Jacobian J_l(phi), defined by Exp(phi + d) = Exp(J_l d) Exp(phi) to first order in d. The right
+/// Jacobian is the transpose of the left Jacobian.
 Eigen::Matrix3d left_jacobian(const Eigen::Vector3d& phi);
 
 /// Returns the inverse of left_jacobian, which is finite for |phi| < 2 pi.

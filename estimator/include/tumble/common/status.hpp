@@ -9,10 +9,10 @@
 
 namespace tumble {
 
-/// Kinds of input errors that a caller must expect. `none` means success.
+/// Trouble lists the kinds of input errors that a caller must expect. The value `none` means success.
 enum class Trouble : std::uint8_t {
   none,
-  empty,         ///< required input is missing
+  empty,         ///< a required input is missing
   non_finite,    ///< NaN or infinity
   time_order,    ///< a time stamp equal to or before its predecessor
   gap,           ///< a time stamp too long after its predecessor
@@ -25,8 +25,8 @@ enum class Trouble : std::uint8_t {
 /// Returns the name of an error kind as used in tables and messages ("time_order").
 const char* to_string(Trouble trouble);
 
-/// Result of a step: the invalid field, its value and the violated limit. The library reports expected errors by value
-/// and prints nothing. Only constructors throw.
+/// Status is the result of a processing step: the invalid field, its value and the violated limit. The library reports
+/// expected errors by a returned Status and prints nothing. Only constructors throw exceptions.
 struct Status {
   Trouble trouble = Trouble::none;
   const char* field = "";  ///< static string: name of the input field
@@ -38,13 +38,13 @@ struct Status {
   std::string message() const;
 };
 
-/// Thrown by constructors if a parameter is out of its documented bounds.
+/// InvalidParams is thrown by a constructor if a parameter is out of its documented bounds.
 class InvalidParams : public std::invalid_argument {
  public:
   InvalidParams(const std::string& field, double value, const std::string& bound);
 };
 
-/// Throws InvalidParams unless `low <= value <= high` (also for NaN).
+/// Throws InvalidParams unless `low <= value <= high`; NaN also throws.
 void require_within(const char* field, double value, double low, double high);
 
 }  // namespace tumble

@@ -14,55 +14,57 @@
 
 namespace tumble {
 
-/// A usable lidar return in the IMU's axes at the time of its firing.
+/// SweepPoint is a usable lidar return in the IMU's axes at the time when the laser fired.
 struct SweepPoint {
   Eigen::Vector3f x_I_m = Eigen::Vector3f::Zero();
-  Eigen::Vector3f x_L_m = Eigen::Vector3f::Zero();  ///< position as measured, so that the mounting can be refined
+  Eigen::Vector3f x_L_m = Eigen::Vector3f::Zero();  ///< measured position, in lidar axes
   float t_s = 0.0f;                                 ///< time after the start of the trajectory, in the IMU's clock
   float sweep_t_s = 0.0f;                           ///< time after the start of the sweep
   float range_m = 0.0f;                             ///< distance from the lidar
   std::uint16_t ring = 0;
 };
 
-/// Limits of range and position for usable returns.
+/// PointBounds limits the range and position of usable returns.
 struct PointBounds {
   double range_min_m = 0.3;
   double range_max_m = 100.0;
-  Eigen::AlignedBox3d own_body_L;  ///< returns inside hit the robot itself; an empty box keeps all
+  Eigen::AlignedBox3d own_body_L;  ///< returns inside hit the robot; an empty box keeps all returns
 };
 
-/// Counts of the returns of a sweep.
+/// PointCounts counts the returns of a sweep.
 struct PointCounts {
   std::size_t received = 0;
-  std::size_t finite = 0;  ///< returns with finite coordinates; misses may be stored as NaN
+  std::size_t finite = 0;  ///< number of returns with finite coordinates; misses may be NaN
   std::size_t used = 0;
   bool rings_differ = false;  ///< false if the device does not report ring numbers
 };
 
-/// Selects the usable returns of a sweep and transforms them to the IMU's axes. `sweep_start_s` is the start of the
-/// sweep relative to the trajectory's start.
+/// Selects the usable returns of a sweep and transforms the returns to the IMU's axes. `sweep_start_s` is the start of
+/// the sweep relative to the start of the trajectory.
 PointCounts select_points(std::span<const LidarPoint> points, const PointBounds& bounds, const Eigen::Isometry3d& T_IL,
                           double sweep_start_s, std::vector<SweepPoint>& selected);
 
-/// Recomputes the points for another calibration, with times that are `later_s` later in the IMU's clock. `moved` must
-/// not be `points`. Cost: O(n).
+/// Recomputes `points` for another calibration and writes the result to `moved`. Cost: O(n). `later_s` is added to the
+/// times of the points in the IMU's clock. `moved` must not be `points`.
 void apply_calibration(const SweepCalibration& calibration, double later_s, std::span<const SweepPoint> points,
                        std::vector<SweepPoint>& moved);
-/// Recomputes the points in place for another calibration, with times that are `later_s` later in the IMU's clock.
+/// Recomputes the points in place for another calibration, and adds `later_s` to the times of the points in the IMU's
+/// clock.
 void apply_calibration(const SweepCalibration& calibration, double later_s, std::span<SweepPoint> points);
 
-/// Computes the lever arm vectors u_i = S(t_i) + R(t_i) x_i of SweepTrajectory. Point i in the world is
-/// trajectory.base_m(t_i) + u_i. Cost: O(n).
+/// Computes the lever arm vector u_i = S(t_i) + R(t_i) x_i of SweepTrajectory for each point i. Cost: O(n). The
+/// position of point i in the world is trajectory.base_m(t_i) + u_i.
 void compute_levers(const SweepTrajectory& trajectory, std::span<const SweepPoint> points,
                     std::vector<Eigen::Vector3f>& levers_W_m);
 
-/// Transforms points to the IMU's axes at `target_s` after the trajectory's start, usually its end. Each point is moved
-/// from the time of its firing, so the result is what a stationary sensor would measure at `target_s`.
+/// Transforms points to the IMU's axes at `target_s` after the start of the trajectory, usually at its end. Each point
+/// is moved from the time of its firing to `target_s`, so the result is what a stationary sensor would measure at
+/// `target_s`.
 void deskew(const SweepTrajectory& trajectory, std::span<const SweepPoint> points, double target_s,
             std::vector<Eigen::Vector3f>& positions_I_m);
 
-/// Keeps the first point in each cube of edge `voxel_m` in the world. The kept points have an even density, and few
-/// points need to be registered.
+/// SweepSampler keeps the first point in each cube of edge `voxel_m` in the world. The kept points have an even
+/// density, so that few points need to be registered.
 class SweepSampler {
  public:
   /// Writes the indices of the kept points of `positions_W_m` to `chosen`, in order.

@@ -8,9 +8,10 @@
 
 namespace tumble {
 
-/// Runs body(0) to body(count - 1), each exactly one time, in any order and on any of the caller's threads. Returns
-/// when all calls are done. The library starts no threads; without a ParallelFor, the calling thread does the work. The
-/// partition of the work does not depend on the number of threads, so results are bit-identical.
+/// ParallelFor runs body(0) to body(count - 1), each exactly one time, in any order and on any of the caller's threads.
+/// A ParallelFor returns when all calls of `body` are done. The library starts no threads; without a ParallelFor, the
+/// calling thread does all work. The partition of the work does not depend on the number of threads, so results are
+/// bit-identical for any number of threads.
 using ParallelFor = std::function<void(std::size_t count, const std::function<void(std::size_t)>& body)>;
 
 /// Runs `body` by `parallel_for`, or in order if `parallel_for` is empty.

@@ -23,30 +23,31 @@ class StateWriter;
 class StateReader;
 class StateLayout;
 
-/// Estimates pose and map of a tumbling body from an IMU and a lidar. The mapper integrates the IMU between sweeps and
-/// deskews each point at the time of its firing. The mapper registers the sweep to a voxel map by k-nearest-neighbour
-/// point-to-plane distances, and then extends the map. The registration refines position, attitude and velocity at the
-/// start of a sweep together, which also refines the deskewing.
+/// Estimates pose and map of a tumbling body from an IMU and a lidar. LidarInertialOdometry integrates the IMU between
+/// sweeps, and deskews each point at the time of its firing. Each sweep is registered to a voxel map by
+/// k-nearest-neighbour point-to-plane distances, and then extends the map. The registration refines position, attitude
+/// and velocity at the start of a sweep together. The refined velocity also improves the deskewing.
 ///
-/// World: z up, levelled by the specific force at rest. The earliest sweep with `matches_min` points starts the map. If
-/// the sweep that starts the map begins within half a second of the IMU's first sample, origin and yaw are those of the
-/// IMU at that sample. If the sweep begins later, origin and yaw are those of the IMU at the start of the sweep.
-/// Velocity and tilt of the later sweep come from dead reckoning. Pass IMU samples in time order, then pass each sweep
-/// when IMU samples reach the sweep's end. The class starts no threads, uses no files and prints nothing.
+/// The world has its z axis up, levelled by the specific force at rest. The earliest sweep with `matches_min` points
+/// starts the map. Origin and yaw of the world are those of the IMU at its first sample, if the map starts within half
+/// a second. If the map starts later than half a second after the first sample, origin and yaw are those of the IMU at
+/// the map's first sweep. If the map starts later, dead reckoning from the first IMU sample gives the velocity and the
+/// tilt. Pass IMU samples in time order, and pass each sweep when the IMU samples reach the end of the sweep.
+/// LidarInertialOdometry starts no threads, uses no files and prints nothing.
 ///
 /// The lidar's mounting, its time offset and gravity are estimated if their standard deviations are not 0. All unknowns
-/// form one state with one covariance. The estimator is an iterated error-state filter over sweeps. A fixed-lag
-/// smoother refines the last window_sweeps with later sweeps, including the points of these sweeps in the map. Map
-/// points of older sweeps are not moved. A caller that stores its recording can process the recording a second time,
-/// starting from calibration(), to get a consistent map.
+/// form one state with one covariance. LidarInertialOdometry is an iterated error-state filter over sweeps. A fixed-lag
+/// smoother refines the last window_sweeps sweeps with the data of later sweeps, and moves the map points of the
+/// refined sweeps. Map points of sweeps older than the window are not moved. To get a consistent map, a caller can
+/// process its recording a second time, starting from calibration().
 ///
-/// Reported covariances follow the errors through the filter's weights. The contribution of the registration is
-/// measured from its residuals (Registration::Result::score_covariance).
+/// The reported covariances propagate the errors through the gains of the filter. The residuals of the registration
+/// determine its contribution to the covariance (Registration::Result::score_covariance).
 ///
-/// After rejected sweeps, tracking has failed. Inertial prediction continues, with zero velocity while the IMU is at
-/// rest. Until tracking is restored, each sweep is also registered from several starts around the prediction, coarse to
-/// fine. LidarInertialOdometry does not model IMU biases other than the gyro's at the start, loop closure, or moving
-/// objects.
+/// Tracking has failed if several sweeps in succession are rejected. After a tracking failure, inertial prediction
+/// continues, with zero velocity while the IMU is at rest. Until tracking is restored, each sweep is also registered
+/// from several starting poses around the prediction, coarse to fine. LidarInertialOdometry does not model loop
+/// closure, moving objects, or IMU biases other than the gyro bias at the start.
 class LidarInertialOdometry {
  public:
   using Params = OdometryParams;
@@ -60,70 +61,73 @@ class LidarInertialOdometry {
   LidarInertialOdometry(const LidarInertialOdometry&);
   LidarInertialOdometry& operator=(const LidarInertialOdometry&);
 
-  /// Processes a sample with the angular velocity that a rate method estimated for the sample. On error the state is
-  /// unchanged: `non_finite`, `time_order`, or `out_of_range` if `rate` has another time stamp. The first sample after
-  /// a gap bridges the gap, with correspondingly larger uncertainty of the prior.
+  /// Processes an IMU sample, with the angular velocity that a rate method estimated for the sample. Returns
+  /// `non_finite`, `time_order`, or `out_of_range` if `rate` has another time stamp than `sample`. On error the state
+  /// is unchanged. The first sample after a gap bridges the gap, which increases the uncertainty of the predicted pose.
   Status add_imu(const ImuSample& sample, const RateState& rate);
 
   /// Sets an odometer's velocity at the start of the next sweep, which is the end of the last sweep. The velocity is in
-  /// IMU axes, with its standard deviation per axis. The odometer's velocity replaces the velocity at the end of the
-  /// last sweep, for the next sweep only. On error nothing changes: `non_finite`, or `out_of_range` if the standard
-  /// deviation is not above 0.
+  /// IMU axes, with one standard deviation for all axes. The odometer's velocity replaces the estimated velocity at the
+  /// end of the last sweep, for the prediction of the next sweep only. Returns `non_finite`, or `out_of_range` if the
+  /// standard deviation is not above 0. On error nothing changes.
   Status add_velocity(const Eigen::Vector3d& v_WI_I_m_s, double sigma_m_s);
-  /// Sets an odometer's reading for the next sweep. The times of the reading are between the end of the last sweep and
-  /// that of the next, with a margin of 20 ms. The reading is fused with the IMU's prediction by covariance
-  /// (check_reading). A new reading replaces an earlier one and add_velocity(). A reading that covers other times has
-  /// no effect.
+  /// Sets an odometer's reading for the next sweep. The reading must be between the end of the last sweep and the end
+  /// of the next sweep, with a margin of 20 ms. The reading is fused with the IMU's prediction, weighted by the
+  /// covariances (check_reading). A new reading replaces an earlier reading and the velocity of add_velocity(). A
+  /// reading that does not cover the next sweep has no effect.
   Status add_reading(const OdometerReading& reading);
-  /// Marks the accelerometer as unusable within the next sweep. The velocity is predicted as over a gap; the gyro is
-  /// used. A call of exclude_force() replaces earlier odometer readings of the sweep.
+  /// Excludes the accelerometer from the prediction of the next sweep. Without the accelerometer, the velocity is
+  /// predicted as in a gap; the gyro is still used. A call of exclude_force() replaces earlier odometer readings for
+  /// the next sweep.
   void exclude_force();
 
-  /// Registers a sweep of points fired in [start_ns, end_ns]. Sweeps do not overlap. NaN returns are misses.
+  /// Registers a sweep of points fired in [start_ns, end_ns]. Sweeps must not overlap. Points with NaN coordinates are
+  /// misses.
   ///
-  /// Three errors leave the state unchanged. `time_order`: end before start, or start before the last sweep's end.
-  /// `too_few`: IMU samples do not cover the sweep. `out_of_range`: an offset beyond the sweep. For unusable points,
-  /// the pose is the inertial prediction and the verdict is `rejected`. Errors of points are `empty` (no points),
-  /// `non_finite` (no finite point), `too_few` (no point in range) and `degenerate` (all points have one time stamp).
-  /// Before the map starts, a sweep with unusable points or with too few points (`too_few`) has no pose: its
-  /// `report.trajectory` is empty.
+  /// Three errors of add_sweep() leave the state unchanged. `time_order` means that the end is before the start, or
+  /// that the start is before the end of the last sweep. `too_few` means that the IMU samples do not cover the sweep.
+  /// `out_of_range` means that the firing time of a point is beyond the sweep. If the points are unusable, the pose is
+  /// the inertial prediction and the verdict is `rejected`. For unusable points, the status is `empty` (no points),
+  /// `non_finite` (no finite point), `too_few` (no point in range) or `degenerate` (one time stamp). Before the map
+  /// starts, a sweep with unusable points or too few points has no pose, and `report.trajectory` is empty.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points, SweepReport& report);
 
-  /// Predicts pose and velocity with covariance at the last of `samples`, by inertial integration from the last sweep's
-  /// end. The samples are not added to the state. Without samples after the last sweep, returns the pose at the sweep's
-  /// end. The prediction is useful before a sweep or its rates are available. Errors: `empty` before the first sweep,
-  /// and those of add_imu(). Cost: O(samples since the last sweep).
+  /// Predicts pose and velocity with covariance at the last of `samples`, by inertial integration from the end of the
+  /// last sweep. The function does not add the samples to the state. If no sample is later than the last sweep,
+  /// predict() returns the pose at the end of the last sweep. A caller needs predict() before a sweep or its rates are
+  /// available. Returns the errors of add_imu(), or `empty` before the first sweep. Cost: O(samples since the last
+  /// sweep).
   Status predict(std::span<const ImuSample> samples, std::span<const RateState> rates, PoseState& pose) const;
 
-  /// Returns the current calibration and the covariance of its errors. Parts that are not estimated have their stated
-  /// values and covariance 0.
+  /// Returns the current calibration and the covariance of its errors. Parts of the calibration that are not estimated
+  /// have their stated values and covariance 0.
   SweepCalibration calibration() const;
   SweepCalibration::Covariance calibration_covariance() const;
-  /// Returns the covariance by which the calibration is weighted against the next sweep. The weighting covariance is
-  /// larger than the covariance of the errors because points are correlated and count less. A second run over the
-  /// recording starts from the weighting covariance.
+  /// Returns the covariance with which the calibration is weighted against the next sweep. The weighting covariance is
+  /// larger than the covariance of the errors, because points are correlated and therefore weighted less. A second run
+  /// over the recording starts from the weighting covariance.
   SweepCalibration::Covariance calibration_weight() const;
 
   /// Returns the pose at any time within the window of sweeps, from all data so far. Returns `out_of_range` for a time
   /// outside of the window.
   Status pose_at(TimeNs time_ns, PoseState& pose) const;
 
-  /// Returns the current poses of the sweeps in the window, oldest first. Sweeps in the window have no final pose yet.
-  /// Together with SweepReport::smoothed, the poses in the window form the whole trajectory.
+  /// Returns the current poses of the sweeps in the window, oldest first. Poses of sweeps in the window are not final
+  /// yet. SweepReport::smoothed and window_trajectories() together form the whole trajectory.
   std::vector<std::vector<PoseState>> window_trajectories() const;
 
-  /// Returns the memory of the map [bytes].
+  /// Returns the memory that the map uses [bytes].
   std::size_t map_bytes() const;
 
-  /// Returns the map within map_radius_m. Normals are fitted to nearest neighbours and point towards the sensor's
-  /// position at the time of observation. Points that two later sweeps saw through are left out, for example people who
-  /// moved on. O(number of points).
+  /// Returns the map points within map_radius_m. Cost: O(number of points). Normals are fitted to nearest neighbours,
+  /// and point towards the position from which the sensor observed the point. The function omits points that two later
+  /// sweeps saw through, for example points on people who moved on.
   std::vector<MapPoint> map() const;
 
-  /// Saves or loads the complete state, except `parallel_for`. The caller must ensure that the loading object has the
-  /// parameters of the saving object. The loading object then continues with bit-identical results. Parameters that an
-  /// earlier run may have estimated are part of the state (mounting, time offset and their deviations). On error, which
-  /// the reader reports, the loading object is unchanged.
+  /// Save or load the complete state, except `parallel_for`. The caller must ensure that the loading object has the
+  /// parameters of the saving object. A loading object with equal parameters continues with bit-identical results. The
+  /// saved state contains mounting, time offset and their standard deviations, because an earlier run may have
+  /// estimated the calibration. If loading fails, the StateReader reports an error and the loading object is unchanged.
   void save(StateWriter& out) const;
   void load(StateReader& in);
   void describe(StateLayout& out) const;

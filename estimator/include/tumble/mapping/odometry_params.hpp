@@ -13,14 +13,15 @@
 
 namespace tumble {
 
-/// Parameters of OdometryParams that few users change, grouped by meaning. Field names equal the names in tables and on
-/// command lines.
+/// OdometryExpertParams contains the parameters of OdometryParams that few users change, grouped by meaning. The fields
+/// have the names that are used in tables and on command lines.
 struct OdometryExpertParams {
   double gravity_m_s2 = 9.80665;
-  /// Standard deviation of gravity's horizontal part. With 0, gravity's direction is exact and not estimated.
+  /// Standard deviation of gravity's horizontal part. If the standard deviation is 0, gravity's direction is exact and
+  /// not estimated.
   double gravity_sigma_m_s2 = 0.0;
-  /// Number of sweeps that are refined together: the newest sweep and the window_sweeps - 1 sweeps before it (see
-  /// SweepReport::smoothed). With 1, no sweep is refined later.
+  /// Number of sweeps that are refined together (see SweepReport::smoothed): the newest sweep and the window_sweeps - 1
+  /// sweeps before the newest sweep. With window_sweeps = 1, later sweeps do not refine earlier sweeps.
   int window_sweeps = 2;
   RestBoundsParams rest = {};
   OdometryStartParams start = {};
@@ -60,18 +61,18 @@ struct OdometryExpertParams {
 
 /// Parameters of LidarInertialOdometry.
 struct OdometryParams {
-  Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< lidar in IMU axes
-  double time_offset_s = 0.0;                              ///< the IMU's clock minus the lidar's
+  Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< pose of the lidar in IMU axes
+  double time_offset_s = 0.0;                              ///< time of the IMU's clock minus time of the lidar's clock
   /// Standard deviations of T_IL and of the time offset. A standard deviation of 0 marks an exact value, which is not
   /// estimated.
   double mount_sigma_rad = 0.0;
   double mount_sigma_m = 0.0;
   double time_offset_sigma_s = 0.0;
-  double range_min_m = 0.3;        ///< nearer returns are dropped
-  double range_max_m = 100.0;      ///< farther returns are dropped
-  Eigen::AlignedBox3d own_body_L;  ///< returns inside hit the robot itself; an empty box, the default, keeps all
-  double sweep_voxel_m = 0.25;     ///< one point per voxel of a sweep is registered
-  /// Threads that the registration may use, if any. Results do not depend on the number of threads.
+  double range_min_m = 0.3;        ///< minimum range of a usable return
+  double range_max_m = 100.0;      ///< maximum range of a usable return
+  Eigen::AlignedBox3d own_body_L;  ///< returns inside hit the robot; an empty box, the default, keeps all returns
+  double sweep_voxel_m = 0.25;     ///< edge of the voxels; one point per voxel is registered
+  /// Threads that the registration may use, if any. The results do not depend on the number of threads.
   ParallelFor parallel_for;
 
   using Expert = OdometryExpertParams;
@@ -96,8 +97,8 @@ struct OdometryParams {
   }
 };
 
-/// Checks all parameters. Returns `out_of_range` with the first parameter that LidarInertialOdometry would reject,
-/// including parameters that are not fields.
+/// Checks all parameters, including parameters that are not fields. Returns `out_of_range` with the first parameter
+/// that LidarInertialOdometry would reject.
 Status check_odometry_params(const OdometryParams& params);
 
 }  // namespace tumble

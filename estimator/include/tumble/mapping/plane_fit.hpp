@@ -8,30 +8,30 @@
 
 namespace tumble {
 
-/// Result of a plane fit to a neighbourhood of map points.
+/// PlaneVerdict is the result category of a plane fit to neighbouring map points.
 enum class PlaneVerdict { plane, too_few, collinear, one_line, rough };
 
-/// Plane through a neighbourhood: normal . x = normal . centre.
+/// PlaneFit is a plane through neighbouring map points: normal . x = normal . centre.
 struct PlaneFit {
   PlaneVerdict verdict = PlaneVerdict::too_few;
   Eigen::Vector3f normal_W = Eigen::Vector3f::Zero();  ///< unit length, arbitrary sign
   Eigen::Vector3f centre_W_m = Eigen::Vector3f::Zero();
   float thickness2_m2 = 0.0f;  ///< smallest eigenvalue of the neighbours' covariance
-  /// Standard deviation of the normal's error along the two axes of the plane, as columns. The standard deviation is
-  /// that of a regression whose residuals equal the neighbourhood's thickness.
+  /// Standard deviation of the normal's error along the two axes of the plane, as columns. The standard deviation of
+  /// the normal is that of a linear regression whose residuals equal the thickness of the plane.
   Eigen::Matrix<float, 3, 2> tilt_W = Eigen::Matrix<float, 3, 2>::Zero();
 };
 
-/// Limits on the eigenvalues l0 <= l1 <= l2 of the covariance of a neighbourhood.
+/// PlaneBounds limits the eigenvalues l0 <= l1 <= l2 of the covariance of neighbouring map points.
 struct PlaneBounds {
   int neighbours_min = 5;
-  /// If l1 is below this fraction of l2, the neighbours are collinear (a ring of a lidar at rest) and the normal would
-  /// be wrong.
+  /// The neighbours are collinear if l1 is below the fraction collinear_share of l2. Collinear neighbours (a ring of a
+  /// lidar at rest) would give a wrong normal.
   double collinear_share = 0.03;
-  double rough_share = 0.1;  ///< if l0 is above this fraction of l1, there is no plane
-  /// Minimum number of neighbours that are not on the most frequent scan line. With fewer neighbours off the line, the
-  /// fit could be the plane of the ring instead of the surface. Examples are a ring around a pillar or through a room's
-  /// corner.
+  double rough_share = 0.1;  ///< the neighbours do not form a plane if l0 is above this fraction of l1
+  /// Minimum number of neighbours that are not on the most frequent scan line. If fewer neighbours are off the scan
+  /// line, the fitted plane could be that of the ring instead of the surface. For example, a lidar ring around a pillar
+  /// or through a room's corner lies in its own plane.
   int off_line_min = 2;
 
   /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
@@ -47,7 +47,7 @@ struct PlaneBounds {
   }
 };
 
-/// Fits a least-squares plane to a set of map points. Does not allocate.
+/// Fits a least-squares plane to neighbouring map points. The function does not allocate.
 PlaneFit fit_plane(const VoxelMap& map, const Neighbours& neighbours, const PlaneBounds& bounds);
 
 }  // namespace tumble

@@ -19,14 +19,15 @@ template <int Rows, int Columns>
 class OuterProducts;
 }  // namespace mapping
 
-/// Registers a sweep to a map by point-to-plane distances, together with the motion inside the sweep.
+/// Registers a sweep to a map by point-to-plane distances, and estimates the motion within the sweep.
 ///
-/// Unknowns are position p, attitude (left perturbation phi in W) and velocity v of the IMU at the start of the
-/// trajectory. The saturation deficit of clipped axes and the calibration are added if their prior is uncertain. A
-/// point in the world is X = p + v t + g t^2/2 + Exp(phi) u, with gravity g and the lever arm vector u of
-/// SweepTrajectory. Each iteration therefore deskews again. The cost function contains robustly weighted squared
-/// distances to planes through the k nearest map points, plus the prior's Mahalanobis distance. The solver is
-/// Gauss-Newton with a normal matrix of at most 28x28. The prior determines directions that no surface constrains.
+/// The unknowns are position p, attitude (left perturbation phi in W) and velocity v of the IMU at the start of the
+/// trajectory. The saturation deficit (part of the rate hidden by saturation) and the calibration are additional
+/// unknowns if their prior is uncertain. A point in the world is X = p + v t + g t^2/2 + Exp(phi) u. Here g is gravity,
+/// and u is the lever arm vector of SweepTrajectory. Each iteration deskews the points with the current estimate. The
+/// cost function has two terms. The first term is the sum of robustly weighted squared distances to planes through the
+/// k nearest map points. The second term is the squared Mahalanobis distance from the prior. The Gauss-Newton solver
+/// uses a normal matrix of at most 28x28. The prior determines the directions that no surface constrains.
 class Registration {
   static constexpr std::size_t kBlock = 128;  // points per partial sum; independent of the number of threads
 
@@ -44,17 +45,17 @@ class Registration {
 
   explicit Registration(const Params& params);
 
-  /// Aligns `points` (computed with the prior's calibration) with `map`. `trajectory` is rebuilt from `prior` and
-  /// `samples` up to `end_ns`. On return, `trajectory` contains the aligned motion. Errors of the trajectory are
-  /// returned.
+  /// Aligns `points`, which were computed with the calibration of `prior`, to `map`. The function rebuilds `trajectory`
+  /// from `prior` and `samples` up to `end_ns`. On return, `trajectory` contains the aligned motion. Returns the errors
+  /// of SweepTrajectory::build().
   Status align(const Prior& prior, std::span<const MotionSample> samples, TimeNs end_ns,
                std::span<const SweepPoint> points, const VoxelMap& map, SweepTrajectory& trajectory, Result& result);
 
-  /// Returns the variance of a return along its ray. The variance includes the skew left after deskewing.
+  /// Returns the variance of a lidar return along its ray. The variance includes the skew that remains after deskewing.
   double point_variance_m2(const SweepPoint& point) const;
 
-  /// Computes the distance of a point to a plane and the distance's derivative by all unknowns. The function is public
-  /// so that tests can check the derivative against finite differences.
+  /// Computes the distance of a point from a plane, and the derivative of the distance by all unknowns. The function is
+  /// public so that tests can compare the derivative with finite differences.
   static double residual(const SweepTrajectory& trajectory, const SweepCalibration& calibration,
                          const SweepPoint& point, const PlaneFit& plane, std::size_t& hint, Vector& derivative);
 
@@ -66,7 +67,7 @@ class Registration {
     float reach_m = std::numeric_limits<float>::infinity();  // distance to the farthest neighbour, if all were found
     bool searched = false;
   };
-  /// Sums over the matches of one iteration, for the free unknowns only.
+  /// Sums contains the normal equations over the matches of one iteration, for the free unknowns only.
   struct Sums {
     Matrix H = Matrix::Zero();
     Vector g = Vector::Zero();
@@ -102,12 +103,12 @@ class Registration {
   Weight weigh(const SweepPoint& point, const Match& match, double distance_m, double kernel_m) const;
 
   Params params_;
-  // buffers kept between sweeps; results do not depend on their contents
+  // buffers that are kept between sweeps; results do not depend on their contents
   std::vector<Eigen::Vector3f> levers_, positions_;
   std::vector<SweepPoint> moved_;
   std::vector<Match> matches_;
   std::vector<float> distances_, sorted_;
-  std::vector<Sums> parts_;  // per block of points
+  std::vector<Sums> parts_;  // one per block of points
   SpatialHash cluster_of_{1 << 10};
   std::vector<Vector> pulls_;  // gradients of the clusters
 };

@@ -9,22 +9,25 @@
 
 namespace tumble {
 
-/// Parameters of RegistrationParams that few users change. Field names equal the names in tables and on command lines.
+/// RegistrationExpertParams contains the parameters of RegistrationParams that few users change. The fields have the
+/// names that are used in tables and on command lines.
 struct RegistrationExpertParams {
-  double step_m = 5e-4;  ///< the iteration has converged if a step is below this and below step_rad
+  double step_m = 5e-4;  ///< converged if the step is below step_m and step_rad
   double step_rad = 1e-4;
   double step_s = 1e-5;       ///< convergence limit of a step of the time offset
   double rematch_m = 0.05;    ///< motion of a point after which its plane is searched again
   double kernel_min_m = 0.1;  ///< minimum width of the robust kernel (Geman-McClure)
-  /// Weight of each point's information. Neighbouring returns share the map's errors and are therefore correlated.
+  /// Factor on the weight of each point's information. The factor is below 1 because neighbouring returns share the
+  /// map's errors and are therefore correlated.
   double correlation_discount = 0.1;
-  double cluster_m = 1.0;          ///< points within one cube of this edge are correlated
+  double cluster_m = 1.0;          ///< edge of a cube whose points have correlated errors
   double matched_share_min = 0.1;  ///< minimum number of matches as a fraction of the points
-  /// A registration with fewer matches than matches_min and matched_share_min is accepted if it has at least
-  /// agreeing_min matches and agrees with the prior. The default disables this rule.
+  /// A registration with fewer matches than matches_min and matched_share_min is accepted if it agrees with the prior
+  /// and has at least agreeing_min matches. The default of agreeing_min is so large that the exception for agreeing
+  /// registrations is disabled.
   std::size_t agreeing_min = 1'000'000'000;
-  /// Minimum fraction of matches whose residual is within three standard deviations. A result with a smaller fraction
-  /// is rejected.
+  /// Minimum fraction of matches whose residual is within three standard deviations. A registration with a smaller
+  /// fraction of fitting matches is rejected.
   double fitting_share_min = 0.6;
   PlaneBounds plane;
 
@@ -51,12 +54,12 @@ struct RegistrationExpertParams {
 /// Parameters of Registration.
 struct RegistrationParams {
   static constexpr double kMatchDistanceMax_m = 10.0;
-  int neighbours = 8;             ///< k of the plane fit
-  double match_distance_m = 1.0;  ///< farther map points are not matched
+  int neighbours = 8;             ///< number k of neighbours of a plane fit
+  double match_distance_m = 1.0;  ///< maximum distance of matched map points
   int iterations_max = 30;
   double range_sigma_m = 0.02;  ///< minimum range noise; the noise grows with range by range_sigma_share
   double range_sigma_share = 0.0015;
-  double skew_sigma_m_s = 0.25;   ///< growth of a point's uncertainty over the sweep (time weighting); 0: none
+  double skew_sigma_m_s = 0.25;   ///< growth of a point's standard deviation over the sweep; 0: none
   std::size_t matches_min = 100;  ///< minimum number of matches
   double correction_max_m = 15.0;
   double correction_max_rad = 1.1;

@@ -13,33 +13,32 @@ namespace tumble {
 /// Result category of a registration.
 enum class RegistrationVerdict : std::uint8_t {
   converged,
-  too_few,   ///< too few matches: the prior is returned
-  diverged,  ///< no convergence, correction out of bounds, or most matches do not fit: the prior is returned
+  too_few,   ///< too few matches; the result is the prior
+  diverged,  ///< no convergence, too large a correction, or most matches do not fit; the result is the prior
 };
 
-/// Result of a registration.
+/// RegistrationResult contains the estimate and the diagnostics of a registration.
 struct RegistrationResult {
   RegistrationVerdict verdict = RegistrationVerdict::too_few;
   SweepUnknowns::Estimate mean;
-  SweepUnknowns::Matrix covariance = SweepUnknowns::Matrix::Zero();  ///< covariance of all unknowns, in order; the
-                                                                     ///< prior's covariance if nothing was registered
+  SweepUnknowns::Matrix covariance = SweepUnknowns::Matrix::Zero();  ///< covariance of all unknowns
   /// Covariance of the gradient of the surfaces' cost by the unknowns, measured from the residuals. Points within
-  /// RegistrationExpertParams::cluster_m of each other share the map's errors; points farther apart are independent
-  /// (cluster-robust covariance, K. Liang, S. Zeger, 1986). For independent points, the covariance equals
+  /// RegistrationExpertParams::cluster_m share the map's errors; points farther apart are independent (cluster-robust
+  /// covariance, Liang and Zeger, 1986). If all points were independent, the covariance would equal
   /// correlation_discount times the points' contribution to the normal matrix.
   SweepUnknowns::Matrix score_covariance = SweepUnknowns::Matrix::Zero();
   /// Part of the normal matrix that is caused by noise, for all free unknowns. Normals are fitted to few points, and
-  /// errors of the normals add information in every direction of a plane. Source: errors in variables, W. Fuller,
-  /// Measurement Error Models, 1987, section 2.2. The part caused by noise stabilises the iterations but contains no
-  /// information about the motion.
+  /// the errors of the normals add apparent information in every direction of a plane. Source: errors in variables
+  /// (Fuller, Measurement Error Models, 1987, section 2.2). The apparent information stabilises the iterations, but
+  /// contains no information about the motion.
   SweepUnknowns::Matrix errors_in_variables_information = SweepUnknowns::Matrix::Zero();
   std::size_t points = 0, matches = 0, inliers = 0;
-  double correction_m = 0.0;  ///< correction of the position at the start, also if it exceeded its limit
+  double correction_m = 0.0;  ///< position correction at the start, even if above its limit
   double correction_rad = 0.0;
   int iterations = 0;
-  /// Ascending eigenvalues of the normal matrix of (position, attitude scaled to metres by the root-mean-square lever
-  /// arm) per unit of weight, without the prior. The columns of `directions` are the eigenvectors. The
-  /// translation part of the matrix has trace 1.
+  /// Ascending eigenvalues of the normal matrix of the pose per unit of weight, without the prior. The attitude is
+  /// scaled to metres by the root-mean-square lever arm. The columns of `directions` are the eigenvectors of the normal
+  /// matrix. The translation part of the normal matrix has trace 1.
   Eigen::Matrix<double, 6, 1> eigenvalues = Eigen::Matrix<double, 6, 1>::Zero();
   Eigen::Matrix<double, 6, 6> directions = Eigen::Matrix<double, 6, 6>::Identity();
   /// Standard deviation of the pose in its least constrained direction, from the surfaces alone and without the

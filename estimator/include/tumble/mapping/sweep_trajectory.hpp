@@ -17,7 +17,8 @@ namespace tumble {
 
 struct SweepPoint;
 
-/// One window of an IMU with the angular velocity of a rate method. Force and rate are means over (from_ns, time_ns].
+/// MotionSample is one IMU sample with the angular velocity that a rate method estimated. Force and rate of a
+/// MotionSample are means over (from_ns, time_ns].
 struct MotionSample {
   TimeNs from_ns = 0;
   TimeNs time_ns = 0;
@@ -26,14 +27,14 @@ struct MotionSample {
   Eigen::Vector3d rate_sigma_rad_s = Eigen::Vector3d::Zero();  ///< standard deviation of the rate, IMU axes
   std::uint8_t clipped_axes = 0;                               ///< bit j: axis j of the gyro was saturated
   std::uint8_t railed_axes = 0;                                ///< bit j: axis j of the accelerometer was saturated
-  bool at_rest = false;                                        ///< belongs to the rest at the start
-  std::optional<TimeNs> rests_since_ns;  ///< first sample of its rest, detected from the IMU alone
-  bool in_flight = false;                ///< f_I_m_s2 is that of free flight, not the accelerometer's
-  bool bridges_gap = false;              ///< longer than a sample: the force inside is unknown; velocity continues
+  bool at_rest = false;                                        ///< the sample belongs to the rest at the start
+  std::optional<TimeNs> rests_since_ns;                        ///< first sample of the current rest, from the IMU alone
+  bool in_flight = false;    ///< f_I_m_s2 is that of free flight, not the accelerometer's
+  bool bridges_gap = false;  ///< the sample bridges a gap: force unknown; velocity is kept
 };
 
-/// Motion of the IMU at one time. Errors are (position, attitude, velocity), all in W; the attitude error is that of
-/// AttitudeState.
+/// MotionState contains the motion of the IMU at one time. The errors of a MotionState are position, attitude and
+/// velocity, all in W; the attitude error is that of AttitudeState.
 struct MotionState {
   TimeNs time_ns = 0;
   Eigen::Vector3d p_WI_m = Eigen::Vector3d::Zero();
@@ -44,46 +45,50 @@ struct MotionState {
   PoseState pose() const;
 };
 
-/// Computes the motion of the IMU over a segment from a known start by strapdown integration. SweepTrajectory evaluates
-/// the motion at any time of the segment.
+/// Computes the motion of the IMU over a segment by strapdown integration from a known start. SweepTrajectory can
+/// evaluate the motion at any time of the segment.
 ///
-/// Attitude: R(t) = R_k Exp(w_k (t - t_k)) with the rate w_k of sample k, exact for a rate that is constant in body
-/// axes over each sample. Position: p(t) = p_0 + v_0 t + g t^2 / 2 + S(t), with start position p_0, start velocity v_0,
-/// gravity g and the double integral S of the specific force. The mean force over a sample of length dt is R_k J_l(w_k
-/// dt) f_k, with the measured force f_k and the left Jacobian J_l. The mean force is exact for a force constant in body
-/// axes, for example the centripetal force of a spin.
+/// The attitude is R(t) = R_k Exp(w_k (t - t_k)) with the rate w_k of sample k. The formula is exact if the rate is
+/// constant in body axes over each sample. The position is p(t) = p_0 + v_0 t + g t^2 / 2 + S(t). Here p_0 and v_0 are
+/// position and velocity at the start, g is gravity, and S is the double integral of the specific force. The mean force
+/// over a sample of length dt is R_k J_l(w_k dt) f_k, with attitude R_k, rate w_k, measured force f_k and left Jacobian
+/// J_l. The mean force is exact if the force is constant in body axes, for example the centripetal force of a spin.
 ///
-/// The saturation deficit e is the part of the rate hidden by saturation and corrects the clipped axes. The deficit is
-/// linear in time between kKnots knots at equal steps from the start to the end of the segment. The corrected rate is
-/// w_j + s_j e_j(t) where axis j was clipped. The factor s_j has the sign of w_j and the magnitude sigma_j / (largest
-/// sigma_j of the segment's clipped samples), with the rate's standard deviation sigma_j. The saturation deficit thus
-/// changes a well known rate only a little. The magnitude is 1 if all sigma_j are 0. Over a sample, e has the value of
-/// the sample's middle. SweepTrajectory does not model sculling within a sample or the earth's rotation.
+/// The saturation deficit e is the part of the rate that saturation hides, and corrects the clipped axes. The
+/// saturation deficit is linear in time between kKnots knots, at equal steps from the start to the end of the segment.
+/// If axis j is clipped, the corrected rate is w_j + s_j e_j(t), with the measured rate w_j, a factor s_j and the
+/// saturation deficit e_j. The factor s_j of the saturation deficit has the sign of the rate w_j. The magnitude of the
+/// factor s_j is the rate's standard deviation sigma_j, divided by the largest sigma_j of the segment's clipped
+/// samples. A rate with a small standard deviation is therefore corrected only a little by the saturation deficit. The
+/// magnitude of the factor s_j is 1 if all standard deviations sigma_j are 0. Within a sample, the saturation deficit
+/// is constant and has the value at the middle of the sample. SweepTrajectory does not model sculling within a sample
+/// or the earth's rotation.
 class SweepTrajectory {
  public:
   static constexpr int kKnots = 3;
-  static constexpr int kDeficit = 3 * kKnots;  ///< unknowns: axis by axis within a knot
+  static constexpr int kDeficit = 3 * kKnots;  ///< number of unknowns, axis by axis within a knot
   using Deficit = Eigen::Matrix<double, 3, kKnots>;
   using ByDeficit = Eigen::Matrix<double, 3, kDeficit>;
 
-  /// Motion at the time of a lidar point: attitude R(t) and double integral S(t) of the specific force.
+  /// Instant is the motion at the time of a lidar point: attitude R(t) and double integral S(t) of the specific force.
   struct Instant {
     Eigen::Quaterniond q_WI;
     Eigen::Vector3d preintegrated_position_m;
   };
-  /// Derivatives of attitude and S(t) by the saturation deficit e, to first order: attitude error = attitude e, error
-  /// of S = thrust e.
+  /// DeficitDerivative contains the first-order derivatives of the attitude and of S(t) by the saturation deficit e.
+  /// The attitude error is attitude_s * e, and the error of S is preintegrated_position_m_s * e.
   struct DeficitDerivative {
     ByDeficit attitude_s;
     ByDeficit preintegrated_position_m_s;
   };
 
-  /// Integrates from `start` to `end_ns`. Samples must be contiguous and in time order, from the start on. Errors are
-  /// `too_few` (no sample, or the samples end before end_ns), `time_order` (end before start) and `gap` (the first
-  /// window begins after the start; value in seconds). The trajectory's memory is reused.
+  /// Integrates the motion from `start` to `end_ns`. The samples must be contiguous and in time order, beginning at the
+  /// start. Returns `too_few` if there is no sample or the samples end before end_ns. Returns `time_order` if the end
+  /// is before the start. Returns `gap` with the time in seconds if the first sample begins after the start. A repeated
+  /// call reuses the memory of the trajectory.
   Status build(const MotionState& start, std::span<const MotionSample> samples, TimeNs end_ns,
                const Eigen::Vector3d& gravity_W_m_s2, const Deficit& deficit_rad_s = Deficit::Zero());
-  /// Integrates from `start` to `end_ns`, with gravity of the stated magnitude along -z.
+  /// Integrates the motion from `start` to `end_ns`, with gravity of the stated magnitude along -z.
   Status build(const MotionState& start, std::span<const MotionSample> samples, TimeNs end_ns, double gravity_m_s2,
                const Deficit& deficit_rad_s = Deficit::Zero()) {
     return build(start, samples, end_ns, Eigen::Vector3d(0.0, 0.0, -gravity_m_s2), deficit_rad_s);
@@ -92,9 +97,9 @@ class SweepTrajectory {
   TimeNs start_ns() const { return start_.time_ns; }
   double duration_s() const { return duration_s_; }
 
-  /// Evaluates the motion at `t_s` seconds after the start. Outside of the segment, the motion of the first or last
-  /// sample is extrapolated by up to kBeyond_s, which covers errors of the time offset. `hint` is the interval of the
-  /// previous call and speeds up calls in time order. Any hint in [0, intervals()) is valid.
+  /// Evaluates the motion at `t_s` seconds after the start. Outside of the segment, the motion is extrapolated by up to
+  /// kBeyond_s, which covers errors of the time offset. `hint` is the interval of the previous call, and speeds up
+  /// calls in time order. Any hint in [0, intervals()) is valid.
   static constexpr double kBeyond_s = 0.02;
   Instant at(double t_s, std::size_t& hint) const;
   /// Computes the lever arm vector S(t) + R(t) x of each point. The result equals that of at(), bit for bit. For
@@ -105,21 +110,20 @@ class SweepTrajectory {
   /// Returns the end of interval i in seconds after the start.
   double interval_end_s(std::size_t i) const { return intervals_[i].start_s + intervals_[i].length_s; }
 
-  /// Returns p_0 + v_0 t + g t^2 / 2. The position of a point x is the returned vector plus the lever arm vector u(t) =
-  /// S(t) + R(t) x.
+  /// Returns the common part p_0 + v_0 t + g t^2 / 2 of the positions of all points at time t. The position of a point
+  /// x is base_m(t) plus the lever arm vector u(t) = S(t) + R(t) x.
   Eigen::Vector3d base_m(double t_s) const {
     return start_.p_WI_m + t_s * start_.v_WI_m_s + (0.5 * t_s * t_s) * gravity_W_m_s2_;
   }
 
-  /// Evaluates the motion at `t_s` seconds after the start, and the velocity in W of a point that is fixed at x_I in
-  /// the IMU's axes.
+  /// Evaluates the motion at `t_s` seconds after the start, and the velocity in W of a point at x_I in the IMU's axes.
   Instant at(double t_s, const Eigen::Vector3d& x_I_m, std::size_t& hint, Eigen::Vector3d& velocity_m_s) const;
 
   /// Returns the full state at t_s within the segment, with the covariance propagated without process noise.
   MotionState state(double t_s) const;
 
-  /// First-order derivatives of the state (position, attitude, velocity) at t_s by start state, rate of the saturation
-  /// deficit, and gravity.
+  /// Transition contains the first-order derivatives of the state (position, attitude, velocity) at t_s by the start
+  /// state, the saturation deficit, and gravity.
   struct Transition {
     Eigen::Matrix<double, 9, 9> by_start;
     Eigen::Matrix<double, 9, kDeficit> by_deficit_s;
@@ -127,8 +131,8 @@ class SweepTrajectory {
   };
   Transition transition(double t_s) const;
 
-  /// Return the magnitude |s_j| of the deficit's factor in the first and the last interval. The magnitude is 0 for axes
-  /// not clipped in the interval.
+  /// Return the magnitude |s_j| of the saturation deficit's factor in the first and in the last interval. The magnitude
+  /// |s_j| is 0 if axis j is not clipped in the interval.
   Eigen::Vector3d deficit_share_at_start() const { return intervals_.front().deficit_share.cwiseAbs(); }
   Eigen::Vector3d deficit_share_at_end() const { return intervals_.back().deficit_share.cwiseAbs(); }
 
@@ -141,9 +145,9 @@ class SweepTrajectory {
     Eigen::Quaterniond q_WI;
     Eigen::Vector3d w_I, a_W;                          // rate in body axes; mean specific force in W
     Eigen::Vector3d preintegrated_v, preintegrated_p;  // integrals of the specific force up to start_s
-    Eigen::Vector3d deficit_share;                     // s_j where axis j is clipped, 0 elsewhere
+    Eigen::Vector3d deficit_share;                     // factor s_j where axis j is clipped, 0 elsewhere
     Eigen::Matrix<double, kKnots, 1> knot_weight =
-        Eigen::Matrix<double, kKnots, 1>::Zero();                 // of each knot's deficit in this interval
+        Eigen::Matrix<double, kKnots, 1>::Zero();                 // weight of each knot's deficit in the interval
     ByDeficit deficit_attitude, deficit_v, deficit_p, deficit_a;  // derivatives at start_s
   };
   const Interval& interval_at(double t_s, std::size_t& hint) const;

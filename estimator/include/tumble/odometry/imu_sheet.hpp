@@ -5,9 +5,10 @@
 
 namespace tumble {
 
-/// Data sheet of an IMU. A range of 0 means that no range is stated. Saturation levels are detected from the readings,
-/// with or without a stated range. Data sheets state a gyro's range in degrees per second, 250 to 4000. A value above
-/// 100 rad/s (5730 deg/s) is rejected because the value was probably not converted.
+/// ImuSheet is the data sheet of an IMU. A range of 0 means that the data sheet states no range. The estimators detect
+/// saturation levels from the readings, with or without a stated range. Data sheets state the range of a gyro in
+/// degrees per second, between 250 and 4000. A value above 100 rad/s (5730 deg/s) is rejected, because the value was
+/// probably not converted to rad/s.
 struct ImuSheet {
   double rate_hz = 100.0;
   double gyro_range_rad_s = 0.0;
@@ -30,12 +31,13 @@ struct ImuSheet {
   }
 };
 
-/// Returns the largest reading that is certainly unsaturated, for the range that the device states. If no range is
+/// Returns the largest reading that is certainly unsaturated, for a range that the data sheet states. If no range is
 /// stated (0), the result is infinity. The margin of 2 % covers the scale correction that a device's calibration
 /// applies to its saturation level.
 double unsaturated_range(double stated_range);
 
-/// Data sheets of devices that the harness models. models/sensors/NAME.yaml states the source of each number.
+/// Data sheets of the devices that the simulation models. The file models/sensors/NAME.yaml states the source of each
+/// number.
 namespace sheets {
 
 /// Xsens MTi-30, fifth generation (20 g); stated gyro range 450 deg/s.

@@ -5,7 +5,7 @@
 
 namespace tumble {
 
-/// Data sheet of a lidar. Returns outside of the lidar's range are dropped.
+/// LidarSheet is the data sheet of a lidar. Lidar returns outside of the stated range are dropped.
 struct LidarSheet {
   double range_min_m = 0.3;
   double range_max_m = 100.0;
@@ -18,7 +18,8 @@ struct LidarSheet {
   }
 };
 
-/// Data sheets of devices that the harness models. models/sensors/NAME.yaml states the source of each number.
+/// Data sheets of the devices that the simulation models. The file models/sensors/NAME.yaml states the source of each
+/// number.
 namespace sheets {
 
 /// RoboSense RS-16.

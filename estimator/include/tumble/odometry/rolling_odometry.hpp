@@ -24,37 +24,38 @@
 
 namespace tumble {
 
-/// Estimates the pose of a rolling sphere from one to four IMUs, through grip, slip, bumps and slopes. The poses are
-/// live, smoothed with the data of the following `lag_s`, or smoothed with the whole recording. UnitRails flags readings
-/// that a device clips without reporting saturation, ImuMerge fuses the IMUs, and RollingSmoother (with its
-/// RollingFilter) estimates the motion. With the whole recording, merge_recordings() flags and fuses.
+/// Estimates the pose of a rolling sphere from one to four IMUs, through grip, slip, bumps and slopes. The reported
+/// poses are live, smoothed with the data of the following `lag_s`, or smoothed with the whole recording. UnitRails
+/// flags readings that a device clips without reporting saturation, ImuMerge fuses the IMUs, and RollingSmoother (with
+/// its RollingFilter) estimates the motion. With the whole recording, merge_recordings() flags and fuses.
 ///
-/// World: z up, origin at the sphere's centre at the first sample, yaw 0 at the first sample. Start with one second at
-/// rest.
+/// The world has z up, its origin at the sphere's centre at the first sample, and yaw 0 at the first sample. The sphere
+/// should be at rest for one second at the start.
 ///
-/// Cost: the state takes half a megabyte, plus 0.1 MB per IMU and 11 KiB per 0.02 s of lag. Poses are computed in
-/// blocks (RollingSmoother::Params::block_s). A sample inside a block allocates nothing after start-up, except for
-/// poses not yet fetched by take(). A call needs at most 64 KiB of stack. The class uses no threads and no files and
-/// prints nothing. Copies contain the complete state. The limitations of ImuMerge, RollingFilter and RollingSmoother
-/// apply.
+/// The state of RollingOdometry takes half a megabyte, plus 0.1 MB per IMU and 11 KiB per 0.02 s of lag. Poses are
+/// computed in blocks of RollingSmoother::Params::block_s. After start-up, a sample inside a block allocates no memory,
+/// except for poses that take() has not yet returned. A call needs at most 64 KiB of stack. RollingOdometry uses no
+/// threads and no files and prints nothing. A copy of a RollingOdometry contains the complete state. The limitations of
+/// ImuMerge, RollingFilter and RollingSmoother apply to RollingOdometry.
 class RollingOdometry {
  public:
   static constexpr double kWholeRecording = RollingSmoother::kWholeRun;  ///< value of Params::lag_s
 
-  /// One IMU of the sphere.
+  /// Unit is one IMU inside the sphere.
   struct Unit {
     ImuSheet sheet;
-    /// Pose of the IMU, which is inside the sphere, in axes from the sphere's centre: x_B = T_BI x_I.
+    /// Pose of the IMU relative to the sphere's centre: x_B = T_BI x_I.
     Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();
   };
   struct Params {
     double radius_m = 0.0;    ///< required, no default
     std::vector<Unit> units;  ///< 1 to ImuMerge::kImus; required, no default
-    /// Standard deviation of the origin of T_BI about the sphere's true centre. The offset is estimated.
+    /// Standard deviation of the origin of T_BI about the true centre of the sphere. RollingOdometry estimates the
+    /// offset between origin and centre.
     double centre_sigma_m = 6e-3;
     double gravity_m_s2 = 9.80665;
-    /// Lag of the poses of take(). 0: live poses; kWholeRecording: add_imus() stores the readings, newest() returns
-    /// nothing, and finish() estimates all poses with knowledge of the whole recording.
+    /// Lag of the poses that take() returns. With a lag of 0, the poses are live. With kWholeRecording, add_imus()
+    /// stores the readings, newest() returns nothing, and finish() estimates all poses from the whole recording.
     double lag_s = 0.0;
 
     /// Parameters that few users change. If Params and Expert contain the same number, the value in Params has
@@ -77,10 +78,9 @@ class RollingOdometry {
             {"centre_sigma_m", "m", 0.0, 10.0,
              "standard deviation of the stated centre: reference point of the IMU positions", Rank::first});
       visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 0.1, 100.0, "strength of gravity", Rank::first});
-      visit(p.lag_s,
-            {"lag_s", "s", 0.0, kWholeRecording,
-             "time that a pose waits for later data before it is smoothed; 0: live; 1e9: the whole recording",
-             Rank::first});
+      visit(p.lag_s, {"lag_s", "s", 0.0, kWholeRecording,
+                      "time that a pose waits for later data before it is smoothed; 0: live; 1e9: the whole recording",
+                      Rank::first});
       visit.group("merge_", p.expert.merge);
       visit.group("rolling_", p.expert.rolling);
       visit.group("stamps_", p.expert.stamps);
@@ -97,7 +97,7 @@ class RollingOdometry {
     Eigen::Vector3d angular_velocity_rad_s = Eigen::Vector3d::Zero();  ///< of the sphere, sphere axes
     RollingMode mode = RollingMode::grip;
     bool at_rest = false;
-    bool uncertain = false;  ///< an event made the position uncertain (RollingModeParams::uncertain_m)
+    bool uncertain = false;  ///< the position is uncertain after an event (RollingModeParams::uncertain_m)
   };
 
   /// Throws InvalidParams if a parameter is out of bounds.
@@ -108,40 +108,44 @@ class RollingOdometry {
   RollingOdometry& operator=(RollingOdometry&&) noexcept = default;
   ~RollingOdometry() = default;
 
-  /// Processes simultaneous readings of all units. The stamp of the first unit counts, corrected by SampleClock if a
-  /// host's stamps jitter. A unit without a reading is passed as NaN. OutlierFilter rejects single wild readings of
-  /// each unit. OutlierFilter may delay the samples of all units by one; newest() is then one sample older. On error
-  /// the state is unchanged. Errors are `too_few` (wrong number of units, or no reading), `time_order`, `degenerate`
-  /// (no gravity in the first sample), `gap` and `out_of_range`. `gap`: after more than a second without samples, the
-  /// run ends until reset(). `out_of_range`: finish() was called, or the only unit with readings has a frozen axis.
+  /// Processes simultaneous readings of all IMUs (units). The time stamp of the first unit counts, corrected by
+  /// SampleClock if a host computer assigned irregular stamps. Pass NaN for a unit without a reading. OutlierFilter
+  /// rejects single wild readings of each unit. OutlierFilter may delay the samples of all units by one sample;
+  /// newest() then returns the pose of the previous sample. On error the state is unchanged. Returns `too_few` (wrong
+  /// number of units, or no reading), `time_order`, `degenerate` (no gravity in the first sample), `gap` or
+  /// `out_of_range` on error. The error `gap` means more than a second without samples; add_imus() then rejects all
+  /// samples until reset(). The error `out_of_range` means that finish() was called, or that a gyro or accelerometer
+  /// axis of the only unit with readings is frozen.
   Status add_imus(std::span<const ImuSample> samples);
-  /// Adds the sample of a sphere with one IMU. Errors are those of add_imus().
+  /// Processes a sample of a sphere with one IMU. Returns the errors of add_imus().
   Status add_imu(const ImuSample& sample) { return add_imus({&sample, 1}); }
 
   /// Adds a sample of one unit whose stamps differ from the other units' stamps. UnitAlignment resamples the units to
   /// common times, at most 0.05 s late; a unit without readings is absent. The errors are those of add_imus();
-  /// `time_order` also if the stamp is not later than the unit's last stamp, and `out_of_range` if there is no such unit.
+  /// `time_order` also if the stamp is not later than the unit's last stamp, and `out_of_range` if there is no such
+  /// unit.
   Status add_imu(std::size_t unit, const ImuSample& sample);
 
-  /// Returns the pose at the newest sample from all data so far. Returns nothing before the first sample.
+  /// Returns the pose at the newest sample, from all data so far. The result is empty before the first sample.
   std::optional<Pose> newest() const;
 
-  /// Returns the next pose in time order. No pose is returned twice. Poses are smoothed and lag_s old, or live if the
-  /// lag is 0.
+  /// Returns the next pose in time order. Each pose is returned once. If the lag is 0, the poses are live; otherwise
+  /// the poses are smoothed and lag_s old.
   std::optional<Pose> take();
 
-  /// Ends the run and smooths the poses still within the lag, or of the whole recording. add_imus() then rejects samples
-  /// until reset(). Returns the first error of the samples that it processes; with kWholeRecording also that of
-  /// merge_recordings().
+  /// Ends the run and smooths the poses that are still within the lag, or all poses of the whole recording. After
+  /// finish(), add_imus() rejects samples until reset(). Returns the first error of the samples that finish()
+  /// processes. With kWholeRecording, finish() also returns the errors of merge_recordings().
   Status finish();
 
-  /// Starts a new run at the origin and at rest. Poses not yet fetched by take() remain available.
+  /// Starts a new run with the sphere at the origin and at rest. Poses that take() has not yet returned remain
+  /// available.
   void reset();
 
-  /// Reports whether the readings are plausible now. Returns `ok`, or `out_of_range` with a finding. A finding is the
-  /// unit and axis that is frozen (FrozenAxes) and the duration, or a force at rest that differs from gravity
-  /// (RestGravity). The readings of a frozen unit are ignored. If no unfrozen unit has readings, add_imus() rejects the
-  /// sample.
+  /// Reports whether the readings of the IMUs are currently plausible. Returns `ok`, or `out_of_range` with one
+  /// finding. A finding is a frozen axis (FrozenAxes) with its unit and duration, or a force at rest that differs from
+  /// gravity (RestGravity). The readings of a frozen unit are ignored. If all units with readings are frozen,
+  /// add_imus() rejects the sample.
   Status health() const;
 
   /// Returns the estimated centre and radius. With a lag, the estimates are those of the newest smoothed pose.
@@ -156,13 +160,13 @@ class RollingOdometry {
   /// Returns the state of the IMU fusion: frozen, disagreeing and delayed units.
   const ImuMerge::State& units() const { return *merge_state_; }
 
-  /// Returns the number of readings that OutlierFilter rejected, over all units.
+  /// Returns the number of readings of all units that OutlierFilter rejected.
   std::size_t rejected_readings() const;
   /// Returns the jitter of the stamps [s]; see TumblingOdometry::estimated_jitter_s.
   std::optional<double> estimated_jitter_s() const;
 
-  /// Save the state, load a saved state, and read saved parameters, as TumblingOdometry does. The size is up to a
-  /// megabyte, less at rest, plus the lag's data.
+  /// Save the state, load a saved state, and read saved parameters, like the functions of TumblingOdometry. A saved
+  /// state has at most one megabyte plus the data of the lag; the state of a sphere at rest is smaller.
   std::vector<std::byte> save() const;
   Status load(std::span<const std::byte> bytes);
   static Status saved_params(std::span<const std::byte> bytes, Params& params);
@@ -200,12 +204,12 @@ class RollingOdometry {
   UnitAlignment::State alignment_state_;
   std::array<std::vector<ImuSample>, ImuMerge::kImus> recorded_;  ///< readings of each unit, with kWholeRecording
   std::unique_ptr<ImuMerge::State> merge_state_;
-  std::unique_ptr<ImuMerge::State> merged_state_;  ///< buffer for the next state
+  std::unique_ptr<ImuMerge::State> merged_state_;  ///< buffer for the next state of ImuMerge
   std::unique_ptr<RollingSmoother::State> state_;
   UnitRails::State rails_state_;
   std::vector<OutlierFilter> filters_;  ///< one per unit
   Outliers outliers_{};
-  std::optional<UnitRails::Samples> held_;  ///< samples of all units while OutlierFilter delays one of them
+  std::optional<UnitRails::Samples> held_;  ///< samples of all units while OutlierFilter delays one unit
   std::vector<FrozenAxes> watches_;         ///< one per unit
   Frozen frozen_{};
   RestGravity gravity_;

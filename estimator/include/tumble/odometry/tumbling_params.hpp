@@ -17,22 +17,24 @@
 
 namespace tumble {
 
-/// Parameters of TumblingOdometry that few users change. If a number is also in TumblingParams, the value in
-/// TumblingParams has priority. gravity_m_s2 applies to all parts.
+/// TumblingExpertParams contains the parameters of TumblingOdometry that few users change. If a number is also in
+/// TumblingParams, the value in TumblingParams has priority. The value gravity_m_s2 applies to the estimation of rates
+/// and of the map.
 struct TumblingExpertParams {
   double gravity_m_s2 = 9.80665;
-  /// Maximum number of sweeps that wait for IMU samples, in addition to the sweeps within the lag. The maximum number
-  /// of sweeps that wait for take() is also sweeps_max; the oldest sweep is dropped.
+  /// Maximum number of sweeps that wait for IMU samples, in addition to the sweeps within the lag. The limit sweeps_max
+  /// also applies to sweeps that wait for take(); beyond the limit, the oldest sweep is dropped.
   std::size_t sweeps_max = 16;
-  /// Parameters of the rate estimation. `uncalibrated` = 0.003 assumes the device's data sheet until readings
-  /// contradict the data sheet. The uncertainty of the calibration widens each rate, since sweeps use the rates before
-  /// the calibration is estimated.
+  /// Parameters of the rate estimation. The default `uncalibrated` = 0.003 assumes the device's data sheet until
+  /// readings contradict the data sheet. The uncertainty of the calibration increases the covariance of each rate,
+  /// because sweeps use the rates before the calibration is estimated.
   RegimeStream::Params rate = rate_defaults();
-  /// Parameters of the mapping. Gravity's direction and the saturation deficit are among the unknowns.
+  /// Parameters of the mapping. By default, gravity's direction and the saturation deficit (the part of the rate hidden
+  /// by saturation) are unknowns of the registration.
   OdometryParams mapping = mapping_defaults();
-  /// Correction of stamps that a host assigned to the IMU's samples.
+  /// Parameters of SampleClock, which corrects IMU time stamps that a host computer assigned.
   SampleClock::Params stamps;
-  /// Second pass over the first seconds of motion, with the calibration estimated from them.
+  /// Parameters of SecondPass, which processes the first seconds of motion again with a better calibration.
   SecondPass::Params second_pass;
   static OdometryParams mapping_defaults();
   static RegimeStream::Params rate_defaults();
@@ -52,20 +54,21 @@ struct TumblingExpertParams {
 struct TumblingParams {
   ImuSheet imu;
   /// Lever arm from the body's centre of mass to the IMU, in IMU axes, and its standard deviation per axis. The lever
-  /// arm relates rates to forces and is estimated. There is no default: zero would mean an IMU at the centre of mass.
+  /// arm relates rates to forces, and TumblingOdometry estimates its error. The lever arm has no default, because zero
+  /// would mean an IMU at the centre of mass.
   Eigen::Vector3d lever_arm_I_m = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
   double lever_arm_sigma_m = 0.01;
-  Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< lidar in IMU axes
-  /// Standard deviations of T_IL and of the lidar's time offset. Mounting and time offset are estimated; a standard
-  /// deviation of 0 marks an exact value.
+  Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< pose of the lidar in IMU axes
+  /// Standard deviations of T_IL and of the lidar's time offset. TumblingOdometry estimates mounting and time offset; a
+  /// standard deviation of 0 marks an exact value.
   double mount_sigma_rad = 0.01;
   double mount_sigma_m = 0.006;
   double time_offset_sigma_s = 0.003;
   LidarSheet lidar;
-  /// Returns inside this box hit the robot itself and are dropped. Eigen's empty box, the default, keeps all returns. A
-  /// box with swapped corners is rejected.
+  /// Lidar returns inside the box own_body_L hit the robot itself and are dropped. An empty box of Eigen, the default,
+  /// keeps all returns. A box with swapped corners is rejected.
   Eigen::AlignedBox3d own_body_L;
-  double lag_s = 0.2;  ///< age of a sample when its rate is reported; sweeps wait as long, at least two samples
+  double lag_s = 0.2;  ///< delay of reported rates and sweeps; at least two samples
 
   using Expert = TumblingExpertParams;
   Expert expert;  ///< parameters that few users change

@@ -13,26 +13,29 @@
 
 namespace tumble {
 
-/// Estimates the pose of a rolling sphere from one IMU, live, through slip, slide and bumps, on a floor that is level
-/// or sloped.
+/// Estimates the pose of a rolling sphere from one IMU, live, through slip, slide and bumps, on a level or sloped
+/// floor.
 ///
-/// While the sphere grips, the rolling constraint is a velocity measurement. The velocity from rolling calibrates tilt,
-/// biases, scale, misalignment, delay and lever arm of the IMU, so that the seconds without grip can be integrated. The
-/// mode of contact is estimated. Each hypothesis about the past modes has its own error-state Kalman filter until later
-/// data decide between the hypotheses. Each filter contains the position. Grip after an event therefore also corrects
-/// the displacement during the event. RollingFilter does not revise earlier estimates; RollingSmoother does.
+/// While the sphere grips the floor, the rolling constraint acts as a velocity measurement. The velocity from rolling
+/// calibrates tilt, biases, scale, misalignment, delay and lever arm of the IMU. The calibrated IMU can be integrated
+/// through several seconds without grip. RollingFilter estimates the mode of contact, for example grip or slip. Each
+/// hypothesis about the past modes of contact has a separate error-state Kalman filter, until later data decide between
+/// the hypotheses. The state of each Kalman filter contains the position. Grip after a slip or bump therefore also
+/// corrects the displacement during the slip or bump. RollingFilter does not revise earlier estimates; RollingSmoother
+/// revises earlier estimates.
 ///
-/// While the sphere is at rest, the reported position is constant. Corrections of the earlier path from measurements at
-/// rest are applied when motion resumes. Corrections are applied immediately if a different hypothesis becomes the most
-/// probable.
+/// While the sphere is at rest, the reported position is constant. Measurements at rest may correct the path before the
+/// rest; RollingFilter applies the corrections when motion resumes. If a different hypothesis becomes the most probable
+/// at rest, RollingFilter applies the corrections immediately.
 ///
-/// Readings of a fast IMU are averaged to RollingExpertParams::reading_s before they are processed. Between two
-/// averages the estimate is extrapolated. Over a gap of up to gap_max_s, the filter interpolates the rate and assumes
-/// an unknown force. The covariance accounts for the interpolated rate and the unknown force. A start in motion is
-/// detected and has a larger initial uncertainty.
+/// Readings of a fast IMU are averaged over RollingExpertParams::reading_s before they are processed. Between two
+/// averages, the estimate is extrapolated. Over a gap of up to gap_max_s, RollingFilter interpolates the rate and
+/// assumes an unknown force. The covariance after a gap accounts for the interpolated rate and the unknown force.
+/// RollingFilter detects a start in motion, and increases the initial uncertainty.
 ///
 /// While the gyro is saturated, the attitude is uncertain and the rolling constraint is not usable. During saturation,
-/// only the covariance describes the position's error. The state needs 430 KiB.
+/// the covariance of the position grows, but nothing corrects the position. The state of RollingFilter needs 430 KiB of
+/// memory.
 ///
 /// RollingFilter does not model a floor that moves or yields, or moving platforms. The heading drifts.
 class RollingFilter {
@@ -43,13 +46,13 @@ class RollingFilter {
   using Vector = Eigen::Matrix<double, kStates, 1>;
   using Covariance = Eigen::Matrix<double, kStates, kStates>;
 
-  /// One assumption about the sequence of contact modes, with the estimate that follows from it.
+  /// Hypothesis is one possible sequence of contact modes, with the estimate for this sequence.
   struct Hypothesis {
     Vector x = Vector::Zero();  ///< errors: attitude (W), velocity and position of the IMU, constants
     Covariance P = Covariance::Zero();
     Eigen::Vector3d u_W_m_s = Eigen::Vector3d::Zero();  ///< contact velocity at the last node
-    double log_weight = 0.0;                            ///< log probability; the most probable one has zero
-    std::int64_t switched_node = 0;                     ///< node at which its current mode began
+    double log_weight = 0.0;                            ///< log probability relative to the most probable hypothesis
+    std::int64_t switched_node = 0;                     ///< node at which the current contact mode began
     std::int32_t parent = 0;                            ///< index of the hypothesis' parent at the previous node
     RollingMode mode = RollingMode::grip;
     bool operator==(const Hypothesis&) const = default;
@@ -60,28 +63,26 @@ class RollingFilter {
     Eigen::Vector3d p_WG_m = Eigen::Vector3d::Zero();
     Eigen::Vector3d v_WG_m_s = Eigen::Vector3d::Zero();
     Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
-    Eigen::Matrix3d position_covariance_m2 = Eigen::Matrix3d::Zero();  ///< covariance of the position at the last node,
-                                                                       ///< over all hypotheses
+    Eigen::Matrix3d position_covariance_m2 = Eigen::Matrix3d::Zero();  ///< last node, over all hypotheses
     Eigen::Vector3d contact_velocity_m_s = Eigen::Vector3d::Zero();    ///< contact velocity at the last node, W
     RollingMode mode = RollingMode::grip;
-    double slip_probability = 0.0;  ///< probability that the contact moves, over all hypotheses, at the last node
-    double bump_probability = 0.0;  ///< part of slip_probability in which the sphere hops
+    double slip_probability = 0.0;  ///< probability that the contact point moves, at the last node
+    double bump_probability = 0.0;  ///< part of slip_probability for modes in which the sphere hops
     bool at_rest = false;
-    bool spins_in_place = false;  ///< slow rotation about the contact at rest, which does not allow a gyro bias update
-    bool uncertain = false;       ///< an event increased the position's standard deviation by more than uncertain_m
+    bool spins_in_place = false;  ///< slow rotation about the contact point; no gyro bias update
+    bool uncertain = false;       ///< the position's standard deviation grew by more than uncertain_m in an event
     bool started_in_motion = false;
     std::int64_t gaps = 0;  ///< bridged gaps
     double gap_longest_s = 0.0;
-    // Common linearisation point of all hypotheses.
+    // Linearisation point that all hypotheses share.
     RollingNominal nominal;
     RollingSums sums;
-    ImuAverage average;                                          ///< average of the readings since the last processed
-                                                                 ///< average
-    Eigen::Matrix3d pruned_spread_m2 = Eigen::Matrix3d::Zero();  ///< spread of the hypotheses pruned at the last node
+    ImuAverage average;                                          ///< average of the readings that are not yet processed
+    Eigen::Matrix3d pruned_spread_m2 = Eigen::Matrix3d::Zero();  ///< position spread of the pruned hypotheses
     RestDetector::State rest;
     Eigen::Vector3d slow_rate_rad_s = Eigen::Vector3d::Zero();
     bool position_constrained = false;      ///< the sphere is at rest and the reported position is constant
-    double variance_before_event_m2 = 0.0;  ///< horizontal variance of the position at the last node without an event
+    double variance_before_event_m2 = 0.0;  ///< horizontal position variance at the last node without an event
     Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero();
     std::array<Hypothesis, kHypotheses> hypotheses{};
     int count = 0;
@@ -93,9 +94,9 @@ class RollingFilter {
 
   explicit RollingFilter(const Params& params);
 
-  /// Processes a sample. The first sample levels the attitude (yaw 0) and sets the centre to the origin, at rest. A
-  /// second of rest should follow. On error the state is unchanged. No allocation; about kHypotheses * kStates^2 * 40
-  /// operations per node.
+  /// Processes one sample and updates the estimate. The first sample levels the attitude (yaw 0) and sets the sphere's
+  /// centre to the origin, at rest. The sphere should be at rest for one second after the first sample. On error the
+  /// state is unchanged. Cost: no allocation; about kHypotheses * kStates^2 * 40 operations per node.
   Status step(const ImuSample& sample, State& state) const {
     return step(sample, state, [](const State&) {});
   }
@@ -108,8 +109,8 @@ class RollingFilter {
                      Listener{&closed, [](void* to, const State& at) { (*static_cast<Closed*>(to))(at); }});
   }
 
-  /// Returns the filter's estimate at the last processed sample. Only the position block of the covariance is
-  /// available; all other entries are zero.
+  /// Returns the filter's estimate at the last processed sample. The returned covariance contains only the position
+  /// block; all other entries are zero.
   static RollingEstimate estimate(const State& state);
 
   /// Checks the invariants of a state that was loaded from a file. Returns the first violated invariant.

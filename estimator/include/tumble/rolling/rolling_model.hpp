@@ -8,36 +8,36 @@
 
 namespace tumble {
 
-/// Mode of contact between sphere and floor.
+/// RollingMode is the mode of contact between sphere and floor.
 enum class RollingMode : std::uint8_t {
   grip,     ///< the contact point does not move; the floor is level
-  slip,     ///< the contact point moves along the floor: the sphere spins too fast or slides
+  slip,     ///< the contact point moves along the floor: sphere spins too fast or slides
   bump,     ///< the contact point also rises or falls: an obstacle, or flight
-  incline,  ///< the contact point does not move; the floor is a slope, which is estimated
+  incline,  ///< the contact point does not move; the floor is a slope with estimated inclination
   rough,    ///< the contact point does not move; the floor rises and falls about the level
 };
 inline constexpr int kRollingModes = 5;
 
-/// Returns whether the contact point may move in this mode.
+/// Returns whether the contact point may move along the floor in `mode`.
 inline bool slips(RollingMode mode) {
   return mode == RollingMode::slip || mode == RollingMode::bump;
 }
 
-/// Pose of a rolling sphere's centre G at one sample, with the state of contact.
+/// RollingEstimate is the pose of a rolling sphere's centre G at one sample, with the mode of contact.
 struct RollingEstimate {
   TimeNs time_ns = 0;
   Eigen::Vector3d p_WG_m = Eigen::Vector3d::Zero();
   Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
   Eigen::Vector3d v_WG_m_s = Eigen::Vector3d::Zero();
   Eigen::Vector3d w_WI_I_rad_s = Eigen::Vector3d::Zero();  ///< reading of the gyro minus the bias
-  /// Covariance of (position error [m], attitude error [rad]), W, at the following node.
+  /// Covariance of the position error [m] and the attitude error [rad] in W, at the node after the sample.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
   RollingMode mode = RollingMode::grip;
   bool at_rest = false;
-  bool uncertain = false;  ///< an event made the position uncertain, see RollingModeParams::uncertain_m
+  bool uncertain = false;  ///< the position is uncertain after an event (RollingModeParams::uncertain_m)
 };
 
-/// Trajectory and constants that serve as linearisation point of the errors.
+/// RollingNominal contains the trajectory and the constants at which the errors are linearised.
 struct RollingNominal {
   Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
   Eigen::Vector3d v_WI_m_s = Eigen::Vector3d::Zero();
@@ -50,12 +50,12 @@ struct RollingNominal {
   Eigen::Vector3d lever_arm_error_m = Eigen::Vector3d::Zero();
   Eigen::Vector2d slope = Eigen::Vector2d::Zero();  ///< horizontal part of the floor's unit normal, W
   double radius_error_m = 0.0;
-  Eigen::Vector3d last_rate_I_rad_s = Eigen::Vector3d::Zero();  ///< last reading
+  Eigen::Vector3d last_rate_I_rad_s = Eigen::Vector3d::Zero();  ///< rate of the last reading
   bool operator==(const RollingNominal&) const = default;
 };
 
-/// Integrals since the last node of R, R f, R (x) f^T, R (x) w^T, R (w x f), w, f, |w|^2, with attitude R, specific
-/// force f and rate w.
+/// RollingSums contains integrals since the last node, with attitude R, specific force f and rate w. The integrands are
+/// R, R f, R (x) f^T, R (x) w^T, R (w x f), w, f and |w|^2.
 struct RollingSums {
   Eigen::Matrix3d R_s = Eigen::Matrix3d::Zero();
   Eigen::Vector3d f_W_m_s = Eigen::Vector3d::Zero();
@@ -65,11 +65,11 @@ struct RollingSums {
   double rotated_rad2_s = 0.0;
   double rate_clipped_s = 0.0, force_clipped_s = 0.0;  ///< duration of saturated readings
   double recovered_s = 0.0;                            ///< duration of recovered rates
-  double impact_m_s = 0.0;                             ///< integral of | |f| - g | above the usual level
-  double unexplained_impact_m_s = 0.0;                 ///< part of impact_m_s that rotation cannot explain
+  double impact_m_s = 0.0;                             ///< integral of | |f| - g | above its usual level
+  double unexplained_impact_m_s = 0.0;                 ///< part of impact_m_s that rotation does not explain
   Eigen::Vector3d subsample_saturation_W_m_s =
-      Eigen::Vector3d::Zero();  ///< standard deviation of the force lost to subsample saturation, along the force
-  // Length of a gap, and the variances that the gap adds: of the angle, of rate times time, and of the velocity.
+      Eigen::Vector3d::Zero();  ///< standard deviation of force lost to subsample saturation
+  // Duration of a gap, and the variances that the gap adds to the angle, to rate times time, and to the velocity.
   double gap_s = 0.0, gap_rad2 = 0.0, gap_rate_rad2_s = 0.0, gap_speed_m2_s2 = 0.0;
   double node_s = 0.0;
   bool operator==(const RollingSums&) const = default;

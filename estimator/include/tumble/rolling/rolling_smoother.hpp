@@ -15,35 +15,35 @@
 
 namespace tumble {
 
-/// Smooths the estimates of RollingFilter with later data: with a fixed lag, or over the whole run.
+/// Smooths the estimates of RollingFilter with later data, with a fixed lag or over the whole run.
 ///
-/// The modes are those of the live filter's most probable hypothesis at the time of smoothing. With the modes fixed,
-/// one Kalman filter runs forward over the stored samples. The modified Bryson-Fraser smoother (Bierman 1977) then runs
-/// backward. The Bryson-Fraser smoother needs no inverse and only the filter's gains. The errors of a sample between
+/// RollingSmoother uses the contact modes of the most probable hypothesis of RollingFilter at the time of smoothing.
+/// With the contact modes fixed, one Kalman filter runs forward over the stored samples. The modified Bryson-Fraser
+/// smoother then runs backward (Bierman, Factorization Methods for Discrete Sequential Estimation, 1977). The
+/// Bryson-Fraser smoother needs no matrix inverse, only the gains of the Kalman filter. The errors of a sample between
 /// two nodes are interpolated from the errors of the two nodes.
 ///
-/// With a fixed lag, the position is constant while the sphere is at rest. Corrections of the earlier path are applied
-/// when motion resumes because the estimates of the earlier path are already reported. When a whole run is smoothed,
-/// the path itself is corrected.
+/// With a fixed lag, the reported position is constant while the sphere is at rest. Corrections of the path before a
+/// rest are applied when motion resumes, because the earlier poses are already reported. When a whole run is smoothed,
+/// the path before a rest is corrected itself.
 ///
-/// The method follows the reference study of this project on slip. The smoother is that of G. J. Bierman, Factorization
-/// Methods for Discrete Sequential Estimation, 1977. RollingSmoother does not model uncertainty of the modes, other
-/// than the spread of positions that the live filter prunes at rest.
+/// RollingSmoother does not model uncertainty of the contact modes, except the spread of positions that RollingFilter
+/// prunes at rest.
 class RollingSmoother {
  public:
   static constexpr double kWholeRun = 1e9;
 
   struct Params {
     RollingParams filter = {};
-    /// Process noise of the final pass as a fraction of the filter's process noise. The reported covariance uses the
-    /// filter's process noise.
+    /// Process noise of the final pass, as a fraction of the process noise of RollingFilter. The reported covariance
+    /// uses the full process noise of RollingFilter.
     double path_noise = 0.65;
     double lag_s = kWholeRun;    ///< delay of an estimate behind the newest sample
-    double block_s = 0.2;        ///< estimates are reported in blocks of this length
-    double rate_max_hz = 500.0;  ///< rate of the samples, for the preallocated memory of the lag
-    /// Horizontal distance of the centre from the start to the end of the run, from an external measurement, and its
-    /// standard deviation. The measured distance determines the radius, together with a prior on the radius. A distance
-    /// of 0 means unknown.
+    double block_s = 0.2;        ///< estimates are reported in blocks of this duration
+    double rate_max_hz = 500.0;  ///< sample rate for which memory is allocated in advance
+    /// Horizontal distance of the centre between the start and the end of the run, from an external measurement, and
+    /// its standard deviation. The measured distance and the prior on the radius determine the radius. A distance of 0
+    /// means that no distance was measured.
     double known_distance_m = 0.0, known_distance_sigma_m = 5e-3;
 
     /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
@@ -63,7 +63,8 @@ class RollingSmoother {
     }
   };
 
-  /// Modes of all hypotheses at a node, and each hypothesis' parent at the previous node.
+  /// Step contains the contact modes of all hypotheses at a node, and the parent of each hypothesis at the previous
+  /// node.
   struct Step {
     std::array<std::uint8_t, RollingFilter::kHypotheses> parent{};
     std::array<RollingMode, RollingFilter::kHypotheses> mode{};
@@ -73,15 +74,14 @@ class RollingSmoother {
     bool spins_in_place = false;
     bool operator==(const Step&) const = default;
   };
-  /// Final pass at the node up to which estimates are reported.
+  /// Committed is the state of the final pass at the node up to which estimates are reported.
   struct Committed {
     RollingNominal nominal;
     RollingFilter::Covariance P = RollingFilter::Covariance::Zero();
     RollingMode mode = RollingMode::grip;
-    double event_variance_m2 = 0.0;                                ///< variance of the position when the event began
-    Eigen::Vector3d constrained_p_WG_m = Eigen::Vector3d::Zero();  ///< constant position while `position_constrained`
-    bool position_constrained = false;                             ///< the sphere is at rest, with constant reported
-                                                                   ///< position
+    double event_variance_m2 = 0.0;                                ///< position variance at the start of the event
+    Eigen::Vector3d constrained_p_WG_m = Eigen::Vector3d::Zero();  ///< reported position while `position_constrained`
+    bool position_constrained = false;  ///< the sphere is at rest; the reported position is constant
     TimeNs last_time_ns = 0;
     Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero();
     // Rate of the gap that contains the node, if any.
@@ -94,42 +94,44 @@ class RollingSmoother {
   struct State {
     RollingFilter::State live;
     Committed committed;
-    std::vector<ImuSample> samples;  ///< after the committed node
+    std::vector<ImuSample> samples;  ///< samples after the committed node
     std::vector<Step> steps;
     RollingNominal constants;     ///< constants at the newest smoothed node
-    double radius_sigma_m = 0.0;  ///< standard deviation of the radius at that node
+    double radius_sigma_m = 0.0;  ///< standard deviation of the radius at the newest smoothed node
     bool operator==(const State& other) const;
   };
 
   explicit RollingSmoother(const Params& params);
 
-  /// Returns the filter that updates State::live. The filter can be used alone if only live poses are needed.
+  /// Returns the filter that updates State::live. A caller that needs only live poses can use the RollingFilter alone.
   const RollingFilter& filter() const { return filter_; }
 
-  /// Processes a sample and appends estimates that are older than the lag to `out`. On error the state is unchanged.
-  /// The first sample allocates the memory of the lag. After the first sample, only `out` and the processing of a block
-  /// allocate memory. Beyond rate_max_hz, beyond a million samples, or with kWholeRun, the run's memory also grows (64
-  /// bytes per sample, 152 per node). The sample that ends a block does the block's computations. A sample that ends a
-  /// block needs 14 KiB per node of lag and block, or 4 MiB plus 0.3 KiB per node if there are many nodes.
+  /// Processes a sample, and appends the estimates that are older than the lag to `out`. On error the state is
+  /// unchanged. The first sample allocates the memory of the lag. After the first sample, only `out` and the processing
+  /// of a block allocate memory. The memory grows with the duration (64 bytes per sample, 152 per node) beyond
+  /// rate_max_hz, beyond a million samples, or with kWholeRun. The last sample of a block does the computations of the
+  /// block. The computations of a block need 14 KiB of memory per node of lag and block. If there are many nodes, a
+  /// block needs 4 MiB plus 0.3 KiB per node.
   Status step(const ImuSample& sample, State& state, std::vector<RollingEstimate>& out) const;
 
-  /// Ends the run and passes the remaining estimates to `take`, in time order, smoothed with all data. For a whole run
+  /// Ends the run, and passes the remaining estimates to `take`, in time order, smoothed with all data. For a whole run
   /// of N nodes, finish() temporarily needs 4 MiB + N * 0.3 KiB in addition to the state.
   using Take = std::function<void(const RollingEstimate&)>;
   void finish(State& state, const Take& take) const;
   void finish(State& state, std::vector<RollingEstimate>& out) const;
 
-  /// Ends the run with externally known modes, one per sample of a whole run that `state` processed with kWholeRun.
+  /// Ends the run with externally known contact modes, one per sample of a whole run that `state` processed with
+  /// kWholeRun.
   void finish(std::span<const RollingMode> known, State& state, const Take& take) const;
 
-  /// Checks the invariants of a state that was loaded from a file. Returns the first violated invariant. Rejects a
-  /// state with a lag whose samples exceed four times rate_max_hz.
+  /// Checks the invariants of a state that was loaded from a file. Returns the first violated invariant. The function
+  /// rejects a state with a lag if its number of samples exceeds four times that of rate_max_hz.
   Status check_state(const State& state) const;
 
  private:
   struct Path;
 
-  /// Returns the number of samples for which the lag has preallocated memory.
+  /// Returns the number of samples for which the memory of the lag is allocated in advance.
   std::size_t preallocated_samples() const;
   Path best_path(const State& state) const;
   void run_window(const Path& path, std::size_t emitted, State& state, const Take& take) const;

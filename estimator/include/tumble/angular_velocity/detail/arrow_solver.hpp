@@ -7,7 +7,7 @@
 
 namespace tumble {
 
-/// The arrow matrix of the rate smoother: see ArrowSystem.
+/// The namespace arrow contains the arrow matrix of RateSmoother and RateStream; see ArrowSystem.
 namespace arrow {
 
 inline constexpr int kState = 6;    ///< size of a block: rate and scaled angular acceleration
@@ -24,30 +24,30 @@ using Corner = System::Corner;
 using Conditional = System::Conditional;
 using Marginal = System::Marginal;
 
-inline constexpr int kErrors = 29;  ///< sensor errors, common to all blocks: see SensorErrors
+inline constexpr int kErrors = 29;  ///< number of sensor errors, which all blocks share: see SensorErrors
 
-/// Derivative of the gradient of a block or of the border by each of the kErrors common errors. After solving, the
-/// matrix contains the derivative of the steps.
+/// Derivative of the gradient of a block, or of the border, by each of the kErrors sensor errors. After
+/// back-substitution, the matrix contains the derivative of the solution step.
 using ErrorMatrix = Eigen::Matrix<double, kState, kErrors>;
 using BorderErrors = Eigen::Matrix<double, kBorder, kErrors>;
 
-/// Eliminates a block as ArrowSystem::eliminate does.
+/// Eliminates a block like ArrowSystem::eliminate.
 bool eliminate(Block& block, Block* next, Corner& corner);
 bool solve_corner(const Corner& corner, BorderVector& step, BorderMatrix& covariance);
 StateVector back_substitute(const Block& block, const StateVector* next_step, const BorderVector& border_step);
 Conditional back_conditional(const Block& block, const Conditional* next);
 Marginal marginal(const Conditional& conditional, const BorderMatrix& border_covariance);
 
-/// Eliminates the error columns of an already eliminated `block` into the next block (null for the last) and the
-/// border.
+/// Eliminates the error columns of an already eliminated `block` into the next block (null for the last block) and into
+/// the border.
 void eliminate_errors(const Block& block, ErrorMatrix& errors, ErrorMatrix* next, BorderErrors& border);
 
-/// Returns the derivative of an eliminated block by each error, after eliminate_errors(). Needs the derivatives of the
-/// next block (null for the last) and of the border by each error.
+/// Returns the derivative of an eliminated block by each sensor error, after eliminate_errors(). `next_moved` and
+/// `border_moved` are the derivatives of the next block (null for the last block) and of the border.
 ErrorMatrix back_substitute_errors(const Block& block, const ErrorMatrix& errors, const ErrorMatrix* next_moved,
                                    const BorderErrors& border_moved);
 
-/// Returns the covariance of the rates (first three rows and columns) of marginal().state, at lower cost.
+/// Returns the covariance of the rates, which is the upper left 3x3 block of marginal().state, at lower cost.
 Eigen::Matrix3d rate_covariance(const Conditional& conditional, const BorderMatrix& border_covariance);
 
 }  // namespace arrow

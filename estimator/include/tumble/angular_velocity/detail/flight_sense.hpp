@@ -12,20 +12,22 @@
 
 namespace tumble {
 
-/// Detects wrong signs or swapped axes of the accelerometer, and wrong sign or scale of the gyro. Mirrored forces (all
-/// three axes flipped, one flipped, two swapped) change neither gravity at rest nor its rotation.
+/// Detects wrong signs or swapped axes of the accelerometer, and wrong sign or scale of the gyro. FlightSense is needed
+/// because mirrored forces (all three axes flipped, one axis flipped, two axes swapped) change neither gravity at rest
+/// nor its rotation.
 ///
-/// In free flight the force at the lever arm t from the centre of mass is only a x t + w x (w x t), with the rate w and
-/// the angular acceleration a. FlightSense compares the readings with this force for the true sensor and for each
-/// alternative in `kSenses`. If an alternative agrees within `share` for `run_s`, the flight counts as measured by that
-/// alternative. On the ground, no agreement lasts that long. If one axis of the gyro is saturated, the force along the
-/// lever arm determines the rate of the saturated axis. The force along the lever arm is -|w x t|^2 for any angular
-/// acceleration. The remaining two components of the force verify flight.
+/// In free flight, the force at the lever arm t from the centre of mass is a x t + w x (w x t), with the rate w and the
+/// angular acceleration a. FlightSense compares the readings with the force of free flight, for the true sensor and for
+/// each alternative in `kSenses`. If an alternative agrees within `share` for `run_s`, the flight time of the
+/// alternative increases. On the ground, readings do not agree with free flight for `run_s`. If one axis of the gyro is
+/// saturated, the force along the lever arm determines the rate of the saturated axis. The force along the lever arm is
+/// -|w x t|^2 for any angular acceleration. The remaining two components of the force verify that the body is in
+/// flight.
 ///
 /// A person who swings a body can produce the forces of a flight with a different lever arm. For a body that may be
 /// hand-held, FlightSense therefore reports only inverted accelerometers and a half-scale gyro, from unsaturated rates.
-/// FlightSense does not detect a body that never flies while spinning, an IMU at the centre of mass, or two clipped
-/// gyro axes in all flights. An inverted lever arm looks like an inverted accelerometer.
+/// FlightSense does not detect wrong sensors if the body never flies while spinning, the IMU is at the centre of mass,
+/// or two gyro axes clip in all flights. A lever arm with the wrong sign looks like an inverted accelerometer.
 class FlightSense {
  public:
   /// Number of alternatives, and index of the gyro with half scale. Alternative 0 is the true sensor. Errors of the
@@ -39,15 +41,13 @@ class FlightSense {
     Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< from the centre of mass to the IMU, IMU axes
     double gyro_range_rad_s = 0.0;                          ///< stated by the device; 0: not stated
     double reading_s = 0.01;                                ///< averaging time of readings
-    double force_min_m_s2 = 2.5;                            ///< minimum force due to rotation
-    double share = 0.25;                                    ///< tolerance as a fraction of this force
+    double force_min_m_s2 = 2.5;                            ///< minimum force of free flight at the lever arm
+    double share = 0.25;                                    ///< tolerance as a fraction of the force of free flight
     double run_s = 0.02;                                    ///< minimum duration of agreement
     double alternative_flight_s = 0.1;                      ///< minimum total flight time of an alternative sensor
-    double half_scale_flight_s = 0.3;         ///< minimum total flight time of a half-scale gyro (hand-held motion may
-                                              ///< give 0.15 s)
-    double alternative_evidence_ratio = 4.0;  ///< minimum flight time of an alternative, as a multiple of the true
-                                              ///< sensor's flight time
-    double thrown_evidence_ratio = 2.0;       ///< minimum ratio for a body that is certainly not hand-held
+    double half_scale_flight_s = 0.3;                       ///< minimum total flight time of a half-scale gyro
+    double alternative_evidence_ratio = 4.0;  ///< minimum ratio of an alternative's flight time to the true sensor's
+    double thrown_evidence_ratio = 2.0;       ///< minimum ratio for a body that is not hand-held
     double gap_max_s = 0.1;                   ///< a longer gap resets the current run
 
     /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
@@ -76,18 +76,18 @@ class FlightSense {
       visit(p.gap_max_s, {"gap_max_s", "s", 1e-3, 1e3, "longest gap between samples within a flight"});
     }
   };
-  /// One averaged reading.
+  /// Reading is one averaged IMU reading.
   struct Reading {
     TimeNs time_ns = 0;
     Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero(), force_m_s2 = Eigen::Vector3d::Zero();
     /// Sign of each saturated gyro axis; 0 for an unsaturated axis.
     Eigen::Vector3d at_rail = Eigen::Vector3d::Zero();
-    bool known = false;  ///< no axis was saturated for a part of the window only
+    bool known = false;  ///< false if an axis was saturated for a part of the window
     bool operator==(const Reading&) const = default;
   };
   struct State {
     ImuAverage average;
-    std::array<Reading, 2> before{};        ///< last but one, last
+    std::array<Reading, 2> before{};        ///< last but one and last reading
     int readings = 0;                       ///< consecutive readings, at most two
     std::array<double, kSenses> run_s{};    ///< current flight duration of each alternative
     std::array<double, kSenses> flown_s{};  ///< total flight duration of each alternative
@@ -99,7 +99,7 @@ class FlightSense {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit FlightSense(const Params& params);
 
-  /// Processes a reading. Ignores readings that are not finite or out of order. O(1), no allocation.
+  /// Processes one reading. Cost: O(1), no allocation. Readings that are not finite or out of order are ignored.
   void step(const ImuSample& sample, State& state) const;
 
   /// Returns `out_of_range` if the flights match a sensor with wrong signs, axes or scale.

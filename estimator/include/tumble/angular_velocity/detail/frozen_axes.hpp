@@ -16,24 +16,26 @@ namespace tumble {
 /// Detects single axes of an IMU that have stopped updating, sample by sample.
 ///
 /// An axis is frozen if it repeats one reading bit for bit for `frozen_s`, and for ten times its longest earlier
-/// repetition. The axis must first have changed for an equal time. Another axis of the triad must change from sample to
-/// sample, by far more than the quantisation of the tested axis. FrozenAxes does not detect an axis that never changed.
-/// An axis with equally long earlier repetitions is not detected either (coarse quantisation at rest, simulation
-/// without noise).
+/// repetition. Before the repetition, the readings of the axis must have changed for an equal time. Another axis of the
+/// same sensor must change from sample to sample, by far more than the quantisation of the tested axis. FrozenAxes does
+/// not detect an axis that never changed. FrozenAxes does not detect an axis that often repeats its readings for long
+/// (coarse quantisation at rest, simulation without noise).
 ///
-/// A saturated reading may repeat. A reading counts as saturated from 0.9 of the stated range on, or if the device
-/// flags it. The extreme reading of an axis counts from 0.5 of the range on. A saturated axis is frozen if all other
-/// axes of both triads indicate rest for `rail_stationary_s`, because a body with a saturating rate or force is not at
-/// rest. On a body that is never at rest, the axis is frozen after `rail_repeated_s` if another axis of its triad
-/// changes. Either the axis is frozen or the range is too small for the spin. The rate of the axis is then unknown. A
-/// frozen axis is not distinguished from a body that spins so evenly about this axis that no other axis changes.
+/// A saturated reading may repeat although its axis is not frozen. FrozenAxes treats a reading as saturated from 0.9 of
+/// the stated range on, or if the device flags the reading. The extreme reading of an axis counts as saturated from 0.5
+/// of the stated range on. A saturated axis is frozen if all other axes of the IMU indicate rest for
+/// `rail_stationary_s`, because a saturating rate or force contradicts rest. If the body is never at rest, a saturated
+/// axis is frozen after `rail_repeated_s` while another axis of the same sensor changes. A repetition of
+/// `rail_repeated_s` means that the axis is frozen, or that the range is too small for the spin. If the axis is frozen
+/// or the range is too small, the rate of the axis is unknown. A body that spins so evenly about a saturated axis that
+/// no other axis changes is mistaken for a frozen axis.
 class FrozenAxes {
  public:
   struct Params {
     double gyro_range_rad_s = 0.0, accel_range_m_s2 = 0.0;  ///< stated by the device; 0: not stated
-    double frozen_s = 0.5;                                  ///< longest repetition of a sound axis while the body moves
-    double rail_stationary_s = 1.5;                         ///< rest on all other axes while one is saturated
-    double rail_repeated_s = 5.0;  ///< saturated repetition while the body moves: flights last a third of this
+    double frozen_s = 0.5;           ///< longest repetition of a working axis while the body moves
+    double rail_stationary_s = 1.5;  ///< duration of rest on all other axes while an axis is saturated
+    double rail_repeated_s = 5.0;    ///< longest saturated repetition of a working axis in motion
 
     /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
     template <class Self, class Visitor>
@@ -51,22 +53,22 @@ class FrozenAxes {
              "an axis that repeats one reading at its rail for this long, while others move, is frozen"});
     }
   };
-  /// State of one axis of one triad.
+  /// State of one axis of the gyro or of the accelerometer.
   struct Axis {
     double reading = 0.0;
     TimeNs since_ns = 0;       ///< first sample with the current reading
     double repeated_s = 0.0;   ///< duration of the current reading
     bool flagged = false;      ///< flagged by the device during the current reading
     bool frozen = false;       ///< frozen at the current reading
-    bool ever_frozen = false;  ///< was frozen at this or another reading
-    double longest_s = 0.0;    ///< longest earlier repetition of a sound reading
+    bool ever_frozen = false;  ///< frozen at the current or an earlier reading
+    double longest_s = 0.0;    ///< longest earlier repetition of a working axis
     double moved_s = 0.0;      ///< total time with changing readings
     double quantum = 0.0;      ///< smallest observed change; 0: none yet
     double min_reading = 0.0, max_reading = 0.0;
-    /// Minimum, maximum and number of changes of the two other axes of the triad, in turn, during the repetition.
+    /// Minimum, maximum and number of changes of the two other axes of the same sensor, during the repetition.
     std::array<double, 2> other_low{}, other_high{}, other_changes{};
     double samples = 0.0;       ///< number of repeated samples
-    double stationary_s = 0.0;  ///< time during the repetition in which the other axes indicate rest
+    double stationary_s = 0.0;  ///< duration of rest on the other axes during the repetition
     std::array<double, 6> stationary_reference{};
     bool operator==(const Axis&) const = default;
   };
@@ -82,17 +84,17 @@ class FrozenAxes {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit FrozenAxes(const Params& params);
 
-  /// Processes a reading. Ignores readings that are not finite or out of order. O(1), no allocation.
+  /// Processes one reading. Cost: O(1), no allocation. Readings that are not finite or out of order are ignored.
   void step(const ImuSample& sample, State& state) const;
 
   static const Axis& axis(Triad triad, int axis, const State& state);
 
-  /// Returns `out_of_range` with the name of the axis that is frozen now, the duration and the limit. Returns `ok` if
-  /// no axis is frozen.
+  /// Returns `out_of_range` with the name of a currently frozen axis, the duration and the limit. Returns `ok` if no
+  /// axis is frozen.
   Status verdict(const State& state) const;
 
-  /// Returns the variance of a rate at `time_ns` due to axes that are frozen now. The rate on a frozen gyro axis is
-  /// unknown up to the largest rate read so far. The variance of axes that are not frozen is zero.
+  /// Returns the variance of a rate at `time_ns` due to currently frozen gyro axes. The rate of a frozen gyro axis is
+  /// unknown up to the largest rate read so far. The variance is zero for axes that are not frozen.
   Eigen::Vector3d rate_variance_rad2_s2(TimeNs time_ns, const State& state) const;
 
  private:

@@ -6,11 +6,12 @@
 
 namespace tumble {
 
-/// Lower bounds of the saturation levels, per element and side: no reading exceeds its saturation level. rails.md (R75)
+/// LeastRails contains lower bounds of the saturation levels, per sensing element and sign. No reading exceeds its
+/// saturation level, see rails.md (R75).
 class LeastRails {
  public:
   void add(const Eigen::Vector3d& rate_rad_s);
-  /// Returns whether a reading of element `axis` is below any possible saturation level of the element on the side of
+  /// Returns whether a reading of element `axis` is below any possible saturation level of the element for the sign of
   /// the reading. The margin covers the tilt and the noise of saturation levels.
   bool refute(const Eigen::Vector3d& rate_rad_s, Eigen::Index axis) const;
   bool operator==(const LeastRails&) const = default;

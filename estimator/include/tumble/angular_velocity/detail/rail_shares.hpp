@@ -3,20 +3,20 @@
 
 namespace tumble {
 
-/// Fractions of a range or a saturation level that separate saturated from unsaturated readings. The values are
-/// heuristic.
+/// rail_shares.hpp contains fractions of a range or a saturation level that separate saturated from unsaturated
+/// readings. The fractions are heuristic.
 
-/// Lowest accepted saturation level as a fraction of the stated range: rails.md (R67). Saturation levels are usually at
-/// the stated range or above (1.4 times for one device). The margin covers devices that saturate below the range in
-/// their data sheet.
+/// Lowest accepted saturation level, as a fraction of the stated range, see rails.md (R67). Saturation levels are
+/// usually at the stated range or above (1.4 times for one device). The margin of kStatedRailMin covers devices that
+/// saturate below the range in their data sheet.
 inline constexpr double kStatedRailMin = 0.85;
 
 /// Margin below a saturation level, as a fraction of the level. The margin covers the scale of the calibration,
-/// neighbours along a tilted plane, and motion. Readings below the margin are certainly unsaturated. rails.md (R54),
-/// (R75), rate_stream.md (R93).
+/// neighbouring readings along a tilted plane, and motion. Readings below the margin are certainly unsaturated. See
+/// rails.md (R54), (R75), rate_stream.md (R93).
 inline constexpr double kBesideRail = 0.02;
 
-/// Readings closer than this fraction of the level are equal, as in RailDetector.
+/// Readings whose difference is below the fraction kEqualShare of the saturation level are equal, as in RailDetector.
 inline constexpr double kEqualShare = 2e-5;
 
 }  // namespace tumble

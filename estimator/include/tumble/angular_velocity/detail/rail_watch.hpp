@@ -12,15 +12,16 @@
 
 namespace tumble {
 
-/// Detects saturation levels and planes of gyro and accelerometer from the readings so far. RailWatch is the causal
+/// Detects saturation levels and planes of gyro and accelerometer from all readings so far. RailWatch is the causal
 /// form of ClippingFinder.
 ///
-/// For each triad, RailWatch stores up to `readings_max` distinct readings, preferring the latest readings and readings
-/// near the extremes. The search is that of ClippingFinder. A search follows each segment near an extreme. Within a
-/// segment, a search follows whenever the readings near the extremes have grown by an eighth. A run of n readings at
-/// the extreme is therefore searched O(log n) times, not n times. A plane remains valid after its readings were
-/// dropped, until readings contradict the plane. Saturation is detected some samples after it first occurs, so users
-/// must re-evaluate the samples before the detection. The limitations of RailPlaneFinder apply.
+/// For gyro and accelerometer, RailWatch stores up to `readings_max` distinct readings each. The latest readings and
+/// readings near the extremes have priority. The search for saturation planes is that of ClippingFinder. RailWatch
+/// searches after each segment of readings near an extreme. Within a segment, RailWatch also searches whenever the
+/// number of readings near the extremes has grown by an eighth. A run of n readings at the extreme therefore needs
+/// O(log n) searches instead of n searches. A saturation plane remains valid after its readings were dropped, until
+/// readings contradict the plane. RailWatch detects saturation some samples after the saturation first occurs, so users
+/// must classify the samples before the detection again. The limitations of RailPlaneFinder apply to RailWatch.
 class RailWatch {
  public:
   struct Params {
@@ -34,11 +35,11 @@ class RailWatch {
       visit(p.readings_max, {"readings_max", "1", 64, 65536, "largest number of distinct readings stored per triad"});
     }
   };
-  /// Stored readings of one triad, rad/s or m/s^2.
+  /// Stored readings of one sensor (gyro or accelerometer), rad/s or m/s^2.
   struct Memory {
-    std::vector<Eigen::Vector3d> readings;           ///< distinct, in time order
+    std::vector<Eigen::Vector3d> readings;           ///< distinct readings, in time order
     Eigen::Vector3d peak = Eigen::Vector3d::Zero();  ///< largest magnitude of each axis
-    std::size_t near = 0, unsearched = 0;            ///< readings near the extremes; new ones
+    std::size_t near = 0, unsearched = 0;            ///< number of readings near the extremes; number not yet searched
     std::size_t samples_since_search = 0;            ///< readings near the extremes since the last search
     bool pruned = false;                             ///< readings were dropped
     bool operator==(const Memory&) const = default;
@@ -55,12 +56,13 @@ class RailWatch {
   /// Returns the state before the first sample, with all memory that observe() needs.
   State start() const;
 
-  /// Updates the state with one finite sample. Returns whether the known levels or planes changed. O(1), sometimes a
-  /// search.
+  /// Updates the state with one finite sample. Cost: O(1), sometimes a search. Returns whether the known saturation
+  /// levels or planes changed.
   bool observe(const ImuSample& sample, State& state) const;
 
-  /// Classifies a finite sample by the levels found so far and the flags of the device. `before` and `after` are the
-  /// sample's neighbours, null at the ends. The neighbours reveal saturation during a part of the window. O(1).
+  /// Classifies a finite sample by the saturation levels found so far and by the flags of the device. Cost: O(1).
+  /// `before` and `after` are the neighbours of the sample, null at the ends. The neighbours reveal saturation during a
+  /// part of the sample's window.
   Clipping judge(const ImuSample* before, const ImuSample& sample, const State& state,
                  const ImuSample* after = nullptr) const;
 

@@ -14,17 +14,17 @@
 
 namespace tumble {
 
-/// Adds the factors of one sample, and of one step between samples, to an arrow matrix. RateModel contains only derived
-/// coefficients.
+/// RateModel adds the factors of one sample, and of one step between samples, to an arrow matrix. RateModel stores only
+/// coefficients that are derived from its parameters.
 class RateModel {
  public:
-  /// `period_s` is the nominal time between samples. The period determines the noise per sample and the scale of the
-  /// solver's unit of angular acceleration.
+  /// `period_s` is the nominal time between samples. The sample period determines the noise per sample, and the unit of
+  /// angular acceleration in the solver.
   RateModel(const RateModelParams& params, double period_s);
 
-  /// Computes the weight of a sample between flight and contact at the current estimate. `rig_covariance` prevents
-  /// errors of the calibration from being mistaken for contact. `widen` >= 1 multiplies the threshold while the rates
-  /// are still inaccurate. `jump` is the smaller of the jumps to the neighbours, from jump(), because flight has at
+  /// Computes the weight of a sample between flight and contact at the current estimate. `rig_covariance` prevents that
+  /// errors of the calibration are mistaken for contact. `widen` >= 1 multiplies the contact threshold while the rates
+  /// are still inaccurate. `jump` is the smaller of the two results of jump() for the neighbours, because flight has at
   /// least one smooth side.
   void weigh(const RateObservation& observation, const RigConstants& rig, const RigConstants::Matrix& rig_covariance,
              double widen, double jump, RateEstimate& estimate) const;
@@ -33,45 +33,43 @@ class RateModel {
   /// freedom.
   double jump(const RateKnot& from, const RateKnot& to, double dt_s) const;
 
-  /// Moves the unmeasured rates of a sample in contact to the minimum of its force, if this minimum is far below the
-  /// force at the current estimate. Between two impacts a body may fly for a single sample, which local steps do not
-  /// find.
+  /// Moves the unmeasured rates of a sample in contact to the minimum of the contact force, if the minimum is far below
+  /// the current force. Between two impacts, a body may fly for a single sample, which local solver steps do not find.
   void seek_flight(const RateObservation& observation, const RigConstants& rig, RateEstimate& estimate) const;
 
-  /// Initialises the lower bounds of a sample's clipped rates near the current estimate or the reading, whichever is
-  /// beyond.
+  /// Initialises the lower bounds of a sample's clipped rates near the current estimate or near the reading, whichever
+  /// is larger in magnitude.
   void start_bounds(const RateObservation& observation, const RigConstants& rig, RateEstimate& estimate) const;
 
   /// Refines the lower bounds of a sample's clipped rates by expectation propagation (Minka 2001). A Gaussian factor
-  /// (site) gives the marginal the mean and variance of a truncation at the reading. `damping` in (0, 1] is the weight
-  /// of the new site.
+  /// (site) gives the marginal rate the mean and variance of a distribution truncated at the reading. `damping` in (0,
+  /// 1] is the weight of the new site.
   void update_bounds(const RateObservation& observation, const RigConstants& rig, const arrow::Conditional& conditional,
                      const RigConstants::Matrix& rig_covariance, double damping, RateEstimate& estimate) const;
 
-  /// Adds the factors of gyro, lower bounds, flight and Euler's equation of one sample. `rig_spread` is null or the
-  /// covariance of the calibration. With a covariance, the sample does not update the calibration and has a
-  /// correspondingly reduced weight. A covariance is passed for flights that are too short to be distinguished from
-  /// contact with another calibration.
+  /// Adds the factors of gyro, lower bounds, flight and Euler's equation of one sample. `rig_spread` is null, or the
+  /// covariance of the calibration. With a covariance, the sample does not update the calibration and has a reduced
+  /// weight. A covariance is passed for short flights, which a different calibration could also explain as contact.
   void add_sample(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
                   arrow::Block& block, arrow::Corner& corner, const RigConstants::Matrix* rig_spread = nullptr) const;
 
-  /// Adds the effect of SensorErrors on the gradient of a sample, and the sample's information about SensorErrors. A
-  /// clipped element provides only a lower bound, and contact provides nothing; neither contributes information.
-  /// `rig_spread` is that of add_sample(); with a covariance, the force of the sample is left out.
+  /// Adds the effect of SensorErrors on the gradient of a sample, and the sample's information about SensorErrors.
+  /// Clipped elements and samples in contact contribute no information about SensorErrors. `rig_spread` states whether
+  /// add_sample() received a covariance; the force of the sample is then left out.
   void add_errors(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
                   arrow::ErrorMatrix& block, arrow::BorderErrors& border, SensorErrorEvidence& evidence,
                   bool rig_spread = false) const;
 
-  /// Adds the motion prior between two samples, dt_s apart.
+  /// Adds the motion prior between two samples that are dt_s apart.
   void add_step(const RateEstimate& from, const RateEstimate& to, double dt_s, arrow::Block& block,
                 arrow::Block& next) const;
 
   /// Adds the prior of the calibration.
   void add_rig_prior(const RigConstants& rig, arrow::Corner& corner) const;
 
-  /// Returns the distance of `rig` from its prior. The distance is the Mahalanobis distance divided by the root of the
-  /// number of components. The function returns the largest distance among lever arm, gyro bias, accelerometer bias and
-  /// inertia. A value of about 1 is expected.
+  /// Returns the distance of `rig` from its prior in standard deviations, with an expected value of about 1. The
+  /// distance is the Mahalanobis distance divided by the root of the number of components. The function returns the
+  /// largest distance among lever arm, gyro bias, accelerometer bias and inertia.
   double calibration_mahalanobis(const RigConstants& rig) const;
 
   RigConstants prior_constants() const { return prior_constants_; }
@@ -81,12 +79,12 @@ class RateModel {
   Eigen::Matrix<double, 6, 1> unscaled(const arrow::StateVector& step) const;
   /// Converts a difference in physical units to the solver's units.
   arrow::StateVector scaled(const Eigen::Matrix<double, 6, 1>& difference) const;
-  /// Returns the reported covariance of a rate. The covariance of the fit is widened in contact and by the effect of
-  /// the reading's time uncertainty.
+  /// Returns the reported covariance of a rate. The reported covariance is larger than the covariance of the fit, in
+  /// contact and because of the uncertain time of the reading.
   Eigen::Matrix3d reported(const Eigen::Matrix3d& covariance_rad2_s2, const RateObservation& observation,
                            const RateEstimate& estimate) const;
   double gyro_sigma_rad_s() const { return gyro_sigma_rad_s_; }
-  /// Returns the weight of one sample in errors that last `model_error_s`; 1 for samples of that length or longer.
+  /// Returns the weight of one sample in errors that last `model_error_s`, or 1 if samples are at least as long.
   double distinct_reading_share() const { return share_; }
 
  private:
@@ -94,20 +92,20 @@ class RateModel {
     RateFactor factor;
     Eigen::Vector3d information;  ///< information of each axis or element
   };
-  /// Converts the flight residual to element directions if an accelerometer element clips, and drops satisfied lower
-  /// bounds. Returns additional variances due to the uncertain sensing directions and the hidden force.
+  /// Converts the flight residual to element directions if an accelerometer element clips, and removes the residuals of
+  /// satisfied lower bounds. Returns additional variances due to the uncertain sensing directions and the hidden force.
   static Eigen::Vector3d read_accel_elements(const RateObservation& observation, RateFactor& flight);
   ForceFactor force_factor(const RateObservation& observation, const RateEstimate& estimate,
                            const RigConstants& rig) const;
-  /// Returns the rate at the time of the gyro's reading, which is earlier by the reading's age.
+  /// Returns the rate at the time of the gyro's reading, which is earlier than the sample by the age of the reading.
   RateKnot at_reading(const RateObservation& observation, const RateEstimate& estimate) const;
-  /// Returns the gyro's reading corrected for known sensor errors.
+  /// Returns the gyro's reading, corrected for known sensor errors.
   Eigen::Vector3d corrected_rate(const RateObservation& observation, const RateEstimate& estimate) const;
-  /// Returns flight_factor() with the known accelerometer errors. `by_delay` is that of late_flight_factor().
+  /// Returns flight_factor() with the known accelerometer errors. `by_delay` is passed to late_flight_factor().
   RateFactor flight(const RateObservation& observation, const RateKnot& knot, const RigConstants& rig,
                     Eigen::Vector3d* by_delay = nullptr) const;
-  /// Returns flight() with only the derivatives by the calibration, which weigh() needs. The cost is less than half of
-  /// that of flight().
+  /// Returns flight() with only the derivatives by the calibration, which weigh() needs. The function flight_by_rig()
+  /// needs less than half of the computation of flight().
   RateFactor flight_by_rig(const RateObservation& observation, const RateKnot& knot, const RigConstants& rig) const;
   double gyro_information(const RateObservation& observation, const RateEstimate& estimate, int axis) const;
   void add_gyro(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
@@ -123,7 +121,7 @@ class RateModel {
   double accel_variance_together(const RateObservation& observation) const;
 
   RateModelParams params_;
-  bool exact_ = true;    ///< no sensor errors are known: readings are used unchanged
+  bool exact_ = true;    ///< no sensor errors are known, so readings are used unchanged
   double time_scale_s_;  ///< factor from angular acceleration to the solver's unit
   double gyro_sigma_rad_s_;
   double accel_noise_m_s2_;
@@ -134,8 +132,8 @@ class RateModel {
   RigConstants::Matrix prior_information_;
 };
 
-/// Returns the source of a rate, from its covariance and the standard deviation below which a clipped axis is
-/// recovered.
+/// Returns the source of a rate, from its covariance and from the standard deviation below which a clipped axis counts
+/// as recovered.
 RateSource rate_source(const RateObservation& observation, const RateEstimate& estimate,
                        const Eigen::Matrix3d& covariance_rad2_s2, double recovered_sigma_rad_s);
 

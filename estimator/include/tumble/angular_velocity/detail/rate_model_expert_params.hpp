@@ -11,10 +11,11 @@ namespace tumble {
 struct RateReadingParams {
   /// Scale and misalignment error of the accelerometer, as a fraction of the force.
   double accel_scale_error = 1e-3;
-  /// Uncertainty of a reading's time due to the gyro's bandwidth and clock (a first-order low-pass at 415 Hz delays by
-  /// 0.38 ms). The covariance of the rate includes this uncertainty times the angular acceleration.
+  /// Uncertainty of a reading's time due to the gyro's bandwidth and clock. For example, a first-order low-pass at 415
+  /// Hz delays by 0.38 ms. The covariance of the rate includes the time uncertainty multiplied by the angular
+  /// acceleration.
   double gyro_time_sigma_s = 2.5e-4;
-  double rail_sigma_rad_s = 0.05;  ///< softness of the lower bound from a clipped reading
+  double rail_sigma_rad_s = 0.05;  ///< standard deviation of the lower bound from a clipped reading
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -27,12 +28,12 @@ struct RateReadingParams {
   }
 };
 
-/// Parameters of flight, in which no force acts at the centre of mass and no torque on the body.
+/// Parameters of flight, in which no force acts at the centre of mass and no torque acts on the body.
 struct RateFlightParams {
   double sigma_m_s2 = 0.02;         ///< error of the specific force besides noise (drag, bias in motion)
   double euler_sigma_rad_s2 = 0.3;  ///< error of the angular acceleration from Euler's equation without torque
   double jerk_psd_rad2_s5 = 1e4;    ///< density of the white angular jerk
-  double threshold = 5.0;           ///< samples whose residuals exceed this many standard deviations are contact
+  double threshold = 5.0;           ///< a sample with larger residuals, in standard deviations, is contact
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -50,19 +51,21 @@ struct RateFlightParams {
 
 /// Parameters of contact, in which an unknown force acts on the body.
 struct RateContactParams {
-  /// Growth of the jerk per contact force: rad/s^2 of angular acceleration per m/s^2 of specific force that the flight
-  /// model does not explain.
+  /// Angular acceleration per contact force: rad/s^2 per m/s^2 of specific force that the flight model does not
+  /// explain.
   double gain_rad_m = 4.0;
-  /// Factor on the standard deviation during impacts, because impacts are not Gaussian.
+  /// Factor on the standard deviation during impacts, because the errors of impacts are not Gaussian.
   double sigma_factor = 1.3;
-  /// Largest angular acceleration across the direction of a contact force F, per |F|, in Euler's equation. The value is
-  /// mass times the distance of the contact from the centre of mass, over a third of the trace of the inertia.
+  /// Largest angular acceleration across the direction of a contact force, per unit of force, in Euler's equation. The
+  /// largest angular acceleration is mass times the distance of the contact point, over a third of the trace of the
+  /// inertia.
   double lever_rad_m = 5.0;
-  /// Angular acceleration about the force's direction, as a fraction of the angular acceleration across it. Several
-  /// contacts, or a contact that moves within a window, cause the torque about the force.
+  /// Angular acceleration about the direction of a contact force, as a fraction of the angular acceleration across the
+  /// direction. Torque about the direction of the contact force is caused by several contacts, or by a contact that
+  /// moves within a window.
   double twist_share = 0.3;
-  /// Standard deviation of the unknown contact force, as a fraction of the force; its mean is zero. A prior that is
-  /// flat in the logarithm of the force has 0.58. 0: no prior.
+  /// Standard deviation of the unknown contact force, as a fraction of the force; the mean is zero. A prior that is
+  /// flat in the logarithm of the force has force_share 0.58. The value 0 disables the prior.
   double force_share = 1.0;
 
   template <class Self, class Visitor>
@@ -81,14 +84,14 @@ struct RateContactParams {
   }
 };
 
-/// Parameters of RateModelParams that few users change, grouped by meaning. Field names equal the names in tables and
-/// on command lines.
+/// Parameters of RateModelParams that few users change, grouped by meaning. The fields have the names that are used in
+/// tables and on command lines.
 struct RateModelExpertParams {
-  /// Duration of model errors of a force, a torque or a rate. All samples within this duration share one model error,
-  /// and only their noise averages out.
+  /// Duration for which the model error of a force, a torque or a rate is constant. All samples within model_error_s
+  /// share one model error, so averaging reduces only their noise.
   double model_error_s = 0.01;
-  /// Standard deviation of the rate from zero at rest, independent for each sample. The value covers vibration at rest
-  /// and false detections of rest.
+  /// Standard deviation of the rate from zero at rest, independent for each sample. The rate deviation at rest covers
+  /// vibration and false detections of rest.
   double rest_sigma_rad_s = 0.01;
   SensorErrorSizes error_sizes = {};  ///< uncertainty of RateModelParams::errors
   RateReadingParams readings = {};

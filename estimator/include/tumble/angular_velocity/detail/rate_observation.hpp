@@ -15,27 +15,28 @@
 
 namespace tumble {
 
-/// One sample as input of the model.
+/// RateObservation is one sample as input of RateModel.
 struct RateObservation {
   ImuSample sample;
   Clipping clipping;
   bool at_rest = false;  ///< the rate is zero, see RestDetector
   // Masks of axes whose readings have a separate standard deviation, bit j for axis j. Each axis is in at most one of
-  // the three masks.
+  // the three masks subsample_saturated, lone and suspect.
   std::uint8_t subsample_saturated = 0;  ///< saturated for a part of the window, see SubsampleSaturation
-  std::uint8_t lone = 0;     ///< few readings as high as other elements' levels, on a side without a known level
-  std::uint8_t suspect = 0;  ///< run of readings that may be at an unknown saturation level: lower bounds
+  std::uint8_t lone = 0;                 ///< few high readings on a side without a known saturation level
+  std::uint8_t suspect = 0;              ///< readings that may be at an unknown saturation level: lower bounds
   Eigen::Vector3d lost_rad_s = Eigen::Vector3d::Zero();        ///< expected saturation deficit, with the reading's sign
-  Eigen::Vector3d lost_sigma_rad_s = Eigen::Vector3d::Zero();  ///< standard deviation for axes in one of the three
-                                                               ///< masks
-  /// Age of each triad's reading at the sample's stamp, and whether the gyro repeats the previous reading.
+  Eigen::Vector3d lost_sigma_rad_s = Eigen::Vector3d::Zero();  ///< standard deviation of lost_rad_s
+  /// Age of the readings of gyro and accelerometer at the sample's time stamp, and whether the gyro repeats the
+  /// previous reading.
   double gyro_age_s = 0.0, accel_age_s = 0.0;
   bool gyro_repeats = false;
   ElementRows accel_rows = {};  ///< sensing directions of the accelerometer; needed if an element clips
   std::array<AuxiliaryReading, kAuxiliaryImusMax> auxiliary_imus =
       {};  ///< readings in the order of RateModelParams::auxiliary_imus
 
-  /// Returns whether an element clips. All axes are then corrupted, and the gyro is used element by element.
+  /// Returns whether a sensing element clips. If an element clips, all axes are corrupted and the gyro is used element
+  /// by element.
   bool by_elements() const { return (clipping.gyro | clipping.missing_gyro) != 0; }
 
   /// Returns the axes whose readings have a larger standard deviation than the gyro's noise.
@@ -53,22 +54,23 @@ struct RateObservation {
   }
 };
 
-/// Finds the axes of `now` that are saturated for a part of the window, from the neighbouring samples. A neighbour is
-/// null if it does not exist.
+/// Finds the axes of `now` that are saturated for a part of the window, from the neighbouring samples. A neighbour that
+/// does not exist is null.
 void mark_subsample_saturation(const RailDetector& rails, const RailDetector::State& state, double noise_rad_s,
                                const ImuSample* before, RateObservation& now, const ImuSample* after);
 
-/// Estimate of one sample.
+/// RateEstimate is the estimate of one sample.
 struct RateEstimate {
   RateKnot knot;
   double flight_weight = 0.0;  ///< 0: contact, 1: free flight
-  /// Specific force of contact at the centre of mass: the part that the flight model does not explain.
+  /// Specific force of contact at the centre of mass, which is the part of the force that the flight model does not
+  /// explain.
   Eigen::Vector3d contact_m_s2 = Eigen::Vector3d::Zero();
-  /// Gaussian factors (sites) of the lower bounds of clipped elements, on the saturation deficit m_j . (rate + bias -
-  /// reading). A factor is stored as precision and precision * mean.
+  /// Gaussian factors (sites) of the lower bounds of clipped elements, on the saturation deficit along m_j. A Gaussian
+  /// factor is stored as precision and precision * mean.
   Eigen::Vector3d bound_precision = Eigen::Vector3d::Zero();
   Eigen::Vector3d bound_shift = Eigen::Vector3d::Zero();
-  bool soft_bounds = false;  ///< false: bounds are hard and act only if violated (first iterations)
+  bool soft_bounds = false;  ///< false: bounds are hard, and act only if violated
 };
 
 }  // namespace tumble

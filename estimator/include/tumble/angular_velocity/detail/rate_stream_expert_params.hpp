@@ -8,19 +8,19 @@
 /// Groups of RateStream::Params::Expert.
 namespace tumble {
 
-/// Inflation of the calibration's uncertainty while only few samples of flight, n, have updated it. A sample shorter
-/// than `model_error_s` counts as a fraction of a sample.
+/// Increase of the calibration's uncertainty while only few flight samples have updated the calibration. The number of
+/// flight samples is n. A sample shorter than `model_error_s` counts as a fraction of a sample.
 struct RigInflationParams {
-  /// Inflation of the calibration's covariance: the factor is 1 + covariance / (1 + n / samples). The gyro's bias is
-  /// not inflated, and the inflated covariance never exceeds the prior.
+  /// The covariance of the calibration is multiplied by 1 + covariance / (1 + n / samples). The covariance of the
+  /// gyro's bias is not increased, and the increased covariance never exceeds the prior.
   double covariance = 60.0;
   double samples = 30.0;
   /// Rates beyond saturation that are recovered during contact depend on the calibration. The standard deviation of a
-  /// recovered rate is at least this fraction of the saturation deficit, divided by 1 + n / samples.
+  /// recovered rate is at least the fraction `contact` of the saturation deficit, divided by 1 + n / samples.
   double contact = 0.5;
-  /// Rule for a run of clipped samples in contact. A parabola with the slopes of the rate at the run's ends predicts a
-  /// saturation deficit. The standard deviation is at least this fraction of the predicted deficit, minus the estimated
-  /// deficit.
+  /// Uncertainty of a run of clipped samples in contact. A parabola with the slopes of the rate at the ends of the run
+  /// predicts a saturation deficit. The standard deviation is at least the fraction `slopes` of the predicted
+  /// saturation deficit, minus the estimated saturation deficit.
   double slopes = 1.0;
 
   template <class Self, class Visitor>
@@ -38,20 +38,20 @@ struct RigInflationParams {
   }
 };
 
-/// Parameters of RateStreamParams that few users change, grouped by meaning. Field names equal the names in tables and
-/// on command lines.
+/// Parameters of RateStreamParams that few users change, grouped by meaning. The fields have the names that are used in
+/// tables and on command lines.
 struct RateStreamExpertParams {
   RailPlaneFinder::Params planes = {};  ///< without a stated range, the range of RateStreamParams::rails applies
-  /// parameters of the accelerometer's planes
+  /// parameters of the search for the accelerometer's saturation planes
   RailPlaneFinder::Params accel_planes = RailPlaneFinder::Params::for_accelerometer();
   RestDetector::Params rests = {};
-  double widen_first = 8.0;      ///< contact threshold's factor for a new clipped sample, halved in each step
+  double widen_first = 8.0;      ///< factor on the contact threshold of a new clipped sample, then halved
   double step_max_rad_s = 10.0;  ///< longest step of a rate at one sample
-  int bound_age = 3;             ///< steps after which the bounds of a sample in contact become soft
+  int bound_age = 3;             ///< number of steps until the bounds of a sample in contact become soft
   double bound_damping = 0.5;    ///< weight of a new bound in each step
   int flight_run_min = 6;        ///< minimum consecutive flight samples that update the calibration
   RigInflationParams inflation = {};
-  /// Prior probability of an uncalibrated device. With 0, the device matches its data sheet.
+  /// Prior probability of an uncalibrated device. If the probability is 0, the device matches its data sheet.
   double uncalibrated = 0.3;
 
   template <class Self, class Visitor>

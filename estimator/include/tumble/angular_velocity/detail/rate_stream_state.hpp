@@ -26,7 +26,7 @@
 /// State of RateStream.
 namespace tumble {
 
-/// Accelerometer reading at the stamp of a sample.
+/// RateStreamForce is the accelerometer's reading at the time stamp of a sample.
 struct RateStreamForce {
   Eigen::Vector3d force_m_s2 = Eigen::Vector3d::Zero();
   std::uint8_t device_clip_flags = 0;  ///< flags of the accelerometer
@@ -34,34 +34,35 @@ struct RateStreamForce {
   bool operator==(const RateStreamForce&) const = default;
 };
 
-/// A sample in the window.
+/// RateStreamKnot is a sample in the window.
 struct RateStreamKnot {
-  RateObservation observation;  ///< with the force at its own time if the accelerometer is delayed: `read`
+  RateObservation observation;  ///< force at the sample's own time; `read` has the force as received
   RateStreamForce read;
   Clipping by_upright_rails;  ///< clipping by flags and equal readings; the observation also uses planes
   RateEstimate estimate;
   Eigen::Matrix3d covariance_rad2_s2 = Eigen::Matrix3d::Zero();
-  /// Growth of each axis's magnitude in the two steps up to the sample. The smaller growth of the two steps is stored,
-  /// and at least 0.
+  /// Growth of each axis's magnitude per step up to the sample: the smaller growth of the last two steps, and at least
+  /// 0.
   Eigen::Vector3d approach_rad_s = Eigen::Vector3d::Zero();
   int age = 0;
   bool repeats = false;      ///< the gyro repeats the previous reading: RepeatDetector
-  RepeatedReading repeated;  ///< of the gyro; at rest as if nothing repeats
-  std::uint8_t near = 0;     ///< axes that may have been saturated for a part of the reading's window: rails.md (R76)
+  RepeatedReading repeated;  ///< repetition of the gyro's reading; none at rest
+  std::uint8_t near = 0;     ///< axes that may be saturated for a part of the window: rails.md (R76)
 };
 
-/// Delay of the accelerometer relative to the gyro: rate_stream.md (R104) to (R107).
+/// RateStreamDelay contains the delay of the accelerometer relative to the gyro, see rate_stream.md (R104) to (R107).
 struct RateStreamDelay {
   StrokeSums strokes;
   double in_use_s = 0.0;             ///< delay that is applied; the prior until a delay is found
   double estimated_s = 0.0;          ///< latest estimate from impacts and from sensor-error evidence
-  bool found = false;                ///< differs from the prior
+  bool found = false;                ///< whether the delay differs from the prior
   TriadDelay guess;                  ///< latest estimate from impacts alone
   std::optional<TimeNs> updated_ns;  ///< time of the last estimate from impacts
   bool operator==(const RateStreamDelay&) const = default;
 };
 
-/// Information about sensor errors from all samples that left the window, and its derivatives: rate_stream.md (R100).
+/// RateStreamDevice contains the information about sensor errors from all samples that left the window, and its
+/// derivatives. See rate_stream.md (R100).
 struct RateStreamDevice {
   struct Work {
     arrow::BorderErrors border, of_rig;
@@ -78,7 +79,8 @@ struct RateStreamDevice {
   Work work;                              ///< buffer
 };
 
-/// Complete state, created by RateStream::start(). Copyable; RateStream::equal() compares.
+/// RateStreamState is the complete state, which RateStream::start() creates. The state can be copied, and
+/// RateStream::equal() compares states.
 struct RateStreamState {
   RailWatch::State rails;
   RestDetector::State rests;
@@ -88,29 +90,29 @@ struct RateStreamState {
   std::vector<RateStreamKnot> window;  ///< oldest first
   RigConstants rig;
   RigConstants::Matrix rig_covariance;
-  // Prior on the oldest sample and on the calibration, from all samples that left the window, about a linearisation
-  // point.
+  // Gaussian prior on the oldest sample and on the calibration, from all samples that left the window, about a
+  // linearisation point.
   arrow::Block prior;
   arrow::Corner prior_corner;
-  /// State of the device's errors: always one element. The element is on the heap because the state passes through
-  /// threads with a small stack.
+  /// State of the device's sensor errors, in a vector of one element. The element is on the heap, because the state
+  /// passes through threads with a small stack.
   std::vector<RateStreamDevice> device = std::vector<RateStreamDevice>(1);
   /// largest and smallest readings so far
   std::array<Eigen::Vector3d, 2> extremes{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   LeastRails least;  ///< lower bounds from the readings so far
-  /// Data of a run of readings at a possible saturation level that has partly left the window:
+  /// Data of a run of readings at a possible saturation level that has partly left the window. The data are
   /// RateStreamKnot::approach_rad_s before the run, and the number of samples that left.
   Eigen::Vector3d entry_rad_s = Eigen::Vector3d::Zero(), entry_samples = Eigen::Vector3d::Zero();
-  std::optional<RateKnot> left;  ///< the sample that left last, and its time
+  std::optional<RateKnot> left;  ///< the sample that left the window last, and its time
   TimeNs left_ns = 0;
   RateKnot prior_knot;
   RigConstants prior_rig;
   std::size_t samples = 0;
-  std::size_t waiting = 0;              ///< samples since the last step
+  std::size_t waiting = 0;              ///< number of samples since the last Gauss-Newton step
   std::size_t calibration_samples = 0;  ///< flight samples that left the window and updated the calibration
-  std::size_t flight_run = 0;           ///< consecutive flight samples among those that left last
+  std::size_t flight_run = 0;           ///< consecutive flight samples among the last samples that left
   std::size_t rig_resets = 0;           ///< number of resets of the calibration
-  std::size_t failures = 0;             ///< number of skipped steps, whose system was not positive definite
+  std::size_t failures = 0;             ///< number of skipped steps whose system was not positive definite
   std::vector<arrow::Block> work;       ///< buffer, not part of the state
 };
 

@@ -8,11 +8,12 @@
 
 namespace tumble {
 
-/// Checks the input of an estimator over a whole recording. Returns `empty`, `too_few` (less than `count_min` samples),
-/// the errors of check_samples(), or ok. O(N).
+/// Checks the input of an estimator that processes a whole recording. Cost: O(N). Returns `empty`, `too_few` (less than
+/// `count_min` samples), an error of check_samples(), or `ok`.
 Status check_recording(std::span<const ImuSample> samples, std::size_t count_min, double gap_max_s);
 
-/// Returns the median time between samples, limited to 1 us and 10 s. At least two samples are needed. O(N).
+/// Returns the median time between samples, limited to 1 us and 10 s. Cost: O(N). The recording must have at least two
+/// samples.
 double median_period_s(std::span<const ImuSample> samples);
 
 }  // namespace tumble

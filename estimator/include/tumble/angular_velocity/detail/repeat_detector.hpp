@@ -9,33 +9,34 @@
 
 namespace tumble {
 
-/// State of one triad's sample at arrival. If the sensor is slower than the log (sample and hold), the sample repeats
-/// an earlier reading, or contains a reading that arrived since the last sample.
+/// RepeatedReading describes the reading of the gyro or accelerometer that a sample contains. If the sensor is slower
+/// than the log (sample and hold), the sample may repeat an earlier reading.
 struct RepeatedReading {
   bool repeats = false;                              ///< repeats the reading of the previous sample
   double age_samples = 0.0;                          ///< mean age of the reading
-  double period_samples = 1.0;                       ///< samples per reading; 1: each sample has its own reading
-  Eigen::Vector3d change = Eigen::Vector3d::Zero();  ///< change from the previous reading [unit of the triad]
+  double period_samples = 1.0;                       ///< samples per reading; 1: each sample has a separate reading
+  Eigen::Vector3d change = Eigen::Vector3d::Zero();  ///< change from the previous reading [unit of the reading]
 
   bool is_slower_than_log() const { return period_samples > 1.0; }
-  /// Returns how far the middle of the reading's window lies before the middle of the sample's window. The reading's
-  /// window has the length of the period and ends when the reading is taken.
+  /// Returns how far the middle of the reading's window is before the middle of the sample's window, in samples. The
+  /// reading's window has the length of the update period, and ends when the sensor takes the reading.
   double behind_samples() const { return is_slower_than_log() ? age_samples + 0.5 * (period_samples - 1.0) : 0.0; }
-  /// Returns the change of the triad during behind_samples(), extrapolated with the slope of the last change.
+  /// Returns the change of the measured quantity during behind_samples(), extrapolated with the slope of the last
+  /// change.
   Eigen::Vector3d stale() const;
   bool operator==(const RepeatedReading&) const = default;
 };
 
 /// Detects a log that is faster than its sensor, causally. RepeatDetector is the causal form of find_repeated.
 /// RepeatDetector does not estimate the phase of the sensor's clock, so a new reading has an age of 0.5 +- 0.29
-/// samples. docs/maths/rate_stream.md (R95).
+/// samples. See docs/maths/rate_stream.md (R95).
 class RepeatDetector {
  public:
-  /// State of one triad.
+  /// State of gyro or accelerometer.
   struct Memory {
     Eigen::Vector3d reading = Eigen::Vector3d::Zero();
     double run_samples = 0.0;             ///< consecutive samples with this reading
-    double moving = 0.0, repeated = 0.0;  ///< samples in motion; those of them that repeat; both decay slowly
+    double moving = 0.0, repeated = 0.0;  ///< samples in motion; repeated samples in motion; both decay slowly
     RepeatedReading now;
     bool operator==(const Memory&) const = default;
   };
@@ -45,8 +46,8 @@ class RepeatDetector {
     bool operator==(const State&) const = default;
   };
 
-  /// Processes the next finite sample. O(1), no allocation. A `clipped` gyro repeats its reading at any update rate, so
-  /// clipped samples are not counted.
+  /// Processes the next finite sample. Cost: O(1), no allocation. A `clipped` gyro repeats its reading at any update
+  /// rate, so clipped samples are not counted.
   void observe(const ImuSample& sample, bool clipped, State& state) const;
 };
 

@@ -5,15 +5,15 @@
 
 namespace tumble {
 
-/// Delay of the accelerometer relative to the gyro of a device.
+/// TriadDelay is the delay of a device's accelerometer relative to its gyro.
 struct TriadDelay {
   double delay_s = 0.0;
   double sigma_s = 0.0;  ///< 0: no information, or only an initial value
   bool operator==(const TriadDelay&) const = default;
 };
 
-/// Correlation of angular acceleration and force at impacts, for each tried delay: up to four samples to either side,
-/// in steps of an eighth. docs/maths/rate_smoother.md (R45).
+/// StrokeSums correlates angular acceleration and force at impacts, for each tried delay. The tried delays are up to
+/// four samples to either side, in steps of an eighth of a sample. See docs/maths/rate_smoother.md (R45).
 struct StrokeSums {
   static constexpr int kMostSamples = 4, kPerSample = 8, kMost = kMostSamples * kPerSample, kTried = 2 * kMost + 1;
   using Tried = Eigen::Matrix<double, kTried, 1>;
@@ -21,22 +21,23 @@ struct StrokeSums {
   /// Number, sum and sum of squares of the angular acceleration x over intervals between adjacent unsaturated gyro
   /// readings.
   double intervals = 0.0, turn = 0.0, turn_squared = 0.0;
-  /// Sums per tried delay: sum and sum of squares of the force z, sum of products x z, number of intervals with an
-  /// impact, number of intervals with almost no force.
+  /// Sums per tried delay: sum and sum of squares of the force z, sum of products x z, intervals with an impact,
+  /// intervals almost without force.
   Tried force = Tried::Zero(), force_squared = Tried::Zero(), product = Tried::Zero(), strokes = Tried::Zero(),
         flying = Tried::Zero();
 
-  /// Returns whether the body moves in an interval between two rates, so that the interval counts.
+  /// Returns whether the body moves in an interval between two rates; only intervals with motion are counted.
   static bool counts(const Eigen::Vector3d& before_rad_s, const Eigen::Vector3d& after_rad_s);
-  /// Adds an interval: mean angular acceleration [rad/s^2], and the mean norm of the force per delay [m/s^2].
-  /// O(kTried).
+  /// Adds an interval with mean angular acceleration [rad/s^2] and mean norm of the force per tried delay [m/s^2].
+  /// Cost: O(kTried).
   void add(double turn_rad_s2, const Tried& force_m_s2);
   /// Multiplies the weight of all earlier intervals by `share`.
   void decay(double share);
-  /// Returns the delay with the best correlation, for samples `period_s` apart and a slower triad that updates every
-  /// `slower_s`. sigma_s is 0 if the delay is not accepted. O(kTried).
+  /// Returns the delay with the best correlation, for samples that are `period_s` apart. If gyro and accelerometer
+  /// update at different rates, the slower sensor updates every `slower_s`. The returned sigma_s is 0 if the delay is
+  /// not accepted. Cost: O(kTried).
   TriadDelay estimate_delay(double period_s, double slower_s) const;
-  /// Returns the correlation at the tried delay nearest to `delay_s`, for any number of impacts. O(1).
+  /// Returns the correlation at the tried delay nearest to `delay_s`, for any number of impacts. Cost: O(1).
   double correlation_at(double delay_s, double period_s) const;
 
   bool operator==(const StrokeSums&) const = default;

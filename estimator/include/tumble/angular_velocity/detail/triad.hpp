@@ -7,10 +7,10 @@
 
 namespace tumble {
 
-/// The two sensors of an IMU.
+/// Triad is one of the two sensors of an IMU, each with three axes.
 enum class Triad : std::uint8_t { gyro, accelerometer };
 
-/// Returns the reading of a triad, rad/s or m/s^2.
+/// Returns the reading of the gyro [rad/s] or of the accelerometer [m/s^2].
 inline const Eigen::Vector3d& reading_of(const ImuSample& sample, Triad triad) {
   return triad == Triad::gyro ? sample.angular_velocity_rad_s : sample.specific_force_m_s2;
 }

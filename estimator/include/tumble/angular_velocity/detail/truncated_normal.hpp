@@ -8,18 +8,18 @@ struct NormalMoments {
   double mean = 0.0, variance = 1.0;
 };
 
-/// Returns the moments of a normal distribution truncated below `bound`. The bound has the variance `softness2`.
-/// Expectation propagation uses the moments of truncated distributions (Minka 2001).
+/// Returns the moments of a normal distribution truncated below `bound`. The bound is uncertain, with the variance
+/// `softness2`. Expectation propagation uses the moments of truncated distributions (Minka 2001).
 NormalMoments truncated_below(const NormalMoments& from, double bound, double softness2);
 
-/// A Gaussian factor, as precision and precision * mean.
+/// NormalSite is a Gaussian factor, stored as precision and precision * mean.
 struct NormalSite {
   double precision = 0.0, shift = 0.0;
 };
 
-/// Returns the Gaussian factor (site) that gives `marginal` the moments of a truncation at `bound`. `now` is the
-/// current site. The update is damped: `share` in (0, 1] is the weight of the new site. The standard deviation of the
-/// marginal without its site is limited to sqrt(`widest2`).
+/// Returns the Gaussian factor (site) that gives `marginal` the moments of a distribution truncated at `bound`. `now`
+/// is the current site. `share` in (0, 1] is the weight of the new site, which damps the update. The standard deviation
+/// of the marginal without its site is limited to sqrt(`widest2`).
 NormalSite refined_bound(const NormalMoments& marginal, const NormalSite& now, double bound, double softness2,
                          double widest2, double share);
 

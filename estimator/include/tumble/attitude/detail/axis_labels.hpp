@@ -6,13 +6,14 @@
 
 namespace tumble {
 
-/// A labelling of an accelerometer's axes relative to the axes of the IMU's gyro.
+/// AxisLabels assigns the axes of an accelerometer to the axes of the IMU's gyro.
 ///
-/// A file from another source may use other axis names, or z down. The rotation of gravity distinguishes 24 labellings.
-/// A flip of all three axes is not distinguished because flipped axes rotate like the unflipped ones. An inverted gyro
-/// doubles the number of labellings. Rotations of less than a right angle are not included.
+/// The assignment is needed because a file from another source may use other axis names, or a z axis that points down.
+/// The rotation of gravity distinguishes 24 assignments of axis labels. The rotation of gravity does not reveal a flip
+/// of all three axes, because flipped axes rotate like the unflipped axes. An inverted gyro doubles the number of
+/// assignments to 48. AxisLabels does not describe rotations of less than a right angle.
 struct AxisLabels {
-  std::array<int, 3> axis = {0, 1, 2};        ///< index of the reading that is the x, y, z of the gyro's axes
+  std::array<int, 3> axis = {0, 1, 2};        ///< index of the reading along x, y, z of the gyro
   std::array<double, 3> sign = {1., 1., 1.};  ///< sign of each axis; the first sign is 1
   bool gyro_flipped = false;                  ///< all three rates are inverted
 
@@ -24,7 +25,7 @@ struct AxisLabels {
 
 inline constexpr int kAxisLabels = 48;
 
-/// Returns all labellings. The entry at index 0 is the identity.
+/// Returns all 48 assignments of axis labels. The assignment at index 0 is the identity.
 const std::array<AxisLabels, kAxisLabels>& axis_labels();
 
 }  // namespace tumble

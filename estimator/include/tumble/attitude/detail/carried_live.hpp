@@ -12,9 +12,10 @@
 
 namespace tumble {
 
-/// Estimates the angular velocity of a body that is known to be hand-held, from a single IMU. CarriedLive detects
-/// saturation levels, which CarriedStream needs as input. After each detection the window is processed again.
-/// CarriedLive does not model flight and contact, which RegimeStream distinguishes from hand-held motion.
+/// Estimates the angular velocity of a body that is known to be hand-held, from a single IMU. CarriedLive detects the
+/// saturation levels that CarriedStream needs as input. After each detection of a saturation level, CarriedLive
+/// processes the window again. CarriedLive does not model flight and contact; RegimeStream distinguishes flight and
+/// contact from hand-held motion.
 class CarriedLive {
  public:
   struct Params {
@@ -32,7 +33,7 @@ class CarriedLive {
     CarriedStream::State stream;
     RailWatch::State rails;
     RepeatDetector::State repeat_state;
-    bool news = false;             ///< whether the last sample changed the known levels
+    bool news = false;             ///< whether the last sample changed the known saturation levels
     std::vector<ClipSigns> signs;  ///< buffer, not part of the state
   };
 
@@ -42,11 +43,11 @@ class CarriedLive {
   /// Returns the state before the first sample.
   State start() const;
 
-  /// Processes one sample. `out` is the rate of the sample that is `lag_s` old, and is empty while the window fills. On
-  /// error (`non_finite`, `time_order`, `gap`) the saturation levels are not updated and `out` is empty.
+  /// Processes one sample. `out` is the rate of the sample that is `lag_s` old; `out` is empty while the window fills.
+  /// On error (`non_finite`, `time_order`, `gap`) the saturation levels are unchanged and `out` is empty.
   Status push(const ImuSample& sample, State& state, std::optional<RateState>& out) const;
 
-  /// Appends the rates of the samples that are not yet reported to `out`, oldest first.
+  /// Appends the rates of all samples that are not yet reported to `out`, oldest first.
   void flush(const State& state, std::vector<RateState>& out) const { stream_.flush(state.stream, out); }
 
   /// Checks the invariants of a state that was loaded from a file. Returns the first violated invariant.

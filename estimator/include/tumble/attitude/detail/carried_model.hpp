@@ -8,21 +8,22 @@
 
 namespace tumble {
 
-/// Hand-held motion as a least-squares problem: a chain of nodes at equal time steps, and constants of the device. Each
-/// function adds one factor to the normal equations H d = g and returns the factor's cost (minus two times its
-/// logarithm).
+/// The functions of carried_model.hpp describe hand-held motion as a least-squares problem: a chain of nodes at equal
+/// time steps, and constants of the device. Each function adds one factor to the normal equations H d = g and returns
+/// the factor's cost (minus two times its logarithm).
 namespace carried {
 
 inline constexpr int kState = 18;  ///< size of a node's error: see Index
 inline constexpr int kBorder = 9;  ///< number of constants: see ConstantIndex
 using System = ArrowSystem<kState, kBorder>;
 
-/// First indices of the parts of a node's error. The attitude error is phi with q_true = q_WI Exp(phi).
+/// Index of the first component of each part of a node's error. The attitude error phi is defined by q_true = q_WI
+/// Exp(phi).
 enum Index { kPhi = 0, kRate = 3, kAngular = 6, kHand = 9, kVelocity = 12, kPosition = 15 };
 enum ConstantIndex { kGyroBias = 0, kAccelBias = 3, kLever = 6 };
 
-/// One node. The held point is the point of the body at the hand, whose acceleration, velocity and position are
-/// bounded.
+/// Node contains the motion at one time step. The held point is the point of the body at the hand, whose acceleration,
+/// velocity and position are bounded.
 struct Node {
   Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
   Eigen::Vector3d w_WI_I_rad_s = Eigen::Vector3d::Zero();
@@ -33,7 +34,7 @@ struct Node {
   void move(const System::StateVector& step);
 };
 
-/// Constants of a recording.
+/// Constants are the unknowns that are constant over a recording.
 struct Constants {
   Eigen::Vector3d gyro_bias_rad_s = Eigen::Vector3d::Zero();
   Eigen::Vector3d accel_bias_m_s2 = Eigen::Vector3d::Zero();
@@ -41,37 +42,35 @@ struct Constants {
   void move(const System::BorderVector& step);
 };
 
-/// Sums over the readings of one sensing element near a node, at times t from the node. With sums, the cost of a solver
-/// step does not depend on the IMU's rate.
+/// ElementSums contains sums over the readings of one sensing element near a node, at times t from the node. Because of
+/// the sums, the cost of a solver step does not depend on the IMU's sample rate.
 struct ElementSums {
   double n = 0.0, t_s = 0.0, tt_s2 = 0.0, z = 0.0, zt = 0.0;  ///< count and sums of the unsaturated readings z
   double clipped = 0.0, clipped_t_s = 0.0, rail = 0.0;        ///< count, mean time and mean level of clipped readings
-  double sign = 0.0;                                          ///< sign of the level: the true value is beyond it
-  double unread = 0.0, unread_z = 0.0;                        ///< count and mean of unusable readings
-  double open = 0.0;  ///< common standard deviation of free readings, for windows that were partly saturated
+  double sign = 0.0;                    ///< sign of the saturation level: the true value is beyond the level
+  double unread = 0.0, unread_z = 0.0;  ///< count and mean of unusable readings
+  double open = 0.0;                    ///< standard deviation of free readings in partly saturated windows
 };
 
-/// All readings near a node.
+/// NodeReadings contains all readings near a node.
 struct NodeReadings {
   std::array<ElementSums, 3> gyro;
-  Eigen::Vector3d force_m_s2 = Eigen::Vector3d::Zero();   ///< mean
+  Eigen::Vector3d force_m_s2 = Eigen::Vector3d::Zero();   ///< mean force
   Eigen::Vector3d force_bound = Eigen::Vector3d::Zero();  ///< sign of the level where an axis clips, otherwise 0
   double force_n = 0.0;                                   ///< number of force readings
   double force_t_s = 0.0;                                 ///< mean time of the force readings
-  double force_timing_m_s2 = 0.0;                         ///< force error due to the time uncertainty of the readings'
-                                                          ///< windows
+  double force_timing_m_s2 = 0.0;                         ///< force error from uncertain reading times
   bool rest = false;
 };
 
-/// Standard deviations for the weights of the factors.
+/// ReadingNoise contains the standard deviations that determine the weights of the factors.
 struct ReadingNoise {
   double gyro_rad_s = 0.0;    ///< standard deviation of one gyro reading
-  double window_rad_s = 0.0;  ///< difference between the mean over a window and the rate at its centre, one reading
-  double tilt_share = 0.0;    ///< of an unsaturated element while another element clips, per rad/s of saturation
-                              ///< deficit
+  double window_rad_s = 0.0;  ///< difference between a window's mean and the rate at its centre
+  double tilt_share = 0.0;    ///< unclipped element's error per deficit of a clipped element
   double rail_rad_s = 0.0;    ///< standard deviation of a saturation level
-  double bound = 1.0;         ///< fraction of a gyro's lower bounds that counts as information
-  double force_bound = 1.0;   ///< fraction of an accelerometer's lower bounds that counts as information
+  double bound = 1.0;         ///< fraction of the gyro's lower bounds that counts as information
+  double force_bound = 1.0;   ///< fraction of the accelerometer's lower bounds that counts
   double accel_m_s2 = 0.0;    ///< standard deviation of one force reading
   double accel_share = 0.0;   ///< additional force noise per m/s^2 of difference from gravity
   double rest_rad_s = 0.0;    ///< standard deviation of the rate at rest, one node
@@ -79,23 +78,24 @@ struct ReadingNoise {
   double rest_m_s2 = 0.0;     ///< standard deviation of the acceleration at rest
 };
 
-/// Adds the gyro of one node, element by element. Row i of `rows` is the axis m_i of element i. Unsaturated readings
-/// measure m_i' (rate + bias). Clipped readings bound m_i' (rate + bias) from one side.
+/// Adds the factors of the gyro readings of one node, one factor per sensing element. Row i of `rows` is the sensing
+/// direction m_i of element i. Unsaturated readings measure m_i' (rate + bias). Clipped readings limit m_i' (rate +
+/// bias) from one side.
 double add_gyro(const NodeReadings& readings, const Eigen::Matrix3d& rows, const ReadingNoise& noise, const Node& node,
                 const Constants& constants, System::Block& block, System::Corner& corner);
 
-/// Adds the specific force of one node at the mean time of the readings: f = R'(a - g) + alpha x r + w x (w x r) +
-/// bias. Here R is the attitude, a the held point's acceleration, g gravity, w the rate, alpha its derivative and r the
-/// lever arm.
+/// Adds the factor of the specific force of one node: f = R'(a - g) + alpha x r + w x (w x r) + bias. Here R is the
+/// attitude, a the held point's acceleration, g gravity, w the rate, alpha the angular acceleration and r the lever
+/// arm.
 double add_force(const NodeReadings& readings, const Eigen::Vector3d& g_W_m_s2, const ReadingNoise& noise,
                  const Node& node, const Constants& constants, System::Block& block, System::Corner& corner);
 
-/// Adds a stationary node: rate, velocity and acceleration about zero.
+/// Adds the factor of a stationary node, whose rate, velocity and acceleration are close to zero.
 double add_rest(const ReadingNoise& noise, const Node& node, System::Block& block);
 
-/// Motion model from one node to the next, per step of `h` seconds. The angular jerk is white. The held point's
-/// acceleration is a first-order process. The held point's velocity and position return to zero, each with its own time
-/// constant.
+/// Motion is the motion model between two nodes that are `step_s` apart. The angular jerk is white noise. The held
+/// point's acceleration is a first-order process. Velocity and position of the held point return to zero, each with a
+/// separate time constant.
 class Motion {
  public:
   struct Params {
@@ -108,14 +108,14 @@ class Motion {
   };
   explicit Motion(const Params& params);
 
-  /// Adds a step. `hand` multiplies the density of the held point's acceleration in this step, `jerk` the root density
-  /// of the angular jerk.
+  /// Adds the factor of a step between two nodes. `hand` multiplies the density of the held point's acceleration, and
+  /// `jerk` multiplies the root density of the angular jerk.
   double add_step(const Node& from, const Node& to, double hand, System::Block& block, System::Block& next,
                   double jerk = 1.0) const;
-  /// Adds the prior of one node that velocity and position of the held point are about zero.
+  /// Adds the prior of one node that velocity and position of the held point are close to zero.
   double add_bounds(const Node& node, System::Block& block) const;
-  /// Adds the prior of the initial node. The prior fixes the heading; every other unknown has the stationary variance
-  /// of its process.
+  /// Adds the prior of the first node. The prior fixes the heading; every other unknown has the stationary variance of
+  /// its process.
   double add_first(const Node& node, System::Block& block) const;
 
  private:
@@ -123,12 +123,12 @@ class Motion {
 
   Params params_;
   Eigen::Matrix4d jerk_;  // information of (rate, angular acceleration) of both nodes, one axis
-  Eigen::Matrix<double, 6, 6> hand_, kinematics_;  // of (acceleration, velocity, position) of both nodes, one axis
+  Eigen::Matrix<double, 6, 6> hand_, kinematics_;  // information of (acceleration, velocity, position), one axis
   double phi_variance_;
 };
 
-/// Returns the rotation vector between two nodes from the cubic of the rates, with the coning term (Magnus, fourth
-/// order).
+/// Returns the rotation vector between two nodes from a cubic polynomial of the rates, with the coning term (Magnus,
+/// fourth order).
 Eigen::Vector3d turned(const Node& from, const Node& to, double step_s);
 
 }  // namespace carried

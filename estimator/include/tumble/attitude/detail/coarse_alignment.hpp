@@ -10,11 +10,12 @@
 
 namespace tumble {
 
-/// Finds the vertical after it was lost, for a body that continues to move. The method is the coarse alignment of
-/// inertial navigation. In axes propagated by the gyro, the integral of the specific force is the sum of gravity's
-/// integral and the change of velocity. Gravity's integral grows with time, the change of velocity does not.
-/// attitude.md (A19), (A20). The method is not linear and works from any initial attitude, including upside down. The
-/// gyro's error is not modelled here; the caller adds it.
+/// CoarseAlignment finds the vertical after the attitude was lost, while the body continues to move. The method is the
+/// coarse alignment of inertial navigation. In axes that the gyro propagates, the integral of the specific force is the
+/// sum of gravity's integral and the change of velocity. The integral of gravity grows with time, but the change of
+/// velocity is bounded. See attitude.md (A19), (A20). The method is not a linearisation, and works from any initial
+/// attitude, including upside down. CoarseAlignment does not model the gyro's error; the caller adds the gyro's error
+/// to `grown_rad2`.
 struct CoarseAlignment {
   bool running = false;
   double time_s = 0.0;
@@ -40,17 +41,16 @@ struct CoarseAlignment {
   /// Returns the variance of the tilt without the alignment, one axis.
   double tilt_rad2() const { return lost_rad2 + grown_rad2; }
 
-  /// Returns the variance of the tilt from `levelling()`. The variance depends on the velocities at start and end of
-  /// the alignment, and on the gyro's errors between start and end. The magnitude of the mean force reveals a part of
-  /// the velocities.
+  /// Returns the variance of the tilt after a correction by levelling(). The tilt variance depends on the velocities at
+  /// the start and end of the alignment, and on the gyro's errors between start and end. A difference of the mean
+  /// force's magnitude from gravity reveals a part of the velocity change.
   double variance_rad2(double velocity_variance_m2_s2, double gravity_m_s2) const {
     const double gravity_m_s = gravity_m_s2 * std::max(time_s, 1e-9);
     const double seen = squared(force_W_m_s.norm() - gravity_m_s);
     return std::max(velocity_m2_s2 + velocity_variance_m2_s2, seen) / squared(gravity_m_s) + grown_rad2;
   }
 
-  /// Return the rotation of W that makes the mean force point up without changing the heading, and the angle of this
-  /// rotation.
+  /// Return the rotation of W that makes the mean force point up without changing the heading, and its angle.
   Eigen::Quaterniond levelling() const { return tumble::levelling(force_W_m_s.normalized()); }
   double off_rad() const { return std::atan2(force_W_m_s.head<2>().norm(), force_W_m_s.z()); }
 };

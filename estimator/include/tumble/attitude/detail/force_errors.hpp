@@ -8,14 +8,15 @@
 
 namespace tumble {
 
-/// Estimates the errors of several accelerometers on one rigid body from their differences.
+/// Estimates the errors of several accelerometers on one rigid body from the differences between their readings.
 ///
-/// In fast rotation, units at different positions measure large forces that cancel in their mean. The effects of scale
-/// and misalignment do not cancel. For each unit k, a Kalman filter estimates bias b_k, scale and misalignment M_k, and
-/// position error dp_k. The model is f_k = c + A p_k + b_k + M_k f_k + A dp_k with A = [a]x + [w]x[w]x. Here c is the
-/// common force, p_k the position, w the rate and a the angular acceleration. The measurement is each unit's difference
-/// from the mean of all units, averaged over kSpan_s. The model is linear, so averaging only loses rotation within the
-/// span. Errors common to all units do not appear in the differences and remain about zero.
+/// In fast rotation, IMUs (units) at different positions measure large forces that cancel in the mean of all units. The
+/// force errors due to scale and misalignment do not cancel in the mean. For each unit k, a Kalman filter estimates
+/// bias b_k, scale and misalignment M_k, and position error dp_k. The measurement model is f_k = c + A p_k + b_k + M_k
+/// f_k + A dp_k, with A = [a]x + [w]x[w]x. Here c is the common force, p_k the position of the unit, w the rate and a
+/// the angular acceleration. The measurement is the difference of each unit's force from the mean of all units,
+/// averaged over kSpan_s. The model is linear in the forces, so averaging loses only the rotation within kSpan_s.
+/// Errors that all units share do not appear in the differences, and their estimates remain close to zero.
 ///
 /// ForceErrors does not model errors that change, or a body that bends.
 class ForceErrors {
@@ -34,9 +35,8 @@ class ForceErrors {
     double scale_sigma = 4e-3;                    ///< prior of each entry of M; bound [0, 1]
     double position_sigma_m = 1.5e-3;             ///< prior of the position error; bound [0, 10]
     double noise_m_s2 = 0.06;                     ///< noise of one force difference, over a span; bound (0, 1e3]
-    double acceleration_share = 0.02;  ///< additional noise, as a fraction of the lever-arm force of the angular
-                                       ///< acceleration; bound [0, 1]
-    double gate_deviations = 5.0;      ///< differences beyond this many sigmas have another cause; bound (0, 1e3]
+    double acceleration_share = 0.02;             ///< additional noise, as a fraction of a x r; bound [0, 1]
+    double gate_deviations = 5.0;                 ///< larger differences, in sigmas, are rejected; bound (0, 1e3]
   };
   struct State {
     Vector x = Vector::Zero();
@@ -55,8 +55,8 @@ class ForceErrors {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit ForceErrors(const Params& params);
 
-  /// Processes `forces_m_s2` of all units in common axes C, measured over `dt_s`, with rate and angular acceleration at
-  /// their time. Updates the filter one time per kSpan_s; O((kPerUnit count)^2), no allocation.
+  /// Processes the forces of all units in common axes C, measured over `dt_s`, with rate and angular acceleration at
+  /// the time of the forces. The filter is updated one time per kSpan_s. Cost: O((kPerUnit count)^2), no allocation.
   void calibrate(std::span<const Eigen::Vector3d> forces_m_s2, const Eigen::Vector3d& rate_rad_s,
                  const Eigen::Vector3d& acceleration_rad_s2, double dt_s, State& state) const;
 

@@ -6,14 +6,15 @@
 /// Groups of ImuMerge::Params::Expert.
 namespace tumble {
 
-/// Parameters of outliers: a reading far from the readings of the other units is excluded from its sample.
+/// Parameters of outliers: a reading far from the readings of all other units is excluded from its sample.
 struct ImuOutlierParams {
   double rate_rad_s = 0.15;  ///< difference from the median
   double rate_share = 0.03;  ///< additional difference, as a fraction of the rate
   double force_m_s2 = 3.0;   ///< difference from the median
-  /// A reading above this fraction of the range may have been saturated within its sample.
+  /// A reading above the fraction subsample_saturation_share of the range may have been saturated for a part of its
+  /// sample.
   double subsample_saturation_share = 0.15;
-  double hidden_force_m_s2 = 3.0;  ///< difference between two forces up to which subsample saturation explains it
+  double hidden_force_m_s2 = 3.0;  ///< largest force difference that subsample saturation explains
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -31,13 +32,13 @@ struct ImuOutlierParams {
   }
 };
 
-/// Parameters of frozen units. A frozen unit repeats its reading while the other units' readings change, or repeats its
-/// force while gravity rotates. Repetition by sample and hold is shorter.
+/// Parameters of frozen units. A frozen unit repeats its reading while the readings of other units change, or repeats
+/// its force while gravity rotates. Repetition by sample and hold is shorter than `after_s`.
 struct FrozenImuParams {
   double after_s = 0.1;
-  double rate_rad_s = 0.03;  ///< minimum change of the other units' rates
+  double rate_rad_s = 0.03;  ///< minimum change of the rates of other units
   double force_m_s2 = 0.3;
-  double turned_rad = 1.0;      ///< minimum rotation of gravity, also if all units repeat their readings
+  double turned_rad = 1.0;      ///< minimum rotation of gravity, also if all units repeat readings
   double thawed_after_s = 0.5;  ///< duration of changing readings after which a unit is used again
 
   template <class Self, class Visitor>
@@ -55,8 +56,8 @@ struct FrozenImuParams {
   }
 };
 
-/// Parameters of permanent exclusion. A unit whose mean over half a second differs from the median for long enough is
-/// excluded permanently.
+/// Parameters of permanent exclusion of a unit. A unit is excluded permanently if its mean over half a second differs
+/// from the median of all units for `after_s`.
 struct DisagreeingImuParams {
   double rate_rad_s = 0.1;
   double rate_share = 0.06;  ///< additional difference, as a fraction of the rate
@@ -75,8 +76,8 @@ struct DisagreeingImuParams {
   }
 };
 
-/// Parameters of ImuMergeParams that few users change, grouped by meaning. Field names equal the names in tables and on
-/// command lines.
+/// Parameters of ImuMergeParams that few users change, grouped by meaning. The fields have the names that are used in
+/// tables and on command lines.
 struct ImuMergeExpertParams {
   ImuOutlierParams outliers = {};
   FrozenImuParams frozen = {};

@@ -14,8 +14,8 @@
 /// State of ImuMerge.
 namespace tumble {
 
-/// Repetition of a triad's reading: its duration, the other units' readings at its start, and the rotation since its
-/// start.
+/// ImuRepeat describes the repetition of a reading: its duration, the readings of other units at its start, and the
+/// rotation since its start.
 struct ImuRepeat {
   Eigen::Vector3d reading = Eigen::Vector3d::Zero(), others = Eigen::Vector3d::Zero();
   Eigen::Vector3d turned_rad = Eigen::Vector3d::Zero();
@@ -24,17 +24,18 @@ struct ImuRepeat {
   bool operator==(const ImuRepeat&) const = default;
 };
 
-/// Errors of one unit's rate relative to the mean of all units.
+/// ImuMergeUnit contains the errors of one unit's rate relative to the mean of all units.
 struct ImuMergeUnit {
   static constexpr int kErrors = 13;  ///< bias, scale and misalignment, time offset
 
   Eigen::Matrix<double, kErrors, 1> x = Eigen::Matrix<double, kErrors, 1>::Zero();
   Eigen::Matrix<double, kErrors, kErrors> P = Eigen::Matrix<double, kErrors, kErrors>::Zero();
   ImuAverage window;  ///< average of the unit's readings since the last window
-  /// Means over the last window. For an absent unit, the values predicted from the other units.
+  /// Mean rate and force over the last window. For an absent unit, the means are predicted from the readings of the
+  /// remaining units.
   Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero(), last_force_m_s2 = Eigen::Vector3d::Zero();
-  double suspect_s = 0.0;     ///< remaining time for which it is excluded from the force
-  std::int64_t left_out = 0;  ///< number of windows
+  double suspect_s = 0.0;     ///< remaining time of exclusion from the mean force
+  std::int64_t left_out = 0;  ///< number of windows without this unit
   ImuRepeat rate_repeat, force_repeat;
   double thawing_s = 0.0;
   double misfit_rate_rad_s = 0.0, misfit_force_m_s2 = 0.0, misfits_s = 0.0;
@@ -47,7 +48,7 @@ struct ImuMergeUnit {
   bool operator==(const ImuMergeUnit&) const = default;
 };
 
-/// Complete state.
+/// Complete state of ImuMerge.
 struct ImuMergeState {
   static constexpr int kImus = 4;
   static constexpr int kAccelerationWindows = 3;  ///< windows needed for an angular acceleration
@@ -55,8 +56,8 @@ struct ImuMergeState {
   std::array<ImuMergeUnit, kImus> units{};
   ForceErrors::State forces;
   RateRecovery::State recovery;
-  Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();         ///< merged mean over the last window
-  Eigen::Vector3d rate_before_rad_s = Eigen::Vector3d::Zero();  ///< merged mean over the window before
+  Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();         ///< merged mean rate over the last window
+  Eigen::Vector3d rate_before_rad_s = Eigen::Vector3d::Zero();  ///< merged mean rate over the window before the last
   double rotation_rate_rad_s = 0.0;                             ///< mean of the rate over half a second
   double window_s = 0.0;                                        ///< length of the current window
   double length_s = 0.0, length_before_s = 0.0;                 ///< lengths of the last two windows
@@ -66,7 +67,7 @@ struct ImuMergeState {
   int free_windows =
       kAccelerationWindows;  ///< windows since a gyro was clipped or a unit absent, at most kAccelerationWindows
   TimeNs last_time_ns = 0;
-  bool all_frozen = false;  ///< all units that were present in the last window
+  bool all_frozen = false;  ///< all units present in the last window are frozen
   bool operator==(const ImuMergeState&) const = default;
 };
 

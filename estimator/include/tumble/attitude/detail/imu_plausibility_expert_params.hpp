@@ -6,9 +6,9 @@
 /// Groups of ImuPlausibility::Params::Expert.
 namespace tumble {
 
-/// Magnitude of a constant force as a fraction of gravity.
+/// Magnitude of a constant force, as a fraction of gravity.
 struct SteadyForceParams {
-  double share_min = 0.5, share_max = 2.0;  ///< bounds of the mean over constant windows
+  double share_min = 0.5, share_max = 2.0;  ///< bounds of the mean magnitude over windows with a constant force
   int windows_min = 5;                      ///< minimum number of constant windows
 
   template <class Self, class Visitor>
@@ -21,20 +21,20 @@ struct SteadyForceParams {
   }
 };
 
-/// Rotation of gravity's direction compared with the gyro.
+/// Comparison of the rotation of gravity's direction with the gyro.
 struct GravityRotationParams {
-  /// Range of plausible slopes of gravity's rotation over the gyro's rotation. Pendulums and hand-held wands give 0.75
-  /// to 1.21.
+  /// Range of plausible regression slopes of gravity's rotation on the gyro's rotation. Pendulums and hand-held wands
+  /// give slopes of 0.75 to 1.21.
   double slope_min = 0.65, slope_max = 1.5;
-  double rotation_min_rad2 = 0.5;    ///< minimum sum of squares for a decision
+  double rotation_min_rad2 = 0.5;    ///< minimum sum of squared rotations for a decision
   double rotation_least_rad = 0.15;  ///< minimum rotation of a window
-  /// Minimum number of rotating windows. In one or two windows, a push may be mistaken for gravity, or the centripetal
-  /// force of a spin in flight.
+  /// Minimum number of windows in which the force rotated. In one or two windows, a push or the centripetal force of a
+  /// spin in flight may be mistaken for gravity.
   double rotated_windows_min = 5.0;
-  /// Maximum residual of a gyro rescaled by the slope, as a fraction of the actual gyro's residual. The rule applies to
-  /// slopes outside of 0 to 1.
+  /// Maximum residual of a gyro scaled by the regression slope, as a fraction of the residual of the unscaled gyro. The
+  /// maximum residual applies to slopes outside of 0 to 1.
   double unexplained_share_max = 0.75;
-  double still_share = 1e-6;  ///< fraction of the gyro's rotation; a spin in flight gives up to 0.006
+  double still_share = 1e-6;  ///< minimum rotation of the force, as a fraction of the gyro's rotation
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -59,7 +59,7 @@ struct GravityRotationParams {
 /// Detection of wrong axis labels.
 struct AxisNamingParams {
   double unexplained_share_max = 0.33;  ///< maximum residual of better labels, as a fraction of the current residual
-  double unexplained_least = 0.01;      ///< minimum unexplained fraction for which labels are compared
+  double unexplained_least = 0.01;      ///< minimum unexplained fraction at which labels are compared
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -70,12 +70,11 @@ struct AxisNamingParams {
   }
 };
 
-/// Detection of a triad that repeats its reading.
+/// Detection of a gyro or accelerometer that repeats its reading.
 struct FrozenTriadParams {
-  double repeats_s = 1.0;          ///< minimum duration, after as long with changing readings
+  double repeats_s = 1.0;          ///< minimum duration of a repetition
   double longest_share = 10.0;     ///< minimum ratio to the longest earlier repetition
-  double unexplained_least = 0.5;  ///< minimum unexplained fraction of gravity's rotation, for a gyro that never
-                                   ///< changed
+  double unexplained_least = 0.5;  ///< minimum unexplained fraction, for a gyro that never changed
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {

@@ -8,10 +8,11 @@
 
 namespace tumble {
 
-/// Filters a vector by a second-order Butterworth low-pass (bilinear, corner frequency sqrt(2) / (2 pi tau)). Until tau
-/// has passed, the output is the mean of all inputs, so that no single sample determines the start. The state is the
-/// output and its slope, not the taps of a biquad. At a constant period, the transfer function equals that of a biquad.
-/// A changing period causes no transient.
+/// LowPass filters a vector by a second-order Butterworth low-pass (bilinear transform, corner frequency sqrt(2) / (2
+/// pi tau)). Until the time tau has passed, the output is the mean of all inputs, so that no single sample determines
+/// the start. The state of LowPass is the output and its slope, instead of the delayed inputs and outputs of a biquad.
+/// At a constant sample period, the transfer function equals that of a biquad. A change of the sample period causes no
+/// transient.
 template <int Rows>
 struct LowPass {
   using Vector = Eigen::Matrix<double, Rows, 1>;
@@ -22,7 +23,7 @@ struct LowPass {
   double averaged_s = 0.0;
   double samples = 0.0;
 
-  /// Processes the next input, `dt_s` after the previous one. `warp` is the result of low_pass_warp() for tau and dt.
+  /// Processes the next input, `dt_s` after the previous input. `warp` is the result of low_pass_warp() for tau and dt.
   void advance(const Vector& next, double tau_s, double dt_s, double warp) {
     if (averaged_s < tau_s) {
       samples += 1.0;
@@ -41,8 +42,8 @@ struct LowPass {
   bool operator==(const LowPass&) const = default;
 };
 
-/// Returns tan(pi f_c dt) for LowPass. The value is bounded if dt is so long compared to tau that nothing is left to
-/// smooth.
+/// Returns the warped frequency tan(pi f_c dt) for LowPass. The result is bounded, so that a sample period much longer
+/// than tau passes the input unfiltered.
 inline double low_pass_warp(double tau_s, double dt_s) {
   return std::tan(std::min(dt_s / (std::numbers::sqrt2 * tau_s), 1.5));
 }

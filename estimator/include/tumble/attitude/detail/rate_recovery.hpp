@@ -11,29 +11,32 @@
 
 namespace tumble {
 
-/// Estimates the rate of a body beyond its gyros' range from the differences of several accelerometers.
+/// Estimates the rate of a body beyond the range of its gyros from the force differences between several
+/// accelerometers.
 ///
-/// An extended Kalman filter estimates rate w, angular acceleration a, specific force c at the units' mean position,
-/// and the error of each unit's lever arm r_k. The model is f_k = c + a x r_k + w x (w x r_k). The force rotates in the
-/// body as gravity does. The filter runs while a gyro is clipped or reads more than kFast of its range. The lever arms
-/// are thus calibrated before the gyro saturates. A reading is clipped if flagged or beyond the range. ClippingFinder
-/// sets flags for devices that clip below their range without reporting it. Clipped readings of gyro and accelerometer
-/// are lower bounds, not measurements.
+/// An extended Kalman filter estimates rate w, angular acceleration a and specific force c at the mean position of the
+/// units, and the error of each lever arm r_k. The measurement model of unit k is f_k = c + a x r_k + w x (w x r_k). In
+/// body axes, the specific force c rotates as gravity does. The filter runs while a gyro is clipped or reads more than
+/// the fraction kFast of its range. The lever arms are therefore calibrated before a gyro saturates. RateRecovery
+/// treats a reading as clipped if the reading is flagged or beyond the range. ClippingFinder sets the flags for devices
+/// that clip below their range without reporting saturation. Clipped readings of gyro and accelerometer are lower
+/// bounds, not measurements.
 ///
-/// RateRecovery does not model scale errors (the gyro's scale calibrates the lever arms). Units at one position provide
-/// no information. An impact increases the uncertainty and does not appear as a rate.
+/// RateRecovery does not model scale errors; the lever arms are calibrated relative to the gyro's scale. Units at one
+/// position provide no information about the rate. An impact increases the uncertainty of the rate, and does not change
+/// the estimated rate.
 class RateRecovery {
  public:
   static constexpr int kUnits = 4;
   static constexpr int kStates = 9 + 3 * kUnits;
-  /// Reference length of readings. The noise of shorter readings grows with the inverse root of their length, so a
-  /// larger number of short readings adds no information.
+  /// Duration to which the noise of readings refers. The noise of shorter readings grows with the inverse root of their
+  /// duration, so a higher sample rate adds no information.
   static constexpr double kReading_s = 4e-3;
   static constexpr double kFast = 0.5;  ///< fraction of the gyro's range above which the filter runs
   using Vector = Eigen::Matrix<double, kStates, 1>;
   using Covariance = Eigen::Matrix<double, kStates, kStates>;
 
-  /// Standard deviations of readings over kReading_s.
+  /// ReadingNoise contains the standard deviations of readings over kReading_s.
   struct ReadingNoise {
     double rate_rad_s = 0.03;    ///< bound (0, 10]
     double rate_share = 0.003;   ///< additional noise, as a fraction of the reading; bound [0, 1]
@@ -41,23 +44,24 @@ class RateRecovery {
     double force_share = 0.004;  ///< additional noise, as a fraction of the reading; bound [0, 1]
   };
   struct Params {
-    std::array<Eigen::Isometry3d, kUnits> T_CI{};   ///< mountings of the units relative to their mean position
+    std::array<Eigen::Isometry3d, kUnits> T_CI{};   ///< poses of the units relative to their mean position
     int count = 1;                                  ///< bound [1, kUnits]
-    double gyro_range_rad_s = 1e3;                  ///< readings from this value on are saturated; bound (0, 1e3]
+    double gyro_range_rad_s = 1e3;                  ///< readings at or above this value are saturated; bound (0, 1e3]
     double accel_range_m_s2 = 1e5;                  ///< bound (0, 1e5]
     double lever_arm_sigma_m = 1.5e-3;              ///< prior of the lever arm error; bound (0, 10]
     double acceleration_walk_rad_s2_sqrts = 200.0;  ///< random walk of the angular acceleration; bound (0, 1e6]
     double force_walk_m_s2_sqrts = 25.0;            ///< random walk of the common force; bound (0, 1e6]
-    double recovered_sigma_rad_s = 1.0;             ///< rates with larger sigma remain clipped; bound (0, 1e3]
+    double recovered_sigma_rad_s = 1.0;             ///< rates with a larger deviation remain clipped; bound (0, 1e3]
     ReadingNoise noise;
-    /// Sensing directions of the units' elements. While a sensing element clips, its saturation deficit corrupts the
-    /// readings of the other axes. Unsaturated elements are then used along their sensing directions.
+    /// Sensing directions of the units' sensing elements. While a sensing element clips, its saturation deficit
+    /// corrupts the readings of all axes of the triad. RateRecovery then uses the unsaturated sensing elements along
+    /// their sensing directions.
     std::array<ElementRows, kUnits> gyro_elements{}, accel_elements{};
   };
   struct State {
-    Vector x = Vector::Zero();  ///< rate, angular acceleration, force (C), lever arm errors of the units
+    Vector x = Vector::Zero();  ///< rate, angular acceleration, force, lever arm errors (axes C)
     Covariance P = Covariance::Zero();
-    bool started = false;  ///< lever arms have their prior
+    bool started = false;  ///< lever arms have their prior uncertainty
     bool running = false;
     bool operator==(const State&) const = default;
   };
@@ -65,19 +69,19 @@ class RateRecovery {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit RateRecovery(const Params& params);
 
-  /// Processes the units' readings, each in its own axes, `dt_s` after the previous readings. Units that are not finite
-  /// are ignored. `merged` (C) contains the mean of the used units, and receives rate and force of the filter where
-  /// saturation corrupted the mean. The gyro flags of `merged` are set if the rate could not be recovered. The
-  /// accelerometer flags are set if most units were saturated, or one unit and a gyro. All remaining flags are cleared,
-  /// because a recovered rate is not clipped. O(count), no allocation; almost no computation while the body rotates
-  /// slowly and no gyro is clipped.
+  /// Processes the readings of all units, each in its own axes, `dt_s` after the previous readings. Units whose
+  /// readings are not finite are ignored. `merged` contains the mean of the used units in axes C. Where saturation
+  /// corrupts the mean, `merged` receives rate and force of the filter. The gyro flags of `merged` are set if the rate
+  /// could not be recovered. The accelerometer flags are set if most accelerometers are saturated, or if one
+  /// accelerometer and a gyro are saturated. All remaining flags are cleared, because a recovered rate is not clipped.
+  /// Cost: O(count), no allocation; almost no computation while the body rotates slowly and no gyro is clipped.
   void step(std::span<const ImuSample> units, double dt_s, State& state, ImuSample& merged) const;
 
  private:
-  /// Saturation found in the units.
+  /// Met describes the saturation of the current readings.
   struct Met {
     bool rate = false;   ///< a gyro is saturated
-    bool force = false;  ///< enough accelerometers are saturated to corrupt the common force
+    bool force = false;  ///< enough accelerometers are saturated to corrupt the mean force
   };
   bool rate_railed(const ImuSample& unit, int axis) const;
   bool force_railed(const ImuSample& unit, int axis) const;

@@ -12,37 +12,38 @@
 
 namespace tumble {
 
-/// Checks the plausibility of rates by gravity at rests. The force at rest must have the magnitude g. The rates between
-/// two rests rotate the sensor by R. The direction u_0 of the force at the earlier rest must become that at the later
-/// rest: u_1 = R^T u_0. The relation u_1 = R^T u_0 also holds through flight, impacts and clipping. A gyro with wrong
-/// sign, scale or axis labels gives an arbitrary angle between u_1 and R^T u_0. After a tumble of several revolutions,
-/// an arbitrary angle is below `miss_least_rad` in one of fifty cases. The magnitude of the force reveals an
-/// accelerometer with another unit. The rates come from an estimate, whose covariance widens the tolerance.
+/// Checks the plausibility of estimated rates by the force at rests. The force at rest must have the magnitude of
+/// gravity. Between two rests, the estimated rates rotate the sensor by R. The direction u_0 of the force at the
+/// earlier rest and the direction u_1 at the later rest must satisfy u_1 = R^T u_0. The relation u_1 = R^T u_0 also
+/// holds if flight, impacts and clipping happen between the rests. A gyro with wrong sign, scale or axis labels gives
+/// an arbitrary angle between u_1 and R^T u_0. After a tumble of several revolutions, an arbitrary angle is below
+/// `miss_least_rad` in one of fifty cases. A wrong magnitude of the force reveals an accelerometer with another unit,
+/// for example g. The covariance of the rates increases the tolerance of the angle.
 ///
-/// In addition, the velocity at a rest is zero. The forces between two rests, rotated back by the rates, therefore
-/// integrate to gravity alone. Wrong rates that give the correct final direction by chance rarely give this integral.
+/// RestGravity also uses that the velocity at a rest is zero. The forces between two rests, rotated back by the rates,
+/// therefore integrate to gravity times the duration. Wrong rates that give the correct final direction by chance
+/// rarely give the correct integral of the forces.
 ///
-/// The equations are imu_merge.md (I23), (I24), (I25), (I26). RestGravity does not detect wrong rates if the body
-/// returns to its initial attitude (a pendulum), rotates about the vertical, or rests less than twice. An accelerometer
-/// with all axes flipped is not detected either. A fall of a second without rotation and without any rest is mistaken
-/// for a force without gravity. A rest on the ground and another in a steadily moving vehicle are mistaken for wrong
-/// rates.
+/// The equations of RestGravity are imu_merge.md (I23), (I24), (I25), (I26). RestGravity does not detect wrong rates if
+/// the body returns to its initial attitude (a pendulum), rotates about the vertical, or rests less than twice.
+/// RestGravity does not detect an accelerometer with all axes flipped. A body that falls for a second without rotation,
+/// and never rests, is mistaken for an accelerometer without gravity. If one rest is on the ground and another rest is
+/// in a steadily moving vehicle, correct rates are mistaken for wrong rates.
 class RestGravity {
  public:
   struct Params {
     double gravity_m_s2 = 9.80665;
-    /// Parameters of rest detection. The limits hold for any unit of the force, and a gyro's bias does not count as
-    /// motion.
+    /// Parameters of rest detection. The limits of rest detection accept any unit of the force and any plausible gyro
+    /// bias.
     RestDetector::Params rests = {.rate_max_rad_s = 0.15, .force_min_m_s2 = 0.3};
-    double size_share_max = 0.15;     ///< maximum relative difference from gravity at rest: 80 mg of bias, 3 % of scale
-    double miss_deviations = 5.0;     ///< maximum angle, as a chord, in standard deviations of the rates
-    double miss_least_rad = 0.3;      ///< minimum tolerance of the angle: covers a bias, and pushes at rest
-    double miss_most_rad = 0.6;       ///< maximum tolerance of the angle: less certain rates do not determine the
-                                      ///< displacement
+    double size_share_max = 0.15;     ///< maximum relative difference from gravity: 80 mg of bias, 3 % of scale
+    double miss_deviations = 5.0;     ///< maximum angle error, in standard deviations of the rates
+    double miss_least_rad = 0.3;      ///< minimum tolerance of the angle error: covers bias, and pushes at rest
+    double miss_most_rad = 0.6;       ///< maximum tolerance of the angle error
     double correlation_s = 0.1;       ///< minimum correlation time of a rate's error
     double rotation_least_rad = 1.0;  ///< minimum rotation between two rests
-    double span_most_s = 60.0;        ///< maximum duration of a span, limited by the drift of a good gyro's bias
-    double gap_max_s = 0.1;           ///< longer gaps separate rests: an impact may change the rate by several rad/s
+    double span_most_s = 60.0;        ///< maximum time between two rests, limited by the bias drift of a gyro
+    double gap_max_s = 0.1;           ///< a longer gap separates rests, as an impact may change the rate
     double accel_range_m_s2 = 0.0;    ///< stated by the device; 0: not stated
 
     /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
@@ -66,7 +67,7 @@ class RestGravity {
             {"accel_range_m_s2", "m/s^2", 0.0, kUnbounded, "range stated by the device; 0: not stated"});
     }
   };
-  /// State for the magnitude of the force at rest.
+  /// Size contains the state for the magnitude of the force at rest.
   struct Size {
     RestDetector::State rest, weightless, heavy;
     double rest_s = 0.0, force_sum_m = 0.0;  ///< duration of all rests, and integral of the force at rest
@@ -77,36 +78,33 @@ class RestGravity {
   };
   struct State : Size {
     Eigen::Vector3d from_m_s2 = Eigen::Vector3d::Zero();  ///< force at the last rest in the sensor's axes; 0: none
-    Eigen::Quaterniond turned = Eigen::Quaterniond::Identity();  ///< rotation since then
-    double span_angle_rad = 0.0, variance_rad2 = 0.0;            ///< since then
-    Eigen::Vector3d velocity_sum_m_s = Eigen::Vector3d::Zero();  ///< since then, of the force in the axes of that rest
-    double span_s = 0.0, hidden_m_s = 0.0;                       ///< since then; deficit of the accelerometer
-    double segment_s = 0.0, segment_rad2_s = 0.0;                ///< duration and variance of consecutive unmeasured
-                                                                 ///< samples
-    double miss_rad = 0.0, miss_sigma_rad = 0.0;                 ///< angle error of the worst span between two rests,
-                                                                 ///< and its standard deviation
-    double velocity_share = 0.0, velocity_allowed_share = 0.0;   ///< velocity of the worst span, and its limit, over
-                                                                 ///< gravity times duration
-    std::size_t spans = 0;                                       ///< number of compared spans
+    Eigen::Quaterniond turned = Eigen::Quaterniond::Identity();  ///< rotation since the last rest
+    double span_angle_rad = 0.0, variance_rad2 = 0.0;  ///< angle since the last rest, and variance of its error
+    Eigen::Vector3d velocity_sum_m_s = Eigen::Vector3d::Zero();  ///< integrated force since the last rest
+    double span_s = 0.0, hidden_m_s = 0.0;         ///< time since the last rest; saturation deficit of the force
+    double segment_s = 0.0, segment_rad2_s = 0.0;  ///< duration and variance of unmeasured samples
+    double miss_rad = 0.0, miss_sigma_rad = 0.0;   ///< angle error of the worst pair of rests, with its deviation
+    double velocity_share = 0.0, velocity_allowed_share = 0.0;  ///< velocity error of the worst pair, and limit
+    std::size_t spans = 0;                                      ///< number of compared pairs of rests
   };
 
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit RestGravity(const Params& params);
 
-  /// Processes a sample and its estimated rate. Ignores samples that are not finite or out of order. O(1), no
-  /// allocation.
+  /// Processes a sample and its estimated rate. Cost: O(1), no allocation. Samples that are not finite or out of order
+  /// are ignored.
   void step(const ImuSample& sample, const RateState& rate, State& state) const;
-  /// Processes a sample without rates, for the magnitude of the force at rest alone.
+  /// Processes a sample without a rate, only for the magnitude of the force at rest.
   void step(const ImuSample& sample, Size& state) const { (void)follow(sample, state); }
 
   /// Returns the mean magnitude of the force at rest as a fraction of gravity. Returns 0 if every rest of a second was
-  /// without force, and 1 without any rest.
+  /// without force, and 1 if the body never rested.
   double size_share(const Size& state) const;
-  /// Returns `out_of_range` if size_share() differs from 1. Beyond a factor of three, the message reports the unit of
-  /// the force as suspect.
+  /// Returns `out_of_range` if size_share() differs from 1. If the magnitude is wrong by more than a factor of three,
+  /// the message names the unit of the force as suspect.
   Status size_verdict(const Size& state) const;
-  /// Returns the error of size_verdict(). Also returns `out_of_range` if the rates of the worst span between two rests
-  /// miss gravity or leave a velocity beyond the limits.
+  /// Returns the error of size_verdict(), or checks the rates of the worst pair of rests. Returns `out_of_range` if the
+  /// rates of the worst pair of rests miss gravity or leave a velocity beyond the limits.
   Status verdict(const State& state) const;
 
  private:

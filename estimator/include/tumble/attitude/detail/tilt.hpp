@@ -9,15 +9,15 @@
 
 namespace tumble {
 
-/// Returns the smallest rotation c with c * up_W = z, for a unit vector. The axis of c is horizontal, so the heading is
-/// unchanged. If up_W is opposite to z, c is a half turn about x.
+/// Returns the smallest rotation c with c * up_W = z, for a unit vector up_W. The axis of the rotation c is horizontal,
+/// so the heading is unchanged. If up_W is opposite to z, the rotation c is a half turn about x.
 inline Eigen::Quaterniond levelling(const Eigen::Vector3d& up_W) {
   const double w = std::sqrt(std::max(0.0, 0.5 * (1.0 + up_W.z())));
   if (w < 1e-6) return {0.0, 1.0, 0.0, 0.0};
   return Eigen::Quaterniond(w, 0.5 * up_W.y() / w, -0.5 * up_W.x() / w, 0.0).normalized();
 }
 
-/// Returns the fraction `share` in [0, 1] of the rotation `levelling`, about the axis of `levelling`.
+/// Returns the rotation about the axis of levelling(up_W) by the fraction `share` in [0, 1] of its angle.
 inline Eigen::Quaterniond tilt_correction(const Eigen::Vector3d& up_W, double share) {
   const double across = std::hypot(up_W.x(), up_W.y());
   const double angle = share * std::atan2(across, up_W.z());

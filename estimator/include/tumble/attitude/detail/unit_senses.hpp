@@ -8,18 +8,18 @@
 
 namespace tumble {
 
-/// Detects wrong axes common to all units: an axis of the gyros or of the accelerometers flipped, or two axes swapped.
+/// Detects wrong axes that all units share: a flipped axis of the gyros or of the accelerometers, or two swapped axes.
 /// UnitSenses compares force differences between units at different positions of one rigid body, summed over a whole
-/// run. imu_merge.md (I9).
+/// run. See imu_merge.md (I9).
 struct UnitSenses {
   static constexpr std::size_t kSenses = 12;  ///< x, y, z flipped; x y, y z, z x swapped; of gyros, then accelerometers
   static constexpr double kSizeMin_m2_s3 = 0.3;  ///< minimum effect of an alternative, above biases
-  static constexpr double kShareMin = 0.5;       ///< 1: the alternative explains all; -1: the unchanged axes do
+  static constexpr double kShareMin = 0.5;  ///< 1: the alternative explains all; -1: the unchanged axes explain all
 
   std::array<double, kSenses> gain_m2_s3{}, size_m2_s3{};
 
-  /// Adds one unit over `length_s`, in common axes. The arguments are the unit's force minus the mean of all units, its
-  /// position relative to the units' mean position, the rate and the angular acceleration. O(1), no allocation.
+  /// Adds the readings of one unit over `length_s`, in common axes. Cost: O(1), no allocation. `force_m_s2` and
+  /// `position_m` are the unit's force and position, both relative to the mean of all units.
   void add(const Eigen::Vector3d& force_m_s2, const Eigen::Vector3d& position_m, const Eigen::Vector3d& rate_rad_s,
            const Eigen::Vector3d& acceleration_rad_s2, double length_s);
 
@@ -27,7 +27,7 @@ struct UnitSenses {
     std::size_t sense = 0;
     double share = 0.0;
   };
-  /// Returns the alternative that explains most, if it explains more than kShareMin.
+  /// Returns the alternative that explains most, if the alternative explains more than kShareMin.
   std::optional<Detected> detected() const;
 
   bool operator==(const UnitSenses&) const = default;

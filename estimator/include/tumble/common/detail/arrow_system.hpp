@@ -7,9 +7,10 @@
 
 namespace tumble {
 
-/// Normal equations H d = g of a chain of blocks of `State` unknowns. Each block is coupled to the next one and to a
-/// common border of `Border` unknowns (an arrow matrix). The factorisation is in place: one block Cholesky sweep, then
-/// the border by its Schur complement. O(N) for N blocks.
+/// ArrowSystem contains the normal equations H d = g of a chain of blocks of `State` unknowns. Each block is coupled to
+/// the next block and to a common border of `Border` unknowns (an arrow matrix). The factorisation is in place: a
+/// Cholesky factorisation from block to block, followed by the Schur complement of the border. The cost is O(N) for N
+/// blocks.
 ///
 ///     | D0  E0          B0 |
 ///     | E0' D1  E1      B1 |
@@ -23,10 +24,11 @@ struct ArrowSystem {
   using BorderMatrix = Eigen::Matrix<double, Border, Border>;
   using BorderVector = Eigen::Matrix<double, Border, 1>;
 
-  /// One block row: before elimination D, E, B, g; afterwards L^-1, L^-1 E, L^-1 B, L^-1 g with D = L L' (lower).
+  /// Block is one block row. Before elimination, a Block contains D, E, B and g; after elimination, L^-1, L^-1 E, L^-1
+  /// B and L^-1 g, with D = L L'.
   struct Block {
     StateMatrix diagonal = StateMatrix::Zero();
-    StateMatrix coupling = StateMatrix::Zero();  ///< coupling to the next block, as (this, next)
+    StateMatrix coupling = StateMatrix::Zero();  ///< coupling of this block (rows) to the next block (columns)
     CrossMatrix border = CrossMatrix::Zero();
     StateVector gradient = StateVector::Zero();
 
@@ -39,7 +41,8 @@ struct ArrowSystem {
     }
   };
 
-  /// The border: before elimination C and its gradient; afterwards their Schur complement.
+  /// Corner is the border. Before elimination, a Corner contains C and its gradient; after elimination, their Schur
+  /// complement.
   struct Corner {
     BorderMatrix matrix = BorderMatrix::Zero();
     BorderVector gradient = BorderVector::Zero();
@@ -51,34 +54,35 @@ struct ArrowSystem {
     }
   };
 
-  /// Conditional distribution of a block for a known border: covariance of the block, and derivative of the block's
-  /// mean by the border.
+  /// Conditional is the distribution of a block for a known border: covariance of the block, and derivative of the
+  /// block's mean by the border.
   struct Conditional {
     StateMatrix state;
     CrossMatrix by_border;
   };
 
-  /// Posterior covariance of a block, and its cross-covariance with the border.
+  /// Marginal contains the posterior covariance of a block, and its cross-covariance with the border.
   struct Marginal {
     StateMatrix state;
     CrossMatrix cross;
   };
 
-  /// Eliminates `block` and adds its Schur complement to `next` (null for the last block) and to the corner. The
-  /// function also marginalises the oldest block of a window. Returns false if the block is not positive definite.
+  /// Eliminates `block`, and adds its Schur complement to `next` (null for the last block) and to the corner. A window
+  /// marginalises its oldest block by eliminate(). Returns false if the block is not positive definite.
   static bool eliminate(Block& block, Block* next, Corner& corner);
 
-  /// Computes the step of the border after all blocks are eliminated, and its covariance. Returns false if the corner
+  /// Computes the step of the border and its covariance, after all blocks are eliminated. Returns false if the corner
   /// is not positive definite.
   static bool solve_corner(const Corner& corner, BorderVector& step, BorderMatrix& covariance);
 
-  /// Returns the step of an eliminated block from the steps of the next block (null for the last) and of the border.
+  /// Returns the step of an eliminated block from the steps of the next block (null for the last block) and of the
+  /// border.
   static StateVector back_substitute(const Block& block, const StateVector* next_step, const BorderVector& border_step);
 
-  /// Returns the conditional of an eliminated block from that of the next block (null for the last).
+  /// Returns the conditional distribution of an eliminated block from that of the next block (null for the last block).
   static Conditional back_conditional(const Block& block, const Conditional* next);
 
-  /// Returns the marginal, which adds the border's uncertainty.
+  /// Returns the marginal covariance of a block, which includes the uncertainty of the border.
   static Marginal marginal(const Conditional& conditional, const BorderMatrix& border_covariance);
 
  private:
@@ -86,8 +90,8 @@ struct ArrowSystem {
   static void subtract_square(const CrossMatrix& border, BorderMatrix& corner);
 };
 
-// Replaces `a` by L^-1, where a = L L' and L is lower. The function uses plain loops over columns, because Eigen's
-// general triangular solvers are several times slower at the sizes of the blocks. One division per column.
+// Replaces `a` by L^-1, where a = L L' and L is lower triangular. The function uses plain loops over columns, because
+// Eigen's general triangular solvers are several times slower for small blocks. Each column needs one division.
 template <int State, int Border>
 bool ArrowSystem<State, Border>::invert_factor(StateMatrix& a) {
   StateMatrix L = a;
@@ -115,7 +119,7 @@ bool ArrowSystem<State, Border>::invert_factor(StateMatrix& a) {
   return true;
 }
 
-// Subtracts border' border from the corner. Only one triangle is computed and then mirrored.
+// Subtracts border' border from the corner. The function computes one triangle of the product and mirrors the triangle.
 template <int State, int Border>
 void ArrowSystem<State, Border>::subtract_square(const CrossMatrix& border, BorderMatrix& corner) {
   constexpr int kHead = Border > 16 ? 12 : Border > 8 ? 8 : Border - 1, kTail = Border - kHead;

@@ -4,11 +4,11 @@
 #include <Eigen/Core>
 #include <cstddef>
 
-/// A program must lay out Eigen's matrices and the standard library's containers as the compiled library does. With
-/// different layouts, program and library read each other's memory wrongly. CMake's targets ensure equal layouts. A
-/// program that changes the layout, for example by EIGEN_MAX_STATIC_ALIGN_BYTES, EIGEN_DONT_VECTORIZE or
-/// _GLIBCXX_DEBUG, does not link. The linker then reports CompiledAlike<...>::linked as missing, whose arguments are
-/// the settings of the program.
+/// A program must lay out Eigen's matrices and the standard library's containers as the compiled library does. If the
+/// layouts differ, program and library misread each other's memory. The CMake targets of the library ensure equal
+/// layouts. A program that changes the layout, for example by EIGEN_MAX_STATIC_ALIGN_BYTES, EIGEN_DONT_VECTORIZE or
+/// _GLIBCXX_DEBUG, does not link. The linker then reports CompiledAlike<...>::linked as missing, and the template
+/// arguments show the settings of the program.
 namespace tumble::detail {
 
 #ifdef _GLIBCXX_DEBUG
@@ -35,7 +35,7 @@ using CompiledHere = CompiledAlike<EIGEN_MAX_STATIC_ALIGN_BYTES, EIGEN_MALLOC_AL
 template <>
 const char CompiledHere::linked;  // a declaration; src/common/compiled_alike.cpp has the definition
 
-/// Each source file of the program has its own reference, so that the linker checks each source file.
+/// Each source file of the program has a separate reference to `linked`, so that the linker checks each source file.
 [[gnu::used]] static const char* const kCompiledAlike = &CompiledHere::linked;
 
 }  // namespace tumble::detail

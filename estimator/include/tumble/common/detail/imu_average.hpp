@@ -8,8 +8,8 @@
 
 namespace tumble {
 
-/// Averages IMU readings over windows of one length. The bandwidth and the thresholds of a filter then do not depend on
-/// the IMU's rate. A single reading as long as the window is returned bit for bit.
+/// Averages IMU readings over windows of one length. After averaging, bandwidth and thresholds of a filter do not
+/// depend on the IMU's sample rate. A single reading that is as long as the window is returned bit for bit.
 ///
 /// ImuAverage does not model coning and sculling within the window.
 struct ImuAverage {
@@ -35,7 +35,7 @@ struct ImuAverage {
     force_peak_m_s2 = std::max(force_peak_m_s2, sample.specific_force_m_s2.cwiseAbs().maxCoeff());
   }
 
-  /// Returns whether another reading of `dt_s` would increase the difference from `window_s`.
+  /// Returns whether the average is full: another reading of `dt_s` would increase the difference from `window_s`.
   bool full(double window_s, double dt_s) const { return length_s >= window_s - 0.5 * dt_s; }
 
   bool operator==(const ImuAverage& other) const {

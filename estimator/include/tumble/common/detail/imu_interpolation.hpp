@@ -8,27 +8,27 @@
 
 namespace tumble {
 
-/// Position of a time between the samples of an IMU.
+/// ImuNeighbours is the position of a time between the samples of an IMU.
 struct ImuNeighbours {
-  std::size_t before = 0, after = 0;  ///< neighbouring samples; beyond either end, the two samples there
-  double share = 0.0;                 ///< interpolation weight: below 0 before the first sample, above 1 after the last
-  double length_s = 0.0;              ///< time between the two samples
+  std::size_t before = 0, after = 0;  ///< neighbouring samples; beyond an end, the two samples at that end
+  double share = 0.0;                 ///< interpolation weight; outside of [0, 1] beyond either end
+  double length_s = 0.0;              ///< time between the two neighbouring samples
   bool between() const { return share >= 0.0 && share <= 1.0; }
 };
 
-/// Interpolates the readings of one IMU at the stamps of another. Stamps are the ends of sample windows. The linear
-/// interpolation of two readings approximates the mean over a window that ends at the stamp. ImuInterpolation does not
-/// model different window lengths, or rotation within a window.
+/// Interpolates the readings of one IMU at the time stamps of another IMU. A time stamp is the end of the sample's
+/// window. The linear interpolation of two readings approximates the mean over a window that ends at the time stamp.
+/// ImuInterpolation does not model different window lengths, or rotation within a window.
 class ImuInterpolation {
  public:
   /// Constructs from at least two samples with increasing stamps, which must outlive the ImuInterpolation.
   explicit ImuInterpolation(std::span<const ImuSample> samples) : samples_(samples) {}
 
-  /// Returns the neighbours of `time_ns`, which must not decrease from call to call. Amortised O(1).
+  /// Returns the neighbours of `time_ns`, which must not decrease from call to call. Cost: amortised O(1).
   ImuNeighbours around(TimeNs time_ns);
 
-  /// Returns the interpolated reading with the flags of both neighbours. At the time of a sample, returns the sample
-  /// bit for bit.
+  /// Returns the interpolated reading, with the clip flags of both neighbours. At the time of a sample, at() returns
+  /// the sample bit for bit.
   ImuSample at(TimeNs time_ns, const ImuNeighbours& neighbours) const;
 
  private:

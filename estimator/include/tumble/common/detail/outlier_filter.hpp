@@ -11,35 +11,35 @@
 
 namespace tumble {
 
-/// Rejects single wild readings of an IMU, as bus faults cause them. A rejected reading counts as missing.
+/// Rejects single wild readings of an IMU, which bus faults cause. A rejected reading counts as missing.
 ///
-/// A reading is an outlier if it leaves both of its neighbours in the same direction while the neighbours agree with
-/// each other, and if the readings of the other triad show no cause. The cause of a jump of the gyro is a change of the
-/// force, and the cause of a jump of the accelerometer is a change of the rate. A stamp that lies ahead of the next
-/// stamp is also an outlier. Equations: outliers.md (O1) to (O6).
+/// A reading is an outlier if it jumps in one direction from two neighbours that agree with each other, and no cause
+/// explains the jump. A change of the force explains a jump of the gyro, and a change of the rate explains a jump of
+/// the accelerometer. A time stamp that is later than the next time stamp is also an outlier. The equations of
+/// OutlierFilter are outliers.md (O1) to (O6).
 ///
-/// The filter is causal. OutlierFilter delays a reading that jumps further than the other triad explains until the next
-/// reading confirms or refutes it. All other readings pass at once, unchanged. Readings beyond kRateMax_rad_s or
+/// OutlierFilter is causal. OutlierFilter delays a suspicious reading by one sample, until the next reading confirms or
+/// contradicts the reading. All other readings pass immediately and unchanged. Readings beyond kRateMax_rad_s or
 /// kForceMax_m_s2 never pass. Cost: O(1) per reading, no allocation. OutlierFilter does not model two wild readings in
-/// a row, a wild first reading, or a wild reading during an impact that is hard enough to explain it.
+/// succession, a wild first reading, or a wild reading during a hard impact.
 class OutlierFilter {
  public:
-  /// Limits of plausible readings. No gyro measures faster rates (57 000 deg/s), and no accelerometer of a robot
-  /// measures larger forces (10 000 g).
+  /// Limits of plausible readings. No gyro measures rates above kRateMax_rad_s (57 000 deg/s), and no accelerometer of
+  /// a robot measures forces above kForceMax_m_s2 (10 000 g).
   static constexpr double kRateMax_rad_s = 1000.0, kForceMax_m_s2 = 1e5;
-  /// Devices read up to this multiple of the range in their data sheet.
+  /// Devices read up to kRangesMax times the range in their data sheet.
   static constexpr double kRangesMax = 2.0;
 
-  /// Properties of the device, from its data sheet; 0: not stated.
+  /// Properties of the device, from its data sheet; 0 means not stated.
   struct Device {
     double gyro_range_rad_s = 0.0;
     double accel_range_m_s2 = 0.0;
-    double period_s = 0.0;   ///< nominal time between samples: a sample whose stamp steps by much more is delayed
-    double gap_max_s = 1.0;  ///< a step longer than this is not held: the caller handles gaps
+    double period_s = 0.0;   ///< nominal time between samples; a sample after a gap is delayed
+    double gap_max_s = 1.0;  ///< a sample after a longer gap is not delayed
   };
 
   struct State {
-    std::array<ImuSample, 2> passed{};  ///< last samples that passed, the newest one last
+    std::array<ImuSample, 2> passed{};  ///< last samples that passed; the newest is last
     std::size_t count = 0;              ///< number of valid samples in `passed`
     std::optional<ImuSample> held;
     std::size_t rejected = 0;  ///< number of samples rejected since the start
@@ -47,19 +47,20 @@ class OutlierFilter {
 
   explicit OutlierFilter(const Device& device) : device_(device) {}
 
-  /// Judges the delayed sample by `next`, which must be later than the samples that passed. Returns the delayed sample
-  /// if `next` confirms it. Returns nothing if the delayed sample is rejected or no sample was delayed. After the call,
-  /// no sample is delayed.
+  /// Decides about the delayed sample from `next`, which must be later than all samples that passed. Returns the
+  /// delayed sample if `next` confirms the delayed sample. Returns nothing if the delayed sample is rejected or no
+  /// sample was delayed. After the call, no sample is delayed.
   std::optional<ImuSample> settle(const ImuSample& next, State& state) const;
 
-  /// Returns true if a finite sample must not be used now, because it is delayed, or rejected as larger than any sensor
-  /// reads. Call settle() before keeps_back().
+  /// Returns true if a finite sample must not be used now. An unusable sample is delayed, or rejected because no sensor
+  /// reads such large values. Call settle() before keeps_back().
   bool keeps_back(const ImuSample& sample, State& state) const;
 
-  /// Records that a sample was used: a sample that settle() returned, or a sample that keeps_back() did not keep.
+  /// Records that a sample was used: a sample that settle() returned, or a sample for which keeps_back() returned
+  /// false.
   static void pass(const ImuSample& sample, State& state);
 
-  /// Rejects the delayed sample, if any, because no further reading can confirm it.
+  /// Rejects the delayed sample, if any, because no further reading can confirm the sample.
   static void finish(State& state);
 
  private:
@@ -70,7 +71,8 @@ class OutlierFilter {
   Device device_;
 };
 
-/// Judges a recording whose samples are finite and in order of time. Element k is true if sample k passes. O(N).
+/// Finds the inliers of a recording whose samples are finite and in order of time. Cost: O(N). Element k of the result
+/// is true if sample k passes.
 std::vector<bool> find_inliers(const OutlierFilter& filter, std::span<const ImuSample> samples);
 
 }  // namespace tumble

@@ -7,12 +7,12 @@
 
 namespace tumble {
 
-/// Largest plausible component of a rate [rad/s] or a force [m/s^2]. Squares of components up to this limit stay
-/// finite. check_sample() returns `out_of_range` for larger readings.
+/// Largest plausible component of a rate [rad/s] or a force [m/s^2]. Squares of components up to kReadingMax remain
+/// finite. The function check_sample() returns `out_of_range` for larger readings.
 inline constexpr double kReadingMax = 1e6;
 
-/// Returns the first error in a sequence of samples: `empty`, the error of a single sample (check_sample()), or the
-/// error of a pair (check_follows()). O(N).
+/// Returns the first error in a sequence of samples: `empty`, an error of check_sample(), or an error of
+/// check_follows(). Cost: O(N).
 Status check_samples(std::span<const ImuSample> samples, double gap_max_s);
 
 }  // namespace tumble

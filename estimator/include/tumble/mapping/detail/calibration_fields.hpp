@@ -3,7 +3,7 @@
 
 #include "tumble/common/parameters.hpp"
 
-/// Fields shared by all `Params` that state the accuracy of the lidar's mounting and time offset.
+/// The fields are shared by all `Params` that state the accuracy of the lidar's mounting and time offset.
 namespace tumble::calibration_fields {
 
 inline constexpr Field kMountSigma_rad{

@@ -10,21 +10,20 @@
 namespace tumble {
 
 /// Errors of inertial integration after kSpan_s, in addition to the uncertainty in RateState. The standard deviations
-/// grow in proportion to time. Choose larger values if unsure. Smaller values constrain the pose in a world with few
-/// features.
+/// of inertial integration grow in proportion to time. Choose larger standard deviations if unsure. Smaller standard
+/// deviations constrain the pose in a world with few features.
 struct InertialNoiseParams {
   static constexpr double kSpan_s = 0.1;  ///< time between two sweeps of most lidars
   double sigma_m = 0.003;
   double sigma_rad = 0.002;
   double sigma_m_s = 0.01;
-  /// Rotation error as a fraction of the angle turned: errors of scale and misalignment, and rate changes within a
-  /// sample.
+  /// Rotation error as a fraction of the angle turned, due to scale, misalignment, and rate changes within a sample.
   double rotation_share = 0.001;
   /// Velocity error as a fraction of the integral of the specific force. The velocity error matters at impacts.
   double force_share = 0.03;
-  /// Velocity and rate are random walks over a gap of the IMU, mapping.md (R43), (R44). For tumbling rigs and gaps of
-  /// 0.05 to 0.5 s, the true velocity walks are 2.4 to 4.1. For a rate that is known at both ends, the rate walks are 3
-  /// to 11.
+  /// Velocity and rate are random walks over a gap of the IMU, see mapping.md (R43), (R44). For tumbling rigs and gaps
+  /// of 0.05 to 0.5 s, the true velocity walks are 2.4 to 4.1 m/s per sqrt(s). If the rate is known at both ends of the
+  /// gap, the true rate walks are 3 to 11 rad/s per sqrt(s).
   double gap_velocity_walk_m_s_sqrt_s = 3.0;
   double gap_rate_walk_rad_s_sqrt_s = 9.0;
   double rate_sigma_max_rad_s = 5.0;  ///< upper bound of the standard deviation in RateState
@@ -51,25 +50,23 @@ struct InertialNoiseParams {
   }
 };
 
-/// Parameters of a saturated IMU. Accelerometer readings from accel_m_s2 on, and readings flagged by the device, are
-/// saturated. The true force may then be larger by force_sigma_m_s2 (standard deviation) for as long as the saturation
-/// lasts.
+/// Parameters of a saturated IMU. Accelerometer readings at or above accel_m_s2, and readings that the device flags,
+/// are saturated. While a reading is saturated, the true force may be larger by force_sigma_m_s2 (standard deviation).
 ///
-/// With estimate_deficit, the registration estimates the saturation deficit of the rate on clipped axes, at
-/// SweepTrajectory::kKnots knots per sweep. The deficit acts on clipped samples only, in proportion to the reported
-/// uncertainty of the rate. The prior of the deficit is the reported uncertainty, at least deficit_sigma_min_rad_s,
-/// correlated over deficit_time_s. If saturation lasts across the boundary of two sweeps, the deficit is continuous at
-/// the boundary.
+/// If estimate_deficit is true, the registration estimates the saturation deficit of the rate on clipped axes, at
+/// SweepTrajectory::kKnots knots per sweep. The saturation deficit changes only clipped samples, in proportion to the
+/// reported uncertainty of the rate. The prior standard deviation of the saturation deficit is the reported
+/// uncertainty, but at least deficit_sigma_min_rad_s, correlated over deficit_time_s. If saturation lasts across the
+/// boundary of two sweeps, the saturation deficit is continuous at the boundary.
 struct RailedImuParams {
   double accel_m_s2 = 1e5;
   double force_sigma_m_s2 = 50.0;
-  double rate_sigma_rad_s = 3.0;  ///< assumed standard deviation of a rate on a clipped axis that the rate method did
-                                  ///< not recover
+  double rate_sigma_rad_s = 3.0;  ///< standard deviation of a clipped rate that was not recovered
   bool estimate_deficit = false;
   double deficit_sigma_min_rad_s = 1.0;
   double deficit_time_s = 0.3;
-  double deficit_carry_max = 3.0;    ///< maximum growth across a boundary if the uncertainty is larger after it
-  double deficit_knot_share = 0.05;  ///< standard deviation between adjacent knots, as a fraction of the deficit's
+  double deficit_carry_max = 3.0;    ///< maximum growth of the deficit across a sweep boundary
+  double deficit_knot_share = 0.05;  ///< standard deviation between adjacent knots, as a fraction
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -95,9 +92,9 @@ struct RailedImuParams {
   }
 };
 
-/// Parameters of the ballistic arc. Where the specific force at the centre of mass is below force_m_s2, the force
-/// predicted by free flight replaces the accelerometer's reading. The arc bridges a gap of the IMU that begins in
-/// flight.
+/// Parameters of the ballistic arc of a body in flight. Where the specific force at the centre of mass is below
+/// force_m_s2, the force predicted by free flight replaces the accelerometer's reading. The ballistic arc also bridges
+/// a gap of the IMU that begins in flight.
 struct FlightParams {
   std::optional<FlyingBody> body;  ///< empty: always use the accelerometer
   double force_m_s2 = 4.0;

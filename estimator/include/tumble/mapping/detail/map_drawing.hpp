@@ -11,11 +11,12 @@
 
 namespace tumble::mapping {
 
-/// Numbers the scan lines of a map. Sweeps at a constant attitude scan the same lines of the world and share line
-/// numbers. After a rotation the lines have new numbers.
+/// ScanLines numbers the scan lines of a map. Sweeps at a constant attitude scan identical lines of the world, and
+/// therefore share line numbers. After a rotation of the sensor, the scan lines have new numbers.
 class ScanLines {
  public:
-  /// Returns the number of ring 0 of a sweep with this spin axis, or VoxelMap::kNoLine if rings are not distinguished.
+  /// Returns the line number of ring 0 of a sweep with the given spin axis, or VoxelMap::kNoLine if the device does not
+  /// report rings.
   std::uint32_t base(const Eigen::Vector3d& spin_axis_W, bool rings_differ);
   static std::uint32_t line(std::uint32_t base, std::uint16_t ring) {
     return base == VoxelMap::kNoLine ? base : base | ring;
@@ -28,8 +29,8 @@ class ScanLines {
   std::uint32_t attitude_ = 0;                        // number of attitude changes
 };
 
-/// Returns the points of a map with normals fitted to nearest neighbours. Each normal points towards the sensor's
-/// position at the time of observation. O(n).
+/// Returns the points of a map, with normals fitted to nearest neighbours. Cost: O(n). Each normal points towards the
+/// position from which the sensor observed the point.
 std::vector<MapPoint> with_normals(const VoxelMap& map, std::span<const Eigen::Vector3f> seen_from_W_m, int neighbours,
                                    double match_distance_m);
 

@@ -8,12 +8,11 @@ namespace tumble {
 
 /// Extent and resolution of the local map.
 struct LocalMapParams {
-  static constexpr double kPruneShare = 0.1;  ///< motion, as a fraction of radius_m, after which distant points are
-                                              ///< deleted
+  static constexpr double kPruneShare = 0.1;  ///< motion that deletes distant points, as a fraction of radius_m
   double voxel_m = 0.5;                       ///< edge of a cell of the map's hash table
   double spacing_m = 0.1;                     ///< edge of the cubes that contain at most one map point
-  double radius_m = 100.0;                    ///< points within this distance of the sensor are kept, to a tenth of it
-  double sigma_max_m = 0.25;                  ///< points with a larger trajectory error are not inserted
+  double radius_m = 100.0;                    ///< points within this distance of the sensor are kept
+  double sigma_max_m = 0.25;                  ///< points with a larger standard deviation are not inserted
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -27,13 +26,13 @@ struct LocalMapParams {
   }
 };
 
-/// Uncertainty of the map relative to the world: docs/maths/mapping.md, section 8.
+/// Uncertainty of the map relative to the world, see docs/maths/mapping.md, section 8.
 struct WorldCovarianceParams {
-  double tilt_sigma_rad = 0.002;  ///< tilt error of the levelled start: an accelerometer's turn-on bias of 2 mg
-  /// Drift per sweep as a fraction of the weakest direction's standard deviation, where surfaces do not constrain the
-  /// direction. The value is measured.
+  double tilt_sigma_rad = 0.002;  ///< tilt error of the levelled start: accelerometer bias of 2 mg
+  /// Drift per sweep where surfaces do not constrain a direction, as a fraction of the standard deviation of the
+  /// weakest direction. The drift fraction is a measured value.
   double drift_share = 0.1;
-  double drift_sigma_max_m = 3.0;  ///< upper bound of a direction's standard deviation in this rule
+  double drift_sigma_max_m = 3.0;  ///< upper bound of the standard deviation from which drift is computed
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {

@@ -10,19 +10,20 @@ namespace tumble {
 
 /// Matching of a sweep with the map.
 struct MatchingParams {
-  int neighbours = 12;              ///< k of the plane fit
-  double distance_m = 1.0;          ///< farther map points are not matched
-  std::size_t least = 100;          ///< minimum number of matched points; fewer reject the sweep
-  std::size_t agreeing_least = 30;  ///< minimum number if the result agrees with the prior
-  /// Maximum iterations of a registration. At most eight iterations use all points. After eight iterations, the
-  /// registration continues with a thousand points until convergence.
+  int neighbours = 12;              ///< number k of neighbours of a plane fit
+  double distance_m = 1.0;          ///< maximum distance of matched map points
+  std::size_t least = 100;          ///< minimum number of matches; sweeps with fewer are rejected
+  std::size_t agreeing_least = 30;  ///< minimum number of matches if the result agrees with the prior
+  /// Maximum number of iterations of a registration. At most eight iterations use all points. After eight iterations,
+  /// the registration continues with a thousand points until convergence.
   int iterations_max = 30;
   double correction_max_m = 15.0;   ///< a larger correction of the prior is rejected
   double correction_max_rad = 1.1;  ///< a larger correction of the prior is rejected
-  /// Growth of a point's uncertainty over the sweep, which reduces its weight (the published time weighting).
+  /// Growth of a point's standard deviation over the sweep, which reduces the point's weight (the published time
+  /// weighting).
   double skew_sigma_m_s = 0.25;
-  /// A sweep is `degenerate` if its surfaces alone leave a larger standard deviation in some direction. Attitude counts
-  /// as displacement at the root-mean-square lever arm.
+  /// A sweep is `degenerate` if its surfaces alone leave a larger standard deviation in some direction. Attitude is
+  /// converted to displacement by the root-mean-square lever arm.
   double degenerate_sigma_m = 0.15;
 
   template <class Self, class Visitor>
@@ -45,20 +46,19 @@ struct MatchingParams {
   }
 };
 
-/// Stages of a registration: few iterations with all points, further iterations with a subsample until convergence, and
-/// a coarse stage for starts far from the prior.
+/// Stages of a registration: few iterations with all points, further iterations with a subsample, and a coarse stage
+/// for starts far from the prior.
 struct RegistrationStagesParams {
-  int full_iterations = 8;              ///< iterations with all points; without convergence, a subsample continues at
-                                        ///< lower cost
+  int full_iterations = 8;              ///< iterations with all points, before iterations with a subsample
   std::size_t subsample_points = 1000;  ///< sufficient to decide whether a start converges
-  int coarse_iterations = 15;           ///< iterations for a start that may be far off
-  std::size_t coarse_points = 300;      ///< points of a coarse start
+  int coarse_iterations = 15;           ///< iterations of a start far from the prior
+  std::size_t coarse_points = 300;      ///< number of points of a coarse start
   std::size_t coarse_matches_min = 50;  ///< minimum number of matches of a coarse start
-  double coarse_kernel_min_m = 0.5;     ///< minimum width of its robust kernel
+  double coarse_kernel_min_m = 0.5;     ///< minimum width of the robust kernel of a coarse start
   double coarse_rematch_m = 0.2;        ///< motion of a point after which its plane is searched again
   double coarse_step_m = 5e-3;          ///< convergence bound of a step, together with coarse_step_rad
   double coarse_step_rad = 2e-3;
-  double coarse_fitting_share_min = 0.2;  ///< minimum fraction of its matches within three standard deviations
+  double coarse_fitting_share_min = 0.2;  ///< minimum fraction of coarse matches within three standard deviations
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -80,19 +80,19 @@ struct RegistrationStagesParams {
   }
 };
 
-/// Handling of sweeps without a registration and of tracking failure.
+/// Handling of sweeps without a registration, and of tracking failure.
 struct TrackingParams {
-  /// A sweep with too few matches still extends the map, as `degenerate`, while the inertial prior has smaller standard
-  /// deviations than extend_sigma_max_m and its counterpart for attitude. A lidar at rest scans only rings, which give
-  /// no planes until the lidar rotates. LocalMapParams::sigma_max_m excludes points that are too uncertain at their
-  /// range due to the attitude.
+  /// A sweep with too few matches still extends the map, as `degenerate`, while the standard deviations of the inertial
+  /// prediction are below extend_sigma_max_m and extend_sigma_max_rad. A lidar at rest scans only rings, which give no
+  /// planes until the lidar rotates. LocalMapParams::sigma_max_m excludes points that are too uncertain at their range
+  /// because of the attitude.
   double extend_sigma_max_m = 0.1;
   double extend_sigma_max_rad = 0.1;
-  /// Maximum number of consecutive sweeps with points but without registration. After this number, the mapper continues
-  /// by inertial prediction and reports `degenerate`.
+  /// Maximum number of consecutive sweeps with points but without registration. After lost_sweeps_max sweeps, the
+  /// mapper continues by inertial prediction and reports `degenerate`.
   int lost_sweeps_max = 30;
-  /// Minimum fraction of a sweep's matches within three standard deviations (0.997 for normal errors) that confirms a
-  /// relocalisation. A smaller fraction contradicts the relocalisation.
+  /// Minimum fraction of a sweep's matches within three standard deviations that confirms a relocalisation. The
+  /// expected fraction for normal errors is 0.997. A smaller fraction contradicts the relocalisation.
   double confirm_inlier_ratio = 0.9;
 
   template <class Self, class Visitor>
@@ -110,15 +110,15 @@ struct TrackingParams {
   }
 };
 
-/// Starting poses for a sweep that was not registered from its prior: docs/maths/mapping.md, sections 5 and 10.
+/// Starting poses for a sweep that was not registered from its prior, see docs/maths/mapping.md, sections 5 and 10.
 struct RelocalizationParams {
-  static constexpr double kLeastShift_m = 0.3, kLeastRotation_rad = 0.1;  ///< closer starts converge to the same pose
+  static constexpr double kLeastShift_m = 0.3, kLeastRotation_rad = 0.1;  ///< closer starts converge to one pose
   int deficit_tries_max = 5;       ///< number of larger saturation deficits tried per sweep, on all axes together
-  double deficit_try_rad_s = 3.0;  ///< the first of them; two, three and five times this value follow
-  int starts_per_sweep = 3;        ///< starts after tracking failure, including the prior
+  double deficit_try_rad_s = 3.0;  ///< smallest tried deficit; two, three and five times this value follow
+  int starts_per_sweep = 3;        ///< number of starts after tracking failure, including the prior
   double shift_m = 1.0;            ///< initial distance of the further starts from the prior
   double rotation_rad = 0.3;       ///< initial rotation of the further starts from the prior
-  int rounds = 3;                  ///< number of rounds; each extends the distances by the initial value
+  int rounds = 3;                  ///< number of rounds; each round adds the initial distances
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {

@@ -6,9 +6,9 @@
 /// Groups of LidarInertialOdometry::Params::Expert: detection of rest, at the start and later.
 namespace tumble {
 
-/// Limits at rest (`mapper_rest.hpp`): the rate stays within rate_rad_s of the bias and of its mean. The specific force
-/// stays within force_m_s2 of gravity and of its mean. During the initial rest the robot is stationary, and the mean
-/// rate becomes the gyro's bias.
+/// Limits of rest detection (`mapper_rest.hpp`): at rest, the rate differs from the bias and from its mean by at most
+/// rate_rad_s. At rest, the specific force differs from gravity and from its mean by at most force_m_s2. During the
+/// initial rest the robot is stationary, and the mean rate becomes the estimate of the gyro's bias.
 struct RestBoundsParams {
   double levels_s = 0.5;  ///< maximum duration of the initial rest that is used for levelling
   double rate_rad_s = 0.05;
@@ -27,11 +27,11 @@ struct RestBoundsParams {
 
 /// Parameters of the start: an IMU levelled at rest, and the corrections that the first sweeps may apply.
 struct OdometryStartParams {
-  /// Standard deviation that weights the levelled attitude: five times the tilt that WorldCovarianceParams reports. The
-  /// larger value allows for a start that was not at rest.
+  /// Standard deviation of the levelled attitude in the registration: five times the tilt that WorldCovarianceParams
+  /// reports. The larger standard deviation allows for a start that was not at rest.
   double level_sigma_rad = 0.01;
-  double speed_sigma_m_s = 0.05;  ///< residual speed of an apparent rest
-  double bias_rest_s = 0.1;       ///< minimum rest for an estimate of the gyro's bias
+  double speed_sigma_m_s = 0.05;  ///< residual speed of a robot that seems to be at rest
+  double bias_rest_s = 0.1;       ///< minimum duration of a rest that determines the gyro's bias
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -42,15 +42,15 @@ struct OdometryStartParams {
   }
 };
 
-/// Parameters of a stationary robot: at the start, or while the IMU measures only gravity.
+/// Parameters of a stationary robot, at the start or while the IMU measures only gravity.
 struct StandstillParams {
   double start_sigma_m_s = 0.01;  ///< standard deviation of the velocity during the initial rest
   double sigma_m_s = 0.05;        ///< standard deviation of the velocity while the IMU measures only gravity
-  /// While the IMU measures only gravity and no surface constrains the pose, the robot is stationary below this
-  /// estimated speed. The rule prevents slow drift in a world without features.
+  /// Maximum estimated speed of a robot that is treated as stationary while the IMU measures only gravity and no
+  /// surface constrains the pose. The limit prevents slow drift in a world without features.
   double creep_max_m_s = 0.5;
-  int sweeps_min = 3;         ///< minimum number of consecutive sweeps for this rule
-  double noise_share = 0.02;  ///< fraction of the inertial prior's standard deviations in motion
+  int sweeps_min = 3;         ///< minimum number of consecutive sweeps for using creep_max_m_s
+  double noise_share = 0.02;  ///< fraction of the standard deviations of inertial prediction in motion
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {

@@ -8,7 +8,8 @@
 
 namespace tumble {
 
-/// Hash table from the integer coordinates of a cube to a number, with open addressing. Single keys cannot be removed.
+/// SpatialHash is a hash table from the integer coordinates of a cube to a number, with open addressing. Single keys
+/// cannot be removed.
 class SpatialHash {
  public:
   static constexpr std::uint32_t kAbsent = 0xffffffffu;
@@ -30,10 +31,10 @@ class SpatialHash {
     }
   }
 
-  /// Inserts a key with a value unless it exists. Returns the stored value. Amortised O(1).
+  /// Inserts a key with a value unless the key exists. Cost: amortised O(1). Returns the stored value.
   std::uint32_t insert(std::uint64_t key, std::uint32_t value);
 
-  /// Inserts a key without a value. Returns whether the key was new. Amortised O(1).
+  /// Inserts a key without a value. Cost: amortised O(1). Returns whether the key was new.
   bool add(std::uint64_t key);
 
   /// Removes all keys and keeps the memory.
@@ -50,8 +51,8 @@ class SpatialHash {
   static constexpr std::uint64_t kFree = ~std::uint64_t{0};
 
   std::size_t slot_of(std::uint64_t key) const {
-    // The eight cubes of a 2 x 2 x 2 block are adjacent and thus in one cache line, because successive queries are
-    // usually close together. Fibonacci hashing distributes the blocks.
+    // The eight cubes of a 2 x 2 x 2 block are in one cache line, because successive queries are usually close
+    // together. Fibonacci hashing distributes the blocks.
     constexpr std::uint64_t kInside = 1 | (std::uint64_t{1} << 21) | (std::uint64_t{1} << 42);
     const std::uint64_t block = key & ~kInside;
     const std::uint64_t hash = (block ^ (block >> 29)) * 0x9e3779b97f4a7c15u;

@@ -10,12 +10,12 @@
 
 namespace tumble::mapping {
 
-/// Returns `out_of_range` if a point was fired after the sweep's end.
+/// Returns `out_of_range` if a point was fired after the end of the sweep.
 Status check_offsets(TimeNs span_ns, std::span<const LidarPoint> points);
 
 /// Checks whether a sweep is usable. Returns `empty` (no points), `non_finite` (no finite point), `too_few` (no point
 /// in range) or `degenerate`. `degenerate` means that all points have one time stamp although the sweep has a duration.
-/// In this case the driver lost its time stamps, and deskewing would fail unnoticed.
+/// Equal time stamps indicate that the driver lost the time stamps, so that deskewing would fail unnoticed.
 Status check_selection(TimeNs span_ns, std::span<const LidarPoint> points, const PointCounts& counts);
 
 }  // namespace tumble::mapping

@@ -9,8 +9,9 @@
 
 namespace tumble {
 
-/// Unknowns of a sweep, in the order of vectors and matrices. The order is position, attitude (left perturbation in W)
-/// and velocity at the start of the trajectory, saturation deficit of clipped axes, calibration.
+/// SweepUnknowns defines the unknowns of a sweep, in the order of vectors and matrices. The order is position, attitude
+/// (left perturbation in W) and velocity at the start of the trajectory, saturation deficit of clipped axes,
+/// calibration.
 struct SweepUnknowns {
   static constexpr int kMotion = 9;         ///< position, attitude, velocity
   static constexpr int kDeficit = kMotion;  ///< first unknown of the saturation deficit, knot after knot
@@ -20,20 +21,20 @@ struct SweepUnknowns {
   using Matrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
   using Deficit = SweepTrajectory::Deficit;
 
-  /// Current values of the unknowns.
+  /// Estimate contains the current values of the unknowns.
   struct Estimate {
     MotionState state;  ///< motion state, whose covariance is not used
     SweepCalibration calibration;
     Deficit deficit_rad_s = Deficit::Zero();
 
-    /// Adds small errors in the order of the unknowns.
+    /// Adds small errors, in the order of the unknowns.
     void add(const Vector& error);
     /// Returns the errors that transform `other` to this estimate.
     Vector minus(const Estimate& other) const;
   };
 
-  /// Prior distribution from the inertial prediction. Unknowns of the deficit or the calibration with variance 0 are
-  /// not estimated.
+  /// Prior is the prior distribution of the unknowns, from the inertial prediction. Unknowns of the saturation deficit
+  /// or the calibration are not estimated if their variance is 0.
   struct Prior {
     Estimate mean;
     Matrix covariance = Matrix::Zero();
@@ -41,7 +42,7 @@ struct SweepUnknowns {
     std::optional<MotionState> start;               ///< initial value of the motion; empty: the mean
 
     Prior() = default;
-    /// Constructs the prior of the motion state with its covariance; all other unknowns are fixed.
+    /// Constructs the prior from the motion state with its covariance; all other unknowns are fixed.
     explicit Prior(const MotionState& state) : mean{state, {}, Deficit::Zero()} {
       covariance.topLeftCorner<kMotion, kMotion>() = state.covariance;
     }

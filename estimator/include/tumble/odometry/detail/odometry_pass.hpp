@@ -14,12 +14,13 @@
 
 namespace tumble {
 
-/// Processes IMU samples and lidar sweeps one time, in time order. RegimeStream estimates the rates;
-/// LidarInertialOdometry processes the samples and the sweeps that the rates cover. TumblingOdometry runs an
-/// OdometryPass live, and SecondPass runs another with the estimated calibration. Copies contain the complete state.
+/// Processes IMU samples and lidar sweeps one time, in time order. RegimeStream estimates the rates.
+/// LidarInertialOdometry processes the samples and the sweeps for which rates are available. TumblingOdometry runs one
+/// OdometryPass live, and SecondPass runs a second OdometryPass with the estimated calibration. A copy of an
+/// OdometryPass contains the complete state.
 class OdometryPass {
  public:
-  /// First-in, first-out queue of samples that reuses its memory.
+  /// Queue is a first-in, first-out queue of samples that reuses its memory.
   struct Queue {
     std::vector<ImuSample> samples;
     std::size_t head = 0;
@@ -33,28 +34,28 @@ class OdometryPass {
   /// Throws InvalidParams if a parameter is out of bounds.
   OdometryPass(const RegimeStream::Params& rate, const LidarInertialOdometry::Params& mapping);
 
-  /// Processes a sample as RegimeStream::push does, and passes the rate that becomes available to the mapper.
+  /// Processes a sample like RegimeStream::push, and passes the rate that becomes available to the mapper.
   Status add_imu(const ImuSample& sample);
-  /// Returns whether rates are available up to this time of the lidar's clock.
+  /// Returns whether rates are available up to `end_ns` in the lidar's clock.
   bool covers(TimeNs end_ns) const;
-  /// Returns the lidar time up to which rates are available; nothing before the first rate.
+  /// Returns the lidar time up to which rates are available, or nothing before the first rate.
   std::optional<TimeNs> covered_ns() const;
-  /// Returns the IMU time of the first sample that covers this lidar time and whose rate is still pending.
+  /// Returns the IMU time of the first sample that covers the lidar time `end_ns` and whose rate is not yet available.
   std::optional<TimeNs> covering_ns(TimeNs end_ns) const;
   /// Registers a sweep. `reading` is the odometer reading within the sweep, if any.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points,
                    const std::optional<OdometerReading>& reading, LidarInertialOdometry::SweepReport& report);
-  /// Predicts the newest pose as TumblingOdometry::newest does.
+  /// Predicts the newest pose like TumblingOdometry::newest.
   Status newest(PoseState& pose) const;
 
   /// Converts a time of the lidar's clock to the IMU's clock.
   TimeNs needed_ns(TimeNs lidar_ns) const;
-  /// Reports all rates up to the first sample at or after a time, even if the lag is not full.
+  /// Reports all rates up to the first sample at or after `time_ns`, even if the lag is not full.
   void flush_until(TimeNs time_ns);
-  /// Restarts the rates with other parameters; the mapper continues.
+  /// Restarts the rate estimation with other parameters; the mapper continues.
   void begin_rates(const RegimeStream::Params& rate);
-  /// Replaces the map and all dependent state by that of another pass, including its sample buffers. The rates of this
-  /// OdometryPass continue after the last sample of `other`. `other` must not be used afterwards.
+  /// Replaces the map and all dependent state by that of `other`, including the sample buffers. The rate estimation of
+  /// this OdometryPass continues after the last sample of `other`. `other` must not be used afterwards.
   void take_map(OdometryPass&& other);
 
   const RegimeStream& rates() const { return rates_; }
@@ -67,10 +68,10 @@ class OdometryPass {
   const std::optional<RateState>& smoothed_rate() const { return smoothed_; }
   std::size_t rejected_samples() const { return rejected_samples_; }
 
-  /// Passes every member of the state to the visitor. The definition is in the library's sources (state_visitor.hpp).
+  /// Passes every member of the state to the visitor. The source file state_visitor.hpp defines the function.
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
-  /// Checks the invariants between the members. Returns the first violated invariant.
+  /// Checks the invariants that relate several members of a loaded state. Returns the first violated invariant.
   Status check_state() const;
 
  private:
@@ -82,7 +83,7 @@ class OdometryPass {
   SweepScaleWatch scale_;
   Localisation localisation_;
   double rate_sigma_max_rad_s_, time_offset_s_;
-  Queue pending_;  ///< samples whose rates are still pending
+  Queue pending_;  ///< samples whose rates are not yet available
   std::optional<RateState> smoothed_;
   std::optional<TimeNs> last_mapped_ns_;  ///< time of the last sample passed to the mapper
   std::size_t rejected_samples_ = 0;

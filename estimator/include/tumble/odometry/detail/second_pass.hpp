@@ -14,31 +14,31 @@
 
 namespace tumble {
 
-/// Re-processes the first seconds of motion with the calibration estimated meanwhile, while the first pass continues.
+/// Processes the first seconds of motion again with the calibration estimated so far, while the first pass continues.
 ///
 /// The first pass maps the start of a tumble with a lever arm, a mounting and a time offset that are still uncertain.
 /// SecondPass therefore buffers samples and sweeps from the end of the initial rest. After `after_s` of motion,
-/// SecondPass processes the buffer with the current calibration and with rates that are smoothed with a lag of `lag_s`.
-/// The second pass processes `sweeps` buffered sweeps per new sweep. When the second pass has caught up, its map and
-/// pose replace those of the first pass, and the buffer is freed. The result is discarded if the second pass has lost
-/// tracking or has rejected clearly more sweeps.
+/// SecondPass processes the buffer with the current calibration, and with rates that are smoothed with a lag of
+/// `lag_s`. SecondPass processes `sweeps` buffered sweeps per new sweep. When all buffered sweeps are processed, map
+/// and pose of the second pass replace those of the first pass, and the buffer is freed. The result is discarded if
+/// tracking of the second pass has failed, or if the second pass has rejected clearly more sweeps than the first pass.
 ///
-/// If the first pass has failed for `lost_s`, the whole buffer is processed immediately, one time. The regular second
-/// pass still follows after `after_s`. Earlier poses are not changed: the pose jumps by the error of the first pass.
+/// If tracking of the first pass has failed for `lost_s`, SecondPass processes the whole buffer immediately, one time.
+/// The regular second pass still follows after `after_s`. SecondPass does not change earlier poses: the reported pose
+/// jumps by the error of the first pass.
 ///
-/// Memory is needed for samples and sweeps of `rest_s` and of at most `abandon_after_s` of motion, and for a second map
-/// of this duration. SecondPass does not model a third pass with the calibration of the second, or a jolt that ends the
+/// SecondPass stores samples and sweeps of `rest_s` and of at most `abandon_after_s` of motion, and a second map of the
+/// same motion. SecondPass does not model a third pass with the calibration of the second pass, or a jolt that ends the
 /// rest long before the tumble.
 class SecondPass {
  public:
   struct Params {
-    double after_s = 3.0;           ///< motion before the second pass starts; 0: no second pass
-    double lost_s = 0.4;            ///< duration of tracking failure that starts it immediately; 0: never
-    double lag_s = 0.5;             ///< lag of its rates
-    std::size_t sweeps = 3;         ///< buffered sweeps per new sweep; with less than two, the second pass never
-                                    ///< catches up
-    double abandon_after_s = 10.0;  ///< motion after which the second pass is abandoned if it has not caught up
-    /// Factor on the calibration's variance, because the readings are used twice.
+    double after_s = 3.0;           ///< duration of motion before the second pass starts; 0: none
+    double lost_s = 0.4;            ///< duration of tracking failure that starts a second pass; 0: never
+    double lag_s = 0.5;             ///< lag of the rates of the second pass
+    std::size_t sweeps = 3;         ///< number of buffered sweeps per new sweep, at least two
+    double abandon_after_s = 10.0;  ///< duration of motion after which the second pass is abandoned
+    /// Factor on the calibration's variance, because the second pass uses the readings again.
     double inflation = 4.0;
     double rest_s = 1.0;  ///< duration of the initial rest that is buffered
 
@@ -62,27 +62,29 @@ class SecondPass {
   /// `rate` and `mapping` are the parameters of the first pass. Throws InvalidParams if a parameter is out of bounds.
   SecondPass(const Params& params, const RegimeStream::Params& rate, const LidarInertialOdometry::Params& mapping);
 
-  /// Buffers a sample that the first pass has processed. No allocation.
+  /// Buffers a sample that the first pass has processed. The function does not allocate.
   void store(const ImuSample& sample);
-  /// Buffers a sweep that the first pass has registered, with its odometer reading, if any.
+  /// Buffers a sweep that the first pass has registered, with the odometer reading of the sweep, if any.
   void store(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points,
              const std::optional<OdometerReading>& reading, SweepVerdict verdict);
 
-  /// Continues after each sweep of the first pass. When the second pass has caught up, `first` receives its map.
+  /// Continues the second pass after each sweep of the first pass. When the second pass has processed all buffered
+  /// sweeps, `first` receives the map of the second pass.
   void advance(OdometryPass& first);
-  /// Runs the second pass to its end if it has started.
+  /// Runs the second pass to its end, if the second pass has started.
   void complete(OdometryPass& first);
   /// Clears the buffer and disables the second pass.
   void give_up();
 
   bool under_way() const { return pass_.has_value(); }
-  /// Returns whether the first pass received the map of the second.
+  /// Returns whether the first pass received the map of the second pass.
   bool taken() const { return taken_; }
 
-  /// Passes every member of the state to the visitor. The definition is in the library's sources (state_visitor.hpp).
+  /// Passes every member of the state to the visitor. The source file state_visitor.hpp defines the function.
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
-  /// Checks the invariants between the members and the first pass. Returns the first violated invariant.
+  /// Checks the invariants that relate the members to each other and to the first pass. Returns the first violated
+  /// invariant.
   Status check_state(const OdometryPass& first) const;
 
  private:
@@ -95,8 +97,8 @@ class SecondPass {
     static void members(Self& s, Visitor& visit);
   };
 
-  /// Returns the start of the motion, or of the sweeps if the lidar starts after the motion. The motion must have
-  /// started.
+  /// Returns the time from which motion is counted: the start of the motion, or the start of the sweeps if the lidar
+  /// starts later. The motion must have started.
   TimeNs counts_from_ns() const;
   bool is_due() const;
   bool first_is_lost() const;
@@ -120,7 +122,7 @@ class SecondPass {
   std::size_t next_sample_ = 0, next_sweep_ = 0;
   std::size_t rejected_by_first_ = 0, rejected_ = 0;
   bool lost_ = false;                   ///< the second pass rejected its last sweep
-  bool early_ = false, tried_ = false;  ///< started due to tracking failure; such a pass has been tried
+  bool early_ = false, tried_ = false;  ///< started due to tracking failure; a pass of this kind was tried
 };
 
 }  // namespace tumble

@@ -14,12 +14,12 @@
 
 namespace tumble {
 
-/// Detects the saturation levels of several IMUs on one body from their readings, causally. Readings that a device
-/// clips without reporting saturation are flagged before ImuMerge processes them. Each unit has a RailWatch with the
-/// rule of CertainRails. ClippingFinder applies this rule to whole recordings.
+/// Detects the saturation levels of several IMUs (units) on one body from their readings, causally. UnitRails flags
+/// readings that a device clips without reporting saturation, before ImuMerge processes the readings. Each unit has a
+/// RailWatch with the rule of CertainRails. ClippingFinder applies the rule of CertainRails to whole recordings.
 ///
-/// A sample is judged by the samples before it. The first two to ten samples at a saturation level are therefore
-/// accepted unchanged. ImuMerge receives no saturation levels along the axes of a unit's sensing elements.
+/// A sample is classified by the saturation levels that earlier samples revealed. The first two to ten samples at a
+/// saturation level are therefore not flagged. UnitRails does not report sensing directions of the units to ImuMerge.
 class UnitRails {
  public:
   /// State of one unit.
@@ -30,18 +30,18 @@ class UnitRails {
   using State = std::array<Unit, ImuMerge::kImus>;
   using Samples = std::array<ImuSample, ImuMerge::kImus>;
 
-  /// Constructs from the units' data sheets, at most ImuMerge::kImus. Throws InvalidParams if a stated range is out of
-  /// bounds.
+  /// Constructs from the data sheets of the units, at most ImuMerge::kImus. Throws InvalidParams if a stated range is
+  /// out of bounds.
   explicit UnitRails(std::span<const ImuSheet> sheets);
 
   /// Returns the state before the first samples, with all memory that observe() needs: 110 KiB per unit.
   State start() const;
 
-  /// Copies `samples`, one per unit, to `out` and sets the flags of saturated axes. Samples that are not finite are
-  /// unchanged. No allocation.
+  /// Copies `samples`, one per unit, to `out` and sets the flags of saturated axes. The function does not allocate.
+  /// Samples that are not finite are copied unchanged.
   void flag(std::span<const ImuSample> samples, const State& state, Samples& out) const;
 
-  /// Updates the state with raw samples. O(1), sometimes a search; no allocation.
+  /// Updates the state with raw samples. Cost: O(1), sometimes a search; no allocation.
   void observe(std::span<const ImuSample> samples, State& state) const;
 
   /// Checks the invariants of a state that was loaded from a file. Returns the first violated invariant.

@@ -12,33 +12,35 @@
 
 namespace tumble {
 
-/// A sweep that waits for the rates of its samples.
+/// WaitingSweep is a sweep that waits for the rates of its samples.
 struct WaitingSweep {
   TimeNs start_ns = 0, end_ns = 0;
   std::vector<LidarPoint> points;
 };
 
-/// Stores odometer readings until their sweep ends. Copies contain the complete state.
+/// WaitingReadings stores odometer readings until their sweep ends. A copy of a WaitingReadings contains the complete
+/// state.
 class WaitingReadings {
  public:
   /// Maximum number of waiting readings: 500 Hz over the longest silence of the lidar plus a lag of a second.
   static constexpr std::size_t kMost = 1024;
-  /// Tolerance by which a reading may extend beyond its sweep, because clocks differ.
+  /// Time by which a reading may extend beyond its sweep, because clocks differ.
   static constexpr auto kBeyond_ns = static_cast<TimeNs>(1e9 * SweepTrajectory::kBeyond_s);
 
-  /// Stores a reading; the order is arbitrary. The reading's time must be after `done_ns`, the end of the last
-  /// registered sweep, and at most `latest_ns`. Errors are those of check_reading, `time_order` (the reading's sweep is
-  /// already registered) and `out_of_range` (too late, or too many waiting readings).
+  /// Stores a reading; readings may arrive in any order. The reading's time must be after `done_ns`, the end of the
+  /// last registered sweep, and at most `latest_ns`. Returns an error of check_reading(), `time_order` if the reading's
+  /// sweep is already registered, or `out_of_range` (too late, or too many waiting readings).
   Status add(const OdometerReading& reading, TimeNs done_ns, TimeNs latest_ns);
 
-  /// Returns the reading of the sweep from `from_ns` to `end_ns`. From several readings, only the last one is returned,
-  /// because their errors are correlated. Deletes all readings up to `end_ns`.
+  /// Returns the reading of the sweep from `from_ns` to `end_ns`. If the sweep has several readings, only the last
+  /// reading is returned, because the errors of the readings are correlated. The function deletes all readings up to
+  /// `end_ns`.
   std::optional<OdometerReading> take(TimeNs from_ns, TimeNs end_ns);
 
-  /// Returns the number of readings that were dropped because they span two sweeps.
+  /// Returns the number of dropped readings that span two sweeps.
   std::size_t straddling() const { return straddling_; }
 
-  /// Passes every member of the state to the visitor. The definition is in the library's sources (state_visitor.hpp).
+  /// Passes every member of the state to the visitor. The source file state_visitor.hpp defines the function.
   template <class Self, class Visitor>
   static void members(Self& s, Visitor& visit);
 

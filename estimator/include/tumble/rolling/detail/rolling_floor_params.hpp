@@ -3,7 +3,7 @@
 
 #include "tumble/common/parameters.hpp"
 
-/// Groups of RollingParams::Expert: the floor. Fields have unique names, so groups add no prefix.
+/// Groups of RollingParams::Expert: the floor. All fields of the groups have unique names, so groups add no prefix.
 namespace tumble {
 
 /// Contact of sphere and floor: accuracy of the rolling constraint and properties of floors.
@@ -11,19 +11,16 @@ struct RollingContactParams {
   double grip_sigma_m_s = 3e-3;      ///< standard deviation of the contact velocity while gripping
   double grip_sigma_share = 1.5e-3;  ///< additional standard deviation, as a fraction of the rolling speed
   double vertical_sigma_m_s = 8e-3;
-  double rough_share = 0.055;               ///< additional standard deviation on a rough floor, as a fraction of the
-                                            ///< rolling speed
+  double rough_share = 0.055;               ///< additional standard deviation on a rough floor, as a fraction
   double rough_radius_walk_m_sqrts = 1e-4;  ///< random walk of the rolling radius on a rough floor
-  double slope_sigma = 0.15;                ///< standard deviation of the sines of a slope when the slope begins
+  double slope_sigma = 0.15;                ///< standard deviation of the slope's sines when a slope begins
   double slope_walk_sqrts = 0.02;
-  double impact_share = 0.06;  ///< error of the timing and direction of an impact, as a fraction of its velocity change
-  /// Mean velocity change of an impact per node while rolling. A sphere that stays on the floor meets no strong
-  /// impacts.
+  double impact_share = 0.06;  ///< error of timing and direction of an impact, as a fraction of its size
+  /// Mean velocity change of an impact per node while rolling. A sphere that stays on the floor has no strong impacts.
   double unexplained_impact_m_s = 0.03;
   double rest_velocity_sigma_m_s = 2e-3;
   double rest_rate_sigma_rad_s = 3e-3;  ///< standard deviation of a node's mean rate at rest
-  double speed_sigma_m_s = 1.0;  ///< standard deviation of the mean velocity over a second, while the velocity is
-                                 ///< unknown
+  double speed_sigma_m_s = 1.0;         ///< standard deviation of the mean velocity over a second, while unknown
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -57,15 +54,16 @@ struct RollingContactParams {
   }
 };
 
-/// Rates of mode changes, and rules for events.
+/// Rates of changes between contact modes, and rules for events (slip or bump).
 struct RollingModeParams {
   double slip_begins_per_s = 0.5, slip_ends_per_s = 2.0;
   double bump_begins_per_s = 0.3, bump_ends_per_s = 5.0;
-  double slip_bump_per_s = 0.2;                                   ///< slip to bump and back
+  double slip_bump_per_s = 0.2;  ///< rate of changes from slip to bump and from bump to slip
   double incline_begins_per_s = 0.001, incline_ends_per_s = 0.1;  ///< rates of change from and to the level floor
   double rough_begins_per_s = 0.02, rough_ends_per_s = 0.1;
   double event_shortest_s = 0.06;  ///< minimum duration of slip or bump
-  /// An event is uncertain if it increases the horizontal standard deviation by more than this distance.
+  /// The position is uncertain after an event that increases the horizontal standard deviation by more than
+  /// uncertain_m.
   double uncertain_m = 0.03;
 
   template <class Self, class Visitor>

@@ -3,10 +3,11 @@
 
 #include "tumble/common/parameters.hpp"
 
-/// Groups of RollingParams::Expert: the IMU in the sphere. Fields have unique names, so groups add no prefix.
+/// Groups of RollingParams::Expert: the IMU in the sphere. All fields of the groups have unique names, so groups add no
+/// prefix.
 namespace tumble {
 
-/// Prior standard deviations of the IMU's errors. Zero means exactly known.
+/// Prior standard deviations of the IMU's errors. A prior standard deviation of zero means exactly known.
 struct RollingPriorParams {
   double tilt_sigma_rad = 6e-3;
   double velocity_sigma_m_s = 2e-3;
@@ -15,8 +16,8 @@ struct RollingPriorParams {
   double accel_scale_sigma = 3.5e-3;  ///< each entry of scale and misalignment
   double gyro_scale_sigma = 2.5e-3;
   double accel_delay_sigma_s = 3e-3;  ///< delay of the accelerometer relative to the gyro
-  /// A larger first rate means a start in motion. The initial uncertainty of attitude and velocity is then increased
-  /// accordingly.
+  /// A first rate above start_rate_rad_s means a start in motion. If the sphere starts in motion, the initial
+  /// uncertainty of attitude and velocity is larger.
   double start_rate_rad_s = 0.1;
 
   template <class Self, class Visitor>
@@ -65,16 +66,16 @@ struct RollingImuNoiseParams {
   }
 };
 
-/// Parameters of saturated readings: standard deviation of the saturation deficit.
+/// Parameters of saturated readings: standard deviations of the saturation deficit.
 struct RollingRailParams {
   double clipped_rate_sigma_rad_s = 5.0;
-  /// Standard deviation of unflagged rates beyond the range, which ImuMerge recovered. Zero means that rates are not
-  /// recovered.
+  /// Standard deviation of unflagged rates beyond the range, which ImuMerge recovered. If the standard deviation is
+  /// zero, rates are not recovered.
   double recovered_rate_sigma_rad_s = 0.0;
   double clipped_force_sigma_m_s2 = 4.0;
   /// Standard deviation of the force that subsample saturation removes, as a fraction of the force. A short impact may
-  /// saturate the accelerometer within a sample although the mean stays below the range. The full value applies from
-  /// 0.6 of the range on, and no deviation below 0.3.
+  /// saturate the accelerometer within a sample although the mean stays below the range. The full standard deviation
+  /// applies from 0.6 of the range on; below 0.3 of the range, the standard deviation is zero.
   double subsample_saturation_share = 0.25;
 
   template <class Self, class Visitor>
@@ -92,8 +93,9 @@ struct RollingRailParams {
   }
 };
 
-/// Parameters of gaps. If two readings are further apart than gap_from_s, the force between the readings is unknown.
-/// The rate is interpolated linearly, with the uncertainty of an angular acceleration of gap_acceleration_rad_s2.
+/// Parameters of gaps in the readings. If two readings are further apart than gap_from_s, the force between the
+/// readings is unknown. The rate is interpolated linearly, with the uncertainty of an angular acceleration of
+/// gap_acceleration_rad_s2.
 struct RollingGapParams {
   double gap_from_s = 0.06;
   double gap_max_s = 1.0;  ///< a longer gap ends the run
