@@ -10,7 +10,9 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/estimate_file.hpp"
+#include "scenarios/exchange/estimate_clock.hpp"
 #include "scenarios/recordings/export_names.hpp"
+#include "scenarios/recordings/recording_clock.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/scoring/truth_track.hpp"
 
@@ -186,10 +188,7 @@ void add_estimates(std::span<const std::filesystem::path> paths, const sim::Sens
     Kind kind{};
     std::string method;
     Estimate estimate = read_estimate(path, kind, method, sensors.imus.empty() ? Frame::body : Frame::imu);
-    const std::int64_t first_ns = estimate.poses.empty() ? 0 : estimate.poses.front().time_ns;
-    if (!std::filesystem::is_directory(path) && std::abs(first_ns - writing.origin_ns) < std::abs(first_ns)) {
-      for (PoseState& pose : estimate.poses) pose.time_ns -= writing.origin_ns;
-    }
+    move_to_clock(writing.origin_ns, span_of(sensors), estimate);
     try {
       require_own(path, own);
       const bool of_file = !std::filesystem::is_directory(path);
