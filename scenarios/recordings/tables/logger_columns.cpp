@@ -26,6 +26,8 @@ using UnitNames = std::vector<std::pair<std::string_view, Value>>;
 
 const std::vector<std::string_view> kTimes = {"t",     "time", "timestamp", "timestamps",
                                               "stamp", "ts",   "elapsed",   "secondselapsed"};
+constexpr const char* kExample = "time=NAME,gyro=X,Y,Z,accel=X,Y,Z";
+
 /// Times that loggers write next to the stamp.
 const std::vector<std::string_view> kSecondTimes = {"elapsed", "secondselapsed"};
 const std::vector<std::string_view> kRates = {
@@ -196,7 +198,8 @@ class HeaderReader {
   /// Returns false if only a time column is known; throws BadInput if a column is missing.
   bool complete(std::size_t readings) const {
     if (readings == 0) return false;
-    if (!missing_.empty()) fail("missing columns:" + missing_);
+    if (!missing_.empty())
+      fail("missing columns:" + missing_ + "; if other columns have these values, name them: --columns " + kExample);
     return true;
   }
   /// Finds a column that numbers the IMUs.
@@ -217,9 +220,8 @@ class HeaderReader {
  private:
   [[noreturn]] void fail(const std::string& what) const { throw BadInput(header_.where + ": " + what); }
   [[noreturn]] void fail_of_several(const char* called, const std::string& number) const {
-    fail(fmt::format("the {} has columns of several IMUs, '{}' and '{}'; choose the columns of one IMU: --columns "
-                     "time=NAME,gyro=X,Y,Z,accel=X,Y,Z",
-                     called, *number_, number));
+    fail(fmt::format("the {} has columns of several IMUs, '{}' and '{}'; choose the columns of one IMU: --columns {}",
+                     called, *number_, number, kExample));
   }
   std::string text(std::size_t i) const { return std::string(header_.fields[i]); }
   void take(std::size_t from, std::size_t& column) {
