@@ -184,11 +184,15 @@ void add_estimates(std::span<const std::filesystem::path> paths, const sim::Sens
   std::set<std::string> taken = export_names(sensors).taken;
   const std::string own =
       writing.points != nullptr ? digest(sensors, *writing.points, nullptr) : digest(sensors, nullptr);
+  const StampSpan span =
+      writing.truth == nullptr
+          ? span_of(sensors)
+          : StampSpan{0, writing.truth->period_ns * (static_cast<std::int64_t>(writing.truth->size()) - 1)};
   for (const std::filesystem::path& path : paths) {
     Kind kind{};
     std::string method;
     Estimate estimate = read_estimate(path, kind, method, sensors.imus.empty() ? Frame::body : Frame::imu);
-    move_to_clock(writing.origin_ns, span_of(sensors), estimate);
+    move_to_clock(writing.origin_ns, span, estimate);
     try {
       require_own(path, own);
       const bool of_file = !std::filesystem::is_directory(path);
