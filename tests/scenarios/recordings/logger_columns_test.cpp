@@ -182,7 +182,8 @@ TEST_F(LoggerTable, DialectsOfLoggersAreRead) {
        table("\"Time (s)\",\"Gyroscope x (rad/s)\",\"Gyroscope y (rad/s)\",\"Gyroscope z (rad/s)\","
              "\"Acceleration x (m/s^2)\",\"Acceleration y (m/s^2)\",\"Acceleration z (m/s^2)\"",
              {"5.000000000E-3", "1.000000000E-2", "1.500000000E-2"}, ",1.0E-1,2.0E-1,3.0E-1,-5.0E-1,0.0,9.8E0")},
-      {"one numbered IMU", table("time,imu1_gyro_x,imu1_gyro_y,imu1_gyro_z,accel1_x,accel1_y,accel1_z", kSeconds, kRow)}};
+      {"one numbered IMU",
+       table("time,imu1_gyro_x,imu1_gyro_y,imu1_gyro_z,accel1_x,accel1_y,accel1_z", kSeconds, kRow)}};
   for (const auto& [name, text] : tables) {
     SCOPED_TRACE(name);
     expect_the_readings(import(text));
@@ -205,7 +206,8 @@ TEST_F(LoggerTable, NumbersMayBeInAnyNotation) {
 TEST_F(LoggerTable, RowsOfSeveralImusAreOfTheFirst) {
   std::string text = "TimeUS,I,GyrX,GyrY,GyrZ,AccX,AccY,AccZ\n";
   for (const char* time : {"5000", "10000", "15000"})
-    for (const char* id : {"0", "1"}) text += std::string(time) + "," + id + (*id == '0' ? kRow : ",1,1,1,0,0,9.8") + "\n";
+    for (const char* id : {"0", "1"})
+      text += std::string(time) + "," + id + (*id == '0' ? kRow : ",1,1,1,0,0,9.8") + "\n";
   const Imported imported = import(text);
   expect_the_readings(imported);
   EXPECT_THAT(imported.notes, Contains("column 'I' numbers several IMUs; the rows of 0 are read, these are left out: 1 "
@@ -217,17 +219,16 @@ TEST_F(LoggerTable, RowsOfSeveralImusAreOfTheFirst) {
 }
 
 TEST_F(LoggerTable, TheUserNamesColumns) {
-  const std::string two =
-      table("time,gyro1_x,gyro1_y,gyro1_z,accel1_x,accel1_y,accel1_z,gyro2_x,gyro2_y,gyro2_z,accel2_x,accel2_y,accel2_z",
-            kSeconds, ",1,1,1,0,0,9.8" + kRow);
+  const std::string two = table(
+      "time,gyro1_x,gyro1_y,gyro1_z,accel1_x,accel1_y,accel1_z,gyro2_x,gyro2_y,gyro2_z,accel2_x,accel2_y,accel2_z",
+      kSeconds, ",1,1,1,0,0,9.8" + kRow);
   EXPECT_THAT(complaint_of(two), AllOf(HasSubstr("log.csv:1: the gyro has columns of several IMUs, '1' and '2'"),
                                        HasSubstr("--columns time=NAME")));
   expect_the_readings(import_columns(two, "time=time,gyro=gyro2_x,gyro2_y,gyro2_z,accel=accel2_x,accel2_y,accel2_z"));
   // units in the names count, also those of the time
-  const Imported other = import_columns(
-      table("n,stamp_us,rate a (deg/s),rate b (deg/s),rate c (deg/s),f,g,h", {"7,5000", "8,10000", "9,15000"},
-            ",57.29577951308232,0,0,-0.5,0,9.8"),
-      "accel=f,g,h,time=stamp_us,gyro=rate a (deg/s),rate b (deg/s),rate c (deg/s)");
+  const Imported other = import_columns(table("n,stamp_us,rate a (deg/s),rate b (deg/s),rate c (deg/s),f,g,h",
+                                              {"7,5000", "8,10000", "9,15000"}, ",57.29577951308232,0,0,-0.5,0,9.8"),
+                                        "accel=f,g,h,time=stamp_us,gyro=rate a (deg/s),rate b (deg/s),rate c (deg/s)");
   EXPECT_THAT(other.sensors.imus[0].time_ns, ElementsAre(0, 5'000'000, 10'000'000));
   EXPECT_NEAR(other.sensors.imus[0].gyro_rad_s[0].x(), 1.0, 1e-12);
   const std::string split = table("a,b,c,d,e,f,g,h", {"12,500000000", "12,505000000", "12,510000000"}, kRow);
@@ -243,11 +244,11 @@ TEST_F(LoggerTable, TheUserNamesColumns) {
 
 // of a bag by bagpy and by `rostopic echo -p`: the record's time comes first
 TEST_F(LoggerTable, FlattenedMessagesHaveTheStampsOfTheirHeaders) {
-  const Imported bagpy = import(
-      table("Time,header.seq,header.stamp.secs,header.stamp.nsecs,header.frame_id,angular_velocity.x,angular_velocity.y,"
-            "angular_velocity.z,angular_velocity_covariance_0,linear_acceleration.x,linear_acceleration.y,"
-            "linear_acceleration.z",
-            {"50.1,0,12,500000000", "50.11,1,12,505000000", "50.2,2,12,510000000"}, ",imu,0.1,0.2,0.3,0,-0.5,0,9.8"));
+  const Imported bagpy = import(table(
+      "Time,header.seq,header.stamp.secs,header.stamp.nsecs,header.frame_id,angular_velocity.x,angular_velocity.y,"
+      "angular_velocity.z,angular_velocity_covariance_0,linear_acceleration.x,linear_acceleration.y,"
+      "linear_acceleration.z",
+      {"50.1,0,12,500000000", "50.11,1,12,505000000", "50.2,2,12,510000000"}, ",imu,0.1,0.2,0.3,0,-0.5,0,9.8"));
   expect_the_readings(bagpy);
   EXPECT_EQ(bagpy.info.origin_ns, 12'500'000'000);
   const Imported echo =

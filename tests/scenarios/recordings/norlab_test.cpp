@@ -203,7 +203,9 @@ TEST_F(OdometryTable, BadLinesAreRefusedWithTheirPlace) {
   EXPECT_THAT(complaint_of(good + "11,0,1\n"), HasSubstr("a.csv:4: has 3 columns, but the first line has 9"));
   std::string doubled = good;
   doubled.replace(doubled.find("position.y"), 10, "position.x");
-  EXPECT_THAT(complaint_of(doubled), HasSubstr("a.csv:1: two columns have the same meaning: 'pose.pose.position.x' and 'pose.pose.position.x'"));
+  EXPECT_THAT(
+      complaint_of(doubled),
+      HasSubstr("a.csv:1: two columns have the same meaning: 'pose.pose.position.x' and 'pose.pose.position.x'"));
   EXPECT_THAT(complaint_of(head_ + "10,0,1,2,3,0,0,0,1\n"), HasSubstr("has 1 poses; it needs at least 2"));
 }
 
@@ -253,7 +255,8 @@ TEST(PoseTables, AreReadWithTheirNamesAndUnits) {
       {"odometry",
        "%time,field.header.stamp,field.child_frame_id,field.transform.translation.x,field.transform.translation.y,"
        "field.transform.translation.z,field.transform.rotation.x,field.transform.rotation.y,field.transform.rotation.z,"
-       "field.transform.rotation.w\n7,1700000000250000000,a,1,2,3,0,0,0.6,0.8\n8,1700000000750000000,a,4,5,6,0,0,0,1\n"},
+       "field.transform.rotation.w\n7,1700000000250000000,a,1,2,3,0,0,0.6,0.8\n8,1700000000750000000,a,4,5,6,0,0,0,"
+       "1\n"},
       {"odometry",
        "time_ns,x_W_m,y_W_m,z_W_m,qx,qy,qz,qw,vx_W_m_s,label\n1700000000250000000,1,2,3,0,0,0.6,0.8,0,\n"
        "1700000000500000000,nan,nan,nan,nan,nan,nan,nan,nan,\n1700000000750000000,4,5,6,0,0,0,1,0,\n"}};
