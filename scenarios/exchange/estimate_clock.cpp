@@ -28,8 +28,7 @@ std::optional<StampSpan> span_of(const Estimate& estimate) {
 void move_to_clock(std::int64_t origin_ns, const StampSpan& span, Estimate& estimate) {
   const std::optional<StampSpan> stamps = span_of(estimate);
   if (!stamps) return;
-  const std::int64_t by_ns =
-      clock_shift_ns(*stamps, span, {0, -origin_ns, -export_origin_ns(origin_ns)}).value_or(0);
+  const std::int64_t by_ns = clock_shift_ns(*stamps, span, {0, -origin_ns, -export_origin_ns(origin_ns)}).value_or(0);
   if (by_ns == 0) return;
   shift(estimate.rates, by_ns);
   shift(estimate.attitudes, by_ns);

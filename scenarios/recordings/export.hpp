@@ -34,8 +34,8 @@ struct ExportChoices {
 /// Writes a recording file in another format. The formats `tum` and `kitti` give one file with the true poses of a
 /// frame. The formats `mcap` and `rosbag1` give one file with the sensor data. The formats `csv`, `pcd`, `ply`,
 /// `rosbag2` and `rosbag2_mcap` give a folder, which is created if missing. `choices` states further content of bags
-/// (topics: bag.hpp). Existing files are replaced atomically. All formats use one clock, with time 0 of the recording at
-/// export_origin_ns.
+/// (topics: bag.hpp). Existing files are replaced atomically. All formats use one clock, with time 0 of the recording
+/// at export_origin_ns.
 ///
 /// Returns notes on sensors that were renamed (export_names.hpp) and on sensors without a message type in a bag. Throws
 /// BadInput for an unknown format (suggests the nearest name), data that the format needs and the recording lacks, or
@@ -48,8 +48,8 @@ std::vector<std::string> export_recording(const std::filesystem::path& recording
 /// exported or original name. Throws BadInput for another name and lists the known names.
 Eigen::Isometry3d true_mounting(const sim::Truth& truth, const std::string& frame);
 
-/// Writes one line "t x y z qx qy qz qw" per physics sample: T_WA of the frame A, and seconds with nine decimals. Numbers are restored exactly when read; `origin_ns` is added to the times. Omits times without a known
-/// pose.
+/// Writes one line "t x y z qx qy qz qw" per physics sample: T_WA of the frame A, and seconds with nine decimals.
+/// Numbers are restored exactly when read; `origin_ns` is added to the times. Omits times without a known pose.
 void export_tum(const sim::Truth& truth, const std::filesystem::path& file, std::int64_t origin_ns = 0,
                 const std::string& frame = "body");
 /// Writes a truth on disk segment by segment.

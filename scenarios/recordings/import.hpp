@@ -34,8 +34,8 @@ enum class GyroUnit { rad_s, deg_s };
 /// - the names that export_csv writes (each once, no other names);
 /// - the short forms of the export_csv names (sec nsec wx.. fx.. or ax..);
 /// - flattened ROS messages: ".../header/stamp" (seconds), ".../angular_velocity/x", ".../linear_acceleration/x", and y
-///   and z; also with points, as written by `rostopic echo -p` and bagpy. The header's stamps are used, not the times of
-///   recording;
+///   and z; also with points, as written by `rostopic echo -p` and bagpy. The header's stamps are used, not the times
+///   of recording;
 /// - names of loggers and data sets (tables/logger_columns.hpp): "time,gyro_x,...,accel_x,...", "#timestamp
 ///   [ns],w_RS_S_x [rad s^-1],...".
 ///

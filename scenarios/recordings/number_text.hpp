@@ -20,8 +20,8 @@ bool parse_number(std::string_view text, double& value);
 /// another text, or for a time beyond the year 2255.
 std::optional<std::int64_t> parse_time_ns(std::string_view text, int decimals);
 
-/// Parses a stamp since 1970 as data sets write it: decimal seconds, a whole number of 13, 16 or 19 digits (ms, us, ns),
-/// or a date in UTC ("2011-09-26 13:02:25.964389445"). Returns empty for another text.
+/// Parses a stamp since 1970 as data sets write it: decimal seconds, a whole number of 13, 16 or 19 digits (ms, us,
+/// ns), or a date in UTC ("2011-09-26 13:02:25.964389445"). Returns empty for another text.
 std::optional<std::int64_t> parse_stamp_ns(std::string_view text);
 
 /// Appends the shortest text that parses to an equal number.

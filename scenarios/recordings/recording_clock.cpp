@@ -85,8 +85,8 @@ void attach_imus(Imported& recording, Imported imu) {
   const auto [first, last] = span_of(recording.sensors);
   const auto [imu_first, imu_last] = span_of(imu.sensors);
   std::int64_t ahead_ns = imu.info.origin_ns - recording.info.origin_ns;
-  const auto shift_ns =
-      clock_shift_ns({imu_first + ahead_ns, imu_last + ahead_ns}, {first, last}, {0, kExportOrigin_ns, -kExportOrigin_ns});
+  const auto shift_ns = clock_shift_ns({imu_first + ahead_ns, imu_last + ahead_ns}, {first, last},
+                                       {0, kExportOrigin_ns, -kExportOrigin_ns});
   if (!shift_ns) {
     throw BadInput(
         fmt::format("the IMU readings are from {} to {} ns of the sweeps' clock, but the sweeps are from {} to {} ns; "

@@ -34,9 +34,9 @@ class TableWriter {
   bool row_empty_ = true;
 };
 
-/// Rows of text cells; every row has the expected number of cells. Skips empty lines and lines that start with '#'. In a
-/// table of blanks, tabs, commas and semicolons also separate cells.
-/// Throws BadInput with path and line number for a wrong number of cells or an invalid value.
+/// Rows of text cells; every row has the expected number of cells. Skips empty lines and lines that start with '#'. In
+/// a table of blanks, tabs, commas and semicolons also separate cells. Throws BadInput with path and line number for a
+/// wrong number of cells or an invalid value.
 struct Table {
   struct Row {
     int line;

@@ -19,8 +19,8 @@ struct GivenEstimate {
   scenarios::Frame tum_frame;  ///< frame of the poses in a TUM file
 };
 
-/// Reads an estimate of the recording and converts its stamps to the recording's clock (estimate_clock.hpp). `truth` may
-/// be null. Throws BadInput for read errors, and if the estimate states the digest of other sensor data.
+/// Reads an estimate of the recording and converts its stamps to the recording's clock (estimate_clock.hpp). `truth`
+/// may be null. Throws BadInput for read errors, and if the estimate states the digest of other sensor data.
 scenarios::Estimate read_given(const GivenEstimate& given, const sim::Sensors& sensors, const sim::Truth* truth,
                                scenarios::Kind& kind, std::string& method);
 

@@ -148,7 +148,8 @@ void declare_lidar(VerbOptions& verb, ImportOptions& options) {
   verb.add("--stem", options.stem,
            "start of the file names before their number, if the folder contains several series");
   verb.add("--times", options.times,
-           "file with one time stamp per line for each sweep or pose, s or a date in UTC [STEM_times.txt or times.txt in the folder of "
+           "file with one time stamp per line for each sweep or pose, s or a date in UTC [STEM_times.txt or times.txt "
+           "in the folder of "
            "the sweeps, else the file names, else the times of the points]");
   verb.add("--sweep-period", options.sweep_period_s,
            "duration of a sweep, s; without time stamps also the time between sweeps [median step]")
@@ -173,7 +174,8 @@ void declare_reference(VerbOptions& verb, ImportOptions& options) {
            "frame of the reference poses: lidar or body [file: lidar if there is one; topic: the frame named in its "
            "messages, else body]");
   verb.add("--reference-topic", options.reference_topic,
-           "topic of a bag with poses that serve as truth: nav_msgs/Odometry, geometry_msgs/PoseStamped or geometry_msgs/TransformStamped [none]");
+           "topic of a bag with poses that serve as truth: nav_msgs/Odometry, geometry_msgs/PoseStamped or "
+           "geometry_msgs/TransformStamped [none]");
   verb.add_flag(
       "--align-reference", options.align_reference,
       "repoimu: removes delay, rotation and tilt of the reference, as estimated from the motion [only reported]");
@@ -186,8 +188,10 @@ void declare_reference(VerbOptions& verb, ImportOptions& options) {
 void declare(VerbOptions& verb, ImportOptions& options) {
   verb.add("PATH", options.path,
            "file or folder to import: lidar sweeps (PLY, PCD, VTK, KITTI .bin); IMU readings (CSV of a logger or of "
-           "sensor_msgs/Imu, or the folder of a CSV export, BROAD HDF5 or RepoIMU CSV with optical reference, AirbrakesV2 flight log); a bag (ROS 1 "
-           "file, ROS 2 folder, MCAP file); or poses (TUM, KITTI, a table with named columns such as EuRoC's ground truth)")
+           "sensor_msgs/Imu, or the folder of a CSV export, BROAD HDF5 or RepoIMU CSV with optical reference, "
+           "AirbrakesV2 flight log); a bag (ROS 1 "
+           "file, ROS 2 folder, MCAP file); or poses (TUM, KITTI, a table with named columns such as EuRoC's ground "
+           "truth)")
       .required();
   verb.add("--format", options.format,
            "airbrakes, broad, csv, kitti, mcap, odometry, pcd, ply, repoimu, rosbag1, rosbag2, tum or vtk [from "

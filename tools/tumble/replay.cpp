@@ -53,9 +53,8 @@ void load_estimates(const Session& session, const ReplayOptions& options, Replay
   for (const std::filesystem::path& path : options.estimates) {
     scenarios::Kind kind;
     std::string method;
-    scenarios::Estimate estimate =
-        read_given({path, options.recording, frame}, content.sensors,
-                   content.truth ? &*content.truth : nullptr, kind, method);
+    scenarios::Estimate estimate = read_given({path, options.recording, frame}, content.sensors,
+                                              content.truth ? &*content.truth : nullptr, kind, method);
     if (estimate.poses.empty() && estimate.rates.empty()) {
       session.note(path.string() + ": left out, because it contains neither poses nor rates");
       continue;

@@ -207,9 +207,8 @@ Claim read_claim(const Session& session, const ScoreOptions& options) {
   if (!scenarios::states_digest(options.recording))
     session.note(options.recording.string() + ": contains no digest of its data, so damage cannot be detected");
   claim.truth = scenarios::read_truth(options.recording);
-  claim.estimate = read_given(
-      {options.estimate, options.recording, frame_of(options.frame, !claim.truth.imus.empty())}, claim.sensors,
-      &claim.truth, claim.kind, claim.method);
+  claim.estimate = read_given({options.estimate, options.recording, frame_of(options.frame, !claim.truth.imus.empty())},
+                              claim.sensors, &claim.truth, claim.kind, claim.method);
   claim.foreign = !std::filesystem::is_directory(options.estimate);
   if (!claim.foreign && scenarios::estimated_sensors(options.estimate).empty())
     session.note("caution: " + options.estimate.string() +

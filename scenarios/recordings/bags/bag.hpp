@@ -46,7 +46,7 @@ struct BagTrack {
 
 /// Options for writing a recording to a bag.
 struct BagWriting {
-  std::int64_t origin_ns = 0;  ///< of the recording; see export_origin_ns
+  std::int64_t origin_ns = 0;          ///< of the recording; see export_origin_ns
   const StoredTruth* truth = nullptr;  ///< written if not null
   std::vector<BagTrack> tracks = {};   ///< estimates; names are unique and differ from export_names' `taken`
   SweepLayout sweeps = own_sweep_layout();

@@ -57,10 +57,11 @@ Imported import_csv_folder(const std::filesystem::path& folder, const sim::ImuRe
     throw BadInput(folder.string() + ": contains no table of IMU readings" +
                    (left_out.empty() ? "" : "; " + left_out.front()));
   if (out.sensors.imus.size() > 1)
-    out.notes.push_back(fmt::format("'{}' is the primary IMU, because its file comes first; tables do not state where "
-                                    "the IMUs are on the body, so all are assumed at the same place and along the same "
-                                    "axes. To use one IMU, import its file",
-                                    out.sensors.imus.front().name));
+    out.notes.push_back(
+        fmt::format("'{}' is the primary IMU, because its file comes first; tables do not state where "
+                    "the IMUs are on the body, so all are assumed at the same place and along the same "
+                    "axes. To use one IMU, import its file",
+                    out.sensors.imus.front().name));
   out.notes.insert(out.notes.end(), left_out.begin(), left_out.end());
   return out;
 }

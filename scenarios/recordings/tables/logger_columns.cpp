@@ -30,9 +30,9 @@ constexpr const char* kExample = "time=NAME,gyro=X,Y,Z,accel=X,Y,Z";
 
 /// Times that loggers write next to the stamp.
 const std::vector<std::string_view> kSecondTimes = {"elapsed", "secondselapsed"};
-const std::vector<std::string_view> kRates = {
-    "g",     "gyro",   "gyr",  "gyroscope", "angularvelocity", "angularrate", "w",
-    "omega", "angvel", "rate", "wrss",      "rot",             "gyrorad"};
+const std::vector<std::string_view> kRates = {"g",           "gyro", "gyr",    "gyroscope", "angularvelocity",
+                                              "angularrate", "w",    "omega",  "angvel",    "rate",
+                                              "wrss",        "rot",  "gyrorad"};
 const std::vector<std::string_view> kForces = {
     "a", "acc",           "accel", "accelerometer", "acceleration",    "linearacceleration",
     "f", "specificforce", "arss",  "linacc",        "accelerometerms2"};
@@ -255,7 +255,8 @@ std::vector<std::string> names_of(const std::string& choice, const std::string& 
       word.remove_prefix(key.size());
       break;
     }
-    if (current.empty()) throw BadInput(fmt::format("--columns: '{}' does not begin with time=, gyro= or accel=", word));
+    if (current.empty())
+      throw BadInput(fmt::format("--columns: '{}' does not begin with time=, gyro= or accel=", word));
     if (current == quantity) names.emplace_back(word);
   }
   return names;
@@ -276,9 +277,10 @@ std::size_t column_of(const LoggedTable& table, const std::string& name) {
 
 void require_count(const std::string& quantity, std::size_t count, std::size_t least, std::size_t most) {
   if (count >= least && count <= most) return;
-  throw BadInput(fmt::format("--columns: {} has {} columns, must have {}; for example "
-                             "time=t,gyro=gx,gy,gz,accel=ax,ay,az",
-                             quantity, count, most == 3 ? "3" : "1, or 2 for seconds and nanoseconds"));
+  throw BadInput(
+      fmt::format("--columns: {} has {} columns, must have {}; for example "
+                  "time=t,gyro=gx,gy,gz,accel=ax,ay,az",
+                  quantity, count, most == 3 ? "3" : "1, or 2 for seconds and nanoseconds"));
 }
 
 template <class Unit>

@@ -93,18 +93,19 @@ class PoseHeader {
     }
     columns.nanoseconds = std::nullopt;
     auto time = find(ends({"headerstamp"}));
-    if (!time) time = find([](const std::string& name) {
-      return name == "t" || name == "ts" || name == "time" || name == "timestamp" || name == "stamp" ||
-             name == "timens" || name == "timestampns" || name == "times" || name == "timestamps";
-    });
+    if (!time)
+      time = find([](const std::string& name) {
+        return name == "t" || name == "ts" || name == "time" || name == "timestamp" || name == "stamp" ||
+               name == "timens" || name == "timestampns" || name == "times" || name == "timestamps";
+      });
     if (!time) {
       missing_ += " time";
       return;
     }
     columns.time = *time;
     const std::string_view field = header_.fields[*time];
-    columns.time_in_ns = field.starts_with("field.") || field.find("[ns]") != std::string_view::npos ||
-                         names_[*time].ends_with("ns");
+    columns.time_in_ns =
+        field.starts_with("field.") || field.find("[ns]") != std::string_view::npos || names_[*time].ends_with("ns");
   }
 
   const std::string& missing() const { return missing_; }
@@ -137,8 +138,8 @@ PoseColumns columns_of(const CsvLine& header, std::string& missing) {
 std::int64_t whole_of(const CsvLine& line, std::size_t column, std::int64_t most) {
   const auto value = parse_time_ns(line.fields[column], 0);
   if (!value || *value < 0 || *value > most)
-    fail(line, fmt::format("column {} must be a whole number from 0 to {}; it is '{}'", column, most,
-                           line.fields[column]));
+    fail(line,
+         fmt::format("column {} must be a whole number from 0 to {}; it is '{}'", column, most, line.fields[column]));
   return *value;
 }
 

@@ -75,8 +75,8 @@ void attach_poses(Imported& recording, std::vector<ReferencePose> poses, const E
   for (ReferencePose& pose : poses) pose.time_ns -= recording.info.origin_ns;
   const StampSpan span = span_of(sensors);
   if (!poses.empty()) {
-    const auto shift_ns = clock_shift_ns({poses.front().time_ns, poses.back().time_ns}, span,
-                                         {0, kExportOrigin_ns, -kExportOrigin_ns});
+    const auto shift_ns =
+        clock_shift_ns({poses.front().time_ns, poses.back().time_ns}, span, {0, kExportOrigin_ns, -kExportOrigin_ns});
     for (ReferencePose& pose : poses) pose.time_ns += shift_ns.value_or(0);
     if (shift_ns.value_or(0) != 0) recording.notes.push_back(clock_note("the stamps of the reference", *shift_ns));
   }

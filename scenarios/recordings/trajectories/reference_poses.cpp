@@ -88,18 +88,19 @@ std::string pose_format(const std::filesystem::path& file) {
   std::string line;
   while (std::getline(stream, line) && (line.empty() || line.front() == '#' || line.front() == '\r')) {
   }
-  std::replace_if(line.begin(), line.end(), [](char c) { return c == ',' || c == ';'; }, ' ');
+  std::replace_if(
+      line.begin(), line.end(), [](char c) { return c == ',' || c == ';'; }, ' ');
   std::istringstream words(line);
   std::size_t count = 0, others = 0;
   double number = 0.0;
   for (std::string word; words >> word; ++count) others += parse_number(word, number) ? 0 : 1;
   if (count == 8 && others == 0) return "tum";
   if (count == 12 && others == 0) return "kitti";
-  throw BadInput(
-      fmt::format("{}: its first line has {} numbers{}; it must have 8 (TUM: t x y z qx qy qz qw) or 12 (KITTI: rows of "
-                  "a matrix), or the header of a table of poses with the names of time, position and quaternion "
-                  "(timestamp,x,y,z,qx,qy,qz,qw)",
-                  file.string(), count - others, others == 0 ? "" : fmt::format(" and {} other words", others)));
+  throw BadInput(fmt::format(
+      "{}: its first line has {} numbers{}; it must have 8 (TUM: t x y z qx qy qz qw) or 12 (KITTI: rows of "
+      "a matrix), or the header of a table of poses with the names of time, position and quaternion "
+      "(timestamp,x,y,z,qx,qy,qz,qw)",
+      file.string(), count - others, others == 0 ? "" : fmt::format(" and {} other words", others)));
 }
 
 std::vector<ReferencePose> read_tum_poses(const std::filesystem::path& file, bool sorted) {
