@@ -12,9 +12,9 @@
 
 namespace tumble::scenarios {
 
-/// Converts an estimate to a track of body poses, with the mounting that the estimator used; velocities are not
-/// written. If the truth is known, the track is aligned as in the scores: to the true position and heading at the first
-/// pose within the truth (truth_track.hpp).
+/// Converts an estimate to a track of body poses, with the mounting that the estimator used; velocities are unknown. If
+/// the truth is known, the track is aligned as in the scores: to the true position and heading at the first pose within
+/// the truth (truth_track.hpp).
 ///
 /// The returns of the first lidar become point clouds, transformed by the interpolated estimated pose of the lidar and
 /// stamped at the sweep's end. Returns outside the time of the poses, or in gaps longer than 0.2 s, are omitted.

@@ -9,14 +9,10 @@
 
 namespace tumble::scenarios {
 
-/// Stamp of a recording's start in bags for external commands. The poses that a command returns may use the stamps of
-/// the bag or of the recording.
-inline constexpr std::int64_t kExternalBagOrigin_ns = 1'000'000'000'000'000'000;
-
 /// Reads the result of a command at `output` as an estimate of the description's kind, and the map at `map` if the file
 /// exists. Throws BadInput with location and reason for a missing or empty file, values outside AnswerBounds, a cell
 /// that is not a number, or decreasing time. Also throws BadInput if the rates do not match the samples of the first
-/// IMU.
+/// IMU. The stamps of poses may be those of the bag, which starts at kExportOrigin_ns, or of the recording.
 Estimate read_external_result(const ExternalDescription& description, const std::filesystem::path& output,
                               const std::filesystem::path& map, const sim::Sensors& sensors);
 

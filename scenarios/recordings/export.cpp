@@ -30,11 +30,15 @@ struct Format {
   Notes (*write)(const path& recording, const path& out, const ExportChoices& choices);
 };
 
+std::int64_t origin_of_export(const path& recording) {
+  return export_origin_ns(read_info(recording).origin_ns);
+}
+
 Notes write_csv(const path& recording, const path& out, const ExportChoices&) {
   const sim::Sensors sensors = read_sensors(recording);
   std::optional<sim::Truth> truth;
   if (read_info(recording).has_truth) truth = read_truth(recording);
-  export_csv(sensors, truth ? &*truth : nullptr, out);
+  export_csv(sensors, truth ? &*truth : nullptr, out, origin_of_export(recording));
   ExportNames names = export_names(sensors);
   return joined(std::move(names.imus.notes), names.series.notes);
 }
@@ -59,7 +63,7 @@ Notes write_bag(const path& recording, const path& out, const ExportChoices& cho
 }
 
 Notes write_tum(const path& recording, const path& out, const ExportChoices& choices) {
-  export_tum(read_truth(recording, scratch_folder_of(out)), out, 0, choices.frame);
+  export_tum(read_truth(recording, scratch_folder_of(out)), out, origin_of_export(recording), choices.frame);
   return {};
 }
 
@@ -68,10 +72,10 @@ Notes write_kitti(const path& recording, const path& out, const ExportChoices& c
   return {};
 }
 
-template <void (*kExport)(const sim::Sensors&, const path&)>
+template <void (*kExport)(const sim::Sensors&, const path&, std::int64_t)>
 Notes write_sweeps(const path& recording, const path& out, const ExportChoices&) {
   const sim::Sensors sensors = read_sensors(recording);
-  kExport(sensors, out);
+  kExport(sensors, out, origin_of_export(recording));
   return export_names(sensors).lidars.notes;
 }
 

@@ -27,19 +27,22 @@ enum class AccelUnit { m_s2, g };
 enum class GyroUnit { rad_s, deg_s };
 
 /// Reads the readings of one IMU from a text table. The separator is the most frequent of comma, semicolon and tab in
-/// the first line.
+/// the first line that is no comment; blanks if the line has none. Comments, a row of units below the names, and a
+/// separator at the end of a line are accepted (tables/logged_table.hpp). Numbers may be in scientific notation.
 ///
 /// The names in the header identify the columns:
 /// - the names that export_csv writes (each once, no other names);
 /// - the short forms of the export_csv names (sec nsec wx.. fx.. or ax..);
 /// - flattened ROS messages: ".../header/stamp" (seconds), ".../angular_velocity/x", ".../linear_acceleration/x", and y
-///   and z;
+///   and z; also with points, as written by `rostopic echo -p` and bagpy. The header's stamps are used, not the times
+///   of recording;
 /// - names of loggers and data sets (tables/logger_columns.hpp): "time,gyro_x,...,accel_x,...", "#timestamp
 ///   [ns],w_RS_S_x [rad s^-1],...".
 ///
 /// Units that column names state are used. If the unit of times is not stated, the unit is inferred from the time steps
 /// and noted. If the first line has numbers, the line is a sample and columns are identified by position (from 0): 0
-/// stamp s, 1 stamp ns, 8-10 rate, 12-14 specific force.
+/// stamp s, 1 stamp ns, 8-10 rate, 12-14 specific force. `columns` names the columns instead ("time=t,gyro=gx,gy,gz,
+/// accel=ax,ay,az" without blanks; positions from 0 are possible too).
 ///
 /// `device` supplies properties that the file lacks: name, device, ranges, noise, T_BI; the period and the readings of
 /// `device` are replaced. Times count from the first stamp; the period is the median step. Stamps in whole milliseconds
@@ -52,7 +55,14 @@ enum class GyroUnit { rad_s, deg_s };
 /// outside 20 us to 2 s. Also throws if more than 1 % of the rates exceed twice the device's range (100 rad/s if not
 /// stated). Finally, throws if gravity rotates 57 times too fast or too slowly for the rates.
 Imported import_imu_csv(const std::filesystem::path& path, const sim::ImuRecord& device,
-                        AccelUnit unit = AccelUnit::m_s2, GyroUnit gyro_unit = GyroUnit::rad_s);
+                        AccelUnit unit = AccelUnit::m_s2, GyroUnit gyro_unit = GyroUnit::rad_s,
+                        const std::string& columns = "");
+
+/// Reads all IMU tables (.csv) of a folder, such as a folder of `export --format csv`. The IMUs have the names of their
+/// files, and the first by name is the primary IMU. Other tables are left out with a note; tables of poses without.
+/// Throws BadInput like import_imu_csv, and if no table has IMU readings.
+Imported import_csv_folder(const std::filesystem::path& folder, const sim::ImuRecord& device, AccelUnit unit,
+                           GyroUnit gyro_unit);
 
 /// Files that contain the sweeps of one lidar.
 struct SweepSource {

@@ -71,8 +71,8 @@ void load_recording(const scenarios::DataRoot& data, const RenderOptions& option
   for (const std::filesystem::path& folder : options.estimates) {
     scenarios::Kind kind;
     std::string method;
-    require_own(folder, options.what, content.sensors);
-    const scenarios::Estimate estimate = scenarios::read_estimate(folder, kind, method, scenarios::Frame::imu);
+    const scenarios::Estimate estimate =
+        read_given({folder, options.what, scenarios::Frame::imu}, content.sensors, &content.truth, kind, method);
     Path path = estimated_path(estimate, content.sensors, content.truth);
     if (path.empty()) throw BadInput(folder.string() + ": contains no poses to draw");
     content.scene.estimates.push_back(std::move(path));
@@ -101,8 +101,8 @@ int render_maps(const Session& session, const RenderOptions& options, const scen
   for (const std::filesystem::path& folder : options.estimates) {
     scenarios::Kind kind;
     std::string method;
-    require_own(folder, options.what, content.sensors);
-    const scenarios::Estimate estimate = scenarios::read_estimate(folder, kind, method, scenarios::Frame::imu);
+    const scenarios::Estimate estimate =
+        read_given({folder, options.what, scenarios::Frame::imu}, content.sensors, &content.truth, kind, method);
     maps.push_back(map_by_error(full_name(kind, method), estimate, content.truth, surface));
     const ErrorMap& map = maps.back();
     if (map.points_W_m.empty()) throw BadInput(folder.string() + ": contains no map to draw");

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -32,14 +31,6 @@ struct ScoreOptions {
   std::filesystem::path estimate, recording;
   std::string frame, kind;
 };
-
-/// Converts external poses with time stamps of the recording's source to the recording's clock. The conversion applies
-/// if the clock's origin is nearer to the stamps than zero is.
-void move_to_clock(std::int64_t origin_ns, scenarios::Estimate& estimate) {
-  const std::int64_t first = estimate.poses.empty() ? 0 : estimate.poses.front().time_ns;
-  if (std::abs(first - origin_ns) >= std::abs(first)) return;
-  for (PoseState& pose : estimate.poses) pose.time_ns -= origin_ns;
-}
 
 /// Accepts estimate and recording in either order, because other verbs take the recording first. The file extension
 /// identifies the recording.
@@ -203,7 +194,6 @@ struct Claim {
 /// Adds the information that an external estimate does not contain.
 void complete_foreign(const Session& session, const ScoreOptions& options, Claim& claim) {
   claim.kind = kind_of(options.kind, claim.sensors);
-  move_to_clock(claim.info.origin_ns, claim.estimate);
   const std::string complaint = scenarios::turning_complaint(claim.estimate, claim.sensors);
   if (!complaint.empty()) session.note("caution: " + complaint);
 }
@@ -217,9 +207,8 @@ Claim read_claim(const Session& session, const ScoreOptions& options) {
   if (!scenarios::states_digest(options.recording))
     session.note(options.recording.string() + ": contains no digest of its data, so damage cannot be detected");
   claim.truth = scenarios::read_truth(options.recording);
-  claim.estimate = scenarios::read_estimate(options.estimate, claim.kind, claim.method,
-                                            frame_of(options.frame, !claim.truth.imus.empty()));
-  require_own(options.estimate, options.recording, claim.sensors);
+  claim.estimate = read_given({options.estimate, options.recording, frame_of(options.frame, !claim.truth.imus.empty())},
+                              claim.sensors, &claim.truth, claim.kind, claim.method);
   claim.foreign = !std::filesystem::is_directory(options.estimate);
   if (!claim.foreign && scenarios::estimated_sensors(options.estimate).empty())
     session.note("caution: " + options.estimate.string() +

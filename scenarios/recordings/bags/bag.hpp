@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/not_finite.hpp"
 #include "scenarios/recordings/bags/bag_layout.hpp"
 #include "scenarios/recordings/import.hpp"
 #include "scenarios/recordings/stored_truth.hpp"
@@ -29,9 +30,11 @@ struct BagTrack {
     std::int64_t time_ns = 0;
     Eigen::Vector3d p_WB_m = Eigen::Vector3d::Zero();
     Eigen::Quaterniond q_WB = Eigen::Quaterniond::Identity();
-    Eigen::Vector3d v_WB_B_m_s = Eigen::Vector3d::Zero(), w_WB_B_rad_s = Eigen::Vector3d::Zero();
-    /// Covariance of (position in W, attitude error phi in W), as in PoseState; zero if unknown.
+    Eigen::Vector3d v_WB_B_m_s = kUnknown, w_WB_B_rad_s = kUnknown;
+    /// Covariance of (position in W, attitude error phi in W), as in PoseState; a block of zeros is unknown.
     Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+    bool exact = false;  ///< a true pose: zeros are the covariance
+    inline static const Eigen::Vector3d kUnknown = Eigen::Vector3d::Constant(kNaN);
   };
   std::string name;  ///< letters, digits and _
   std::vector<Pose> poses;
@@ -43,7 +46,7 @@ struct BagTrack {
 
 /// Options for writing a recording to a bag.
 struct BagWriting {
-  std::int64_t origin_ns = 0;  ///< stamp of time 0; 0: 1 000 000 000 s after 1970, because ROS treats 0 as unset
+  std::int64_t origin_ns = 0;          ///< of the recording; see export_origin_ns
   const StoredTruth* truth = nullptr;  ///< written if not null
   std::vector<BagTrack> tracks = {};   ///< estimates; names are unique and differ from export_names' `taken`
   SweepLayout sweeps = own_sweep_layout();
@@ -52,9 +55,6 @@ struct BagWriting {
   std::optional<ReaderNames> names = {};  ///< if set: only the first IMU and the first lidar, with these names
   bool empty_sweeps = true;               ///< false: omits sweeps without points
 };
-
-/// Returns the stamp of time 0 in a bag [ns since 1970]: `origin_ns`, or the default if `origin_ns` is 0.
-std::int64_t bag_origin_ns(const BagWriting& writing);
 
 /// Writes a recording as a bag, in one of three formats:
 ///
@@ -71,7 +71,8 @@ std::int64_t bag_origin_ns(const BagWriting& writing);
 ///   intensity ring time. The time is in float32 seconds after the stamp (4 ns resolution within 0.1 s). The field
 ///   offset_ns states the time in whole nanoseconds. The two time fields are omitted for points without times. `sweeps`
 ///   can choose another point layout;
-/// - "/truth" (nav_msgs/Odometry of "body" in "world", at most every 5 ms), "/TRACK" and "/TRACK/points";
+/// - "/truth" (nav_msgs/Odometry of "body" in "world", at most every 5 ms), "/TRACK" and "/TRACK/points". Unknown
+///   values have the variance -1, as in sensor_msgs/Imu, and an unknown twist is zero;
 /// - "/tf_static": each sensor in "body", from the calibration that the estimator uses;
 /// - "/tf": "body" in "world" from the truth, else from the first track; all further tracks use a frame "TRACK";
 /// - "/clock" (rosgraph_msgs/Clock), published with the first message after every 10 ms.
@@ -96,9 +97,11 @@ enum class ReferenceOf { named, body, lidar };
 struct BagReading {
   std::vector<std::string> imu_topics;    ///< the first is the primary one; empty: all of type Imu, in the bag's order
   std::vector<std::string> lidar_topics;  ///< empty: all of type PointCloud2 or CustomMsg
-  std::string reference_topic;            ///< Odometry or PoseStamped; "": none
+  std::string reference_topic;            ///< Odometry, PoseStamped or TransformStamped; "": none
   ReferenceOf reference_of = ReferenceOf::named;
   sim::ImuRecord imu;                   ///< values that messages lack: device, ranges, noise, T_BI
+  bool imu_placed = false;              ///< the user states T_BI of `imu`, also if it is the identity
+  bool lidar_placed = false;            ///< the same for T_BL of `sweeps.device`
   std::optional<AccelUnit> accel_unit;  ///< empty: m/s^2 as in sensor_msgs/Imu, or g if the readings indicate g
   GyroUnit gyro_unit = GyroUnit::rad_s;
   StampSource stamps = StampSource::header;

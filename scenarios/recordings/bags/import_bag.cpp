@@ -110,7 +110,7 @@ sim::ImuRecord read_imu(const OpenedBag& bag, SensorPlaces& places, const std::s
   for (const std::string& remark : {evened, gaps_text(imu), units, stamps.remark(), repeats_text(repeated)}) {
     if (!remark.empty()) notes.push_back(topic + ": " + remark);
   }
-  places.place(topic, frame, "--lever-arm", imu.T_BI, notes);
+  places.place(topic, frame, "--lever-arm", reading.imu_placed, imu.T_BI, notes);
   return imu;
 }
 
@@ -209,7 +209,7 @@ BuiltSweeps read_lidar(const OpenedBag& bag, SensorPlaces& places, const std::st
                     "counted from the header stamps",
                     topic, std::to_string(clocks_apart_s)));
   }
-  places.place(topic, headers.frame, "--T-body-lidar", built.lidar.T_BL, notes);
+  places.place(topic, headers.frame, "--T-body-lidar", reading.lidar_placed, built.lidar.T_BL, notes);
   return built;
 }
 

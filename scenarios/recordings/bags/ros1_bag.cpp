@@ -114,6 +114,9 @@ TypedBytes typed(const ros::PointCloud2& message) {
 TypedBytes typed(const ros::Odometry& message) {
   return typed_as<nav_msgs::Odometry>(message);
 }
+TypedBytes typed(const ros::TransformStamped& message) {
+  return typed_as<geometry_msgs::TransformStamped>(message);
+}
 // The build does not include the headers of these three types; the checksums are those of the message definitions.
 TypedBytes typed(const ros::TFMessage& message) {
   const std::string inner = ::ros::message_traits::Definition<geometry_msgs::TransformStamped>::value();

@@ -24,9 +24,9 @@ std::string stem_of(const std::filesystem::path& file);
 /// file if only some names have stamps.
 std::vector<std::int64_t> stamps_in_names(const std::vector<std::filesystem::path>& files);
 
-/// Reads stamps from a text file, one stamp per line; '#' starts a comment. Stamps are decimal seconds, or integers of
-/// 16 or 19 digits (us, ns). Throws BadInput with file and line for a text that is not a number, or a stamp that does
-/// not increase.
+/// Reads stamps from a text file, one stamp per line; '#' starts a comment. Stamps are decimal seconds, whole numbers
+/// of 13, 16 or 19 digits (ms, us, ns), or dates in UTC, as in the raw data of KITTI. Throws BadInput with file and
+/// line for another text, or a stamp that does not increase.
 std::vector<std::int64_t> read_stamps(const std::filesystem::path& file);
 
 /// Returns the upper median step of increasing times, or 0 for fewer than two times.

@@ -17,6 +17,7 @@
 #include "scenarios/recordings/tables/repeated_readings.hpp"
 #include "scenarios/recordings/tables/steady_stamps.hpp"
 #include "scenarios/recordings/trajectories/align_reference.hpp"
+#include "scenarios/recordings/trajectories/reference_check.hpp"
 #include "scenarios/recordings/trajectories/reference_glitches.hpp"
 #include "scenarios/recordings/trajectories/reference_rate.hpp"
 
@@ -259,6 +260,7 @@ void add_reference(const std::filesystem::path& path, Log& log, bool align, Impo
   out.notes.push_back(alignment.text() + (align             ? ": removed"
                                           : alignment.known ? ": not removed; set --align-reference to remove it"
                                                             : ""));
+  out.notes.push_back(check_reference(log.poses, Eigen::Isometry3d::Identity(), out.sensors, path.string()));
   try {
     out.reference = reference_truth(log.poses, imu.time_ns.back());
   } catch (const BadInput& error) {
