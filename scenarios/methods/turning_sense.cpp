@@ -13,6 +13,8 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr double kTurnsOtherwise = 0.5, kTurnsAsSaid = 0.15;
+/// Largest rotation difference that remains once a delay is corrected; the limit for references (reference_check.cpp).
+constexpr double kTurnsOnceCorrected = 0.3;
 
 std::vector<TimedAttitude> attitudes_of(const Estimate& estimate) {
   std::vector<TimedAttitude> out;
@@ -57,7 +59,14 @@ std::string turning_complaint(const Estimate& estimate, const sim::Sensors& sens
     if (mounting) frames.push_back({to_string(frame), *mounting});
     if (frames.empty()) return "";
   }
-  const TurningCheck check = check_turning(attitudes_of(estimate), frames, sensors.imus.front(), 0.0);
+  const TurningCheck check = check_turning(attitudes_of(estimate), frames, sensors.imus.front(), kDelaySearched_s);
+  const TurningFit& likely = check.reading.likely();
+  if (check.pairs > 0 && likely.written == Written::as_stated && likely.difference < kTurnsOnceCorrected &&
+      is_delayed(likely.delay_s))
+    return fmt::format(
+        "the attitudes do not rotate as the gyro does (difference {:.0f} % over {} pairs), but would (difference "
+        "{:.0f} %) at other times: their {}",
+        100.0 * check.stated.difference, check.pairs, 100.0 * likely.difference, delay_remedy(likely.delay_s));
   const TurningFit& best = check.reading.undelayed;
   if (check.pairs == 0 || check.stated.difference <= kTurnsOtherwise || best.difference >= kTurnsAsSaid) return "";
   return fmt::format(

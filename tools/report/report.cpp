@@ -65,7 +65,9 @@ bool are_of_here(const scenarios::Results& results, const ReportOptions& options
          (made_of.empty() || options.data.empty() || made_of == options.data);
 }
 
-std::vector<Fact> commands(const scenarios::Results& results, const ReportOptions& options) {
+/// Returns the commands that reproduce the page and extend it; leaves out commands that would refuse these results.
+std::vector<Fact> commands(const scenarios::Results& results, const ReportOptions& options,
+                           const PageContent& content) {
   const std::string database = scenarios::shell_word(options.database.string());
   std::vector<Fact> out;
   if (are_of_here(results, options)) {
@@ -77,8 +79,10 @@ std::vector<Fact> commands(const scenarios::Results& results, const ReportOption
   }
   if (!options.page.empty())
     out.emplace_back("This page", "tumble report " + database + " -o " + scenarios::shell_word(options.page.string()));
-  out.emplace_back("Paired differences as tables (--metric NAME for other metrics)", "tumble compare " + database);
-  out.emplace_back("Influence of every number on each method", "tumble sensitivity " + database + " --all");
+  if (!content.comparison.failures.empty())
+    out.emplace_back("Paired differences as tables (--metric NAME for other metrics)", "tumble compare " + database);
+  if (!content.sensitivity.empty())
+    out.emplace_back("Influence of every number on each method", "tumble sensitivity " + database + " --all");
   return out;
 }
 
@@ -182,7 +186,7 @@ PageContent report_content(ReportInput input, const ReportOptions& options) {
   content.sensitivity_note = std::move(input.sensitivity_note);
   content.methods = listed_methods(summary);
   content.versions = versions(results, summary, options);
-  content.commands = commands(results, options);
+  content.commands = commands(results, options, content);
   content.certificates = results.certificates();
   if (content.certificates.empty() && !content.recorded)
     content.warnings.push_back("These results contain no certificate of their build.");

@@ -102,7 +102,8 @@ int import_from(const Session& session, const ImportOptions& options) {
   const std::string format = format_of(options);
   require_fitting(options, format);
   prepare_file(options.out,
-               std::vector<std::filesystem::path>{options.path, options.imu, options.times, options.reference});
+               std::vector<std::filesystem::path>{options.path, options.imu, options.times, options.reference},
+               kRecordingEndings);
   Imported imported = import_format(session, options, format);
   if (!options.imu.empty()) {
     scenarios::attach_imus(imported, scenarios::import_imu_csv(options.imu, imu_sheet(session, options),

@@ -182,11 +182,9 @@ void write_page(const Session& session, const ReportVerbOptions& options, Report
 }
 
 int report(const Session& session, const ReportVerbOptions& options) {
-  for (const std::filesystem::path& output : {options.page, options.badge}) {
-    if (!output.empty()) prepare_file(output, std::vector<std::filesystem::path>{options.database});
-  }
-  if (!options.badge.empty() && options.badge == options.page)
-    throw scenarios::BadInput("--badge and --output name the same file, " + options.page.string());
+  const std::vector<std::filesystem::path> inputs = {options.database};
+  if (!options.page.empty()) prepare_file(options.page, inputs, {".html"});
+  if (!options.badge.empty()) prepare_file(options.badge, inputs, {".svg"});
   const scenarios::Results results(options.database, scenarios::Results::Mode::read_only);
   const std::vector<scenarios::DrawValues> draws = results.draws();
   Summary summary;

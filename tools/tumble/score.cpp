@@ -60,7 +60,8 @@ void require_common_time(const ScoreOptions& options, const scenarios::Estimate&
   const double last_s = 1e-9 * static_cast<double>(estimate.poses.back().time_ns);
   if (first_s <= end_s && last_s >= 0.0) return;
   throw scenarios::BadInput(fmt::format(
-      "{}: the poses cover {:.3f} s to {:.3f} s, but the truth of {} covers 0 to {:.3f} s; the clocks may differ",
+      "{}: the poses cover {:.3f} s to {:.3f} s, but the truth of {} covers 0 to {:.3f} s; shift the "
+      "time stamps of the poses to the start of the recording",
       options.estimate.string(), first_s, last_s, options.recording.string(), end_s));
 }
 
@@ -298,6 +299,7 @@ Action declare_score(VerbOptions& verb, const Session& session) {
            "a lidar and no rolling sphere]");
   return [&session, options] {
     order(*options);
+    a_recording(options->recording.string());
     return score_estimate(session, *options);
   };
 }

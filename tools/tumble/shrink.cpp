@@ -153,7 +153,8 @@ int run_shrink(const Session& session, const ShrinkVerbOptions& options) {
   const double time_limit_s = 0.9 * shrinking.timeout_s;
   const scenarios::MethodPointer method = one_method(options.method, time_limit_s);
   const std::string metric = metric_of(*method, options.metric);
-  prepare_file(options.file, std::vector<std::filesystem::path>{options.scenario, options.method});
+  prepare_file(options.file, std::vector<std::filesystem::path>{options.scenario, options.method},
+               {".yaml"});
   if (options.worse_than) shrinking.failure = {metric, *options.worse_than};
   shrinking.control = control_of(options, *method, scenario, time_limit_s);
   shrinking.budget = options.budget;
