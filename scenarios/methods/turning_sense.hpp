@@ -9,14 +9,19 @@
 /// pose file does not state its frame, quaternion convention or clock.
 namespace tumble::scenarios {
 
-/// Returns a message if the attitudes or poses of `estimate` use a wrong convention or clock, or "" if neither is
-/// detected. Detects quaternions with w first, inverted rotations (world in sensor), a frame other than
-/// `estimate.frame`, and stamps that are wrong by a constant time from 0.15 to 5 s.
+/// Returns a message if the attitudes or poses of `estimate` use a wrong convention, or "" if no wrong convention is
+/// detected. Detects quaternions with w first, inverted rotations (world in sensor), and a frame other than
+/// `estimate.frame`.
 ///
 /// Compares rotations between poses with the gyro of the first IMU (recordings/trajectories/turning.hpp). Reports a
 /// correction if the rotation difference exceeds half of the rotation and the correction reduces the difference below
-/// 0.15. Combinations of errors, and single-axis rotations that an error leaves unchanged, are not detected. Cost: see
-/// check_turning; half a second.
+/// 0.15. Combinations of errors, and single-axis rotations that an error leaves unchanged, are not detected. The cost
+/// is proportional to the number of samples and poses.
 std::string turning_complaint(const Estimate& estimate, const sim::Sensors& sensors);
+
+/// Returns a message if the stamps of the attitudes or poses are wrong by a constant time from 0.15 to 5 s, or "" if no
+/// such delay is detected. Uses the check of references (recordings/trajectories/reference_check.hpp). Cost: half a
+/// second.
+std::string clock_complaint(const Estimate& estimate, const sim::Sensors& sensors);
 
 }  // namespace tumble::scenarios

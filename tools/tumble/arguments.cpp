@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/methods/external_description.hpp"
 #include "scenarios/methods/external_method.hpp"
 #include "scenarios/recordings/foreign_file.hpp"
 #include "scenarios/recordings/replace_file.hpp"
@@ -95,6 +96,14 @@ scenarios::MethodPointer one_method(const std::string& name, double time_limit_s
   for (const scenarios::MethodPointer& method : found)
     line += std::string(" ") + to_string(method->info.kind) + "/" + method->info.name;
   throw BadInput(line);
+}
+
+void note_time_limits(const Session& session, std::span<const std::string> names) {
+  for (const std::string& name : names) {
+    if (!scenarios::is_method_file(name)) continue;
+    session.note(fmt::format("{}: a run is ended after {:g} s; the key time_limit_s of a description sets the limit",
+                             name, scenarios::read_external(name).time_limit_s));
+  }
 }
 
 std::string metric_of(const scenarios::Method& method, const std::string& name) {

@@ -42,6 +42,9 @@ std::vector<scenarios::MethodPointer> select_methods(const std::vector<std::stri
 /// Returns the method with this name. External methods have a time limit of `time_limit_s`.
 scenarios::MethodPointer one_method(const std::string& name, double time_limit_s);
 
+/// States how long a run of each external method among `names` may take, because such a run may hang.
+void note_time_limits(const Session& session, std::span<const std::string> names);
+
 /// Returns the named metric of the method's kind, or the first metric of the kind if `name` is empty.
 std::string metric_of(const scenarios::Method& method, const std::string& name);
 

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
 
 #include "scenarios/errors.hpp"
@@ -124,6 +125,7 @@ int run_estimate(const Session& session, const EstimateOptions& options) {
   const std::vector<scenarios::Method> methods = scenarios::with_parameters(selected, options.parameters);
   scenarios::OutputFolder folder(options.folder);
   learnt.require_place();
+  note_time_limits(session, std::span(&options.method, 1));
   scenarios::Estimate estimate = run_of(methods.front(), sensors);
   if (!scenarios::states_digest(options.recording)) add_doubt({scenarios::Doubt::About::digest}, estimate);
   scenarios::write_estimate(options.folder, method.info.name, method.info.kind, estimate,

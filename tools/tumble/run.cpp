@@ -214,6 +214,7 @@ int run(const Session& session, const RunOptions& given) {
   if (!options.folder.empty()) folder.emplace(options.folder);
   learnt.require_place();
 
+  note_time_limits(session, options.methods);
   const scenarios::Setting setting = setting_of(data, options, seed);
   const scenarios::RunResult result = scenarios::run_situation(data, scenario, seed, pointers(methods), options.threads,
                                                                scenarios::Lidars::simulated, setting);

@@ -201,12 +201,14 @@ struct Claim {
   bool foreign = false;  ///< an external trajectory without information about its method
 };
 
-/// Adds the information that an external estimate does not contain.
+/// Adds the information that an external estimate does not contain, and reports a wrong convention or clock.
 void complete_foreign(const Session& session, const ScoreOptions& options, Claim& claim) {
   claim.kind = kind_of(options.kind, claim.sensors);
   move_to_clock(claim.info.origin_ns, claim.estimate);
-  const std::string complaint = scenarios::turning_complaint(claim.estimate, claim.sensors);
-  if (!complaint.empty()) session.note("caution: " + complaint);
+  for (const auto& complain : {scenarios::turning_complaint, scenarios::clock_complaint}) {
+    const std::string complaint = complain(claim.estimate, claim.sensors);
+    if (!complaint.empty()) session.note("caution: " + complaint);
+  }
 }
 
 Claim read_claim(const Session& session, const ScoreOptions& options) {

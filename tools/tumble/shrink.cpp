@@ -94,7 +94,7 @@ json to_json(const Shrunk& shrunk, const std::string& metric, const ShrinkVerbOp
   };
   return {{"failure", shrunk.failure},       {"metric", metric},          {"drawn", side(shrunk.drawn)},
           {"shrunk", side(shrunk.left)},     {"runs", shrunk.runs},       {"complete", shrunk.complete},
-          {"controlled", shrunk.controlled}, {"lines", std::move(lines)}, {"case", options.file.string()}};
+          {"controlled", shrunk.controlled}, {"cure", shrunk.cure},       {"lines", std::move(lines)}, {"case", options.file.string()}};
 }
 
 /// Returns the command that repeats the shrinking.
@@ -173,9 +173,11 @@ int run_shrink(const Session& session, const ShrinkVerbOptions& options) {
   scenarios::replace_file(options.file, scenarios::to_yaml(made));
   session.print({lines_table(shrunk, metric), outcomes_table(shrunk, metric)}, to_json(shrunk, metric, options));
   session.note(fmt::format(
-      "{}: {} runs, {}; {}; case file: {}", shrunk.failure, shrunk.runs,
+      "{}: {} runs, {}; {}; {}; case file: {}", shrunk.failure, shrunk.runs,
       shrunk.complete ? "nothing more can be removed" : "the budget is used up; a larger --budget may remove more",
-      control_text(shrunk, shrinking), options.file.string()));
+      control_text(shrunk, shrinking),
+      shrunk.cure.empty() ? "no single true input cures it" : "the true input " + shrunk.cure + " cures it",
+      options.file.string()));
   return kDone;
 }
 

@@ -87,11 +87,12 @@ TEST_P(TurningSense, AConstantDelayIsNamed) {
   const auto delayed_by = [&](double late_s) {
     Estimate late = attitudes(R_BA(GetParam()), GetParam(), as_is);
     for (AttitudeState& each : late.attitudes) each.time_ns += std::llround(1e9 * late_s);
-    return turning_complaint(late, sensors_);
+    return clock_complaint(late, sensors_);
   };
   EXPECT_THAT(delayed_by(0.4), HasSubstr("their stamps are 0.400 s too late, at most 0.15 s is accepted: subtract"));
   EXPECT_THAT(delayed_by(-0.4), HasSubstr("their stamps are 0.400 s too early"));
   EXPECT_EQ(delayed_by(0.1), "") << "stamps at the end of a sweep";
+  EXPECT_EQ(delayed_by(0.0), "");
 }
 
 TEST(TurningSense, AnotherFrameIsNamed) {
