@@ -2,7 +2,10 @@
 // Somebody else's command in run and sweep: what it answers is scored as ours is, and what goes wrong is an outcome.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <csignal>
+#include <cstdlib>
 #include <fstream>
 
 #include "scenarios/sweep/results.hpp"
@@ -80,7 +83,7 @@ TEST(External, AHangThatIsStoppedLeavesNoFolder) {
   const fs::path folder = test_folder();
   std::ofstream(folder / "small.yaml") << "name: small\ndoc: a draw\nmethods: [rate/raw]\ntimeout_s: 600\n"
                                           "draws: {one: {hill: [1]}}\n";
-  const std::string hangs = describe(folder, "hangs", "touch started; sleep 600");
+  const std::string hangs = describe(folder, "hangs", "touch started; exec sleep 600");
   const std::vector<std::string> verbs[] = {
       {"bench", hangs, "--suite", (folder / "small.yaml").string(), "--db", (folder / "b.db").string()},
       {"triage", shared_scenario("hill"), "--seed", "1", "--method", hangs},

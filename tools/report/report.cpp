@@ -87,13 +87,13 @@ std::vector<Fact> commands(const scenarios::Results& results, const ReportOption
 }
 
 /// Plots the headline metrics of each kind. Verdicts are left out, because the table shows their fraction.
-std::vector<Figure> errors_of_all_draws(const Summary& summary) {
+std::vector<Figure> errors_of_all_draws(const Summary& summary, const Palette& palette) {
   std::vector<Figure> figures;
   for (const Kind kind : {Kind::rate, Kind::attitude, Kind::position, Kind::slam}) {
     for (const std::string& name : scenarios::headline_metrics(kind)) {
       const scenarios::MetricInfo& info = scenarios::metric_info(name);
       if (info.unit != scenarios::Unit::verdict)
-        figures.push_back(box_figure(summary, kind, name, fmt::format("{}: {}.", name, info.doc)));
+        figures.push_back(box_figure(summary, kind, name, fmt::format("{}: {}.", name, info.doc), palette));
     }
   }
   std::erase_if(figures, [](const Figure& figure) { return figure.empty(); });
@@ -164,6 +164,21 @@ void add_examples(const scenarios::Results& results, const ReportOptions& option
   if (content.examples.empty()) content.warnings.push_back(how_to_get_pictures(results, options));
 }
 
+/// Takes the colours of the examples' pictures first, because pictures cannot be recoloured.
+Palette palette_of(const PageContent& content) {
+  Palette palette;
+  for (const ShownExample& shown : content.examples) {
+    if (shown.example.of_failure || shown.example.pictures.empty()) continue;
+    for (const auto& [name, colour] : shown.example.pictures.front().legend)
+      if (colour != kTruthColour) palette.add(name, static_cast<std::size_t>(colour));
+  }
+  for (const scenarios::Section& section : content.summary.sections)
+    for (const scenarios::MethodSummary& method : section.methods) palette.add(method.method);
+  for (const Curve& curve : content.curves)
+    for (const CurveLine& line : curve.lines) palette.add(line.method);
+  return palette;
+}
+
 }  // namespace
 
 PageContent report_content(ReportInput input, const ReportOptions& options) {
@@ -177,9 +192,12 @@ PageContent report_content(ReportInput input, const ReportOptions& options) {
   content.comparison = scenarios::compare(summary, {});
   content.motion_map = scenarios::motion_map(input.draws);
   content.motions = std::move(input.motions);
-  content.errors = errors_of_all_draws(summary);
-  content.cost = cost_figure(summary);
   content.curves = std::move(input.curves);
+  if (!content.recorded && !summary.sections.empty()) add_examples(results, options, content);
+  content.palette = palette_of(content);
+  content.errors = errors_of_all_draws(summary, content.palette);
+  content.cost = cost_figure(summary, content.palette);
+  content.costs = cost_rows(summary, input.draws);
   content.failed = failed_draws(results, summary, options.database);
   content.rejected = results.rejected();
   content.sensitivity = std::move(input.sensitivity);
@@ -194,7 +212,6 @@ PageContent report_content(ReportInput input, const ReportOptions& options) {
     content.versions.emplace_back("certificate", certificate_summary(certificate));
     if (!certificate.passes()) content.warnings.push_back("The certificate of build " + certificate.build + " fails.");
   }
-  if (!content.recorded && !summary.sections.empty()) add_examples(results, options, content);
   return content;
 }
 
