@@ -292,8 +292,8 @@ TEST(FirstRun, AScenarioFileIsNotToBeSwept) {
 
 TEST(Estimate, PrintsWhatMattersWithUnits) {
   const fs::path folder = test_folder() / "e";
-  const Ended ended = run_program({"estimate", (shared_run("hill") / "recording.h5").string(), "--method",
-                                   "rate/tumble", "-o", folder.string()});
+  const Ended ended = run_program(
+      {"estimate", (shared_run("hill") / "recording.h5").string(), "--method", "rate/tumble", "-o", folder.string()});
   ASSERT_EQ(ended.status, 0) << ended.err;
   EXPECT_LE(line_count(ended.out), 12u) << ended.out;
   EXPECT_THAT(ended.out, HasSubstr("time from the first to the last of the angular rates"));

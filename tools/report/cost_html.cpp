@@ -37,8 +37,7 @@ std::vector<CostRow> cost_rows(const scenarios::Summary& summary, std::span<cons
       std::vector<double> factors;
       for (std::size_t k = 0; k < cost->values.size(); ++k) {
         const auto duration = durations.find({section.scenario, cost->seeds[k]});
-        if (duration != durations.end() && cost->values[k] > 0.0)
-          factors.push_back(duration->second / cost->values[k]);
+        if (duration != durations.end() && cost->values[k] > 0.0) factors.push_back(duration->second / cost->values[k]);
       }
       rows.push_back({section.scenario, full_name(section.kind, method.method), scenarios::quantile(cost->values, 0.5),
                       scenarios::quantile(factors, 0.5)});

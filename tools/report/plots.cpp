@@ -73,7 +73,8 @@ class Boxes {
       if (values == nullptr) continue;
       const std::size_t failed = with_failed ? values->failed.size() : 0;
       if (values->values.empty() && failed == 0) continue;
-      auto trace = std::find_if(traces_.begin(), traces_.end(), [&](const auto& t) { return t.first == method.method; });
+      auto trace =
+          std::find_if(traces_.begin(), traces_.end(), [&](const auto& t) { return t.first == method.method; });
       if (trace == traces_.end()) {
         traces_.emplace_back(method.method, box(method.method, palette_.index(method.method, traces_.size())));
         trace = traces_.end() - 1;
@@ -109,8 +110,7 @@ class Boxes {
   void add_values(json& trace, const std::string& group, const std::vector<double>& values, std::size_t failed) {
     // the shares of values and of failed runs remain if only some of the runs are drawn
     const std::size_t all = values.size() + failed;
-    const std::size_t shown_failed =
-        all <= kBoxPoints ? failed : (failed * kBoxPoints + all - 1) / all;
+    const std::size_t shown_failed = all <= kBoxPoints ? failed : (failed * kBoxPoints + all - 1) / all;
     for (const double value : at_most(values, std::max<std::size_t>(2, std::min(all, kBoxPoints) - shown_failed))) {
       trace["x"].push_back(plot_text(group));
       trace["y"].push_back(five_digits(value * style_.factor));
@@ -130,7 +130,9 @@ class Boxes {
     if (low > high) low = high = 1.0;  // every run failed
     const bool higher = scenarios::metric_info(metric_).sense == scenarios::Sense::higher;
     const double span = high > low ? high - low : std::max(std::abs(high), 1.0);
-    const double level = five_digits(log ? (higher ? low / 2.0 : high * 2.0) : higher ? low - 0.15 * span : high + 0.15 * span);
+    const double level = five_digits(log      ? (higher ? low / 2.0 : high * 2.0)
+                                     : higher ? low - 0.15 * span
+                                              : high + 0.15 * span);
     for (const Failures& failed : failures_) {
       const auto trace =
           std::find_if(data.begin(), data.end(), [&](const json& each) { return each["name"] == failed.method; });

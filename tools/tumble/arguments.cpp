@@ -163,7 +163,7 @@ void require_ending(const std::filesystem::path& output, std::span<const std::st
 }
 
 void prepare_file(const std::filesystem::path& output, std::span<const std::filesystem::path> inputs,
-                  std::initializer_list<std::string_view> endings) {
+                  const std::vector<std::string_view>& endings) {
   scenarios::require_not_an_input(output, inputs);
   require_ending(output, endings);
   if (output.has_parent_path()) make_folder(output.parent_path());

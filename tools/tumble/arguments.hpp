@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <initializer_list>
 #include <span>
 #include <string>
 #include <string_view>
@@ -77,9 +76,9 @@ void require_ending(const std::filesystem::path& output, std::span<const std::st
 /// Checks that an output file can be written, before the computation starts, and leaves no file behind. Throws BadInput
 /// if the output is one of the inputs or has none of the extensions `endings`.
 void prepare_file(const std::filesystem::path& output, std::span<const std::filesystem::path> inputs,
-                  std::initializer_list<std::string_view> endings);
+                  const std::vector<std::string_view>& endings);
 
 /// Extensions of a recording that the program writes.
-inline constexpr std::initializer_list<std::string_view> kRecordingEndings = {".h5", ".hdf5"};
+inline const std::vector<std::string_view> kRecordingEndings = {".h5", ".hdf5"};
 
 }  // namespace tumble::tools

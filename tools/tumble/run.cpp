@@ -41,8 +41,8 @@ struct RunOptions {
 
 /// Returns true if the command line states only a scenario and perhaps a seed, as for a first try of the program.
 bool is_bare(const RunOptions& options) {
-  return options.methods.empty() && options.folder.empty() && options.learnt.empty() &&
-         options.parameters.empty() && options.vary.empty();
+  return options.methods.empty() && options.folder.empty() && options.learnt.empty() && options.parameters.empty() &&
+         options.vary.empty();
 }
 
 /// Returns the scenario's name, or the first of NAME_2, NAME_3, ... that does not exist.
@@ -240,9 +240,10 @@ Action declare_run(VerbOptions& verb, const Session& session) {
       .required()
       .check(a_scenario(session));
   verb.add("--seed", options->seed, "seed of the draw [1; for a named case: its own]");
-  verb.add("--method", options->methods,
-           "method, for example 'saave' or 'rate/saave'; repeat for more [with only a scenario and a seed: the baseline "
-           "and our method of each kind; else all that apply]")
+  verb.add(
+          "--method", options->methods,
+          "method, for example 'saave' or 'rate/saave'; repeat for more [with only a scenario and a seed: the baseline "
+          "and our method of each kind; else all that apply]")
       .one_at_a_time();  // each --method takes exactly one word
   verb.add("--set", options->parameters,
            "METHOD.PARAMETER=NUMBER, for example rate/tumble_lag.lag_s=0.5; repeat for more ('tumble list methods "
@@ -253,14 +254,15 @@ Action declare_run(VerbOptions& verb, const Session& session) {
   verb.add("--threads", options->threads, "number of threads for the lidar; the result does not depend on it")
       .whole(1, 1024)
       .shows_default();
-  verb.add("-o,--output", options->folder, 
+  verb.add("-o,--output", options->folder,
            "folder for recording, estimates, pictures and replay [with only a scenario and a seed: named after the "
            "scenario; else nothing is written]");
   verb.add("--learnt", options->learnt,
            "FILE.json with the calibration of the rig from which 'rate/tumble' and 'rate/tumble_lag' start, if it "
            "exists; receives the calibration of this run");
   verb.footer(
-      "With only a scenario and a seed, the program runs our methods and the baselines and writes everything to a folder "
+      "With only a scenario and a seed, the program runs our methods and the baselines and writes everything to a "
+      "folder "
       "with the scenario's name.");
   return [&session, options] { return run(session, *options); };
 }

@@ -59,10 +59,10 @@ void require_common_time(const ScoreOptions& options, const scenarios::Estimate&
   const double first_s = 1e-9 * static_cast<double>(estimate.poses.front().time_ns);
   const double last_s = 1e-9 * static_cast<double>(estimate.poses.back().time_ns);
   if (first_s <= end_s && last_s >= 0.0) return;
-  throw scenarios::BadInput(fmt::format(
-      "{}: the poses cover {:.3f} s to {:.3f} s, but the truth of {} covers 0 to {:.3f} s; shift the "
-      "time stamps of the poses to the start of the recording",
-      options.estimate.string(), first_s, last_s, options.recording.string(), end_s));
+  throw scenarios::BadInput(
+      fmt::format("{}: the poses cover {:.3f} s to {:.3f} s, but the truth of {} covers 0 to {:.3f} s; shift the "
+                  "time stamps of the poses to the start of the recording",
+                  options.estimate.string(), first_s, last_s, options.recording.string(), end_s));
 }
 
 constexpr double kHoleShare = 0.2;  // share of the recording; a longer gap counts as a divergence (scenarios::verdict)

@@ -92,9 +92,10 @@ json to_json(const Shrunk& shrunk, const std::string& metric, const ShrinkVerbOp
   const auto side = [&](const scenarios::Outcome& outcome) {
     return json{{"status", to_string(outcome.status)}, {"value", finite(value_of(outcome.scores, metric))}};
   };
-  return {{"failure", shrunk.failure},       {"metric", metric},          {"drawn", side(shrunk.drawn)},
-          {"shrunk", side(shrunk.left)},     {"runs", shrunk.runs},       {"complete", shrunk.complete},
-          {"controlled", shrunk.controlled}, {"cure", shrunk.cure},       {"lines", std::move(lines)}, {"case", options.file.string()}};
+  return {{"failure", shrunk.failure},       {"metric", metric},    {"drawn", side(shrunk.drawn)},
+          {"shrunk", side(shrunk.left)},     {"runs", shrunk.runs}, {"complete", shrunk.complete},
+          {"controlled", shrunk.controlled}, {"cure", shrunk.cure}, {"lines", std::move(lines)},
+          {"case", options.file.string()}};
 }
 
 /// Returns the command that repeats the shrinking.
@@ -153,8 +154,7 @@ int run_shrink(const Session& session, const ShrinkVerbOptions& options) {
   const double time_limit_s = 0.9 * shrinking.timeout_s;
   const scenarios::MethodPointer method = one_method(options.method, time_limit_s);
   const std::string metric = metric_of(*method, options.metric);
-  prepare_file(options.file, std::vector<std::filesystem::path>{options.scenario, options.method},
-               {".yaml"});
+  prepare_file(options.file, std::vector<std::filesystem::path>{options.scenario, options.method}, {".yaml"});
   if (options.worse_than) shrinking.failure = {metric, *options.worse_than};
   shrinking.control = control_of(options, *method, scenario, time_limit_s);
   shrinking.budget = options.budget;

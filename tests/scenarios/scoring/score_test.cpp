@@ -196,7 +196,8 @@ TEST(PositionScores, AGrowingOffsetGivesKnownErrors) {
 }
 
 TEST(PositionScores, TheShareIsOfTheSamePathInEveryFrame) {
-  // an offset of 5 cm at the end, in the frame of a point that turns around the centre of mass, and of the centre itself
+  // an offset of 5 cm at the end, in the frame of a point that turns around the centre of mass, and of the centre
+  // itself
   const auto share_in = [](Frame frame) {
     Estimate estimate = perfect_estimate(rig(), frame);
     estimate.poses.back().p_WA_m.x() += 0.05;
