@@ -53,8 +53,8 @@ class Bench : public ::testing::Test {
     EXPECT_THAT(page, HasSubstr("published result of build"));
     const std::string text = page.substr(0, page.find("<script id=\"plotly\">"));
     std::vector<std::string> verbs;
-    for (std::size_t at = 0; (at = text.find("<code>tumble ", at)) != std::string::npos;) {
-      at += std::string("<code>tumble ").size();
+    for (std::size_t at = 0; (at = text.find("<pre>tumble ", at)) != std::string::npos;) {
+      at += std::string("<pre>tumble ").size();
       std::istringstream command(text.substr(at, text.find('<', at) - at));
       std::vector<std::string> words{std::istream_iterator<std::string>(command), {}};
       verbs.push_back(words.front());
