@@ -49,12 +49,16 @@ struct Shrunk {
   int runs = 0;
   bool complete = false;    ///< the budget was sufficient: no single item can be removed
   bool controlled = false;  ///< the control method failed on none of the kept draws
+  /// True input (sweep/triage.hpp) with which the method does not fail, on the original draw and on every kept draw;
+  /// empty if no single input does this on the original draw.
+  std::string cure;
 };
 
 /// Simplifies a simulated run on which `method` fails, as far as the method still fails. The search first reduces the
 /// duration, which makes further trials cheap. Then the search removes complications (complication.hpp) by delta
 /// debugging (delta_debugging.hpp), reduces the remaining sizes and counts, and reduces the duration again. Each trial
-/// is simulated and estimated, and is accepted if it fails like the original run (same_failure.hpp). The search is
+/// is simulated and estimated, and is accepted if it fails like the original run (same_failure.hpp) and if the true
+/// input that cures the original run cures it, too. Otherwise the search could end at another cause. The search is
 /// deterministic; all trials use the seed of the original run. The search misses simpler runs that can only be reached
 /// through a passing run.
 ///

@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <map>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "scenarios/errors.hpp"
@@ -107,6 +109,17 @@ bool is_bag_format(const std::string& format) {
 std::string format_of_ending(const path& out) {
   const std::string ending = out.extension().string();
   return ending == ".mcap" ? "mcap" : ending == ".bag" ? "rosbag1" : ending == ".tum" ? "tum" : "";
+}
+
+void require_own_kind(const std::string& format, const path& out) {
+  static const std::map<std::string, std::set<std::string>> kEndings = {
+      {"mcap", {".mcap"}}, {"rosbag1", {".bag"}}, {"tum", {".tum", ".txt"}}, {"kitti", {".txt", ".kitti"}}};
+  const auto own = kEndings.find(format);
+  const std::string ending = out.extension().string();
+  if (own == kEndings.end() || ending.empty() || own->second.contains(ending)) return;
+  if (!std::filesystem::is_regular_file(out)) return;
+  throw BadInput(fmt::format("{}: exists and is of another kind than the format '{}'; name another output, ending in {}",
+                             out.string(), format, fmt::join(own->second, " or ")));
 }
 
 Notes export_recording(const path& recording, const std::string& format, const path& out,

@@ -21,6 +21,10 @@ bool is_bag_format(const std::string& format);
 /// Returns the format for a file extension (.mcap, .bag, .tum), and an empty text for other extensions.
 std::string format_of_ending(const std::filesystem::path& out);
 
+/// Throws BadInput if `out` is an existing file whose extension belongs to another kind of file than `format`, which
+/// the export would replace. Does not apply to formats that write a folder.
+void require_own_kind(const std::string& format, const std::filesystem::path& out);
+
 /// Options of an export format: extra content and sweep layout for bags, frame for trajectories.
 struct ExportChoices {
   bool truth = false;

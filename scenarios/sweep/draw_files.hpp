@@ -35,7 +35,8 @@ class DrawFiles {
 
   /// Returns where a method must write its estimate, or an empty path if the estimate is not needed.
   std::filesystem::path estimate(const MethodInfo& method);
-  /// Writes the recording and moves everything to its final folder, or removes everything. Existing estimates of other
+  /// Writes the recording and moves everything to its final folder, or removes everything: after `miss`, or if a file
+  /// cannot be written. Existing estimates of other
   /// methods from equal sensor data remain.
   void finish(const SimulatedDraw& draw, bool failed);
   /// Records that an estimate could not be written.

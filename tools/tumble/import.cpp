@@ -108,7 +108,8 @@ int import_from(const Session& session, const ImportOptions& options) {
   const std::string format = format_of(options);
   require_fitting(options, format);
   prepare_file(options.out,
-               std::vector<std::filesystem::path>{options.path, options.imu, options.times, options.reference});
+               std::vector<std::filesystem::path>{options.path, options.imu, options.times, options.reference},
+               kRecordingEndings);
   Imported imported = import_format(session, options, format);
   if (!options.imu.empty()) {
     scenarios::attach_imus(imported, imu_table(session, options, options.imu));

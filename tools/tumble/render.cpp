@@ -48,8 +48,10 @@ struct RenderContent {
 };
 
 bool is_recording(const std::string& what) {
-  // a name with a recording's extension means a file, even if the file does not exist
-  return std::filesystem::exists(what) ? !what.ends_with(".yaml") : what.ends_with(".h5") || what.ends_with(".hdf5");
+  // a name with a recording's extension means a file, even if the file does not exist; a folder is never a recording,
+  // so that the folder that 'tumble run hill' writes does not hide the scenario
+  if (std::filesystem::exists(what) && !std::filesystem::is_directory(what)) return !what.ends_with(".yaml");
+  return what.ends_with(".h5") || what.ends_with(".hdf5");
 }
 
 /// Loads world, sensors and truth of a recording.
@@ -150,8 +152,6 @@ std::vector<std::uint8_t> video_of(const Session& session, const RenderOptions& 
 void require_video(const RenderOptions& options) {
   if (!is_recording(options.what)) throw BadInput("--video needs a recording; '" + options.what + "' is a scenario");
   if (options.film > 0 || options.map) throw BadInput("--video, --film and --map exclude each other; give only one");
-  if (options.output.extension() != ".webp")
-    throw BadInput("--video writes a WebP file: " + options.output.string() + " must end in .webp");
 }
 
 void write_picture(const Session& session, const RenderOptions& options, const Scene& scene) {
@@ -170,7 +170,7 @@ int render(const Session& session, const RenderOptions& options) {
   if (options.video) require_video(options);
   std::vector<std::filesystem::path> inputs = options.estimates;
   inputs.emplace_back(options.what);
-  prepare_file(options.output, inputs);
+  prepare_file(options.output, inputs, {options.video ? ".webp" : ".png"});
   if (is_recording(options.what) && !options.seed.empty()) {
     throw BadInput("--seed applies to a scenario; '" + options.what + "' is a recording of one draw");
   }

@@ -72,7 +72,7 @@ std::string title_of(const scenarios::RecordingInfo& info, const std::filesystem
 int make_replay(const Session& session, const ReplayOptions& options) {
   std::vector<std::filesystem::path> inputs = {options.recording};
   inputs.insert(inputs.end(), options.estimates.begin(), options.estimates.end());
-  prepare_file(options.page, inputs);
+  prepare_file(options.page, inputs, {".html"});
   const scenarios::RecordingInfo info = scenarios::read_info(options.recording);
   ReplayContent content;
   load_recording(session, options, info, content);

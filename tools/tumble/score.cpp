@@ -50,9 +50,10 @@ void require_common_time(const ScoreOptions& options, const scenarios::Estimate&
   const double first_s = 1e-9 * static_cast<double>(estimate.poses.front().time_ns);
   const double last_s = 1e-9 * static_cast<double>(estimate.poses.back().time_ns);
   if (first_s <= end_s && last_s >= 0.0) return;
-  throw scenarios::BadInput(fmt::format(
-      "{}: the poses cover {:.3f} s to {:.3f} s, but the truth of {} covers 0 to {:.3f} s; the clocks may differ",
-      options.estimate.string(), first_s, last_s, options.recording.string(), end_s));
+  throw scenarios::BadInput(
+      fmt::format("{}: the poses cover {:.3f} s to {:.3f} s, but the truth of {} covers 0 to {:.3f} s; shift the "
+                  "time stamps of the poses to the start of the recording",
+                  options.estimate.string(), first_s, last_s, options.recording.string(), end_s));
 }
 
 constexpr double kHoleShare = 0.2;  // share of the recording; a longer gap counts as a divergence (scenarios::verdict)
@@ -191,11 +192,13 @@ struct Claim {
   bool foreign = false;  ///< an external trajectory without information about its method
 };
 
-/// Adds the information that an external estimate does not contain.
+/// Adds the information that an external estimate does not contain, and reports a wrong convention or clock.
 void complete_foreign(const Session& session, const ScoreOptions& options, Claim& claim) {
   claim.kind = kind_of(options.kind, claim.sensors);
-  const std::string complaint = scenarios::turning_complaint(claim.estimate, claim.sensors);
-  if (!complaint.empty()) session.note("caution: " + complaint);
+  for (const auto& complain : {scenarios::turning_complaint, scenarios::clock_complaint}) {
+    const std::string complaint = complain(claim.estimate, claim.sensors);
+    if (!complaint.empty()) session.note("caution: " + complaint);
+  }
 }
 
 Claim read_claim(const Session& session, const ScoreOptions& options) {
@@ -287,6 +290,7 @@ Action declare_score(VerbOptions& verb, const Session& session) {
            "a lidar and no rolling sphere]");
   return [&session, options] {
     order(*options);
+    a_recording(options->recording.string());
     return score_estimate(session, *options);
   };
 }
