@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/bags/sensor_places.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include <sstream>
@@ -23,6 +25,13 @@ bool is_given(const Eigen::Isometry3d& T_BA) {
 }
 
 }  // namespace
+
+std::string sensor_name(std::string topic) {
+  while (topic.starts_with('/')) topic.erase(0, 1);
+  if (topic.ends_with("/points")) topic.resize(topic.size() - 7);
+  std::replace(topic.begin(), topic.end(), '/', '_');
+  return topic;
+}
 
 void SensorPlaces::place(const std::string& topic, const std::string& frame, const char* option,
                          Eigen::Isometry3d& T_BA, std::vector<std::string>& notes) {

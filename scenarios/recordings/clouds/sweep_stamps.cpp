@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/recordings/lower_extension.hpp"
 #include "scenarios/recordings/table_file.hpp"
 #include "scenarios/recordings/upper_median.hpp"
 #include "scenarios/recordings/whole_seconds.hpp"
@@ -112,7 +113,7 @@ std::vector<std::filesystem::path> sweep_files(const std::filesystem::path& fold
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const std::filesystem::path& path = entry.path();
-    const bool fits = path.extension() == ending && !path.filename().string().starts_with('.');
+    const bool fits = lower_extension(path) == ending && !path.filename().string().starts_with('.');
     if (fits && (stem.empty() || stem_of(path) == stem)) files.push_back(path);
   }
   if (files.empty()) {
@@ -143,7 +144,7 @@ std::vector<std::int64_t> stamps_in_names(const std::vector<std::filesystem::pat
                              without->string(), stamps.size()));
 }
 
-std::vector<std::int64_t> read_stamps(const std::filesystem::path& file) {
+std::vector<std::int64_t> read_stamps(const std::filesystem::path& file, std::vector<std::string>* disorder) {
   const Table table = Table::read(file, ' ', "", 1);
   std::vector<std::int64_t> stamps;
   for (const Table::Row& row : table.rows) {
@@ -151,10 +152,13 @@ std::vector<std::int64_t> read_stamps(const std::filesystem::path& file) {
     const bool digits = std::all_of(text.begin(), text.end(), is_digit);
     const std::optional<std::int64_t> whole = digits ? epoch_ns(text) : std::nullopt;
     const std::int64_t stamp = whole ? *whole : table.time_ns(row, 0);
+    std::string wrong;
     if (!stamps.empty() && stamp <= stamps.back()) {
-      throw BadInput(fmt::format("{}:{}: the time stamp {} ns does not increase; the previous one is {} ns",
-                                 file.string(), row.line, stamp, stamps.back()));
+      wrong = fmt::format("{}:{}: the time stamp {} ns does not increase; the previous one is {} ns", file.string(),
+                          row.line, stamp, stamps.back());
     }
+    if (disorder == nullptr && !wrong.empty()) throw BadInput(wrong);
+    if (disorder != nullptr) disorder->push_back(std::move(wrong));
     stamps.push_back(stamp);
   }
   return stamps;

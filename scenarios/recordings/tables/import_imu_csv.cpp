@@ -64,16 +64,24 @@ Imported import_imu_csv(const std::filesystem::path& path, const sim::ImuRecord&
   }
   sim::ImuRecord imu = without_readings(device);
   const std::size_t count = line.fields.size();
+  LeftOut left_out("readings");
+  std::vector<std::string> places;
   const auto add = [&] {
-    require_width(line, count);
-    add_reading(line.where, stamp_ns(line, columns), scale_of(gyro_unit) * vector(line, columns.rate),
-                scale_of(unit) * vector(line, columns.force), imu);
+    left_out.guard([&] {
+      require_width(line, count);
+      add_reading(line.where, stamp_ns(line, columns), scale_of(gyro_unit) * vector(line, columns.rate),
+                  scale_of(unit) * vector(line, columns.force), imu);
+      places.push_back(line.where.substr(path.string().size()));
+    });
   };
   if (!columns.has_header) add();
   while (text.next(line)) add();
+  const auto where = [&](std::size_t k) { return path.string() + places[k]; };
+  const std::string bursts = leave_out_faulty(where, nullptr, left_out, imu);
   finish_readings(path.string(), unit, imu);
   const std::string evened = even_out_stamps(imu);
-  for (const std::string& remark : {evened, gaps_text(imu), rates_text(path.string(), imu, gyro_unit)}) {
+  for (const std::string& remark : {left_out.note(imu.time_ns.size()), bursts, evened, gaps_text(imu),
+                                    rates_text(path.string(), imu, gyro_unit)}) {
     if (!remark.empty()) out.notes.push_back(remark);
   }
   const std::int64_t first_ns = imu.time_ns.front();
