@@ -86,8 +86,7 @@ void leave_out_faulty(const sim::ImuRecord& record, std::vector<ImuSample>& samp
   for (std::size_t k = 0; k < samples.size(); ++k) beyond += kept[k] && !in_range(record, samples[k]) ? 1 : 0;
   if (beyond > 0 && static_cast<double>(beyond) <= kWildShareMax * static_cast<double>(samples.size())) {
     const std::vector<bool> inlier = find_inliers(record);
-    for (std::size_t k = 0; k < samples.size(); ++k)
-      kept[k] = kept[k] && (inlier[k] || in_range(record, samples[k]));
+    for (std::size_t k = 0; k < samples.size(); ++k) kept[k] = kept[k] && (inlier[k] || in_range(record, samples[k]));
   }
   keep_rows(kept, samples);
 }

@@ -84,8 +84,8 @@ void LeftOut::require_few(std::size_t kept) const {
 
 std::string LeftOut::note(std::size_t kept) const {
   if (count() == 0) return "";
-  std::string text = fmt::format("caution: {} of {} {} {} left out:", count(), kept + count(), items_,
-                                 count() == 1 ? "is" : "are");
+  std::string text =
+      fmt::format("caution: {} of {} {} {} left out:", count(), kept + count(), items_, count() == 1 ? "is" : "are");
   const char* separator = " ";
   for (const Cause& each : causes_) {
     text += fmt::format("{}{} with {} (first: {})", separator, each.count, each.name, each.first);

@@ -57,13 +57,13 @@ sim::ImuRecord read_imu(const OpenedBag& bag, SensorPlaces& places, const std::s
     before = message;
   };
   bag.read<ros::Imu>(
-      topic, [&](const ros::Imu& message, const MessageOrigin& origin) { left_out.guard([&] { take(message, origin); }); },
+      topic,
+      [&](const ros::Imu& message, const MessageOrigin& origin) { left_out.guard([&] { take(message, origin); }); },
       &left_out);
   const std::string where = bag.place + ": topic " + topic;
   if (imu.time_ns.empty() && left_out.count() == 0 && reading.imu_topics.empty()) return imu;  // there are no messages
-  const std::string bursts =
-      leave_out_faulty([&](std::size_t k) { return bag.place_of(topic, numbers[k]); },
-                       [&](std::size_t k) { return stamps.disorder(k); }, left_out, imu);
+  const std::string bursts = leave_out_faulty([&](std::size_t k) { return bag.place_of(topic, numbers[k]); },
+                                              [&](std::size_t k) { return stamps.disorder(k); }, left_out, imu);
   const std::string lost = left_out.note(imu.time_ns.size());
   const AccelUnit accel_unit = take_in_g(topic, reading, imu, notes);
   finish_readings(where, accel_unit, imu);

@@ -15,7 +15,8 @@ namespace tumble::scenarios {
 /// ns since 1970.
 std::int64_t stamp_of(const ros::Header& header);
 
-/// Stores the two stamps of a topic's messages: the header's (time of measurement) and the record's (time of recording).
+/// Stores the two stamps of a topic's messages: the header's (time of measurement) and the record's (time of
+/// recording).
 class BagStamps {
  public:
   explicit BagStamps(StampSource source) : source_(source) {}

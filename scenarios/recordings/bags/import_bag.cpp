@@ -140,12 +140,12 @@ void add_lidars(const OpenedBag& bag, SensorPlaces& places, const BagReading& re
   const auto is_timed = [](const auto& each) { return has_timed_points(each.second.lidar); };
   if (!chosen) std::stable_partition(lidars.begin(), lidars.end(), is_timed);
   if (lidars.size() > 1 && !chosen) {
-    out.notes.push_back(fmt::format("{}: this topic is the lidar for mapping, because {} (set --lidar-topic to choose "
-                                    "another)",
-                                    lidars.front().first,
-                                    is_timed(lidars.front()) && !is_timed(lidars.back())
-                                        ? "its points have times"
-                                        : "it comes first among the topics of clouds"));
+    out.notes.push_back(fmt::format(
+        "{}: this topic is the lidar for mapping, because {} (set --lidar-topic to choose "
+        "another)",
+        lidars.front().first,
+        is_timed(lidars.front()) && !is_timed(lidars.back()) ? "its points have times"
+                                                             : "it comes first among the topics of clouds"));
   }
   for (auto& [topic, built] : lidars) add_lidar(out, std::move(built));
 }
@@ -175,8 +175,8 @@ Imported import_bag(BagReader& reader, const std::filesystem::path& path, const 
 
 }  // namespace
 
-Imported import_ros1_bag(const std::filesystem::path& file, const BagReading& reading) {
-  return import_bag(*open_ros1_bag(file), file, reading);
+Imported import_ros1_bag(const std::filesystem::path& path, const BagReading& reading) {
+  return import_bag(*open_ros1_bag(path), path, reading);
 }
 
 Imported import_ros2_bag(const std::filesystem::path& path, const BagReading& reading) {

@@ -91,8 +91,7 @@ class UnpackedFiles : public BagReader {
 
 class UnpackedMessages : public BagReader {
  public:
-  UnpackedMessages(std::unique_ptr<BagReader> bag, std::string place)
-      : bag_(std::move(bag)), place_(std::move(place)) {
+  UnpackedMessages(std::unique_ptr<BagReader> bag, std::string place) : bag_(std::move(bag)), place_(std::move(place)) {
     notes = bag_->notes;
   }
   std::vector<BagTopic> topics() override { return bag_->topics(); }

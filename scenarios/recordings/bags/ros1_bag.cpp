@@ -275,9 +275,10 @@ class Ros1BagReader : public BagReader {
       double end = spans.empty() ? 0.0 : spans.begin()->second;
       for (const auto& [from, to] : spans) {
         if (from - end > kPartsApart_s)
-          throw BadInput(fmt::format("{}: the bags are {:.0f} s apart, so they are not parts of one recording; import "
-                                     "one bag at a time",
-                                     path_.string(), from - end));
+          throw BadInput(
+              fmt::format("{}: the bags are {:.0f} s apart, so they are not parts of one recording; import "
+                          "one bag at a time",
+                          path_.string(), from - end));
         end = std::max(end, to);
       }
     });

@@ -193,7 +193,8 @@ StoredBag storage_of(const path& bag) {
   if (!std::filesystem::is_directory(bag)) {
     const bool packed = lower_extension(bag) == ".zstd";
     const path name = packed ? bag.stem() : bag;
-    return {.kind = lower_extension(name) == ".mcap" ? "mcap" : "sqlite3", .files = {bag}, .packed = packed ? "file" : ""};
+    return {
+        .kind = lower_extension(name) == ".mcap" ? "mcap" : "sqlite3", .files = {bag}, .packed = packed ? "file" : ""};
   }
   const path metadata = bag / "metadata.yaml";
   if (!std::filesystem::is_regular_file(metadata)) fail_at(bag, "has no metadata.yaml: not a ROS 2 bag");

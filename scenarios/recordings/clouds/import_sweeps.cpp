@@ -69,8 +69,8 @@ Imported import_sweeps(const SweepSource& source) {
   for (std::size_t k = 0; k < files.size(); ++k) {
     if (!stamps.empty() && !in_order[k]) {
       builder.left_out().add("a wrong time stamp", k < disorder.size() && !disorder[k].empty()
-                                                     ? disorder[k]
-                                                     : files[k].string() + ": the time stamp is out of order");
+                                                       ? disorder[k]
+                                                       : files[k].string() + ": the time stamp is out of order");
       continue;
     }
     const std::optional<std::int64_t> stamp = stamps.empty() ? std::nullopt : std::optional(stamps[k]);

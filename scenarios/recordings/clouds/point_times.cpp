@@ -70,8 +70,8 @@ std::string choose_field(const Cloud& cloud, const SweepReading& reading, const 
     if (!is_time(name)) continue;
     const bool states = unit_of_name(lower(name)) != nullptr, stated = unit_of_name(lower(found)) != nullptr;
     if (!found.empty() && states == stated)
-      throw BadInput(
-          fmt::format("{}: the fields '{}' and '{}' may both be point times; select one with --time-field", where, found, name));
+      throw BadInput(fmt::format("{}: the fields '{}' and '{}' may both be point times; select one with --time-field",
+                                 where, found, name));
     if (found.empty() || states) found = name;  // prefer the field whose name states the unit
   }
   return found;

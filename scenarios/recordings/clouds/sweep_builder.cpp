@@ -22,9 +22,10 @@ namespace {
 constexpr std::ptrdiff_t kProbe = 10;
 constexpr double kByteIntensity = 255.0;
 constexpr double kPointFar_m = 1e6;
-constexpr double kBeyond = 2.0;        // multiple of the data sheet's range
-constexpr double kFarthest_m = 500.0;  // default limit without a data sheet: beyond the range of robot lidars
-constexpr double kOverlapMost = 1.05;  // longest sweep relative to the time between sweeps
+constexpr double kBeyond = 2.0;         // multiple of the data sheet's range
+constexpr double kFarthest_m = 500.0;   // default limit without a data sheet: beyond the range of robot lidars
+constexpr std::size_t kBackwards = 20;  // ratio of falling to rising point times, in the order of storage
+constexpr double kOverlapMost = 1.05;   // longest sweep relative to the time between sweeps
 /// Longest point offset while the period is unknown.
 constexpr std::int64_t kOffsetMax_ns = 1000000000;
 
@@ -80,7 +81,8 @@ std::int64_t middle_of(const std::vector<std::optional<std::int64_t>>& times_ns)
 }
 
 /// Returns the ring numbers. Throws BadInput for an invalid number.
-std::vector<std::uint16_t> rings_of(const Cloud& cloud, const std::vector<std::size_t>& kept, const std::string& where) {
+std::vector<std::uint16_t> rings_of(const Cloud& cloud, const std::vector<std::size_t>& kept,
+                                    const std::string& where) {
   const std::vector<double>* column = first_of(cloud, kRingNames);
   std::vector<std::uint16_t> rings;
   for (const std::size_t i : kept) {
@@ -141,8 +143,7 @@ void SweepBuilder::take(Waiting& sweep) {
 
 void SweepBuilder::read(Waiting& sweep) {
   if (reading_.assumed && rule_->absolute) sweep.stamp_ns.reset();
-  std::vector<std::size_t> kept =
-      sweep.cloud.points > 0 ? hits(sweep.cloud, sweep.where) : std::vector<std::size_t>{};
+  std::vector<std::size_t> kept = sweep.cloud.points > 0 ? hits(sweep.cloud, sweep.where) : std::vector<std::size_t>{};
   misses_ += sweep.cloud.points - kept.size();
   if (!sweep.cloud.viewpoint.empty() && viewpoints_++ == 0)
     first_viewpoint_ = sweep.where + ": " + sweep.cloud.viewpoint;
@@ -164,6 +165,10 @@ void SweepBuilder::read(Waiting& sweep) {
   for (const std::int64_t time_ns : times_ns) {
     record_.offset_ns.push_back(static_cast<std::uint32_t>(time_ns - start_ns));
     longest_ns_ = std::max(longest_ns_, time_ns - start_ns);
+  }
+  for (std::size_t k = 1; k < times_ns.size(); ++k) {
+    rises_ += times_ns[k] > times_ns[k - 1] ? 1 : 0;
+    falls_ += times_ns[k] < times_ns[k - 1] ? 1 : 0;
   }
   last_point_ns_.back() = times_ns.empty() ? start_ns : *std::max_element(times_ns.begin(), times_ns.end());
   record_.ring.insert(record_.ring.end(), rings.begin(), rings.end());
@@ -201,10 +206,11 @@ std::vector<std::int64_t> SweepBuilder::point_times(const Waiting& sweep, std::v
       timed.push_back(kept[k]);
       out.push_back(*times_ns[k]);
     } else if (first_mistimed.empty()) {
-      first_mistimed = times_ns[k] ? fmt::format("{}: point {} is {} after the middle of the sweep; this must be within {}",
-                                                 sweep.where, kept[k], in_ns(*times_ns[k] - middle_ns), in_ns(bound_ns))
-                                   : fmt::format("{}: point {}: the time is {}, must be finite and within 146 years",
-                                                 sweep.where, kept[k], std::to_string((*numbers)[kept[k]]));
+      first_mistimed = times_ns[k]
+                           ? fmt::format("{}: point {} is {} after the middle of the sweep; this must be within {}",
+                                         sweep.where, kept[k], in_ns(*times_ns[k] - middle_ns), in_ns(bound_ns))
+                           : fmt::format("{}: point {}: the time is {}, must be finite and within 146 years",
+                                         sweep.where, kept[k], std::to_string((*numbers)[kept[k]]));
     }
   }
   const std::size_t mistimed = kept.size() - timed.size();
@@ -315,6 +321,10 @@ void SweepBuilder::note_what_was_left(std::vector<std::string>& notes) const {
     notes.push_back(
         "caution: the point times belong to another clock than the time stamps of the sweeps. They count from the "
         "first point of each sweep, which is assumed to be measured at the sweep's time stamp");
+  if (falls_ > kBackwards * (rises_ + 1))
+    notes.push_back(
+        "caution: the point times run backwards: points that are stored later have earlier times. Unless the driver "
+        "stores the last point first, the times are wrong and deskewing doubles the distortion");
   if (rule_ && rule_->constant)
     notes.push_back(
         "caution: all points of a sweep have the same time, so the sweeps are read as not skewed; if the lidar turns "

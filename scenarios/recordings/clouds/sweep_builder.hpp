@@ -29,10 +29,10 @@ struct SweepReading {
 
 /// Name and unit of the point times in a series of clouds.
 struct PointTimeRule {
-  std::string field;      ///< "": the points have no times
-  double unit_ns = 1.0;   ///< unit of the field [ns]
-  bool absolute = false;  ///< times are absolute, not relative to the sweep's stamp
-  bool constant = false;  ///< all points of a sweep have one time in the field; `field` is then empty
+  std::string field;        ///< "": the points have no times
+  double unit_ns = 1.0;     ///< unit of the field [ns]
+  bool absolute = false;    ///< times are absolute, not relative to the sweep's stamp
+  bool constant = false;    ///< all points of a sweep have one time in the field; `field` is then empty
   bool short_span = false;  ///< the times span only a small part of the sweep period
 };
 
@@ -88,8 +88,8 @@ class SweepBuilder {
 
   /// Returns the record in the stamps' clock, and adds notes, for example on how point times were read. Without a
   /// stated period, the period is the median step of the stamps, or the latest point offset if that is larger. Throws
-  /// BadInput, with a message that starts with `where`, if too many clouds are left out, if there are no points, if most points are beyond twice the
-  /// range in the data sheet, or if there is a single sweep of unknown length.
+  /// BadInput, with a message that starts with `where`, if too many clouds are left out, if there are no points, if
+  /// most points are beyond twice the range in the data sheet, or if there is a single sweep of unknown length.
   BuiltSweeps finish(const std::string& where, std::vector<std::string>& notes);
 
  private:
@@ -125,8 +125,9 @@ class SweepBuilder {
   bool other_clock_ = false;  ///< absolute point times and stamps belong to different clocks
   std::vector<std::optional<std::int64_t>> last_point_ns_;
   std::size_t misses_ = 0, dark_ = 0, skipped_ = 0, beyond_ = 0, far_ = 0;  ///< far: points of clouds left out as far
-  std::size_t mistimed_ = 0;      ///< number of points with times outside their sweep
-  std::string first_mistimed_;    ///< message on the first of these points
+  std::size_t mistimed_ = 0;                    ///< number of points with times outside their sweep
+  std::string first_mistimed_;                  ///< message on the first of these points
+  std::size_t rises_ = 0, falls_ = 0;           ///< numbers of points that are later and earlier than the point before
   std::size_t viewpoints_ = 0;                  ///< number of sweeps with a viewpoint
   std::string first_viewpoint_;                 ///< first viewpoint, with its file
   std::map<std::string, std::size_t> ignored_;  ///< ignored columns, with their number of sweeps

@@ -50,8 +50,8 @@ std::int64_t stamp_ns(const CsvLine& line, std::size_t column, std::size_t colum
   }
   const double time_s = csv_number(line, column, "timestamp_seconds");
   if (!(time_s >= 0.0 && time_s <= kAirbrakesStampMax_s)) {
-    throw BadInput(fmt::format("{}: timestamp_seconds is {}, must be within 0 and {}", line.where, time_s,
-                               kAirbrakesStampMax_s));
+    throw BadInput(
+        fmt::format("{}: timestamp_seconds is {}, must be within 0 and {}", line.where, time_s, kAirbrakesStampMax_s));
   }
   return std::llround(time_s * 1e9);
 }

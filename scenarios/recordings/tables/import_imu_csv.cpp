@@ -80,8 +80,8 @@ Imported import_imu_csv(const std::filesystem::path& path, const sim::ImuRecord&
   const std::string bursts = leave_out_faulty(where, nullptr, left_out, imu);
   finish_readings(path.string(), unit, imu);
   const std::string evened = even_out_stamps(imu);
-  for (const std::string& remark : {left_out.note(imu.time_ns.size()), bursts, evened, gaps_text(imu),
-                                    rates_text(path.string(), imu, gyro_unit)}) {
+  for (const std::string& remark :
+       {left_out.note(imu.time_ns.size()), bursts, evened, gaps_text(imu), rates_text(path.string(), imu, gyro_unit)}) {
     if (!remark.empty()) out.notes.push_back(remark);
   }
   const std::int64_t first_ns = imu.time_ns.front();

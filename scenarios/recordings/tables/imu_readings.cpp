@@ -145,8 +145,7 @@ std::string even_out_bursts(sim::ImuRecord& imu) {
     const std::int64_t last = times[ends[b] - 1];
     const auto count = static_cast<std::int64_t>(ends[b] - first);
     const std::int64_t step = std::min((last - before) / count, 2 * period_ns);  // after a gap, from the burst's end
-    for (std::size_t k = first; k < ends[b]; ++k)
-      times[k] = last - static_cast<std::int64_t>(ends[b] - 1 - k) * step;
+    for (std::size_t k = first; k < ends[b]; ++k) times[k] = last - static_cast<std::int64_t>(ends[b] - 1 - k) * step;
     before = last;
   }
   return fmt::format(
@@ -304,8 +303,7 @@ std::string leave_out_faulty(const ReadingText& where, const ReadingText& disord
     if (kept[k])
       in_order.push_back(imu.time_ns[k]);
     else
-      left_out.add("a wrong time stamp",
-                   where(k) + ": " + (disorder ? disorder(k) : disorder_text(imu.time_ns, k)));
+      left_out.add("a wrong time stamp", where(k) + ": " + (disorder ? disorder(k) : disorder_text(imu.time_ns, k)));
   }
   left_out.require_few(in_order.size());
   imu.period_ns = median_step_ns(in_order);  // lost readings do not change the period
