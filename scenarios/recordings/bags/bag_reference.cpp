@@ -28,9 +28,12 @@ NamedPoses read_poses(const OpenedBag& bag, const std::string& topic, StampSourc
   std::vector<ReferencePose>& poses = out.poses;
   BagStamps stamps(source);
   bag.read<Message>(topic, [&](const Message& message, const MessageOrigin& origin) {
-    ReferencePose pose{stamps.take(stamp_of(message.header), origin.record_ns, origin.where),
-                       Eigen::Vector3d::Map(message.position.data()),
-                       {}};
+    const std::int64_t header_ns = stamp_of(message.header);
+    stamps.add(header_ns, origin.record_ns);
+    ReferencePose pose{
+        stamps.chosen(header_ns, origin.record_ns, origin.where), Eigen::Vector3d::Map(message.position.data()), {}};
+    if (!poses.empty() && pose.time_ns <= poses.back().time_ns)
+      throw BadInput(origin.where + ": " + stamps.disorder(poses.size()));
     pose.q_WA.coeffs() = Eigen::Vector4d::Map(message.orientation_xyzw.data());
     if (std::string problem = problem_of(pose, poses.empty() ? nullptr : &poses.back()); !problem.empty())
       throw BadInput(origin.where + ": " + problem);

@@ -64,15 +64,18 @@ Imported import_sweeps(const SweepSource& source) {
   const std::vector<bool> in_order = stamps_in_order(stamps);
   std::vector<std::int64_t> kept = stamps;
   keep_rows(in_order, kept);
+  LeftOut left_out("clouds");
+  for (std::size_t k = 0; k < stamps.size(); ++k) {
+    if (in_order[k]) continue;
+    const bool decreases = k < disorder.size() && !disorder[k].empty();
+    left_out.add("a wrong time stamp",
+                 decreases ? disorder[k] : files[k].string() + ": the time stamp is out of order");
+  }
+  left_out.require_few(kept.size());
   const std::int64_t given_ns = reading.device.sweep_period_ns;
-  SweepBuilder builder(std::move(reading), given_ns > 0 ? given_ns : median_step_ns(kept));
+  SweepBuilder builder(std::move(reading), given_ns > 0 ? given_ns : median_step_ns(kept), std::move(left_out));
   for (std::size_t k = 0; k < files.size(); ++k) {
-    if (!stamps.empty() && !in_order[k]) {
-      builder.left_out().add("a wrong time stamp", k < disorder.size() && !disorder[k].empty()
-                                                       ? disorder[k]
-                                                       : files[k].string() + ": the time stamp is out of order");
-      continue;
-    }
+    if (!stamps.empty() && !in_order[k]) continue;
     const std::optional<std::int64_t> stamp = stamps.empty() ? std::nullopt : std::optional(stamps[k]);
     std::optional<Cloud> cloud;
     builder.left_out().guard([&] { cloud = read_cloud(files[k], source.bin_columns); });

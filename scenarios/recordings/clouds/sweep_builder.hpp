@@ -38,9 +38,9 @@ struct PointTimeRule {
 
 /// Finds the time field and its unit from the first clouds. Names (any case): t time timestamp timestamps time_stamp
 /// offset_time time_offset offset_ns. A suffix _s _ms _us _ns states the unit. If no name states the unit, the unit is
-/// chosen such that a sweep's times (median over the clouds) span 0.15 to 150 % of `period_ns`, which one unit does. If
-/// the period is unknown (0), the size of stamps since 1970 determines the unit. If all times of a sweep are equal, the
-/// points have no times.
+/// chosen such that a sweep's times (median over the clouds) span 0.15 to 150 % of `period_ns`, which at most one unit
+/// does. If the period is unknown (0), the size of stamps since 1970 determines the unit. If all times of a sweep are
+/// equal, the points have no times.
 ///
 /// A stated unit is rejected if another unit fits, the stated unit does not fit, and the sweeps have at least 100
 /// points. Times are absolute if they start more than two periods from 0 in any cloud, or in two of five

@@ -7,6 +7,7 @@
 
 #include <functional>
 #include <limits>
+#include <variant>
 
 #include "scenarios/recordings/bag_kinds.hpp"
 #include "scenarios/recordings/bags/bag_messages.hpp"
