@@ -12,24 +12,26 @@ namespace {
 constexpr std::size_t kNoIndex = ~std::size_t{0};
 /// Fewer stamps do not show how long a recording lasts.
 constexpr std::size_t kLeastForEnds = 10;
+/// Several stamps before or after a shorter gap are a part of the recording. A longer gap is a clock that was set.
+constexpr std::uint64_t kClockSet_ns = 86'400'000'000'000;
 
-/// Indices of a longest increasing subsequence, by the lengths' smallest last stamps (Fredman 1975).
+/// Returns the indices of a longest increasing subsequence, by the largest first stamps of each length (Fredman 1975).
+/// The search runs from the end, so that of several such subsequences, one with early stamps is found.
 std::vector<std::size_t> longest_increasing(std::span<const std::int64_t> stamps_ns) {
-  std::vector<std::size_t> last_of_length, before(stamps_ns.size(), kNoIndex);
-  for (std::size_t k = 0; k < stamps_ns.size(); ++k) {
+  std::vector<std::size_t> first_of_length, after(stamps_ns.size(), kNoIndex);
+  for (std::size_t k = stamps_ns.size(); k-- > 0;) {
     const auto at =
-        std::lower_bound(last_of_length.begin(), last_of_length.end(), stamps_ns[k],
-                         [&](std::size_t index, std::int64_t stamp_ns) { return stamps_ns[index] < stamp_ns; });
-    if (at != last_of_length.begin()) before[k] = *(at - 1);
-    if (at == last_of_length.end())
-      last_of_length.push_back(k);
-    else if (stamps_ns[k] < stamps_ns[*at])
+        std::lower_bound(first_of_length.begin(), first_of_length.end(), stamps_ns[k],
+                         [&](std::size_t index, std::int64_t stamp_ns) { return stamps_ns[index] > stamp_ns; });
+    if (at != first_of_length.begin()) after[k] = *(at - 1);
+    if (at == first_of_length.end())
+      first_of_length.push_back(k);
+    else
       *at = k;
   }
   std::vector<std::size_t> indices;
-  for (std::size_t k = last_of_length.empty() ? kNoIndex : last_of_length.back(); k != kNoIndex; k = before[k])
+  for (std::size_t k = first_of_length.empty() ? kNoIndex : first_of_length.back(); k != kNoIndex; k = after[k])
     indices.push_back(k);
-  std::reverse(indices.begin(), indices.end());
   return indices;
 }
 
@@ -41,12 +43,15 @@ void drop_far_ends(std::span<const std::int64_t> stamps_ns, std::vector<std::siz
   const auto duration = [&](std::size_t from, std::size_t to) {
     return static_cast<std::uint64_t>(stamps_ns[indices[to]]) - static_cast<std::uint64_t>(stamps_ns[indices[from]]);
   };
+  const auto is_far = [&](std::size_t count, std::uint64_t gap_ns, std::uint64_t others_ns) {
+    return gap_ns > others_ns && (count == 1 || gap_ns > kClockSet_ns);
+  };
   std::size_t first = 0, end = all;
   for (std::size_t k = 1; may_leave_out(k, all); ++k) {
-    if (duration(k - 1, k) > duration(k, all - 1)) first = k;
+    if (is_far(k, duration(k - 1, k), duration(k, all - 1))) first = k;
   }
   for (std::size_t k = all - 1; may_leave_out(all - k, all); --k) {
-    if (duration(k - 1, k) > duration(first, k - 1)) end = k;
+    if (is_far(all - k, duration(k - 1, k), duration(first, k - 1))) end = k;
   }
   indices = std::vector<std::size_t>(indices.begin() + static_cast<std::ptrdiff_t>(first),
                                      indices.begin() + static_cast<std::ptrdiff_t>(end));
@@ -95,8 +100,7 @@ std::string LeftOut::note(std::size_t kept) const {
 }
 
 std::vector<bool> stamps_in_order(std::span<const std::int64_t> stamps_ns) {
-  const bool increase =
-      std::adjacent_find(stamps_ns.begin(), stamps_ns.end(), std::greater_equal<>()) == stamps_ns.end();
+  const bool increase = std::ranges::adjacent_find(stamps_ns, [](auto a, auto b) { return a >= b; }) == stamps_ns.end();
   std::vector<std::size_t> indices(increase ? stamps_ns.size() : 0);
   for (std::size_t k = 0; k < indices.size(); ++k) indices[k] = k;
   if (!increase) indices = longest_increasing(stamps_ns);

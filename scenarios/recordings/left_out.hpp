@@ -63,9 +63,10 @@ class LeftOut {
 };
 
 /// Returns true for each stamp to keep, such that the kept stamps increase. As few stamps as possible are dropped
-/// (longest increasing subsequence); of equal stamps, the first is kept. If a few of ten or more stamps, at either end,
-/// are separated from the others by more than the duration of the others, as before a clock is set, these few stamps
-/// are dropped as well. O(N log N), O(N) for stamps that increase.
+/// (longest increasing subsequence), and of several choices early stamps are kept. Of ten or more stamps, a first or
+/// last stamp is also dropped if it is separated from the others by more than the duration of the others. A few stamps
+/// at either end are dropped if they are also separated by more than a day, as before a clock is set. O(N log N), O(N)
+/// for stamps that increase.
 std::vector<bool> stamps_in_order(std::span<const std::int64_t> stamps_ns);
 
 /// Removes the rows that are not kept. Rows of another length, which a sensor may lack, stay unchanged.

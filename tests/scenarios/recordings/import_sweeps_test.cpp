@@ -230,7 +230,7 @@ TEST_F(ImportSweeps, HostileInputIsOneClearLine) {
   put("2.ply", sweep("float time", {"0.01", "0.05", "0.5"}));
   source_.reading.time_unit = "s";
   EXPECT_THAT(complaint_of(),
-              HasSubstr("2.ply: point 2 is 450000000 ns after the middle of the sweep; this must be within"));
+              HasSubstr("2.ply: point 2 is 449999999 ns after the middle of the sweep; this must be within"));
   put("2.ply", sweep());
   EXPECT_THAT(complaint_of(), HasSubstr("2.ply: there is no field 'time', which other sweeps have"));
   put("2.ply", sweep("float ring", {"1", "2.5", "3"}));

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdio>
 #include <functional>
 #include <limits>
 #include <variant>
@@ -23,7 +24,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
-constexpr std::int64_t kOrigin_ns = 1'700'000'000'000'000'000, kMs_ns = 1'000'000;
+constexpr std::int64_t kFirstStamp_ns = 1'700'000'000'000'000'000, kMilli_ns = 1'000'000;
 constexpr int kReadings = 150, kClouds = 15, kPoints = 128;
 
 TEST(StampsInOrder, AsFewStampsAsPossibleAreDropped) {
@@ -35,6 +36,7 @@ TEST(StampsInOrder, AsFewStampsAsPossibleAreDropped) {
   EXPECT_THAT(kept({10, 90, 20, 30}), ElementsAre(true, false, true, true)) << "ahead";
   std::vector<std::int64_t> unset = {0, 100, 101, 102, 103, 104, 105, 106, 107, 108};
   EXPECT_FALSE(kept(unset).front()) << "the clock was set after the first stamp";
+  EXPECT_THAT(kept({10, 30, 20, 40}), ElementsAre(true, true, false, true)) << "early stamps are kept";
   unset.front() = 99, unset.back() = std::numeric_limits<std::int64_t>::max();
   EXPECT_FALSE(kept(unset).back());
 }
@@ -64,7 +66,7 @@ class OddBag : public fixture::Folder, public testing::WithParamInterface<fixtur
     sim::LidarRecord& lidar = recording_.sensors.lidars[0];
     lidar = {};
     for (int k = 0; k < kClouds; ++k) {
-      lidar.sweep_start_ns.push_back(100 * kMs_ns * k);
+      lidar.sweep_start_ns.push_back(100 * kMilli_ns * k);
       lidar.sweep_first.push_back(lidar.position_L_m.size());
       for (int p = 0; p < kPoints; ++p) {
         lidar.position_L_m.emplace_back(5.0f, 0.1f * static_cast<float>(p), 1.0f);
@@ -75,13 +77,13 @@ class OddBag : public fixture::Folder, public testing::WithParamInterface<fixtur
       }
     }
     lidar.sweep_first.push_back(lidar.position_L_m.size());
-    lidar.sweep_period_ns = 100 * kMs_ns;
+    lidar.sweep_period_ns = 100 * kMilli_ns;
   }
 
   void write(const std::filesystem::path& path, int first_reading = 0, int end_reading = kReadings) {
     const auto bag = GetParam().writer(path);
     for (int k = first_reading; k < end_reading; ++k) {
-      const std::int64_t record_ns = kOrigin_ns + 10 * kMs_ns * k;
+      const std::int64_t record_ns = kFirstStamp_ns + 10 * kMilli_ns * k;
       ros::Imu imu;
       imu.header = header_of(record_ns, "imu");
       imu.angular_velocity = {0.01, 0.02, 0.001 * k};
@@ -89,7 +91,7 @@ class OddBag : public fixture::Folder, public testing::WithParamInterface<fixtur
       if (change_imu_) change_imu_(k, imu);
       bag->write("/imu", record_ns, imu);
       if (k % 10 != 9) continue;
-      const std::int64_t start_ns = kOrigin_ns + clock_ns_ + 100 * kMs_ns * (k / 10);
+      const std::int64_t start_ns = kFirstStamp_ns + clock_ns_ + 100 * kMilli_ns * (k / 10);
       ros::PointCloud2 cloud = std::get<ros::PointCloud2>(
           sweep_message(recording_.sensors.lidars[0], static_cast<std::size_t>(k / 10), layout_, start_ns, {}));
       cloud.header = header_of(start_ns - clock_ns_, "lidar");
@@ -114,9 +116,9 @@ class OddBag : public fixture::Folder, public testing::WithParamInterface<fixtur
   void expect_one_left_out(std::size_t readings, std::size_t clouds, const std::string& note) {
     const Imported imported = read();
     EXPECT_EQ(imported.sensors.imus.at(0).time_ns.size(), readings) << note;
-    EXPECT_EQ(imported.sensors.imus.at(0).period_ns, 10 * kMs_ns) << note;
+    EXPECT_EQ(imported.sensors.imus.at(0).period_ns, 10 * kMilli_ns) << note;
     EXPECT_EQ(imported.sensors.lidars.at(0).sweep_start_ns.size(), clouds) << note;
-    EXPECT_EQ(imported.sensors.lidars.at(0).sweep_period_ns, 100 * kMs_ns) << note;
+    EXPECT_EQ(imported.sensors.lidars.at(0).sweep_period_ns, 100 * kMilli_ns) << note;
     EXPECT_THAT(imported.notes, Contains(HasSubstr(note)));
     EXPECT_THAT(imported.notes, Not(Contains(HasSubstr("the clocks may differ")))) << note;
   }
@@ -134,8 +136,8 @@ class OddBag : public fixture::Folder, public testing::WithParamInterface<fixtur
 
 TEST_P(OddBag, OneWrongStampCostsOneReading) {
   for (const std::int64_t shift_ms : {-10, -500, 4000}) {
-    change_imu_ = [&](int k, ros::Imu& imu) {
-      if (k == 60) imu.header = header_of(kOrigin_ns + (600 + shift_ms) * kMs_ns, "imu");
+    change_imu_ = [shift_ms](int k, ros::Imu& imu) {
+      if (k == 60) imu.header = header_of(kFirstStamp_ns + (600 + shift_ms) * kMilli_ns, "imu");
     };
     expect_one_left_out(149, 15, "/imu: caution: 1 of 150 readings is left out: 1 with a wrong time stamp (first: ");
   }
@@ -181,14 +183,14 @@ TEST_P(OddBag, ReadingsOfExactlyZeroAreMissing) {
 TEST_P(OddBag, ReadingsInBurstsAreDistributedOverTime) {
   for (const std::int64_t step_ns : {std::int64_t{0}, std::int64_t{100'000}}) {
     change_imu_ = [&](int k, ros::Imu& imu) {
-      imu.header = header_of(kOrigin_ns + 10 * kMs_ns * (k / 10 * 10 + 9) - step_ns * (9 - k % 10), "imu");
+      imu.header = header_of(kFirstStamp_ns + 10 * kMilli_ns * (k / 10 * 10 + 9) - step_ns * (9 - k % 10), "imu");
     };
     const Imported imported = read();
     const sim::ImuRecord& imu = imported.sensors.imus.at(0);
     ASSERT_EQ(imu.time_ns.size(), 150u);
-    EXPECT_EQ(imu.period_ns, 10 * kMs_ns);
+    EXPECT_EQ(imu.period_ns, 10 * kMilli_ns);
     for (std::size_t k = 10; k < imu.time_ns.size(); ++k) {
-      EXPECT_NEAR(static_cast<double>(imu.time_ns[k] + imported.info.origin_ns - kOrigin_ns),
+      EXPECT_NEAR(static_cast<double>(imu.time_ns[k] + imported.info.origin_ns - kFirstStamp_ns),
                   1e7 * static_cast<double>(k), 1e3);
     }
     EXPECT_THAT(imported.notes, Contains(HasSubstr("/imu: caution: the readings arrive in 15 bursts of about 10")));
@@ -204,9 +206,10 @@ TEST_P(OddBag, OneFaultyCloudCostsOneCloud) {
   const std::string note = "/points: caution: 1 of 15 clouds is left out: 1 with ";
   change_cloud_ = at_5([](ros::PointCloud2& cloud) { cloud.data.resize(cloud.data.size() / 2); });
   expect_one_left_out(150, 14, note + "faulty data (first: ");
-  change_cloud_ = at_5([](ros::PointCloud2& cloud) { cloud.header = header_of(kOrigin_ns, "lidar"); });
+  change_cloud_ = at_5([](ros::PointCloud2& cloud) { cloud.header = header_of(kFirstStamp_ns, "lidar"); });
   expect_one_left_out(150, 14, note + "a wrong time stamp (first: ");
-  change_cloud_ = at_5([](ros::PointCloud2& cloud) { cloud.header = header_of(kOrigin_ns + 9000 * kMs_ns, "lidar"); });
+  change_cloud_ =
+      at_5([](ros::PointCloud2& cloud) { cloud.header = header_of(kFirstStamp_ns + 9000 * kMilli_ns, "lidar"); });
   expect_one_left_out(150, 14, note + "a wrong time stamp (first: ");
   change_cloud_ = at_5([](ros::PointCloud2& cloud) { cloud.fields.pop_back(), cloud.fields[0].name = "u"; });
   expect_one_left_out(150, 14, note + "faulty data (first: ");
@@ -257,7 +260,8 @@ TEST_P(OddBag, PointTimesOfAnotherClockCountFromTheFirstPoint) {
   const sim::LidarRecord& lidar = imported.sensors.lidars.at(0);
   EXPECT_EQ(lidar.point_times, sim::PointTimes::measured);
   for (std::size_t k = 0; k < 15; ++k)
-    EXPECT_EQ(lidar.sweep_start_ns[k] + imported.info.origin_ns, kOrigin_ns + 100 * kMs_ns * static_cast<int>(k));
+    EXPECT_EQ(lidar.sweep_start_ns[k] + imported.info.origin_ns,
+              kFirstStamp_ns + 100 * kMilli_ns * static_cast<int>(k));
   EXPECT_NEAR(lidar.offset_ns[kPoints - 1], 780'000.0 * (kPoints - 1), 1e3);
   EXPECT_THAT(imported.notes, Contains(HasSubstr("/points: caution: the point times belong to another clock")));
 }
@@ -289,7 +293,7 @@ TEST_P(OddBag, PartsAreReadTogetherByTime) {
   const Imported imported = GetParam().read(bag, {});
   EXPECT_EQ(imported.sensors.imus.at(0).time_ns.size(), 150u);
   EXPECT_EQ(imported.sensors.lidars.at(0).sweep_start_ns.size(), 15u);
-  EXPECT_EQ(imported.info.origin_ns, kOrigin_ns);
+  EXPECT_EQ(imported.info.origin_ns, kFirstStamp_ns);
   EXPECT_THAT(imported.notes, Contains(AnyOf(HasSubstr("read together as parts of one recording: a.bag z.bag"),
                                              HasSubstr("metadata.yaml does not list these files"))));
   if (std::string(GetParam().name) == "Ros2") {
@@ -322,7 +326,7 @@ TEST_F(OddTable, OneFaultyLineCostsOneReading) {
     fixture::put(folder_ / "a.csv", text);
     const Imported imported = import_imu_csv(folder_ / "a.csv", {});
     EXPECT_EQ(imported.sensors.imus.at(0).time_ns.size(), 99u) << odd;
-    EXPECT_EQ(imported.sensors.imus.at(0).period_ns, 10 * kMs_ns) << odd;
+    EXPECT_EQ(imported.sensors.imus.at(0).period_ns, 10 * kMilli_ns) << odd;
     EXPECT_THAT(imported.notes,
                 Contains(AllOf(HasSubstr("caution: 1 of 100 readings is left out: 1 with"), HasSubstr("a.csv:62"))))
         << odd;
