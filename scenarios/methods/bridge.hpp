@@ -47,12 +47,13 @@ ImuSheet imu_sheet(const sim::ImuRecord& record);
 /// range in the record. A stated range of 0 disables the check.
 Status check_range(const sim::ImuRecord& record, const Eigen::Vector3d& gyro_rad_s, const Eigen::Vector3d& accel_m_s2);
 
-/// Tests the samples of an IMU with the library's OutlierFilter. Element k is true if sample k passes the filter. All
-/// samples pass if a reading is not finite, if stamps do not increase, or if the record's arrays differ in length.
-/// O(N).
+/// Tests the samples of an IMU. Element k is false if sample k is not finite, larger than any sensor reads, or has a
+/// stamp that is not in order, or if the library's OutlierFilter rejects the sample. Samples with the first faults are
+/// only rejected if few have them (may_leave_out). All samples pass if the record's arrays differ in length. O(N log
+/// N).
 std::vector<bool> find_inliers(const sim::ImuRecord& record);
 
-/// Converts the samples of an IMU, in order, and drops the single readings that find_inliers rejects. Errors: `empty`,
+/// Converts the samples of an IMU, in order, and drops single faulty readings (find_inliers). Errors: `empty`,
 /// `non_finite`, `time_order`, `gap` (more than kGapMaxS), `out_of_range` (check_range, or a median step that differs
 /// 20-fold from the stated period). On error, `out` is empty. Throws BadInput if the record's arrays differ in length.
 /// O(N).

@@ -49,11 +49,14 @@ enum class GyroUnit { rad_s, deg_s };
 /// of an IMU with another period are resampled to the IMU's rate and noted (rounded_stamps.hpp). Units are checked
 /// against the size and rotation of gravity, with a note if the motion allows the check.
 ///
-/// Throws BadInput with file and line for unknown, repeated or missing columns, an unexpected unit, or differing
-/// numbers of columns. Also throws for an invalid or non-finite number, a stamp that does not increase, and a truncated
-/// last line. Throws BadInput for fewer than two samples, a median specific force outside 3 to 30 m/s^2, or a period
-/// outside 20 us to 2 s. Also throws if more than 1 % of the rates exceed twice the device's range (100 rad/s if not
-/// stated). Finally, throws if gravity rotates 57 times too fast or too slowly for the rates.
+/// Single lines with an invalid or non-finite number, another number of columns, or a stamp that does not increase are
+/// left out and noted (left_out.hpp), and so are readings whose values are all 0.
+///
+/// Throws BadInput with file and line for unknown, repeated or missing columns, an unexpected unit, or a truncated last
+/// line. Also throws if more than 5 % of the lines are faulty. Throws BadInput for fewer than two samples, a median
+/// specific force outside 3 to 30 m/s^2, or a period outside 20 us to 2 s. Also throws if more than 1 % of the rates
+/// exceed twice the device's range (100 rad/s if not stated). Finally, throws if gravity rotates 57 times too fast or
+/// too slowly for the rates.
 Imported import_imu_csv(const std::filesystem::path& path, const sim::ImuRecord& device,
                         AccelUnit unit = AccelUnit::m_s2, GyroUnit gyro_unit = GyroUnit::rad_s,
                         const std::string& columns = "");
@@ -79,8 +82,9 @@ struct SweepSource {
 /// Reads the sweeps of a lidar from one file per sweep, in natural order of the file names (sweep_stamps.hpp,
 /// cloud_file.hpp, sweep_builder.hpp). The stamp of a sweep comes from `times`, else from file names, else from
 /// absolute point times, else from `steady_ns`. Time 0 is the start of the first sweep, or the zero of the clock if the
-/// clock's zero is less than a second earlier. Throws BadInput with the file for errors of the readers, different
-/// numbers of stamps and files, files of several lidars, or sweeps without times.
+/// clock's zero is less than a second earlier. Single files that cannot be read or used are left out and noted. Throws
+/// BadInput with the file if more than 5 % of the files are faulty. Also throws for different numbers of stamps and
+/// files, files of several lidars, or sweeps without times.
 Imported import_sweeps(const SweepSource& source);
 
 /// A pose file of another program.

@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <set>
 
 #include "scenarios/draw/data_sheet.hpp"
 #include "scenarios/errors.hpp"
@@ -19,56 +17,6 @@ namespace tumble::tools {
 namespace {
 
 using scenarios::BadInput;
-
-const std::vector<std::string> kFormats = {"airbrakes", "broad",   "csv",     "kitti",   "mcap", "pcd", "odometry",
-                                           "ply",       "repoimu", "rosbag1", "rosbag2", "tum",  "vtk"};
-
-/// Suggests the bag's folder if the user named one of the files in the folder.
-std::string bag_hint(const std::filesystem::path& folder) {
-  std::set<std::string> bags;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    const std::string ending = entry.path().extension().string();
-    if (ending == ".bag" || ending == ".mcap" || ending == ".db3") bags.insert(entry.path().filename().string());
-  }
-  if (bags.empty()) return "";
-  return "; import one of the " + std::to_string(bags.size()) + " bags in the folder at a time, for example " +
-         *bags.begin();
-}
-
-/// Detects the format from the files in a folder.
-std::string format_of_folder(const std::filesystem::path& folder) {
-  const std::map<std::string, std::string> known = {
-      {".ply", "ply"}, {".pcd", "pcd"}, {".bin", "kitti"}, {".vtk", "vtk"}};
-  if (std::filesystem::exists(folder / "metadata.yaml")) return "rosbag2";
-  std::string found;
-  bool tables = false;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    tables = tables || entry.path().extension() == ".csv";
-    const auto format = known.find(entry.path().extension().string());
-    if (format == known.end() || format->second == found) continue;
-    if (!found.empty()) {
-      throw BadInput(folder.string() + ": contains files of formats " + found + " and " + format->second +
-                     "; select one with --format");
-    }
-    found = format->second;
-  }
-  if (found.empty() && tables) return "csv";
-  if (found.empty())
-    throw BadInput(folder.string() + ": contains no .ply, .pcd, .vtk, .bin or .csv file and no metadata.yaml of a bag" +
-                   bag_hint(folder));
-  return found;
-}
-
-/// Detects the format from the first line.
-std::string format_of_csv(const std::filesystem::path& file) {
-  if (scenarios::is_repoimu(file)) return "repoimu";
-  if (scenarios::is_airbrakes(file)) return "airbrakes";
-  try {
-    return scenarios::pose_format(file);
-  } catch (const BadInput&) {
-    return "csv";  // no poses
-  }
-}
 
 bool is_bag(const std::string& format) {
   return format == "mcap" || format.starts_with("rosbag");
@@ -189,9 +137,8 @@ void declare(VerbOptions& verb, ImportOptions& options) {
   verb.add("PATH", options.path,
            "file or folder to import: lidar sweeps (PLY, PCD, VTK, KITTI .bin); IMU readings (CSV of a logger or of "
            "sensor_msgs/Imu, or the folder of a CSV export, BROAD HDF5 or RepoIMU CSV with optical reference, "
-           "AirbrakesV2 flight log); a bag (ROS 1 "
-           "file, ROS 2 folder, MCAP file); or poses (TUM, KITTI, a table with named columns such as EuRoC's ground "
-           "truth)")
+           "AirbrakesV2 flight log); a bag (ROS 1 file or folder of its parts, ROS 2 folder, MCAP file); or poses (TUM, "
+           "KITTI, a table with named columns such as EuRoC's ground truth)")
       .required();
   verb.add("--format", options.format,
            "airbrakes, broad, csv, kitti, mcap, odometry, pcd, ply, repoimu, rosbag1, rosbag2, tum or vtk [from "
@@ -212,35 +159,15 @@ void declare(VerbOptions& verb, ImportOptions& options) {
       .within(1e-3, 10.0);
   verb.add("--imu-topic", options.imu_topics,
            "IMU topic of a bag (sensor_msgs/Imu); the first is the primary IMU [all]");
-  verb.add("--lidar-topic", options.lidar_topics, "lidar topic of a bag (sensor_msgs/PointCloud2) [all]");
+  verb.add("--lidar-topic", options.lidar_topics,
+           "lidar topic of a bag (sensor_msgs/PointCloud2); methods map with the first [all, topics whose points have "
+           "times first]");
   verb.add("--stamps", options.stamps,
            "time stamps of a bag: 'header' from the messages; 'record' from the bag, if headers have no usable stamps; "
            "with 'record' a sweep starts one period earlier [header]");
   declare_lidar(verb, options);
   declare_reference(verb, options);
   verb.add("-o,--output", options.out, "recording to write, FILE.h5").required();
-}
-
-std::string format_of(const ImportOptions& options) {
-  if (!options.format.empty()) require_known("format", options.format, kFormats);
-  std::error_code error;
-  const bool folder = std::filesystem::is_directory(options.path, error);
-  // a pipe can be read only once, so a pipe is not opened here
-  if (!folder && options.format != "tum" && std::filesystem::exists(options.path, error))
-    scenarios::require_regular_file(options.path);
-  if (!options.format.empty()) return options.format;
-  if (folder) return format_of_folder(options.path);
-  if (!options.columns.empty() && options.imu.empty()) return "csv";
-  const std::string ending = options.path.extension().string();
-  if (ending == ".csv") return format_of_csv(options.path);
-  if (ending == ".bag") return "rosbag1";
-  if (ending == ".db3" || ending == ".zstd") return "rosbag2";
-  if (ending == ".mcap") return "mcap";
-  if (ending == ".hdf5" || ending == ".h5") return "broad";
-  if (ending == ".tum" || ending == ".txt" || ending == ".kitti") return scenarios::pose_format(options.path);
-  throw BadInput(options.path.string() +
-                 ": cannot detect the format from this file name; give --format (broad, csv, kitti, mcap, rosbag1, "
-                 "rosbag2 or tum)");
 }
 
 void require_fitting(const ImportOptions& options, const std::string& format) {

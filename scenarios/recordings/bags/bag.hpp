@@ -108,21 +108,25 @@ struct BagReading {
   SweepReading sweeps;
 };
 
-/// Reads a ROS 1 bag (not encrypted), a ROS 2 bag, or an MCAP file. A ROS 2 bag is a folder or a single file: SQLite or
-/// MCAP, plain or Zstandard-compressed per file or message. An MCAP file may have messages of ROS 2 (cdr) or ROS 1, in
-/// plain, LZ4 or Zstandard chunks, with or without index.
+/// Reads a ROS 1 bag (a file or a folder of its parts, not encrypted), a ROS 2 bag, or an MCAP file. A ROS 2 bag is a
+/// folder or a single file: SQLite or MCAP, plain or Zstandard-compressed per file or message. An MCAP file may have
+/// messages of ROS 2 (cdr) or ROS 1, in plain, LZ4 or Zstandard chunks, with or without index.
 ///
 /// Times are taken from the source `stamps`; notes state how the stamps of headers and records differ. Units are
 /// checked against gravity as for a CSV file; specific force in g at rest, as from Livox drivers, is converted and
 /// noted. Each sensor is named after its topic. Points are read as in import_sweeps. Unless topics are chosen, clouds
-/// in "world", "map" or "odom" are skipped, because such clouds are not raw sensor data. Duplicate messages (stamp and
-/// content) are read once.
+/// in "world", "map" or "odom" are skipped, because such clouds are not raw sensor data, and lidars whose points have
+/// times come first. Duplicate messages (stamp and content) are read once. Single faulty messages are left out and
+/// noted (left_out.hpp).
+///
+/// The parts of a ROS 1 bag in a folder are merged by time. Files of a ROS 2 bag are read by time, including files that
+/// are named like the listed files but are missing in metadata.yaml.
 ///
 /// If /tf_static states the pose of a sensor in "body" or "base_link", or else relative to another sensor, this pose is
-/// used unless the caller states a pose. With `sweeps.scratch`, memory only holds one sweep, the IMU data (57 bytes per
+/// used unless the caller states a pose. With `sweeps.scratch`, memory only holds one sweep, the IMU data (81 bytes per
 /// sample) and some bytes per message; otherwise memory holds all points. Throws BadInput with file and location for
-/// damaged or truncated data, a missing topic or wrong type, a stamp that does not increase, or a cycle of frames.
-Imported import_ros1_bag(const std::filesystem::path& file, const BagReading& reading);
+/// damaged or truncated data, a missing topic or wrong type, more than 5 % of faulty messages, or a cycle of frames.
+Imported import_ros1_bag(const std::filesystem::path& path, const BagReading& reading);
 Imported import_ros2_bag(const std::filesystem::path& path, const BagReading& reading);
 Imported import_mcap(const std::filesystem::path& file, const BagReading& reading);
 

@@ -43,8 +43,12 @@ NamedPoses read_poses(const OpenedBag& bag, const std::string& topic, StampSourc
   std::vector<ReferencePose>& poses = out.poses;
   BagStamps stamps(source);
   bag.read<Message>(topic, [&](const Message& message, const MessageOrigin& origin) {
+    const std::int64_t header_ns = stamp_of(message.header);
+    stamps.add(header_ns, origin.record_ns);
     ReferencePose pose = pose_in(message);
-    pose.time_ns = stamps.take(stamp_of(message.header), origin.record_ns, origin.where);
+    pose.time_ns = stamps.chosen(header_ns, origin.record_ns, origin.where);
+    if (!poses.empty() && pose.time_ns <= poses.back().time_ns)
+      throw BadInput(origin.where + ": " + stamps.disorder(poses.size()));
     if (std::string problem = problem_of(pose, poses.empty() ? nullptr : &poses.back()); !problem.empty())
       throw BadInput(origin.where + ": " + problem);
     poses.push_back(pose);

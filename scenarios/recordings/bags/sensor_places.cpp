@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/bags/sensor_places.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include <sstream>
@@ -19,6 +21,13 @@ std::string pose_text(const Eigen::Isometry3d& T) {
 }
 
 }  // namespace
+
+std::string sensor_name(std::string topic) {
+  while (topic.starts_with('/')) topic.erase(0, 1);
+  if (topic.ends_with("/points")) topic.resize(topic.size() - 7);
+  std::replace(topic.begin(), topic.end(), '/', '_');
+  return topic;
+}
 
 void SensorPlaces::place(const std::string& topic, const std::string& frame, const char* option, bool given,
                          Eigen::Isometry3d& T_BA, std::vector<std::string>& notes) {

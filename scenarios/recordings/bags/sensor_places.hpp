@@ -10,6 +10,9 @@
 
 namespace tumble::scenarios {
 
+/// Converts a topic to a sensor name: "/imu/data" to imu_data, "/lidar/points" to lidar.
+std::string sensor_name(std::string topic);
+
 /// Stores the mountings of a bag's sensors on the body, from /tf_static or from the user. Used only within
 /// scenarios/recordings/bags.
 class SensorPlaces {

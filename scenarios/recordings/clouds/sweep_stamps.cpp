@@ -10,6 +10,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/number_text.hpp"
+#include "scenarios/recordings/lower_extension.hpp"
 #include "scenarios/recordings/table_file.hpp"
 #include "scenarios/recordings/upper_median.hpp"
 #include "scenarios/text.hpp"
@@ -89,7 +90,7 @@ std::vector<std::filesystem::path> sweep_files(const std::filesystem::path& fold
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const std::filesystem::path& path = entry.path();
-    const bool fits = path.extension() == ending && !path.filename().string().starts_with('.');
+    const bool fits = lower_extension(path) == ending && !path.filename().string().starts_with('.');
     if (fits && (stem.empty() || stem_of(path) == stem)) files.push_back(path);
   }
   if (files.empty()) {
@@ -120,7 +121,7 @@ std::vector<std::int64_t> stamps_in_names(const std::vector<std::filesystem::pat
                              without->string(), stamps.size()));
 }
 
-std::vector<std::int64_t> read_stamps(const std::filesystem::path& file) {
+std::vector<std::int64_t> read_stamps(const std::filesystem::path& file, std::vector<std::string>* disorder) {
   const Table table = Table::read(file, '\n', "", 1);  // a line is a cell: dates contain blanks
   std::vector<std::int64_t> stamps;
   for (const Table::Row& row : table.rows) {
@@ -129,10 +130,13 @@ std::vector<std::int64_t> read_stamps(const std::filesystem::path& file) {
       throw BadInput(fmt::format("{}:{}: '{}' is not a time: seconds, digits of ms, us or ns, or a date in UTC",
                                  file.string(), row.line, shortened(row.cells[0])));
     const std::int64_t stamp = *found;
+    std::string wrong;
     if (!stamps.empty() && stamp <= stamps.back()) {
-      throw BadInput(fmt::format("{}:{}: the time stamp {} ns does not increase; the previous one is {} ns",
-                                 file.string(), row.line, stamp, stamps.back()));
+      wrong = fmt::format("{}:{}: the time stamp {} ns does not increase; the previous one is {} ns", file.string(),
+                          row.line, stamp, stamps.back());
     }
+    if (disorder == nullptr && !wrong.empty()) throw BadInput(wrong);
+    if (disorder != nullptr) disorder->push_back(std::move(wrong));
     stamps.push_back(stamp);
   }
   return stamps;

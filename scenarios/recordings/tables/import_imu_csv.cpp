@@ -70,14 +70,19 @@ std::string keep_one_imu(LoggedTable& table, std::size_t id) {
                      others);
 }
 
-/// Reads the samples of the columns.
+/// Reads the samples of the columns and their places in the file. Faulty rows are counted in `left_out`.
 sim::ImuRecord readings_of(LoggedTable& table, const ImuColumns& columns, const sim::ImuRecord& device, AccelUnit unit,
-                           GyroUnit gyro_unit) {
+                           GyroUnit gyro_unit, LeftOut& left_out, std::vector<std::string>& places) {
   sim::ImuRecord imu = without_readings(device);
   CsvLine line;
-  while (table.next(line)) {
-    add_reading(line.where, stamp_ns(line, columns), scale_of(gyro_unit) * vector(line, columns.rate),
-                scale_of(unit) * vector(line, columns.force), imu);
+  for (bool more = true; more;) {
+    left_out.guard([&] {
+      more = table.next(line);
+      if (!more) return;
+      add_reading(line.where, stamp_ns(line, columns), scale_of(gyro_unit) * vector(line, columns.rate),
+                  scale_of(unit) * vector(line, columns.force), imu);
+      places.push_back(line.where);
+    });
   }
   return imu;
 }
@@ -97,10 +102,15 @@ Imported import_imu_csv(const std::filesystem::path& path, const sim::ImuRecord&
     if (!stated) columns.stamp_decimals = decimals_by_step(table, columns.stamp, path.string());
     say_columns(columns, stated, out.notes);
   }
-  sim::ImuRecord imu = readings_of(table, columns, device, unit, gyro_unit);
+  LeftOut left_out("readings");
+  std::vector<std::string> places;
+  sim::ImuRecord imu = readings_of(table, columns, device, unit, gyro_unit, left_out, places);
+  const auto where = [&](std::size_t k) { return places[k]; };
+  const std::string bursts = leave_out_faulty(where, nullptr, left_out, imu);
   finish_readings(path.string(), unit, imu);
   const std::string evened = even_out_stamps(imu);
-  for (const std::string& remark : {evened, gaps_text(imu), rates_text(path.string(), imu, gyro_unit)})
+  for (const std::string& remark :
+       {left_out.note(imu.time_ns.size()), bursts, evened, gaps_text(imu), rates_text(path.string(), imu, gyro_unit)})
     out.notes.push_back(remark);
   std::erase(out.notes, "");
   const std::int64_t first_ns = imu.time_ns.front();
