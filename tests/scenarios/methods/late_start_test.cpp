@@ -106,6 +106,18 @@ TEST(LateImu, SweepsBeforeItAreLeftOutAndCounted) {
   }
 }
 
+// The lidar's clock is 5 ms late, so that its last sweep ends after the last reading of the IMU.
+TEST(LastSweep, ThatTheImuDoesNotCoverIsCounted) {
+  sim::Recording recording = rig_that_rests(1.5);
+  for (std::int64_t& start_ns : recording.sensors.lidars.front().sweep_start_ns) start_ns += 5'000'000;
+  for (const char* const name : {"slam/tumble_lag", "slam/tumble_live", "slam/icp_raw"}) {
+    SCOPED_TRACE(name);
+    const Estimate estimate = run_late(name, recording);
+    ASSERT_TRUE(estimate.status.ok()) << estimate.status.message();
+    EXPECT_EQ(estimate.health.at("sweeps_unfinished"), 1.0);
+  }
+}
+
 TEST(LateImu, ADeskewedSweepBeforeItIsLeftOut) {
   sim::Recording recording = rig_that_rests(1.5);
   start_imu_at(0.055, recording.sensors.imus.front());

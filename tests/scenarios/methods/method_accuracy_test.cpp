@@ -231,9 +231,9 @@ TEST(MethodAccuracy, RegistrationDoesNotSpoilARollThatIsTrue) {
   EXPECT_FALSE(is_as_measured(mean.nees / 0.5, kDraws, kNees, kNeesDeviation));
   constexpr unsigned kControls = 4;
   sim::Values doubted;
-  doubted.set("prior_sigma_m", 3e-3);
-  doubted.set("prior_sigma_rad", 2e-3);
-  doubted.set("prior_sigma_m_s", 1e-2);
+  doubted.set("along_grip_sigma_share", 0.5);
+  doubted.set("along_still_sigma_m_s", 0.1);
+  doubted.set("along_rotation_sigma_rad", 5e-3);
   const AlongARoll loose = registered_along_a_roll(kControls, doubted);
   EXPECT_FALSE(is_as_measured(loose.error_m, kControls, kError_m, kErrorDeviation_m)) << loose.error_m;
 }
