@@ -54,7 +54,6 @@ const std::vector<Live> kLive = {
     {"position/tumble_live", 0.0},
     {"slam/constant_velocity", 0.0},
     {"slam/icp_raw", 0.0},
-    {"slam/published", 0.0},
     {"slam/tumble_lag", kSweepLagS},
     {"slam/tumble_live", 0.0},
 };
@@ -65,9 +64,16 @@ const std::set<std::string> kDependsOnLater = {"position/tumble_lag", "position/
 /// Sets the readings from sample `from` on to those of a fault.
 using Fault = std::function<void(std::size_t from, sim::ImuRecord& imu)>;
 
+/// Clips each axis at half of its largest reading.
+void clip_at_half(std::size_t from, std::vector<Eigen::Vector3d>& readings) {
+  Eigen::Vector3d rail = Eigen::Vector3d::Zero();
+  for (std::size_t k = from; k < readings.size(); ++k) rail = rail.cwiseMax(0.5 * readings[k].cwiseAbs());
+  for (std::size_t k = from; k < readings.size(); ++k) readings[k] = readings[k].cwiseMax(-rail).cwiseMin(rail);
+}
+
 const std::map<std::string, Fault>& faults() {
   static const std::map<std::string, Fault> all = {
-      {"none", [](std::size_t, sim::ImuRecord&) {}},  // what saturates later saturates for the first time
+      {"none", [](std::size_t, sim::ImuRecord&) {}},
       {"gyro_flipped",
        [](std::size_t from, sim::ImuRecord& imu) {
          for (std::size_t k = from; k < imu.time_ns.size(); ++k) imu.gyro_rad_s[k] *= -1.0;
@@ -82,6 +88,11 @@ const std::map<std::string, Fault>& faults() {
            imu.gyro_rad_s[k] = imu.gyro_rad_s[from];
            imu.accel_m_s2[k] = imu.accel_m_s2[from];
          }
+       }},
+      {"first_saturation",
+       [](std::size_t from, sim::ImuRecord& imu) {
+         clip_at_half(from, imu.gyro_rad_s);
+         clip_at_half(from, imu.accel_m_s2);
        }},
       {"one_wild_reading",
        [](std::size_t from, sim::ImuRecord& imu) {
@@ -169,7 +180,11 @@ sim::Sensors simulated(const char* scenario, std::uint64_t seed, sim::Truth& tru
 
 /// The rig in its room, with noise: readings without any would count as frozen.
 sim::Recording noisy_rig() {
-  sim::Recording recording = testing::synthetic_rig();
+  testing::SyntheticMotion motion;
+  motion.start_s = 0.9;
+  motion.end_s = 3.9;
+  motion.duration_s = 4.8;
+  sim::Recording recording = testing::synthetic_rig(motion);
   sim::Stream noise(3, "noise");
   sim::ImuRecord& imu = recording.sensors.imus.front();
   for (std::size_t k = 0; k < imu.time_ns.size(); ++k) {
@@ -214,7 +229,7 @@ const CutRecording& roll_run() {
 
 const CutRecording& mapped_run() {
   static const CutRecording run = {noisy_rig().sensors,
-                                   {22 * kSecondNs / 10, 36 * kSecondNs / 10}};  // it saturates from 2.45 s
+                                   {17 * kSecondNs / 10, 3 * kSecondNs}};  // it saturates from 1.85 s
   return run;
 }
 
@@ -236,6 +251,8 @@ TEST_P(LiveMeansLive, AnswersDoNotDependOnLaterReadings) {
     ASSERT_TRUE(early.status.ok()) << early.status.message();
     const std::int64_t until_ns = cut_ns - static_cast<std::int64_t>(1e9 * GetParam().lag_s);
     for (const auto& [name, fault] : faults()) {
+      // a mapper takes seconds per run
+      if (method.info.kind == Kind::slam && name != "none" && name != "unit_frozen" && name != "gyro_flipped") continue;
       sim::Sensors later = run.sensors;
       apply(fault, cut_ns, later);
       const Estimate whole = method.run(later, {}, {});
