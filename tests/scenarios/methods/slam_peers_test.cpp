@@ -149,8 +149,8 @@ std::string test_name(const ::testing::TestParamInfo<const char*>& param) {
   return name.substr(name.find('/') + 1);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, SlamPeer,
-                         ::testing::Values("slam/constant_velocity", "slam/icp_raw", "slam/published"), test_name);
+INSTANTIATE_TEST_SUITE_P(All, SlamPeer, ::testing::Values("slam/constant_velocity", "slam/icp_raw", "slam/published"),
+                         test_name);
 
 INSTANTIATE_TEST_SUITE_P(Some, SlamPeerWithGyro, ::testing::Values("slam/icp_raw", "slam/published"), test_name);
 
