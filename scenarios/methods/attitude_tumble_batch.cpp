@@ -57,7 +57,7 @@ Estimate run_attitude_tumble_batch(const sim::Sensors& sensors, const sim::Value
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (!estimate.status.ok()) return estimate;
   (void)check_imu(sensors, samples, estimate);  // Only a warning, as in the filters.
-  report_frozen_axes(sensors, samples, estimate);
+  (void)report_frozen_axes(sensors, samples, estimate);
   std::vector<ImuSample> recovered = samples;
   RecoveredRates recovery;
   if (sensors.sphere_radius_m <= 0.0) recovery = recover_clipped(sensors, recovered, estimate.health);

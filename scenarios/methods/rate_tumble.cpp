@@ -257,8 +257,8 @@ Estimate rates_of_batch(const sim::Sensors& sensors, const sim::Values& paramete
     estimate.status = tumble_rates(sensors, samples, params, smoothed, estimate);
     estimate.rates = std::move(smoothed.rates);
     if (estimate.status.ok()) {
-      check_rates(sensors, samples, smoothed.carried.share, estimate);
-      report_frozen_axes(sensors, samples, estimate);
+      if (!check_rates(sensors, samples, smoothed.carried.share, estimate)) inflate_rates(estimate);
+      inflate_frozen_rates(report_frozen_axes(sensors, samples, estimate), samples, estimate);
     }
     estimate.health["imus"] = 1.0 + static_cast<double>(smoothed.auxiliary_imus);
     if (estimate.status.ok() && found != nullptr) learn(smoothed.report, given, params.model, *found);

@@ -10,9 +10,8 @@
 #include "sim/parameters.hpp"
 #include "tumble/common/imu.hpp"
 
-/// Building blocks of the rigid registration methods. A rate method supplies Estimate::rates, a trajectory model
-/// predicts the motion within a sweep, and RigidOdometry registers the sweep. The file of each method combines a rate
-/// method with a trajectory model.
+/// Building blocks of the rigid registration methods. A trajectory model predicts the motion
+/// within a sweep, and RigidOdometry registers the sweep. The file of each method defines its trajectory model.
 namespace tumble::scenarios {
 
 /// Predicts the motion of each sweep and updates itself with the registration result.
@@ -34,17 +33,6 @@ struct StartAtRest {
 /// Averages the readings of at most the first second, as long as the gyro stays below 0.05 rad/s, and at least one
 /// sample. Returns `too_few` or `degenerate` if the readings do not determine an attitude.
 Status start_at_rest(std::span<const ImuSample> samples, StartAtRest& out);
-
-/// Prepares the input of methods that use the raw gyro: samples of the first IMU, rates with flagged clipped axes, and
-/// initial values.
-Status raw_start(const sim::Sensors& sensors, std::vector<ImuSample>& samples, std::vector<RateState>& rates,
-                 StartAtRest& start);
-
-/// Returns the IMU averaging windows that overlap (from_ns, to_ns], with bias-corrected rates and forces. Each window
-/// is split into `parts`; rate and force vary linearly between the mean values of the windows. The first window starts
-/// at or before from_ns.
-std::vector<MotionSample> imu_motion(std::span<const ImuSample> samples, std::span<const RateState> rates,
-                                     const Eigen::Vector3d& bias_rad_s, TimeNs from_ns, TimeNs to_ns, int parts = 1);
 
 /// Returns the IMU averaging windows that overlap the interval, with constant body rate and acceleration (body axes,
 /// without gravity).

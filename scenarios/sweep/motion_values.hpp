@@ -24,6 +24,8 @@ namespace tumble::scenarios {
 /// | `motion_clip_depth_max_rad_s`, `motion_clip_length_max_s` | largest loss, longest clipped segment |
 /// | `motion_several_axes_share` | fraction of the clipped samples with at least two clipped axes; NaN without clipped
 /// samples |
+/// | `motion_cross_axis_share` | fraction of the clipped samples in which an axis that is not clipped has a cross-axis
+/// error; NaN without clipped samples |
 /// | `motion_accel_clipped_share` | fraction of the moving samples with a clipped accelerometer axis |
 DrawValues motion_values(const std::string& scenario, std::uint64_t seed, const sim::Recording& recording);
 
