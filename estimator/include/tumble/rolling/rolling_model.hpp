@@ -57,6 +57,7 @@ struct RollingNominal {
 /// force f and rate w.
 struct RollingSums {
   Eigen::Matrix3d R_s = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d R_force_s = Eigen::Matrix3d::Zero();  ///< integral of R over the readings whose force is used
   Eigen::Vector3d f_W_m_s = Eigen::Vector3d::Zero();
   Eigen::Matrix<double, 3, 9> R_f = Eigen::Matrix<double, 3, 9>::Zero(), R_w = Eigen::Matrix<double, 3, 9>::Zero();
   Eigen::Vector3d R_wxf = Eigen::Vector3d::Zero();
