@@ -31,6 +31,8 @@ class InertialTrack {
   std::optional<TimeNs> border_ns() const { return boundary_ns_; }
   /// Returns the mean specific force of the current rest, if it had lasted for `lasted_s` by `time_ns`.
   std::optional<Eigen::Vector3d> resting_force(TimeNs time_ns, double lasted_s) const;
+  /// Returns whether the first `lasted_s` of samples, or all samples if there are fewer, are a rest.
+  bool starts_at_rest(double lasted_s) const;
   /// Returns whether the rest at the start continues.
   bool has_not_moved() const { return initial_.lasts; }
   /// Returns the time of the newest sample, or of the last sweep's end.

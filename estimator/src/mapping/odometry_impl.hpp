@@ -49,6 +49,7 @@ struct LidarInertialOdometry::Impl {
   Status check_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns) const;
   /// Before the first sweep, initialises the state from the IMU at rest.
   Status level_at_first();
+  Status level_start(MotionState& levelled) const;
   /// Starts the map if the sweep is suitable, and returns ok. If the sweep is not suitable, the state is propagated
   /// inertially to the sweep's end.
   Status start_map(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns, SweepReport& report);
@@ -96,6 +97,7 @@ struct LidarInertialOdometry::Impl {
   Status check_other() const;
 
   Params params;
+  std::optional<Eigen::Isometry3d> start_pose;  // position and heading of the IMU where the map starts
   mapping::TrackingState tracking;
   mapping::InertialTrack track;
   mapping::SweepBoundary boundary;  // between the last sweep and the next

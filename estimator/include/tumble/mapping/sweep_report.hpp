@@ -36,6 +36,9 @@ struct SweepReport {
   /// divided by the root of its nine unknowns. The mean innovation is at most 1 if prior and surfaces have the stated
   /// accuracy. Zero means that the sweep was not aligned.
   double innovation = 0.0;
+  /// Standard deviation of the position relative to the map around the robot. The covariance of `pose` also contains
+  /// the map's drift and tilt, which grow with the path.
+  double map_sigma_m = 0.0;
   int iterations = 0;
   int lost_sweeps = 0;  ///< consecutive rejected sweeps up to this one, inclusive
   /// True for a relocalisation after tracking failure that inertial prediction did not expect and that two further

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
+
 #include "tumble/common/status.hpp"
+#include "tumble/common/time.hpp"
 #include "tumble/mapping/sweep_report.hpp"
 
 namespace tumble {
 
 /// Detects tracking failure from what the mapper reports for each sweep (docs/maths/mapping.md, section 11). Either of
-/// two findings is sufficient and permanent:
+/// two findings of verdict() is sufficient and permanent:
 ///  - The position's standard deviation exceeded the matching distance of surfaces. A sweep can then match any nearby
 ///    surface, and a relocalisation is ambiguous.
 ///  - Surfaces corrected two or more sweeps beyond their priors. A single correction may come from saturation that the
@@ -16,8 +19,13 @@ namespace tumble {
 /// Before the first sweep with surfaces there is no map, so tracking cannot fail. The number of well constrained sweeps
 /// is not used because the standard deviation accounts for it. Localisation does not detect a map of another scale (see
 /// SweepScale), or errors of clocks or mounting that the calibration explains.
+///
+/// The function present() judges the pose relative to the map at the newest sweep. Its findings end: the position relative
+/// to the map is again certain, or the contradictions are older than kMemory_s.
 class Localisation {
  public:
+  static constexpr double kMemory_s = 30.0;
+
   /// `matched_m`: MatchingParams::distance_m of the mapper.
   explicit Localisation(double matched_m) : matched_m_(matched_m) {}
 
@@ -29,6 +37,8 @@ class Localisation {
   double second_innovation() const { return second_innovation_; }
   /// Returns `out_of_range` with the finding and the violated limit. Returns `ok` without a finding.
   Status verdict() const;
+  /// Returns `out_of_range` with the present finding and the violated limit. Returns `ok` without a finding.
+  Status present() const;
 
   /// Passes every member of the state to the visitor. The definition is in the library's sources (state_visitor.hpp).
   template <class Self, class Visitor>
@@ -38,6 +48,9 @@ class Localisation {
   double matched_m_;
   bool mapped_ = false;
   double largest_sigma_m_ = 0.0, largest_innovation_ = 0.0, second_innovation_ = 0.0;
+  double sigma_m_ = 0.0;  ///< of the newest sweep, relative to the map
+  TimeNs newest_ns_ = 0;
+  std::optional<TimeNs> contradicted_ns_, before_ns_;  ///< the last two sweeps that surfaces corrected beyond the prior
 };
 
 }  // namespace tumble
