@@ -85,7 +85,8 @@ class RestDetector {
                     const Eigen::Vector3d& bias_rad_s, State& state) const;
 
   /// Returns for each sample of a recording whether it belongs to a rest, including the start of each rest. O(N).
-  std::vector<bool> find(std::span<const ImuSample> samples) const;
+  std::vector<bool> find(std::span<const ImuSample> samples,
+                         const Eigen::Vector3d& bias_rad_s = Eigen::Vector3d::Zero()) const;
 
  private:
   Params params_;

@@ -15,6 +15,7 @@
 #include "tumble/common/detail/outlier_filter.hpp"
 #include "tumble/common/pose.hpp"
 #include "tumble/common/sample_clock.hpp"
+#include "tumble/odometry/detail/stamp_order.hpp"
 #include "tumble/odometry/detail/unit_rails.hpp"
 #include "tumble/odometry/imu_sheet.hpp"
 #include "tumble/rolling/rolling_smoother.hpp"
@@ -76,7 +77,7 @@ class RollingOdometry {
     PoseState pose;  ///< sphere's centre, sphere axes; live poses have no attitude covariance
     RollingMode mode = RollingMode::grip;
     bool at_rest = false;
-    bool uncertain = false;  ///< an event made the position uncertain (RollingModeParams::uncertain_m)
+    bool uncertain = false;  ///< an event (RollingModeParams::uncertain_m) or a restart made the position uncertain
   };
 
   /// Throws InvalidParams if a parameter is out of bounds.
@@ -91,8 +92,12 @@ class RollingOdometry {
   /// host's stamps jitter. A unit without a reading is passed as NaN. OutlierFilter rejects single wild readings of
   /// each unit. OutlierFilter may delay the samples of all units by one; newest() is then one sample older. On error
   /// the state is unchanged. Errors are `too_few` (wrong number of units, or no reading), `time_order`, `degenerate`
-  /// (no gravity in the first sample), `gap` and `out_of_range`. `gap`: after more than a second without samples, the
-  /// run ends until reset(). `out_of_range`: finish() was called, or the only unit with readings has a frozen axis.
+  /// (no gravity in the first sample), `gap` and `out_of_range`. `out_of_range`: finish() was called, the stamp is beyond
+  /// kStampMax_ns, or the only unit with readings has a frozen axis.
+  ///
+  /// A single wrong stamp costs one sample (StampOrder). After a gap of more than a second, the second sample restarts
+  /// the run. If the clock steps back, samples are rejected with `time_order` for 0.2 s, and then the run restarts. A
+  /// restart finishes the poses so far and continues as by reset(pose), at the newest pose. Later poses are `uncertain`.
   Status add_imus(std::span<const ImuSample> samples);
   /// Adds the sample of a sphere with one IMU. Errors are those of add_imus().
   Status add_imu(const ImuSample& sample) { return add_imus({&sample, 1}); }
@@ -107,8 +112,12 @@ class RollingOdometry {
   /// Ends the run and smooths the poses still within the lag. add_imus() then rejects samples until reset().
   void finish();
 
-  /// Starts a new run at the origin and at rest. Poses not yet fetched by take() remain available.
+  /// Starts a new run at the origin and at rest. Poses not yet fetched by take() remain available, and the counts
+  /// continue.
   void reset();
+  /// Starts a new run as reset() does, at a known pose of the sphere. Position and heading are those of `T_WG`; the tilt
+  /// is levelled at rest. Covariances are relative to this pose.
+  void reset(const Eigen::Isometry3d& T_WG);
 
   /// Reports whether the readings are plausible now. Returns `ok`, or `out_of_range` with a finding. A finding is the
   /// unit and axis that is frozen (FrozenAxes) and the duration, or a force at rest that differs from gravity
@@ -121,6 +130,8 @@ class RollingOdometry {
 
   /// Returns the number of readings that OutlierFilter rejected, over all units.
   std::size_t rejected_readings() const;
+  /// Returns the number of restarts after a gap or after a clock that stepped back.
+  std::size_t gaps() const { return gaps_; }
   /// Returns the jitter of the stamps [s]; see TumblingOdometry::estimated_jitter_s.
   std::optional<double> estimated_jitter_s() const;
 
@@ -140,6 +151,9 @@ class RollingOdometry {
 
   RollingOdometry(const Params& params, const ImuMerge::Params& merged);
 
+  void restart_at_newest();
+  void place_start();
+  RollingEstimate in_world(RollingEstimate estimate) const;
   Status add_held(std::span<const ImuSample> next);
   Status add_inliers(std::span<const ImuSample> samples);
   Status take_in(const ImuSample& merged);
@@ -147,6 +161,8 @@ class RollingOdometry {
   Status frozen_axis(const Frozen& frozen) const;
 
   Params params_;
+  StampOrder order_;
+  StampOrder::State order_state_;
   SampleClock clock_;
   SampleClock::State stamps_;  ///< state of the clock from accepted samples
   ImuMerge merge_;
@@ -165,6 +181,10 @@ class RollingOdometry {
   std::array<RestGravity::Size, ImuMerge::kImus> gravity_state_{};
   std::vector<RollingEstimate> done_;
   std::size_t taken_ = 0;
+  std::optional<Eigen::Isometry3d> start_;  ///< pose given to reset(), until the first sample
+  std::optional<Eigen::Isometry3d> T_WR_;   ///< pose of the run's origin; nothing: the world's origin
+  std::size_t gaps_ = 0;
+  bool restarted_ = false;  ///< the run continues after a gap or a step of the clock, so its position is uncertain
   bool live_ = true, finished_ = false;
 };
 

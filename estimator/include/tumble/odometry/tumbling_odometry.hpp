@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Geometry>
 #include <cstddef>
 #include <deque>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "tumble/angular_velocity/detail/gyro_offset.hpp"
 #include "tumble/common/detail/outlier_filter.hpp"
 #include "tumble/common/sample_clock.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 #include "tumble/odometry/detail/odometry_pass.hpp"
 #include "tumble/odometry/detail/second_pass.hpp"
+#include "tumble/odometry/detail/stamp_order.hpp"
 #include "tumble/odometry/detail/waiting_input.hpp"
 #include "tumble/odometry/tumbling_params.hpp"
 
@@ -27,7 +30,8 @@ namespace tumble {
 /// final pose (`report.smoothed`), at most 0.3 s after the sweep's end at ten sweeps per second. Stamps of poses are in
 /// the IMU's clock. World: see LidarInertialOdometry. The earliest sweep with enough points starts the map and has no
 /// pose error. Before the map starts, there are no poses. Start with at least half a second at rest, which levels the
-/// attitude.
+/// attitude. If the gyro's zero offset at this rest is above 0.05 rad/s, the run restarts with the offset removed
+/// (GyroOffset); start with a second at rest for such a gyro.
 ///
 /// Some seconds after motion starts, SecondPass processes the first seconds of motion again with the calibration
 /// estimated so far. Map and pose then switch to the result of SecondPass; earlier poses are not changed. If the lidar
@@ -53,12 +57,14 @@ class TumblingOdometry {
   /// Throws InvalidParams if a parameter is out of bounds, the lever arm is not set, or the own-body box is invalid.
   explicit TumblingOdometry(const Params& params);
 
-  /// Processes an IMU sample; stamps must increase. Registers the sweeps whose rates become available. On `non_finite`,
-  /// `time_order` or `gap` the state is unchanged, with one exception. The first sample after a gap of more than a
-  /// second waits for confirmation by the next sample. The rates then restart with the current calibration (gaps()
-  /// counts the restarts), and the mapper bridges the gap by inertial integration. A single wrong stamp thus costs one
-  /// sample. OutlierFilter rejects single wild readings. OutlierFilter may delay a sample by one; newest() is then one
-  /// sample older.
+  /// Processes an IMU sample; stamps must increase. Registers the sweeps whose rates become available. Samples with
+  /// `non_finite`, `out_of_range`, `time_order` or `gap` are rejected. A single wrong stamp costs one sample (StampOrder).
+  /// - After a gap of more than a second, the second sample restarts the rates with the current calibration. The mapper
+  ///   bridges the gap by inertial integration.
+  /// - If the clock steps back, samples are rejected with `time_order` for 0.2 s. The run then restarts as by
+  ///   reset(pose), at the newest pose.
+  /// OutlierFilter rejects single wild readings. OutlierFilter may delay a sample by one; newest() is then one sample
+  /// older.
   Status add_imu(const ImuSample& sample);
   /// Processes a sweep of points fired in [start_ns, end_ns], at any time after the sweep's last point. The points are
   /// copied. Points from before the end of the last sweep are dropped because stamps jitter. On error the state is
@@ -79,17 +85,24 @@ class TumblingOdometry {
   /// registered sweeps. The function mapper().window_trajectories() returns the final poses of sweeps in the window.
   /// The rates of later samples restart with the current calibration.
   void finish();
+  /// Starts a new run with a new map, at the origin and at rest. Sweeps not yet fetched by take() remain available, and
+  /// the counts continue.
+  void reset();
+  /// Starts a new run as reset() does, at a known pose of the IMU. Position and heading are those of `T_WI`; the tilt is
+  /// levelled at rest. Covariances are relative to this pose.
+  void reset(const Eigen::Isometry3d& T_WI);
 
   /// Predicts pose and velocity of the IMU at its newest sample, with covariance, by inertial integration from the last
   /// registered sweep. Returns `empty` before the first sweep. Allocates memory. Cost: O(samples since the last sweep).
   Status newest(PoseState& pose) const;
-  /// Reports whether the inputs and the pose are plausible now. Estimation continues after any finding. Returns `ok`,
-  /// or `out_of_range` with a finding:
+  /// Reports whether the inputs and the pose are plausible now. Estimation continues after any finding, and a finding
+  /// ends when its cause ends (at the latest a minute later). Returns `ok`, or `out_of_range` with a finding:
   /// - a frozen IMU axis and the duration of the freeze,
   /// - an inverted accelerometer (FlightSense),
   /// - a wrong unit of the accelerometer after a second of rest (RestGravity),
   /// - a wrong scale of the lidar's ranges (SweepScale),
-  /// - tracking failure (Localisation, permanent),
+  /// - an uncertain vertical after a start in motion (LidarInertialOdometry::vertical),
+  /// - tracking failure (Localisation::present),
   /// - too large a change of the lidar's calibration (StatedCalibration).
   Status health() const;
   /// Returns the estimated range scale of the lidar relative to the IMU, as far as the motion determines it.
@@ -103,7 +116,7 @@ class TumblingOdometry {
   /// Returns the estimated calibration of the IMU on the body: lever arm, biases and sensing elements.
   RigCalibration rig() const { return pass_.rates().rate().calibration(pass_.rate_state().rate); }
   const KnownRails& rails() const { return pass_.rate_state().rate.rails.known; }
-  /// Returns the number of IMU gaps after which the rates restarted.
+  /// Returns the number of restarts after a gap or after a clock that stepped back.
   std::size_t gaps() const { return gaps_; }
   /// Returns the number of samples that OutlierFilter rejected because of wild readings or stamps.
   std::size_t rejected_readings() const { return outliers_.rejected; }
@@ -138,16 +151,26 @@ class TumblingOdometry {
  private:
   Status check_state() const;
   Status add_reading(const OdometerReading& reading);
-  Status add_inlier(const ImuSample& sample);
   Status take_in(const ImuSample& sample);
   void register_sweep(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points);
   bool is_due(TimeNs end_ns) const;
   void register_covered();
   void flush_all();
-  void restart();
+  void restart_rates();
+  void restart_at_newest();
+  void restart_without_first();
+  void restart_with_offset(const Eigen::Vector3d& offset_rad_s);
+  void set_gyro_offset(const Eigen::Vector3d& offset_rad_s);
+  const Eigen::Vector3d& gyro_offset_rad_s() const {
+    return pass_.rates().params().rate.model.nominal.gyro_bias_rad_s;
+  }
   void begin_rates();
 
   Params params_;
+  StampOrder order_;
+  StampOrder::State order_state_;
+  GyroOffset gyro_offset_;
+  GyroOffset::State gyro_offset_state_;
   OutlierFilter filter_;
   OutlierFilter::State outliers_;
   SampleClock clock_;
@@ -155,7 +178,6 @@ class TumblingOdometry {
   OdometryPass pass_;
   SecondPass second_pass_;
   std::optional<TimeNs> newest_ns_;      ///< time of the newest accepted sample
-  std::optional<ImuSample> after_gap_;   ///< first sample after a gap, not yet confirmed
   std::optional<TimeNs> registered_ns_;  ///< end of the last registered sweep; until a sweep is registered, time of the
                                          ///< first sample
   std::size_t gaps_ = 0, dropped_sweeps_ = 0, early_sweeps_ = 0;
