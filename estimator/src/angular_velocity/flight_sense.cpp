@@ -158,9 +158,16 @@ void FlightSense::take(const Reading& now, State& state) const {
       continue;
     }
     state.run_s[sense] += 0.5 * dt_s;
-    if (state.run_s[sense] >= (sense == kHalfScaleGyro ? std::max(kHalfScaleRun_s, params_.run_s) : params_.run_s))
-      state.flown_s[sense] += 0.5 * dt_s;
+    if (state.run_s[sense] < (sense == kHalfScaleGyro ? std::max(kHalfScaleRun_s, params_.run_s) : params_.run_s))
+      continue;
+    state.flown_s[sense] += 0.5 * dt_s;
+    if (sense != 0) state.flown_ns = now.time_ns;
   }
+}
+
+Status FlightSense::present(const State& state) const {
+  const bool old = check_follows(state.last_time_ns, state.flown_ns, kMemory_s).trouble == Trouble::gap;
+  return old ? Status{} : verdict(state);
 }
 
 Status FlightSense::verdict(const State& state) const {

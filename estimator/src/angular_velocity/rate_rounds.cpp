@@ -258,7 +258,9 @@ Status descend_rounds(const Rounds& rounds, std::span<RateObservation> observati
   if (has_calibration) rounds_state.learnt = calibration_evidence_about(given, *learnt, rounds.stated());
   Start start = start_from(has_calibration ? learnt->errors : given, rounds);
   rounds_state.errors = start.errors;
-  for (health.error_rounds = 1;; ++health.error_rounds) {
+  health.error_rounds = 0;
+  for (int round = 1;; ++round) {  // counts from the last restart, and the report counts all rounds
+    ++health.error_rounds;
     if (Status status = descend_corrected(rounds, rounds_state.errors, observations, fit, health); !status.ok())
       return status;
     if (health.calibration_at_prior && has_calibration) {
@@ -267,20 +269,20 @@ Status descend_rounds(const Rounds& rounds, std::span<RateObservation> observati
       rounds_state.learnt = {};
       start = start_from(given, rounds);
       rounds_state.errors = start.errors;
-      health.error_rounds = 0;
+      round = 0;
       continue;
     }
-    const bool first = health.error_rounds == 1 && rounds.estimated;
+    const bool first = round == 1 && rounds.estimated;
     if (health.calibration_at_prior && first && rounds_state.errors.accel_delay_s != start.other_delay_s) {
       rounds_state.errors.accel_delay_s = start.other_delay_s;
-      health.error_rounds = 0;
+      round = 0;
       continue;
     }
     if (Status status = take_evidence(rounds, rounds_state.errors, fit, health); !status.ok()) return status;
     rounds_state.found = fit_about(given, fit.moved.evidence, rounds.sizes, rounds_state.learnt);
     rounds_state.is_plausible = plausible(rounds_state.found.known.errors, given, rounds.stated());
     if (health.calibration_at_prior || !rounds_state.is_plausible ||
-        health.error_rounds >= rounds.params.expert.error_rounds_max)
+        round >= rounds.params.expert.error_rounds_max)
       return {};
     if (!far_apart(rounds_state.found.known.errors, rounds_state.errors)) return {};
     rounds_state.errors = rounds_state.found.known.errors;

@@ -209,7 +209,7 @@ void RateStream::append(const ImuSample& sample, std::span<const AuxiliaryReadin
   knot.by_upright_rails = rails_.upright_rails().classify(sample, state.rails.known.upright_rails);
   repeat_detector_.observe(sample, (knot.by_upright_rails.gyro | knot.by_upright_rails.missing_gyro) != 0,
                            state.repeat_state);
-  knot.observation = {sample, knot.by_upright_rails, rests_.observe(sample, state.rests)};
+  knot.observation = {sample, knot.by_upright_rails, rests_.observe(sample, state.rests, params_.model.nominal.gyro_bias_rad_s)};
   knot.read = {sample.specific_force_m_s2, static_cast<std::uint8_t>(sample.device_clip_flags & kClipAccel),
                knot.by_upright_rails.accel};
   std::copy(auxiliary_imus.begin(), auxiliary_imus.end(), knot.observation.auxiliary_imus.begin());

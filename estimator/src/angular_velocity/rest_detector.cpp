@@ -80,11 +80,11 @@ bool RestDetector::observe_mean(const Eigen::Vector3d& rate_rad_s, const Eigen::
   return state.rests;
 }
 
-std::vector<bool> RestDetector::find(std::span<const ImuSample> samples) const {
+std::vector<bool> RestDetector::find(std::span<const ImuSample> samples, const Eigen::Vector3d& bias_rad_s) const {
   std::vector<bool> rest(samples.size(), false);
   State state;
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    if (!observe(samples[k], state)) continue;
+    if (!observe(samples[k], state, bias_rad_s)) continue;
     // all samples of the run so far are rest
     for (std::size_t i = k + 1; i-- > 0 && samples[i].time_ns >= state.first_ns && !rest[i];) rest[i] = true;
   }

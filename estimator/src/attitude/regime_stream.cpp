@@ -95,8 +95,10 @@ Status RegimeStream::push(const ImuSample& sample, std::span<const AuxiliaryRead
       ++state.starts;
     }
     const bool wanted = share > params_.carried_min;
+    ImuSample without_offset = sample;
+    without_offset.angular_velocity_rad_s -= params_.rate.model.nominal.gyro_bias_rad_s;
     state.carrying =
-        carried_.push(sample, known_of(state), state.carried, carried, wanted, state.rate.repeat_state).ok();
+        carried_.push(without_offset, known_of(state), state.carried, carried, wanted, state.rate.repeat_state).ok();
   } else {
     state.carrying = false;
   }

@@ -147,6 +147,13 @@ double RestGravity::size_share(const Size& state) const {
   return state.weightless_s >= kRested_s ? 0.0 : 1.0;
 }
 
+void RestGravity::limit_memory(Size& state) {
+  constexpr double kMemory_s = 60.0;
+  if (state.rest_s <= kMemory_s) return;
+  state.rest_s *= 0.5;
+  state.force_sum_m *= 0.5;
+}
+
 Status RestGravity::size_verdict(const Size& state) const {
   const double size = size_share(state);
   if (std::abs(size - 1.0) > params_.size_share_max) {

@@ -37,6 +37,11 @@ Status check_follows(TimeNs time_ns, TimeNs previous_ns, double gap_max_s) {
   return {};
 }
 
+Status check_stamp(TimeNs stamp_ns, const char* field) {
+  if (stamp_ns >= -kStampMax_ns && stamp_ns <= kStampMax_ns) return {};
+  return {Trouble::out_of_range, field, static_cast<double>(stamp_ns), static_cast<double>(kStampMax_ns)};
+}
+
 Status check_samples(std::span<const ImuSample> samples, double gap_max_s) {
   for (std::size_t k = 0; k < samples.size(); ++k) {
     if (const Status status = check_sample(samples[k]); !status.ok()) return status;

@@ -22,7 +22,7 @@ constexpr double kLever_m = 10.0;         // largest force per angular accelerat
 constexpr double kTurnMost_rad_s = 50.0;  // limit of a rate jump that lasts one sample only
 constexpr double kHitMost_m_s = 20.0;     // limit of a velocity jump that lasts one sample only
 constexpr double kNear_s = 0.1;           // neighbours further away than this are not compared
-constexpr double kPeriodsAhead = 4.0;     // a longer step of the stamps is held
+constexpr double kPeriodsAhead = 1.75;    // a longer step of the stamps is held: the next stamp may be earlier
 
 // A reading may be saturated from this fraction of the stated range on, and also if a large reading repeats.
 constexpr double kAtRange = 0.95;
@@ -155,8 +155,9 @@ void OutlierFilter::finish(State& state) {
 
 std::optional<ImuSample> OutlierFilter::settle(const ImuSample& next, State& state) const {
   if (!state.held) return std::nullopt;
+  const bool confirmed = confirms(next, state);
   const std::optional<ImuSample> held = std::exchange(state.held, std::nullopt);
-  if (next.time_ns > held->time_ns && !is_outlier(*held, next, state)) return held;
+  if (confirmed) return held;
   ++state.rejected;
   return std::nullopt;
 }
@@ -173,20 +174,24 @@ bool OutlierFilter::keeps_back(const ImuSample& sample, State& state) const {
   return true;
 }
 
-/// Returns the last step of the stamps, or the nominal period if it is longer. The result is infinite if neither is
-/// known.
+/// Returns the last step of the stamps, or the nominal period if it is longer. The result is infinite if the nominal
+/// period is not stated.
 double OutlierFilter::period_s(const State& state) const {
-  if (!(device_.period_s > 0.0) || state.count < 2) return kUnknown;
+  if (!(device_.period_s > 0.0)) return kUnknown;
+  if (state.count < 2) return device_.period_s;
   return std::max(device_.period_s, step_s(state.passed[0], state.passed[1]));
 }
 
-/// Returns whether a reading jumps further than the other triad explains: outliers.md (O5).
 bool OutlierFilter::is_suspicious(const ImuSample& sample, const State& state) const {
   if (state.count == 0) return false;
-  const ImuSample& before = state.passed[1];
-  const double after_s = step_s(before, sample);
+  const double after_s = step_s(state.passed[1], sample);
   if (after_s > device_.gap_max_s) return false;
-  if (after_s > kPeriodsAhead * period_s(state)) return true;
+  return after_s > kPeriodsAhead * period_s(state) || jumps(sample, state);
+}
+
+/// Returns whether a reading jumps further than the other triad explains: outliers.md (O5).
+bool OutlierFilter::jumps(const ImuSample& sample, const State& state) const {
+  const double after_s = step_s(state.passed[1], sample);
   if (after_s > kNear_s) return false;
   const double step = std::max(after_s, device_.period_s);
   Sequence sequence = passed_near(state);
@@ -216,6 +221,10 @@ std::vector<bool> find_inliers(const OutlierFilter& filter, std::span<const ImuS
   OutlierFilter::State state;
   std::size_t held = 0;
   for (std::size_t k = 0; k < samples.size(); ++k) {
+    if (filter.first_is_refuted(samples[k], state)) {
+      std::fill(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(held), false);
+      state.count = 0;
+    }
     if (const std::optional<ImuSample> confirmed = filter.settle(samples[k], state)) {
       OutlierFilter::pass(*confirmed, state);
       out[held] = true;

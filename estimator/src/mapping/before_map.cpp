@@ -18,6 +18,8 @@ using Params = LidarInertialOdometry::Params;
 // Prior of the speed and its correlation time. Robots that use the library are slower than kSpeed_m_s, except for
 // moments.
 constexpr double kSpeed_m_s = 10.0, kSpeedTime_s = 1.0;
+// Standard deviations of a start in motion: the mean force of half a second differs from gravity by 1 m/s^2.
+constexpr double kMovingTilt_rad = 0.1, kMovingSpeed_m_s = 2.0;
 
 StateEstimate of_motion(const MotionState& state, const SweepCalibration& calibration, const Motion& weight,
                         const Motion& error) {
@@ -65,8 +67,36 @@ StateEstimate belief_before_map(const Params& params, const MotionState& levelle
   calibration.T_IL = params.T_IL;
   calibration.gravity_W_m_s2 = Eigen::Vector3d(0.0, 0.0, -params.expert.gravity_m_s2);
   Motion error = levelled.covariance;
-  u::variances(error, u::tilt).setConstant(params.expert.world.tilt_sigma_rad * params.expert.world.tilt_sigma_rad);
+  const double level = params.expert.start.level_sigma_rad, world = params.expert.world.tilt_sigma_rad;
+  if (u::variances(error, u::tilt).maxCoeff() <= level * level) u::variances(error, u::tilt).setConstant(world * world);
   return of_motion(levelled, calibration, levelled.covariance, error);
+}
+
+void widen_to_motion(MotionState& levelled) {
+  u::variances(levelled.covariance, u::tilt).setConstant(kMovingTilt_rad * kMovingTilt_rad);
+  u::variances(levelled.covariance, u::velocity).setConstant(kMovingSpeed_m_s * kMovingSpeed_m_s);
+}
+
+MotionState moved_to(const Eigen::Isometry3d& T_WI, const MotionState& motion) {
+  const Eigen::Quaterniond wanted(T_WI.linear());
+  const Eigen::Quaterniond turn = so3::exp({0.0, 0.0, yaw_rad(wanted * motion.q_WI.conjugate())});
+  const Eigen::Matrix3d R = turn.toRotationMatrix();
+  Motion T = Motion::Zero();
+  for (int k = 0; k < Motion::RowsAtCompileTime; k += 3) T.block<3, 3>(k, k) = R;
+  MotionState out = motion;
+  out.p_WI_m = T_WI.translation();
+  out.q_WI = (turn * motion.q_WI).normalized();
+  out.v_WI_m_s = R * motion.v_WI_m_s;
+  out.covariance = T * motion.covariance * T.transpose();
+  return out;
+}
+
+StateEstimate moved_to(const Eigen::Isometry3d& T_WI, const StateEstimate& estimate) {
+  MotionState state = estimate.mean.state, error = estimate.mean.state;
+  state.covariance = u::block(estimate.weight, u::motion);
+  error.covariance = u::block(estimate.error, u::motion);
+  state = moved_to(T_WI, state);
+  return of_motion(state, estimate.mean.calibration, state.covariance, moved_to(T_WI, error).covariance);
 }
 
 StateEstimate without_place(const StateEstimate& reckoned, double step_s) {
@@ -110,7 +140,8 @@ StateEstimate belief_at_first_sweep(const Params& params, const StateEstimate& r
 WorldCovariance world_at_first_sweep(const Params& params, const StateEstimate& reckoned) {
   WorldCovarianceParams world = params.expert.world;
   world.tilt_sigma_rad = std::sqrt(u::variances(reckoned.error, u::tilt).mean());
-  return {world, reckoned.mean.state.q_WI, params.T_IL.translation()};
+  const MotionState& start = reckoned.mean.state;
+  return {world, start.q_WI, params.T_IL.translation(), start.p_WI_m};
 }
 
 }  // namespace tumble::mapping

@@ -174,6 +174,13 @@ void InertialTrack::take_back_rest(std::optional<TimeNs> rests_since_ns) {
   }
 }
 
+bool InertialTrack::starts_at_rest(double lasted_s) const {
+  const auto rests = [&](const MotionSample& sample) {
+    return sample.at_rest || seconds(sample.from_ns - samples_.front().from_ns) >= lasted_s;
+  };
+  return std::all_of(samples_.begin(), samples_.end(), rests);
+}
+
 bool InertialTrack::rests_until(TimeNs end_ns) const {
   const auto rests = [&](const MotionSample& sample) { return sample.from_ns >= end_ns || sample.rests_since_ns; };
   return std::all_of(samples_.begin(), samples_.end(), rests);

@@ -32,7 +32,9 @@ class InertialTrack {
   std::optional<TimeNs> border_ns() const { return boundary_ns_; }
   /// Returns the mean specific force of the current rest, if the rest had lasted for `lasted_s` by `time_ns`.
   std::optional<Eigen::Vector3d> resting_force(TimeNs time_ns, double lasted_s) const;
-  /// Returns whether the rest at the start of the recording continues.
+  /// Returns whether the first `lasted_s` of samples, or all samples if there are fewer, are a rest.
+  bool starts_at_rest(double lasted_s) const;
+  /// Returns whether the rest at the start continues.
   bool has_not_moved() const { return initial_.lasts; }
   /// Returns the time of the newest sample, or the end of the last sweep without samples.
   std::optional<TimeNs> last_ns() const;

@@ -8,6 +8,7 @@
 #include <variant>
 
 #include "odometry_impl.hpp"
+#include "tumble/common/detail/sample_check.hpp"
 #include "unknowns.hpp"
 
 namespace tumble {
@@ -16,6 +17,7 @@ namespace {
 
 Status check(const ImuSample& sample, const RateState& rate) {
   if (const Status status = check_sample(sample); !status.ok()) return status;
+  if (const Status status = check_stamp(sample.time_ns, "time_ns"); !status.ok()) return status;
   if (!rate.w_WI_I_rad_s.allFinite() || !rate.covariance_rad2_s2.allFinite()) {
     return {Trouble::non_finite, "rate", std::numeric_limits<double>::quiet_NaN(), 0.0};
   }
@@ -43,6 +45,14 @@ LidarInertialOdometry::LidarInertialOdometry(const LidarInertialOdometry& other)
 LidarInertialOdometry& LidarInertialOdometry::operator=(const LidarInertialOdometry& other) {
   impl_ = std::make_unique<Impl>(*other.impl_);
   return *this;
+}
+
+void LidarInertialOdometry::start_at(const Eigen::Isometry3d& T_WI) {
+  impl_->start_pose = T_WI;
+}
+
+const std::optional<Eigen::Isometry3d>& LidarInertialOdometry::start() const {
+  return impl_->start_pose;
 }
 
 Status LidarInertialOdometry::add_imu(const ImuSample& sample, const RateState& rate) {
@@ -74,6 +84,8 @@ void LidarInertialOdometry::exclude_force() {
 Status LidarInertialOdometry::add_sweep(TimeNs lidar_start_ns, TimeNs lidar_end_ns, std::span<const LidarPoint> points,
                                         SweepReport& report) {
   report = SweepReport{};
+  if (const Status status = check_stamp(lidar_start_ns, "start_ns"); !status.ok()) return status;
+  if (const Status status = check_stamp(lidar_end_ns, "end_ns"); !status.ok()) return status;
   const TimeNs offset_ns = static_cast<TimeNs>(std::llround(impl_->params.time_offset_s * 1e9));
   return impl_->add_sweep(lidar_start_ns + offset_ns, lidar_end_ns + offset_ns, points, report);
 }
@@ -123,6 +135,15 @@ SweepCalibration::Covariance LidarInertialOdometry::calibration_covariance() con
 
 SweepCalibration::Covariance LidarInertialOdometry::calibration_weight() const {
   return mapping::unknowns::block(impl_->boundary.state_estimate.weight, mapping::unknowns::calibration);
+}
+
+Status LidarInertialOdometry::vertical() const {
+  constexpr double kMost_rad = 0.02;
+  namespace u = mapping::unknowns;
+  const double variance = u::variances(impl_->boundary.state_estimate.error, u::gravity).head<2>().maxCoeff();
+  const double sigma_rad = std::sqrt(variance) / std::max(impl_->params.expert.gravity_m_s2, 1e-3);
+  if (!mapping::has_started(impl_->tracking) || !(sigma_rad > kMost_rad)) return {};
+  return {Trouble::out_of_range, "standard deviation of the map's vertical after a start in motion", sigma_rad, kMost_rad};
 }
 
 Status LidarInertialOdometry::pose_at(TimeNs time_ns, PoseState& pose) const {

@@ -100,10 +100,24 @@ Status LidarInertialOdometry::Impl::check_sweep(TimeNs start_ns, TimeNs end_ns,
 Status LidarInertialOdometry::Impl::level_at_first() {
   if (mapping::has_started(tracking) || track.border_ns()) return {};
   MotionState levelled;
-  if (Status status = mapping::start_at_rest(params, track.samples(), levelled); !status.ok()) return status;
+  if (Status status = level_start(levelled); !status.ok()) return status;
+  if (start_pose) levelled = mapping::moved_to(*start_pose, levelled);
+  if (!track.starts_at_rest(params.expert.start.bias_rest_s)) {
+    const StateEstimate in_motion = mapping::belief_before_map(params, levelled);
+    world = mapping::world_at_first_sweep(params, in_motion);
+    boundary.state_estimate = mapping::belief_at_first_sweep(params, in_motion);
+    return {};
+  }
   boundary.state_estimate = mapping::estimate_at_start(params, levelled);
-  world = mapping::WorldCovariance(params.expert.world, levelled.q_WI, params.T_IL.translation());
+  world = mapping::WorldCovariance(params.expert.world, levelled.q_WI, params.T_IL.translation(), levelled.p_WI_m);
   return {};
+}
+
+/// Levels the start by the mean force, which is gravity only if the start is at rest.
+Status LidarInertialOdometry::Impl::level_start(MotionState& levelled) const {
+  const Status status = mapping::start_at_rest(params, track.samples(), levelled);
+  if (status.ok() && !track.starts_at_rest(params.expert.start.bias_rest_s)) mapping::widen_to_motion(levelled);
+  return status;
 }
 
 /// Starts the map with the first sweep that has enough points. If the sweep begins with the IMU, the sweep's start is
@@ -122,6 +136,7 @@ Status LidarInertialOdometry::Impl::start_map(TimeNs start_ns, TimeNs end_ns, st
     const mapping::MotionPrior of_sweep = std::exchange(known, mapping::InertialPrior{});
     if (Status status = dead_reckon(start_ns); !status.ok()) return status;
     known = of_sweep;
+    if (start_pose) boundary.state_estimate = mapping::moved_to(*start_pose, boundary.state_estimate);
     world = mapping::world_at_first_sweep(params, boundary.state_estimate);
     boundary.state_estimate = mapping::belief_at_first_sweep(params, boundary.state_estimate);
     return {};
@@ -136,7 +151,7 @@ Status LidarInertialOdometry::Impl::start_map(TimeNs start_ns, TimeNs end_ns, st
 Status LidarInertialOdometry::Impl::dead_reckon(TimeNs end_ns) {
   MotionState levelled;
   if (!track.border_ns()) {
-    if (Status status = mapping::start_at_rest(params, track.samples(), levelled); !status.ok()) return status;
+    if (Status status = level_start(levelled); !status.ok()) return status;
     boundary.state_estimate = mapping::belief_before_map(params, levelled);
   }
   if (const std::optional<Eigen::Vector3d> force = track.resting_force(end_ns, params.expert.rest.levels_s)) {
@@ -240,6 +255,9 @@ void LidarInertialOdometry::Impl::propagate(const UpdatedSweep& sweep, const Pla
   if (aligned && placed.verdict == SweepVerdict::degenerate && motion.resting_sweeps == 0)
     world.add_drift(report.weakest_sigma_m, report.weakest_direction);
   report.trajectory = poses_along(sweep.trajectory, motion.end_ns, sweep.start.error);
+  const Registration::Matrix to_end = mapping::unknowns_at(sweep.trajectory, sweep.trajectory.duration_s());
+  report.map_sigma_m = world.sigma_in_map_m(mapping::pose_and_mounting(to_end, sweep.start.error),
+                                            report.trajectory.back().p_WA_m);
   enter_window(sweep, motion, boundary, window).inserted = std::move(inserted);
   if (aligned) {
     window.smooth();

@@ -22,6 +22,8 @@ constexpr double kChange_m_s = 0.5;  // smaller changes of velocity are dominate
 constexpr std::size_t kChangesMin = 5, kChangesMax = 1000;
 constexpr std::size_t kSpanMax = 64;  // maximum number of buffered sweeps
 constexpr int kIterations = 10;
+constexpr double kBias_m_s2 = 0.05;  // constant error of the acceleration: bias of the accelerometer, tilt
+constexpr double kMemory_s = 60.0;   // age of a change that is still compared: a finding ends
 constexpr double kHuber = 1.5, kPerMedian = 1.4826;  // standard deviations; per median absolute deviation
 
 using Change = SweepScaleWatch::Change;
@@ -99,7 +101,7 @@ std::optional<Change> change_until(std::size_t last, std::size_t span, const Swe
   if (!(from.time_ns < middle.time_ns && middle.time_ns < to.time_ns)) return std::nullopt;
   const auto by_imu = imu_motion.change(from.time_ns, middle.time_ns, to.time_ns);
   if (!by_imu || !(by_imu->norm() >= kChange_m_s)) return std::nullopt;
-  return Change{*by_imu, (to.p_WA_m - middle.p_WA_m) / seconds(to.time_ns - middle.time_ns) -
+  return Change{to.time_ns, *by_imu, (to.p_WA_m - middle.p_WA_m) / seconds(to.time_ns - middle.time_ns) -
                              (middle.p_WA_m - from.p_WA_m) / seconds(middle.time_ns - from.time_ns)};
 }
 
@@ -116,14 +118,17 @@ SweepScale fit(const Changes& changes) {
     std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
     const double deviation = std::max(1e-6, kPerMedian * sorted[sorted.size() / 2]);
     double together = 0.0, squared = 0.0, residual = 0.0;
+    Eigen::Vector3d by_bias = Eigen::Vector3d::Zero();
     for (std::size_t k = 0; k < changes.size(); ++k) {
       const double weight = std::min(1.0, kHuber * deviation / std::max(off[k], 1e-12));
       together += weight * changes[k].by_imu_m_s.dot(changes[k].by_sweeps_m_s);
       squared += weight * changes[k].by_imu_m_s.squaredNorm();
+      by_bias += weight * kSpan_s * changes[k].by_imu_m_s;
       residual += weight * weight * off[k] * off[k] * changes[k].by_imu_m_s.squaredNorm() / 3.0;
     }
     out.scale = together / squared;
-    out.sigma = std::sqrt(residual) / squared;  // heteroscedasticity-consistent: White, 1980
+    // heteroscedasticity-consistent: White, 1980
+    out.sigma = std::sqrt(residual + kBias_m_s2 * kBias_m_s2 * by_bias.squaredNorm()) / squared;
   }
   return out;
 }
@@ -174,6 +179,8 @@ void SweepScaleWatch::add(const SweepReport& sweep) {
   while (sweeps_.size() > 2 * span + 1) sweeps_.pop_front();
   const TimeNs from_ns = sweeps_.front().pose.time_ns;
   std::erase_if(samples_, [&](const ImuSample& earlier) { return earlier.time_ns <= from_ns; });
+  const auto is_old = [&](const Change& change) { return seconds(sweep.pose.time_ns - change.time_ns) > kMemory_s; };
+  if (std::erase_if(changes_, is_old) > 0) scale_ = fit(changes_);
   if (sweeps_.size() < 2 * span + 1) return;
   const ImuMotion imu_motion(samples_, sweeps_, gravity_m_s2_);
   const std::optional<Change> change = change_until(2 * span, span, sweeps_, imu_motion);

@@ -86,6 +86,7 @@ Status OdometryPass::add_imu(const ImuSample& sample) {
   if (const Status status = rates_.push(sample, rate_state_, rate); !status.ok()) return status;
   pending_.push(sample);
   gravity_.step(sample, gravity_state_);
+  RestGravity::limit_memory(gravity_state_);
   if (rate && (!smoothed_ || rate->time_ns > smoothed_->time_ns)) take_rate(*rate);
   return {};
 }

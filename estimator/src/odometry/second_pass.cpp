@@ -54,7 +54,7 @@ void SecondPass::give_up() {
 
 void SecondPass::store(const ImuSample& sample) {
   if (!wanted_) return;
-  if (!moves_ns_ && !rests_.observe(sample, rest_)) moves_ns_ = sample.time_ns;
+  if (!moves_ns_ && !rests_.observe(sample, rest_, rate_.rate.model.nominal.gyro_bias_rad_s)) moves_ns_ = sample.time_ns;
   if (!moves_ns_) {
     const TimeNs from_ns = sample.time_ns - static_cast<TimeNs>(1e9 * params_.rest_s);
     while (!sweeps_.empty() && sweeps_.front().start_ns < from_ns) sweeps_.pop_front();
@@ -126,6 +126,7 @@ bool SecondPass::begin(const OdometryPass& first) {
     return false;
   }
   pass_.emplace(rate, mapping);
+  if (first.mapper().start()) pass_->start_at(*first.mapper().start());
   next_sample_ = next_sweep_ = rejected_ = 0;
   early_ = seconds(sweeps_.back().end_ns - counts_from_ns()) < params_.after_s;
   return true;

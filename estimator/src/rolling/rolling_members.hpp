@@ -25,6 +25,7 @@ void members(Self& s, Visitor& visit) {
 template <StateOf<RollingSums> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("sums.R_s", s.R_s);
+  visit("sums.R_force_s", s.R_force_s);
   visit("sums.f_W_m_s", s.f_W_m_s);
   visit("sums.R_f", s.R_f);
   visit("sums.R_w", s.R_w);

@@ -166,6 +166,7 @@ void integrate(const RollingParams& params, const ImuAverage& reading, RollingNo
   sums.R_s += R_T;
   for (int axis = 0; axis < 3; ++axis) sums.R_w.middleCols<3>(3 * axis) += w_raw[axis] * R_T;
   if (!unturned) {  // otherwise no error of force or attitude affects the velocity
+    sums.R_force_s += R_T;
     sums.f_W_m_s += R_T * f;
     for (int axis = 0; axis < 3; ++axis) sums.R_f.middleCols<3>(3 * axis) += f_raw[axis] * R_T;
     sums.R_wxf += R_T * w.cross(f_raw);
@@ -240,7 +241,7 @@ Moving transition(const RollingSums& sums) {
   B.block<3, 3>(kAttitude, kGyroBias) = -sums.R_s;
   B.block<3, 9>(kAttitude, kGyroScale) = -sums.R_w;
   B.block<3, 3>(kVelocity, kAttitude) = -so3::hat(sums.f_W_m_s);
-  B.block<3, 3>(kVelocity, kAccelBias) = -sums.R_s;
+  B.block<3, 3>(kVelocity, kAccelBias) = -sums.R_force_s;
   B.block<3, 9>(kVelocity, kAccelScale) = -sums.R_f;
   B.block<3, 1>(kVelocity, kDelay) = -sums.R_wxf;
   B.middleRows<3>(kPosition) = 0.5 * sums.node_s * B.middleRows<3>(kVelocity);

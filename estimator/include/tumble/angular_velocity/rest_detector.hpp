@@ -85,9 +85,9 @@ class RestDetector {
   bool observe_mean(const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& force_m_s2, TimeNs from_ns, TimeNs to_ns,
                     const Eigen::Vector3d& bias_rad_s, State& state) const;
 
-  /// Returns for each sample of a recording whether the sample belongs to a rest, including the start of each rest.
-  /// Cost: O(N).
-  std::vector<bool> find(std::span<const ImuSample> samples) const;
+  /// Returns for each sample of a recording whether it belongs to a rest, including the start of each rest. O(N).
+  std::vector<bool> find(std::span<const ImuSample> samples,
+                         const Eigen::Vector3d& bias_rad_s = Eigen::Vector3d::Zero()) const;
 
  private:
   Params params_;

@@ -58,6 +58,7 @@ struct RollingNominal {
 /// R, R f, R (x) f^T, R (x) w^T, R (w x f), w, f and |w|^2.
 struct RollingSums {
   Eigen::Matrix3d R_s = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d R_force_s = Eigen::Matrix3d::Zero();  ///< integral of R over the readings whose force is used
   Eigen::Vector3d f_W_m_s = Eigen::Vector3d::Zero();
   Eigen::Matrix<double, 3, 9> R_f = Eigen::Matrix<double, 3, 9>::Zero(), R_w = Eigen::Matrix<double, 3, 9>::Zero();
   Eigen::Vector3d R_wxf = Eigen::Vector3d::Zero();
