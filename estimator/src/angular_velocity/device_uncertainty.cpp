@@ -44,15 +44,14 @@ bool about_corrected(const SensorErrorEvidence& evidence, const Vector& deviatio
   constexpr double kEvidenceWeight = DeviceUncertainty::kEvidenceWeight;
   set_system(evidence, deviation, kEvidenceWeight, work.system);
   // The correction leaves scale and misalignment unchanged, because errors of the flight model look like scale and
-  // misalignment errors. #T54 column by column: a product of all columns would use more stack
+  // misalignment errors.
   Vector mean = Vector::Zero();
   const Eigen::Matrix<double, kRest, kRest> rest = work.system.bottomRightCorner<kRest, kRest>();
   mean.tail<kRest>() = rest.llt().solve(kEvidenceWeight * deviation.cwiseProduct(evidence.gradient).tail<kRest>());
   mean = deviation.cwiseProduct(mean).eval();
   const Eigen::LLT<Eigen::Ref<Matrix>> factor(work.system);
   if (factor.info() != Eigen::Success) return false;
-  for (int j = 0; j < SensorErrors::kSize;
-       ++j) {  // column by column, because Eigen would use the stack for all at once
+  for (int j = 0; j < SensorErrors::kSize; ++j) {  // column by column, to use less stack
     const Vector column = factor.solve(deviation[j] * Vector::Unit(j));
     work.about_corrected.col(j) = deviation.cwiseProduct(column) + mean[j] * mean;
   }

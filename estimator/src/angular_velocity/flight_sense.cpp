@@ -14,11 +14,10 @@ namespace tumble {
 namespace {
 
 // Minimum duration of flight for the detection of a half-scale gyro. With doubled rates, hand-held motion can look like
-// flight for 0.05 s. Real flights last longer. #T19 minimum squared lever arm across a saturated axis, as a fraction of
-// the squared lever arm #T20 fraction of the saturation level by which a recovered rate may be below the level
+// flight for 0.05 s. Real flights last longer.
 constexpr double kHalfScaleRun_s = 0.08;
-constexpr double kAcross = 0.05;    // of the lever arm squared: minimum across an axis for recovering its rate
-constexpr double kBelowRail = 0.1;  // tolerance by which a recovered rate may be below the saturation level
+constexpr double kAcross = 0.05;    // minimum squared lever arm across a saturated axis, as a fraction
+constexpr double kBelowRail = 0.1;  // fraction of the saturation level by which a recovered rate may be below the level
 
 struct Axes {
   std::array<int, 3> axis;

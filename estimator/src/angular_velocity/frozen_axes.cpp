@@ -9,12 +9,12 @@ namespace tumble {
 
 namespace {
 
-constexpr double kLonger = 10.0;         // ratio to the longest earlier repetition
+constexpr double kLonger = 10.0;         // minimum ratio of a repetition to the longest earlier repetition
 constexpr double kRailShare = 0.9;       // fraction of the stated range above which a reading may be saturated
-constexpr double kExtremeShare = 0.5;    // same for a reading that is an extreme of the axis
-constexpr double kQuanta = 50.0;         // change of another axis in quanta; cross-axis sensitivity of 2 % gives one
+constexpr double kExtremeShare = 0.5;    // fraction of the stated range for a reading that is an extreme of the axis
+constexpr double kQuanta = 50.0;         // change of another axis in quanta; 2 % cross-axis sensitivity causes one
 constexpr double kRotating_rad_s = 0.3;  // change of another gyro axis that indicates motion
-constexpr double kPushed_m_s2 = 1.0;     // same for an accelerometer
+constexpr double kPushed_m_s2 = 1.0;     // change of another accelerometer axis that indicates motion
 constexpr double kChanging =
     0.2;  // minimum fraction of samples in which another axis changes, for a log five times faster than the sensor
 // Limits for a body at rest: rate of another axis, and change of the specific force.

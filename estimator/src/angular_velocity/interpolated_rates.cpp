@@ -18,11 +18,11 @@ using Eigen::Vector3d;
 constexpr double kTaken = 0.29, kTakenByClock = 0.1;
 
 // A gyro reading and its time stamp. The stamp belongs to a sample whose averaging window has the same middle as the
-// reading's averaging window. #T23 all axes are measured
+// reading's averaging window.
 struct OwnReading {
   double time_s = 0.0;
   Vector3d rate_rad_s = Vector3d::Zero();
-  bool read = false;  ///< on all axes
+  bool read = false;  ///< all axes are measured
 };
 
 Vector3d slope(const OwnReading& a, const OwnReading& b) {

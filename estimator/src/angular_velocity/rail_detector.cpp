@@ -100,12 +100,11 @@ Clipping RailDetector::classify(const ImuSample& sample, State& state) const {
       const double share = channel.clipped ? params_.leave_share : params_.enter_share;
       clipped = clipped || std::abs(value) >= *level * (1.0 - share);
       // A change from one saturation level to the opposite level within one sample is a numeric overflow, not a motion.
-      // #T107 `last` keeps the sign before the overflow
       flipped = c < 3 && channel.clipped && value * channel.last < 0.0 && std::abs(value) >= 0.9 * *level;
     }
     if (flipped) {
       set_bit(out.missing_gyro, c);
-      continue;  // `last` keeps the sign from before the overflow
+      continue;  // `last` keeps the sign before the overflow
     }
     channel.clipped = clipped;
     channel.last = value;

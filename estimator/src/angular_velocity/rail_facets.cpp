@@ -14,7 +14,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Workspace = RailPlaneFinder::Workspace;
 
-constexpr double kGridStep = 0.01;  // of the slopes
+constexpr double kGridStep = 0.01;  // step of the search grid over cross-axis sensitivities
 constexpr int kRefinements = 10;
 // kSlabDeviations: half thickness of a slab around a saturation plane, in standard deviations of the readings. The half
 // thickness is limited to the fractions kSlabShareMin to kSlabShareMax of the saturation level.

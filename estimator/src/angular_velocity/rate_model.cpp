@@ -132,8 +132,7 @@ void add_euler(const RateFactor& f, const Eigen::Matrix3d& information, double t
   add_to_rig<kInertia, 5>(f, information, At, block, corner);
 }
 
-// Reduces the information of a residual by an additional covariance of the residual: rate_stream.md (R92). #T144 gyro
-// noise: rate_smoother.md (R6)
+// Reduces the information of a residual by an additional covariance of the residual: rate_stream.md (R92).
 Eigen::Matrix3d with_spread(const Eigen::Matrix3d& information, const Eigen::Matrix3d& spread) {
   return (Eigen::Matrix3d::Identity() + information * spread).inverse() * information;
 }
@@ -144,7 +143,7 @@ RateModel::RateModel(const RateModelParams& params, double period_s) : params_(p
   check(params);
   require_within("period_s", period_s, 1e-6, 10.0);
   const double bandwidth_hz = 1.0 / period_s;
-  gyro_sigma_rad_s_ = params.gyro_noise_density * std::sqrt(bandwidth_hz);  // rate_smoother.md (R6)
+  gyro_sigma_rad_s_ = params.gyro_noise_density * std::sqrt(bandwidth_hz);  // gyro noise: rate_smoother.md (R6)
   accel_noise_m_s2_ = params.accel_noise_density * std::sqrt(bandwidth_hz);
   accel_sigma_m_s2_ = std::hypot(params.expert.flight.sigma_m_s2, accel_noise_m_s2_);
   share_ = std::min(1.0, period_s / params.expert.model_error_s);

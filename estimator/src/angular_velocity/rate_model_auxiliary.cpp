@@ -10,7 +10,7 @@ namespace tumble {
 namespace {
 
 using Eigen::Vector3d;
-using AuxiliaryRow = Eigen::Matrix<double, 1, 6>;  // by rate and scaled acceleration
+using AuxiliaryRow = Eigen::Matrix<double, 1, 6>;  // derivative of a residual by rate and scaled acceleration
 
 void add_row(const AuxiliaryRow& row, double residual, double sigma, arrow::Block& block) {
   const double information = 1.0 / (sigma * sigma);

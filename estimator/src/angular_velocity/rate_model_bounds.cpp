@@ -93,7 +93,7 @@ void RateModel::update_bounds(const RateObservation& observation, const RigConst
     const Eigen::Matrix<double, 1, RigConstants::kSize> cross = jacobian_calibration.lazyProduct(rig_covariance);
     const Vector3d by_state = conditional.state.topLeftCorner<3, 3>().lazyProduct(row);
     // The residual is mirrored, so that the bound is below the marginal: rate_smoother.md (R22). The variance is a part
-    // of the covariance (R35). #T116 a dip within a plateau: the saturation deficit is unknown
+    // of the covariance (R35).
     const NormalMoments marginal{sign * off.residual[j], row.dot(by_state) + cross.dot(jacobian_calibration)};
     const NormalSite site =
         refined_bound(marginal, {estimate.bound_precision[j], sign * estimate.bound_shift[j]}, 0.0,
@@ -114,7 +114,7 @@ void mark_subsample_saturation(const RailDetector& rails, const RailDetector::St
     const double reading = now.sample.angular_velocity_rad_s[j], sign = std::copysign(1.0, reading);
     const double neighbour = free_neighbour(std::abs(reading), *rail, j, before, after,
                                             [&](const Vector3d& beside) { return sign * beside[j]; });
-    if (neighbour > std::abs(reading)) continue;  // a dip within a plateau: its hidden depth is unknown
+    if (neighbour > std::abs(reading)) continue;  // a dip within a plateau: the saturation deficit is unknown
     const SubsampleSaturation loss = subsample_saturation(std::abs(reading), neighbour, *rail, noise_rad_s);
     if (!loss.saturated) continue;
     now.subsample_saturated = static_cast<std::uint8_t>(now.subsample_saturated | 1u << j);

@@ -66,7 +66,7 @@ RateFactor RateModel::flight_by_rig(const RateObservation& observation, const Ra
 }
 
 // Adds the derivatives of the gradients by the sensor errors, rate_smoother.md (R36), and the sums over the samples in
-// (R38). #T107 tilted sensing elements mix the axes #T114 the lower bound of the element is satisfied
+// (R38).
 void RateModel::add_errors(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
                            arrow::ErrorMatrix& block, arrow::BorderErrors& border, SensorErrorEvidence& evidence,
                            bool rig_spread) const {
@@ -107,14 +107,14 @@ void RateModel::add_errors(const RateObservation& observation, const RateEstimat
   }
 
   if (rig_spread || is_uninformative(estimate)) return;
-  if (observation.clipping.accel != 0 && observation.accel_rows.tilted()) return;  // tilted rows mix the axes
+  if (observation.clipping.accel != 0 && observation.accel_rows.tilted()) return;  // tilted elements mix the axes
   auto [flight, information] = force_factor(observation, estimate, rig);
   Vector3d by_delay;
   (void)this->flight(observation, estimate.knot, rig, &by_delay);
   const Vector3d curvature = flight_curvature(estimate.knot, rig);
   flight.by_knot.rightCols<3>() /= time_scale_s_;
   for (int j = 0; j < 3; ++j) {
-    if (flight.by_knot.row(j).isZero()) continue;  // a satisfied bound
+    if (flight.by_knot.row(j).isZero()) continue;  // the lower bound of the element is satisfied
     Row by_errors = Row::Zero();
     by_errors.segment<3>(SensorErrors::kAccel + 3 * j) = force.transpose();
     by_errors[SensorErrors::kDelay] = by_delay[j];

@@ -163,9 +163,7 @@ SensorErrorEvidence calibration_evidence_about(const SensorErrors& given, KnownS
 }
 
 // Fits sensor errors relative to the errors that the caller states. `learnt`, the estimate of an earlier run, is also
-// relative to the stated errors. #T170 with the sensor errors stated for the device #T175 a triad repeats readings, so
-// gyro and accelerometer are asynchronous #T177 age of the accelerometer's readings in the log #T178 stated sizes,
-// except for the sampling of asynchronous triads
+// relative to the stated errors.
 SensorErrorFit fit_about(const SensorErrors& given, SensorErrorEvidence evidence, const SensorErrorSizes& sizes,
                          const SensorErrorEvidence& learnt) {
   evidence.about = SensorErrors::from(evidence.about.vector() - given.vector());
@@ -176,15 +174,15 @@ SensorErrorFit fit_about(const SensorErrors& given, SensorErrorEvidence evidence
 
 struct Rounds {
   const RateSmoother::Params& params;
-  const RateModelParams& known;  ///< its errors: those stated for the device
+  const RateModelParams& known;  ///< with the sensor errors stated for the device
   std::span<const ImuSample> samples;
   std::span<const Clipping> clippings;
   double period_s = 0.0;
   bool estimated = false;
-  bool triads_asynchronous = false;  ///< readings of a triad repeat, so the triads are asynchronous
+  bool triads_asynchronous = false;  ///< a triad repeats readings, so gyro and accelerometer are asynchronous
   TriadDelay guess = {};             ///< empty if the data sheet states the delay
-  std::vector<double> age_s = {};    ///< of the accelerometer's readings in the log
-  SensorErrorSizes sizes = {};       ///< those stated, except for the sampling of asynchronous triads
+  std::vector<double> age_s = {};    ///< age of the accelerometer's readings in the log
+  SensorErrorSizes sizes = {};       ///< stated sizes, except for the sampling of asynchronous triads
 
   const SensorErrorSizes& stated() const { return known.expert.error_sizes; }
   bool delay_open() const { return estimated && stated().delay_uncalibrated_s > stated().delay_s; }
@@ -241,7 +239,6 @@ Status take_evidence(const Rounds& rounds, const SensorErrors& errors, RateFit& 
   fit.moved = solution.iteration.moved_by_errors(fit.model, solution.estimates, solution.rig);
   if (rounds.estimated) {
     // If the optimisation has not converged, the remaining gradient must not count as information about sensor errors.
-    // #T246 errors corrected in the last optimisation #T249 a device may have these errors
     RateIteration again = solution.iteration;
     if (!again.factorise(fit.model, solution.estimates, solution.rig)) {
       return {Trouble::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
@@ -254,10 +251,10 @@ Status take_evidence(const Rounds& rounds, const SensorErrors& errors, RateFit& 
 }
 
 struct RoundsState {
-  SensorErrors errors;  ///< corrected in the last descent
+  SensorErrors errors;  ///< errors corrected in the last optimisation
   SensorErrorEvidence learnt;
   SensorErrorFit found;
-  bool is_plausible = true;  ///< plausible for a device
+  bool is_plausible = true;  ///< a device may have these errors
 };
 
 // Repeats the optimisation until the estimated sensor errors equal the corrected sensor errors.

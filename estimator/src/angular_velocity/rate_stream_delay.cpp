@@ -70,7 +70,7 @@ std::ptrdiff_t RateStream::force_shift(const State& state) const {
 }
 
 // Stores the specific force at the time of sample k, or the closest force in the window. Also stores the force's
-// remaining delay: rate_stream.md (R105). #T77 only forces in the window are available
+// remaining delay: rate_stream.md (R105).
 void RateStream::pair_force(std::size_t k, State& state) const {
   Knot& knot = state.window[k];
   const auto last = static_cast<std::ptrdiff_t>(state.window.size()) - 1;

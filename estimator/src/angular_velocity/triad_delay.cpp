@@ -19,10 +19,10 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-using Unknown = Eigen::Matrix<double, 6, 1>;  // lever arm, bias
+using Unknown = Eigen::Matrix<double, 6, 1>;  // unknowns: lever arm, accelerometer bias
 
 constexpr int kDelayMost = StrokeSums::kMostSamples;  // largest delay, in samples
-constexpr int kPerSample = 4;  // delays per sample on the coarse grid; as many again around the best
+constexpr int kPerSample = 4;  // delays per sample on the coarse grid, and on the finer grid around the best delay
 constexpr double kRateMin_rad_s = 2.0;
 constexpr std::size_t kSamplesMin = 20, kSamplesMax = 2000;
 constexpr double kLeverSigma_m = 0.02, kBiasSigma_m_s2 = 0.3;
