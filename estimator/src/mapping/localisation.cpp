@@ -17,7 +17,7 @@ void Localisation::add(const SweepReport& sweep) {
   largest_innovation_ = std::max(largest_innovation_, sweep.innovation);
 }
 
-/// mapping.md (R70), (R71).
+/// Returns an error if tracking failed (R70), or if sweeps contradict their predicted poses (R71): mapping.md.
 Status Localisation::verdict() const {
   if (largest_sigma_m_ > matched_m_)
     return {Trouble::out_of_range, "deviation of a sweep's position", largest_sigma_m_, matched_m_};

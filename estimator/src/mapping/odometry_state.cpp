@@ -10,11 +10,11 @@ namespace tumble {
 
 namespace {
 
-// Limit of stamps, so that twice a difference fits into 64 bits. The limit is the year 2067 for a clock that starts in
-// 1970.
+// Maximum time stamp: twice the difference of two stamps must fit into 64 bits. If the clock starts in 1970, the limit
+// is in the year 2067.
 constexpr TimeNs kStamp_ns = 3'070'000'000'000'000'000;
 
-/// Visits parameters that an earlier run may have estimated: SecondPass.
+/// Visits the parameters that an earlier run may have estimated (SecondPass).
 template <StateOf<LidarInertialOdometry::Params> Self, class Visitor>
 void visit_estimated(Self& p, Visitor& visit) {
   visit("T_IL", p.T_IL);

@@ -12,7 +12,7 @@ namespace {
 
 using Pose = WorldCovariance::Pose;
 
-/// Returns the covariance of (error of the pose) - by_mounting (error of the mounting): mapping.md (R57).
+/// Returns the covariance of the pose error minus the effect of the mounting error, `by_mounting`: mapping.md (R57).
 Pose less_mounting(const Registration::Matrix& joint, const Pose& by_mounting) {
   Eigen::Matrix<double, 6, Registration::kUnknowns> G = Eigen::Matrix<double, 6, Registration::kUnknowns>::Zero();
   unknowns::columns(G, unknowns::pose).setIdentity();
@@ -23,9 +23,9 @@ Pose less_mounting(const Registration::Matrix& joint, const Pose& by_mounting) {
 
 }  // namespace
 
-/// Adds the map's error at the pose's position, and the tilt of the start: mapping.md (R58).
+/// Adds the map error at the position of the pose, and the tilt error of the start: mapping.md (R58).
 Pose WorldCovariance::in_world(const Registration::Matrix& joint, const Eigen::Vector3d& p_WI_m) const {
-  // rotation of the map about the start moves distant points: mapping.md (R56)
+  // a rotation of the map about its start moves distant points: mapping.md (R56)
   Pose start = start_by_mounting_;
   start.topRows<3>() -= so3::hat(p_WI_m) * start_by_mounting_.bottomRows<3>();
   Eigen::Matrix<double, 6, 2> by_tilt = Eigen::Matrix<double, 6, 2>::Zero();
@@ -37,15 +37,16 @@ Pose WorldCovariance::in_world(const Registration::Matrix& joint, const Eigen::V
   return P;
 }
 
-/// mapping.md (R61).
+/// Adds the drift of a sweep in its weakest direction: mapping.md (R61).
 void WorldCovariance::add_drift(double weakest_sigma_m, const Eigen::Matrix<double, 6, 1>& weakest_direction) {
   const double sigma_m = params_.drift_share * std::min(weakest_sigma_m, params_.drift_sigma_max_m);
   const Eigen::Vector3d direction = weakest_direction.head<3>();
   drift_m2_ += (sigma_m * sigma_m) * direction * direction.transpose();
 }
 
-/// Adds the error of a sweep to the map, by the lidar's pose in the middle of the sweep: mapping.md (R59), (R60). An
-/// error of the mounting is not an error of the map. A sweep's pose is less certain at start and end than on average.
+/// Adds the error of a sweep to the map error, at the lidar's pose in the middle of the sweep: mapping.md (R59), (R60).
+/// The pose is more uncertain at the start and end of a sweep than in its middle. An error of the mounting is not an
+/// error of the map.
 void WorldCovariance::add_insertion(double inserted_share, const SweepTrajectory& trajectory,
                                     const Registration::Matrix& errors, const Eigen::Vector3d& p_IL_m) {
   const double middle_s = 0.5 * trajectory.duration_s();
