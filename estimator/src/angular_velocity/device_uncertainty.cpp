@@ -51,7 +51,8 @@ bool about_corrected(const SensorErrorEvidence& evidence, const Vector& deviatio
   mean = deviation.cwiseProduct(mean).eval();
   const Eigen::LLT<Eigen::Ref<Matrix>> factor(work.system);
   if (factor.info() != Eigen::Success) return false;
-  for (int j = 0; j < SensorErrors::kSize; ++j) {  // column by column, to use less stack
+  for (int j = 0; j < SensorErrors::kSize;
+       ++j) {  // column by column, because a product of all columns would use more stack
     const Vector column = factor.solve(deviation[j] * Vector::Unit(j));
     work.about_corrected.col(j) = deviation.cwiseProduct(column) + mean[j] * mean;
   }

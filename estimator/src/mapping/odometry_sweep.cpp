@@ -271,7 +271,7 @@ void LidarInertialOdometry::Impl::prune_until(TimeNs end_ns) {
   known = mapping::InertialPrior{};
   track.prune_until(end_ns);
   if (mapping::is_unconfirmed(tracking))
-    return;  // withdrawing points needs their sweep numbers, which pruning changes
+    return;  // withdrawing the points needs their sweep numbers, which pruning changes
   if (map.prune(params, boundary.state_estimate.mean.state.p_WI_m)) window.clear_inserted();
 }
 
