@@ -16,8 +16,8 @@ namespace {
 constexpr double kDeterminedSlopeSigma = 2e-3, kNil = 3e-3;
 // Maximum relative difference between positive and negative saturation level of a device that clips its digital output.
 constexpr double kLopsidedShare = 1e-4;
-// kUprightSigma: standard deviation of the tilt of a saturation plane if the device clips its digital output.
-// kSlopeSigmaMin: minimum standard deviation of a cross-axis sensitivity (residual misalignment).
+// `kUprightSigma` is the standard deviation of a saturation plane's tilt if the device clips its digital output.
+// `kSlopeSigmaMin` is the minimum standard deviation of a cross-axis sensitivity, due to residual misalignment.
 constexpr double kUprightSigma = 1e-5, kSlopeSigmaMin = 3e-4;
 // Maximum distance of a partly saturated sample from the saturation level, as a fraction of the preceding step between
 // samples.
@@ -54,7 +54,7 @@ bool lopsided(const RailPlane& rail) {
 }
 
 // Returns two plane finders. The first finder uses the stated range, or the range of the axis-aligned saturation levels
-// if no range is stated. The second finder uses no range.
+// if no range is stated. The second finder searches without a range.
 std::array<RailPlaneFinder, 2> stated_and_not(RailPlaneFinder::Params params, const std::optional<double>& stated) {
   RailPlaneFinder::Params unstated = params;
   unstated.stated_rad_s = std::nullopt;

@@ -112,8 +112,8 @@ void FrozenAxes::hold(std::size_t channel, const std::array<double, 6>& now, dou
     }
   }
   const double most = is_gyro(channel) ? kRestMost_rad_s : kRestMost_m_s2;
-  // No motion keeps the rate vector exactly on one axis for this duration. The update rate of the other axes therefore
-  // does not matter.
+  // No motion keeps the rate vector exactly on one axis for `rail_stationary_s`. The test therefore ignores the update
+  // rate of the other axes.
   const bool at_its_rail = at_rail(channel, axis);
   const bool of_no_motion = axis.stationary_s >= params_.rail_stationary_s ||
                             (axis.repeated_s >= params_.rail_repeated_s && others_move(channel, 0.0, axis));
@@ -134,8 +134,8 @@ bool FrozenAxes::at_rail(std::size_t channel, const Axis& axis) const {
   return size >= kExtremeShare * stated && (axis.reading == axis.min_reading || axis.reading == axis.max_reading);
 }
 
-/// Returns whether the other axes of the triad change by far more than a quantum of the tested axis. The changes must
-/// occur in at least the fraction `changing_share` of the samples.
+/// Returns whether the other axes of the triad change by far more than a quantum of the tested axis. The other axes
+/// must change in at least the fraction `changing_share` of the samples.
 bool FrozenAxes::others_move(std::size_t channel, double changing_share, const Axis& axis) const {
   const double least = std::max(is_gyro(channel) ? kRotating_rad_s : kPushed_m_s2, kQuanta * axis.quantum);
   for (std::size_t k = 0; k < 2; ++k) {

@@ -12,9 +12,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Standard deviation of the time of a reading, in sample periods. In a stream, the time is uniformly distributed over
-// the preceding sample period: 1/sqrt(12). In a recording, the estimated clock of the sensor reduces the standard
-// deviation.
+// Standard deviation of the time of a reading, in sample periods. In a stream, the time of a reading is uniformly
+// distributed over the preceding sample period, with standard deviation 1/sqrt(12). In a recording, the standard
+// deviation is smaller, because the clock of the sensor is estimated.
 constexpr double kTaken = 0.29, kTakenByClock = 0.1;
 
 // A gyro reading and its time stamp. The stamp belongs to a sample whose averaging window has the same middle as the
@@ -29,8 +29,8 @@ Vector3d slope(const OwnReading& a, const OwnReading& b) {
   return (b.rate_rad_s - a.rate_rad_s) / (b.time_s - a.time_s);
 }
 
-// Interpolates the rate between the readings a and b. The slopes use the reading z before a and the reading c after b,
-// if z and c are usable.
+// Interpolates the rate between the readings a and b. If the reading z before a and the reading c after b are usable,
+// they provide the slopes at a and b.
 std::optional<InterpolatedRate> between(const OwnReading& z, const OwnReading& a, const OwnReading& b,
                                         const OwnReading& c, double time_s, double moment_s) {
   const double span_s = b.time_s - a.time_s, u = (time_s - a.time_s) / span_s, v = 1.0 - u;
@@ -41,8 +41,8 @@ std::optional<InterpolatedRate> between(const OwnReading& z, const OwnReading& a
   InterpolatedRate out;
   out.rate_rad_s = v * v * (1.0 + 2.0 * u) * a.rate_rad_s + u * u * (3.0 - 2.0 * u) * b.rate_rad_s +
                    span_s * u * v * (v * slope_a - u * slope_b);
-  // The variance has two sources: the uncertain times of both readings, and the curvature that averaging over a window
-  // removes.
+  // The variance of an interpolated rate has two sources: the uncertain times of both readings, and the curvature that
+  // averaging over a window removes.
   const Vector3d moment = moment_s * chord, bend = span_s / 24.0 * (slope_b - slope_a);
   out.variance_rad2_s2 = moment.cwiseAbs2() + bend.cwiseAbs2();
   return out;

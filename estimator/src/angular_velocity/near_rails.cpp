@@ -10,9 +10,9 @@ namespace tumble {
 
 namespace {
 
-// kReach: number of neighbouring readings whose steps widen the test for readings near a saturation level. kRoundShare:
-// fraction of the saturation level by which a gyro's filter can lower the edges of a plateau. On one hand-held wand,
-// the readings were up to 2 % below the saturation level while the rate exceeded the level.
+// `kReach` is the number of neighbouring readings whose steps widen the test for readings near a saturation level.
+// `kRoundShare` is the fraction of the saturation level by which a gyro's filter can lower the edges of a plateau. On
+// one hand-held wand, the readings were up to 2 % below the saturation level while the rate exceeded the level.
 constexpr std::size_t kReach = 2;
 constexpr double kRoundShare = 0.03;
 

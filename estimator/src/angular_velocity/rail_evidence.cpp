@@ -16,16 +16,16 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// Prior fraction of segments with a constant rate (spins, turntables). This fraction limits the log-likelihood of a
-// segment, however long the segment is.
+// Prior fraction of segments with a constant rate (spins, turntables). The prior fraction limits the log-likelihood
+// ratio of long segments.
 constexpr double kConstantShare = 0.05;
-// Minimum ratio of `bend` to `flat` in SegmentShape. If the ratio is smaller, a flat segment does not indicate
+// Minimum ratio of `bend` to `flat` in SegmentShape. If `bend / flat` is smaller, a flat segment does not indicate
 // saturation.
 constexpr double kBend = 3.0;
 // Range of possible constant rates, as a fraction of the largest reading of the axis.
 constexpr double kLevelShare = 0.2;
-// The noise estimate uses the residuals of a parabola in windows of kNoiseWindow readings. kNoiseQuantile is the
-// quantile of the windows that the estimate uses.
+// The noise estimate uses the residuals of a parabola in windows of kNoiseWindow readings. `kNoiseQuantile` is the
+// quantile of the windows that determines the noise.
 constexpr std::size_t kNoiseWindow = 9;
 constexpr double kNoiseQuantile = 0.2;
 // Maximum log-likelihood of a kink at the end of a segment, if the other axes move smoothly there.
@@ -38,11 +38,11 @@ constexpr double kThinAlone = 8.0;
 // Degrees of freedom that the scatter of a segment loses: two to the fitted straight line and two to the partly
 // saturated ends.
 constexpr std::size_t kThinTaken = 4;
-// A reading within kAtRail standard deviations of a saturation plane is at the saturation level. The tolerance is at
-// most the fraction kAtRailShareMax of the saturation level.
+// A reading within kAtRail standard deviations of a saturation plane is at the saturation level. The tolerance of this
+// test is at most the fraction kAtRailShareMax of the saturation level.
 constexpr double kAtRail = 4.0, kAtRailShareMax = 0.006;
-// kBeyond: penalty on the log odds of a saturation plane for each reading beyond the plane. kStray: fraction of
-// readings that may be beyond the plane without a penalty.
+// `kBeyond` is the penalty on the log odds of a saturation plane for each reading beyond the plane. `kStray` is the
+// fraction of readings that may be beyond the plane without a penalty.
 constexpr double kBeyond = 5.0, kStray = 0.02;
 
 // Returns the noise of a reading, from the root mean square of third differences: rails.md (R56).
@@ -72,7 +72,7 @@ Segment next_segment(std::span<const std::size_t> inliers, std::size_t& at) {
 
 // Returns a log-likelihood ratio that is positive if the readings of a segment scatter less than noise about a straight
 // line: rails.md (R65). Readings of a rate contain sensor noise. Readings at a saturation level contain no noise if the
-// device clips after the noise is added. The ratio is zero if quantisation hides the noise.
+// device clips after the noise is added. If quantisation hides the noise, the log-likelihood ratio is zero.
 double thinness(const DistinctReadings& readings, const RailFacet& facet, const Segment& s) {
   if (s.size() <= kThinTaken) return 0.0;
   const std::size_t first = s.first + 1, count = s.size() - 2;
@@ -93,11 +93,12 @@ double thinness(const DistinctReadings& readings, const RailFacet& facet, const 
   const double least = std::max(digit, kEqualShare * facet.level);
   const double noise = std::hypot(readings.noise[facet.axis], digit);
   const double scatter = std::max(least, std::sqrt(squares / free));
-  // ratio of two Gaussian likelihoods: standard deviation of the scatter against standard deviation of the noise
+  // log ratio of two Gaussian likelihoods, with the standard deviations of the scatter and of the noise
   return scatter < noise ? free * (std::log(noise / scatter) - 0.5 * (1.0 - std::pow(scatter / noise, 2))) : 0.0;
 }
 
-// bend: height that a rounded maximum would have within a segment. flat: spread of the readings in the segment.
+// `bend` is the height that a rounded maximum would have within a segment. `flat` is the spread of the segment's
+// readings.
 struct SegmentShape {
   double bend = 0.0, flat = 0.0;
   bool bends() const { return bend >= kBend * flat; }
@@ -200,8 +201,8 @@ double segment_evidence(const DistinctReadings& readings, const Eigen::Matrix2d&
     ++facet.segments;
     odds += std::max(0.0, thin);
     if (!shape->bends()) continue;
-    // the log odds grow with the flatness of the segment (R62), and if segments have similar mean readings (R63):
-    // rails.md
+    // The log odds increase with the flatness of a segment (R62). The log odds also increase if segments have similar
+    // mean readings (R63): rails.md.
     const double flatness = static_cast<double>(s.size() - 1) * std::log(shape->bend / shape->flat);
     odds += std::min(flatness, -std::log(kConstantShare)) + of_level;
     for (const bool after : {false, true}) odds += kink_evidence(readings, facet, s, after);

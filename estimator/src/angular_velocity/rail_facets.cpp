@@ -16,8 +16,8 @@ using Workspace = RailPlaneFinder::Workspace;
 
 constexpr double kGridStep = 0.01;  // step of the search grid over cross-axis sensitivities
 constexpr int kRefinements = 10;
-// kSlabDeviations: half thickness of a slab around a saturation plane, in standard deviations of the readings. The half
-// thickness is limited to the fractions kSlabShareMin to kSlabShareMax of the saturation level.
+// `kSlabDeviations` is the half thickness of a slab around a saturation plane, in standard deviations of the readings.
+// The half thickness of a slab is between the fractions kSlabShareMin and kSlabShareMax of the saturation level.
 constexpr double kSlabDeviations = 4.0, kSlabShareMin = 2e-4, kSlabShareMax = 0.006;
 
 // Collects the readings within `slab` of the largest value, for any cross-axis sensitivity up to `steepest`. Returns

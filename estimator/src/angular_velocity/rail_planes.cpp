@@ -27,19 +27,19 @@ using rails::Gate;
 using rails::others;
 using rails::Side;
 
-// Initial standard deviations of the robust fit, as fractions of the slab thickness. The small value fits a thin plane
-// with a few readings below the plane. The large value fits a thick plane.
+// Initial standard deviations of the robust fit, as fractions of the slab thickness. The small initial value suits a
+// thin plane with a few readings below the plane. The large initial value suits a thick plane.
 constexpr double kStarts[] = {0.5, 0.02};
-// Usual relative difference between the saturation levels of one device's sensing elements. A reading of another axis
-// exceeds a saturation level by at most this fraction.
+// Usual relative difference between the saturation levels of one device's sensing elements. No reading of another axis
+// exceeds the saturation level by a larger fraction.
 constexpr double kSiblingShare = 0.04;
-// Changes of the log odds of a saturation level. kNearSibling: near the level of another sensing element. kNearStated:
-// near a stated range. kOtherSignAgrees: near the level of the opposite sign. kImpossible: for a level that is
-// impossible.
+// These values change the log odds of a saturation level. `kNearSibling` applies near the level of another sensing
+// element. `kNearStated` applies near a stated range. `kOtherSignAgrees` applies near the level of the opposite sign.
+// `kImpossible` applies to impossible levels.
 constexpr double kNearSibling = 5.0, kNearStated = 3.0, kOtherSignAgrees = 5.0, kImpossible = -100.0;
-// kNearKnown: log odds of a saturation level near the level of an earlier run. kKnownShare: maximum distance between
-// the levels of two runs, as a fraction of the level. kFarFromKnown: minimum log odds of a level far from the level of
-// the earlier run, since the device may have been replaced.
+// `kNearKnown` increases the log odds of a saturation level near the level of an earlier run. `kKnownShare` is the
+// maximum difference between the levels of two runs, as a fraction of the level. `kFarFromKnown` is the minimum log
+// odds of a level far from the earlier level, since the device may have been replaced.
 constexpr double kNearKnown = 6.0, kKnownShare = 0.003, kFarFromKnown = -3.0;
 // Standard deviation of the change of a cross-axis sensitivity between two runs.
 constexpr double kKnownSlopeSigma = 2e-3;

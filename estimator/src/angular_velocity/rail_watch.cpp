@@ -15,13 +15,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-// kNearShare: a reading above this fraction of an axis' largest reading may be saturated. kKeepShare: RailWatch stores
-// readings above this fraction of the largest reading. kBeside: number of neighbours that RailWatch stores to judge a
-// segment.
+// A reading above the fraction `kNearShare` of an axis' largest reading may be saturated. `RailWatch` stores readings
+// above the fraction `kKeepShare` of the largest reading. `RailWatch` also stores `kBeside` neighbours of a segment.
 constexpr double kNearShare = 0.9, kKeepShare = 0.85;
 constexpr std::size_t kBeside = 4;
-// RailWatch always stores this many first readings and this many latest readings. The first readings determine the
-// noise.
+// `RailWatch` always stores the first and the latest readings of a run. The first readings determine the gyro's noise.
 constexpr std::size_t kLatest = 48;
 // RailWatch searches again when the number of readings near the extremes has grown by the fraction 1 / kMore, and by at
 // least two readings.

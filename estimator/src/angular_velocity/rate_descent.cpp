@@ -12,7 +12,7 @@ namespace tumble {
 
 namespace {
 
-// Alternative initial contact thresholds, as multiples of the parameter. The smoother tries these thresholds if the
+// Alternative initial contact thresholds, as multiples of the parameter. The smoother tries the alternatives if the
 // fraction of clipped samples in flight is below kFlightShareExpected.
 constexpr double kRestartThresholds[] = {16.0, 0.25};
 constexpr double kFlightShareExpected = 0.5;
@@ -81,9 +81,9 @@ bool descend(const RateSmoother::Params& params, const RateModel& model, std::sp
   return true;
 }
 
-// Returns the sum over the samples that depends on the local minimum: rate_smoother.md (R31). The sum measures how well
-// free flight explains the rates that the gyro does not measure. `share` receives the fraction of samples with an
-// unmeasured rate that count as flight.
+// Returns how well free flight explains the rates that the gyro does not measure: rate_smoother.md (R31). The sum over
+// the samples is larger for a better local minimum. `share` receives the fraction of samples with an unmeasured rate
+// that count as flight.
 double explained(std::span<const RateObservation> observations, std::span<const RateEstimate> estimates,
                  double& share) {
   double sum = 0.0, unseen = 0.0, flight = 0.0;

@@ -30,8 +30,8 @@ struct Jerk {
   Vector3d Jw, Ja, value;
 };
 
-// Computes the angular jerk j from the time derivative of Euler's equation J alpha + w x J w = 0. The result satisfies
-// J j = -(alpha x J w + w x J alpha): rate_smoother.md (R11).
+// Computes the angular jerk j from the time derivative of Euler's equation J alpha + w x J w = 0. The jerk satisfies J
+// j = -(alpha x J w + w x J alpha): rate_smoother.md (R11).
 Jerk jerk_of(const RateKnot& knot, const RigConstants& rig) {
   const Vector3d &w = knot.rate_rad_s, &alpha = knot.acceleration_rad_s2;
   Jerk out;
@@ -43,7 +43,7 @@ Jerk jerk_of(const RateKnot& knot, const RigConstants& rig) {
   return out;
 }
 
-// Derivatives of the angular jerk. A separate structure saves time, because most calls need only the jerk.
+// Derivatives of the angular jerk. The derivatives are separate from the jerk, because most calls need only the jerk.
 struct JerkDerivatives {
   Matrix3d by_rate, by_acceleration;
   Eigen::Matrix<double, 3, 5> by_inertia;
@@ -70,7 +70,7 @@ RateKnot earlier_by(double delay_s, const RateKnot& knot, const Jerk& jerk) {
 
 }  // namespace
 
-// Residual of the gyro, rate_smoother.md (R6). The knot may be at an earlier time (R7).
+// Residual of the gyro, rate_smoother.md (R6). The state may refer to an earlier time: rate_smoother.md (R7).
 RateFactor gyro_factor(const RateKnot& knot, const RigConstants& rig, const Vector3d& reading_rad_s) {
   RateFactor f;
   f.residual = knot.rate_rad_s + rig.gyro_bias_rad_s - reading_rad_s;

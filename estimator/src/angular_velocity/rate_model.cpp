@@ -46,8 +46,8 @@ RigConstants::Matrix covariance_of(const RateModelParams& p) {
   return variance.cwiseAbs2().asDiagonal();
 }
 
-// Additional standard deviation of the saturation deficit of a partly clipped reading, due to an impact within its
-// window, rad/s.
+// An impact within the window adds this standard deviation [rad/s] to the saturation deficit of a partly clipped
+// reading.
 constexpr double kSubsampleInContact = 0.25;
 
 // Index of the first calibration constant in a part: lever arm and accelerometer bias (flight), inertia (Euler's
@@ -295,8 +295,8 @@ Eigen::Matrix3d RateModel::euler_information(const RateEstimate& estimate) const
 void RateModel::add_step(const RateEstimate& from, const RateEstimate& to, double dt_s, arrow::Block& block,
                          arrow::Block& next) const {
   const double h = time_scale_s_, ratio = dt_s / h;
-  // Within model_error_s, a contact may change the angular acceleration by gain * force. In a shorter time, the change
-  // is proportionally smaller: rate_smoother.md (R5).
+  // Within model_error_s, a contact may change the angular acceleration by gain * force. In a shorter time, the
+  // possible change is proportionally smaller: rate_smoother.md (R5).
   const double change = params_.expert.contact.gain_rad_m * std::max(from.contact_m_s2.norm(), to.contact_m_s2.norm());
   const double psd = params_.expert.flight.jerk_psd_rad2_s5 + share_ * change * change / dt_s;
   // inverse of the scaled motion covariance Q = psd [dt^3/3, dt^2 h/2; dt^2 h/2, dt h^2]: rate_smoother.md (R4)

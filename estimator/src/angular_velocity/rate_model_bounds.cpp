@@ -92,8 +92,8 @@ void RateModel::update_bounds(const RateObservation& observation, const RigConst
     for (int i = 0; i < 3; ++i) jacobian_calibration += row[i] * conditional.by_border.row(i);
     const Eigen::Matrix<double, 1, RigConstants::kSize> cross = jacobian_calibration.lazyProduct(rig_covariance);
     const Vector3d by_state = conditional.state.topLeftCorner<3, 3>().lazyProduct(row);
-    // The residual is mirrored, so that the bound is below the marginal: rate_smoother.md (R22). The variance is a part
-    // of the covariance (R35).
+    // The sign of the residual makes each bound a lower bound: rate_smoother.md (R22). The variance of the residual
+    // follows from the covariance (R35).
     const NormalMoments marginal{sign * off.residual[j], row.dot(by_state) + cross.dot(jacobian_calibration)};
     const NormalSite site =
         refined_bound(marginal, {estimate.bound_precision[j], sign * estimate.bound_shift[j]}, 0.0,

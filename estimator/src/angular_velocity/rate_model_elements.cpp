@@ -11,8 +11,8 @@ namespace {
 
 constexpr int kGyroBias = 3;
 
-// Adds one component m_j . (rate - age acceleration + bias - reading), with the given information and gradient. The
-// unit of `age` is the time scale of the acceleration. With `rig_spread`, the component does not update the sensing
+// Adds one component m_j' (rate - age acceleration + bias - reading), with the given information and gradient. The unit
+// of `age` is the time scale of the acceleration. With `rig_spread`, the component does not update the sensing
 // direction m_j, and has a correspondingly smaller weight: rate_smoother.md (R8), rate_stream.md (R92).
 void add_row(const RateFactor& gyro, int j, double age, double information, double pull,
              const RigConstants::Matrix* rig_spread, arrow::Block& block, arrow::Corner& corner) {

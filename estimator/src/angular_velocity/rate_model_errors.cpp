@@ -10,8 +10,8 @@ using Eigen::Vector3d;
 namespace {
 
 // A sample with a flight weight below kRigWeightMin does not update the calibration, although the sample still affects
-// a clipped rate. In contact, the remaining gradient is small for the rate, but large for uncertain calibration
-// constants.
+// a clipped rate. In contact, the force residual changes the rate little, but could change uncertain calibration
+// constants by much.
 constexpr double kRigWeightMin = 0.05;
 
 }  // namespace
@@ -20,8 +20,7 @@ bool RateModel::is_uninformative(const RateEstimate& estimate) {
   return estimate.flight_weight < kRigWeightMin;
 }
 
-// Limits the force of a sample in contact to its effect on unmeasured rates. The force then has no effect on the
-// calibration.
+// Restricts the effect of a contact force to unmeasured rates. The contact force then does not affect the calibration.
 void RateModel::keep_from_rig(const RateObservation& o, RateFactor& flight) {
   flight.jacobian_calibration.setZero();
   for (int j = 0; j < 3; ++j) {
@@ -50,7 +49,8 @@ RateFactor RateModel::flight(const RateObservation& observation, const RateKnot&
   if (exact_ && delay_s == 0.0 && by_delay == nullptr) return flight_factor(knot, rig, reading);
   const Vector3d force = reading - params_.errors.accel * reading;
   RateFactor out = late_flight_factor(knot, rig, force, delay_s, by_delay);
-  // The curvature term is small. The code therefore neglects its derivatives: rate_smoother.md (R13).
+  // The curvature term is small. The code therefore neglects the derivatives of the curvature term: rate_smoother.md
+  // (R13).
   out.residual += 0.5 * params_.errors.accel_filter_time_variance_s2 * flight_curvature(knot, rig);
   return out;
 }
@@ -139,8 +139,7 @@ Eigen::Matrix3d RateModel::reported(const Eigen::Matrix3d& covariance, const Rat
   const Vector3d late = params_.expert.readings.gyro_time_sigma_s * estimate.knot.acceleration_rad_s2;
   Eigen::Matrix3d timed = covariance + late * late.transpose();
   if (observation.by_elements()) {
-    // In contact, the angular acceleration within a window depends on the contact force. This also applies to measured
-    // axes.
+    // In contact, the contact force changes the rate within a window. The change also affects measured axes.
     const double struck =
         params_.expert.readings.gyro_time_sigma_s * params_.expert.contact.gain_rad_m * estimate.contact_m_s2.norm();
     timed.diagonal().array() += struck * struck;

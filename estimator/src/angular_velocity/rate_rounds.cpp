@@ -33,8 +33,8 @@ SensorErrorSizes as_stated(SensorErrorSizes sizes) {
   return sizes;
 }
 
-// Returns whether a device with the stated errors `given` may have the errors `found`. Larger errors come from the
-// flight model, not from the device.
+// Returns whether a device with the stated errors `given` may have the errors `found`. Errors beyond kDeviations come
+// from the flight model, not from the device.
 bool plausible(const SensorErrors& found, const SensorErrors& given, const SensorErrorSizes& sizes) {
   constexpr double kDeviations = 6.0;
   const SensorErrors errors = SensorErrors::from(found.vector() - given.vector());
@@ -59,7 +59,7 @@ bool far_apart(const SensorErrors& a, const SensorErrors& b) {
          std::abs(a.accel_filter_time_variance_s2 - b.accel_filter_time_variance_s2) > kFilterTimeVariance_s2;
 }
 
-// Mahalanobis distance of three calibration constants that one device in a thousand exceeds, if the prior includes all
+// One device in a thousand exceeds this Mahalanobis distance of three calibration constants from a prior with all
 // causes.
 constexpr double kMahalanobisOfDevice = 2.33;
 
@@ -133,12 +133,12 @@ void add_guess(const TriadDelay& guess, SensorErrorEvidence& evidence) {
 }
 
 // If the odds of a device that matches its data sheet are below kPlainOdds, the readings clearly contradict the data
-// sheet. Above kPlainOdds, the mixture of both kinds of device accounts for the uncertainty.
+// sheet. Above kPlainOdds, the mixture of a matching and an uncalibrated device accounts for the uncertainty.
 constexpr double kPlainOdds = 0.05;
 
-// Returns whether a device clearly contradicts its data sheet in scale or in sampling. If the device contradicts one of
-// them, neither is reliable. The test combines the evidence from scale and sampling by naive Bayes, each relative to
-// its prior. `triads_asynchronous`: gyro and accelerometer are known to be asynchronous.
+// Returns whether a device clearly contradicts its data sheet in scale or in sampling. If the scale of a device
+// contradicts the data sheet, the stated sampling is also unreliable, and vice versa. The test combines the evidence
+// from scale and sampling by naive Bayes. `triads_asynchronous`: gyro and accelerometer are known to be asynchronous.
 bool off_sheet(const SensorErrorFit& device, const SensorErrorSizes& sizes, bool triads_asynchronous) {
   const SensorErrorFit before = fit_sensor_errors({}, sizes);
   const auto odds = [](double p) { return std::max(p, 1e-12) / std::max(1.0 - p, 1e-12); };
@@ -206,8 +206,8 @@ Rounds rounds_of(const RateSmoother::Params& params, const RateModelParams& know
   return out;
 }
 
-// Initial values of the optimisations. The first start uses the assumed errors. The second start has another delay, for
-// the case that the assumed delay requires a fixed calibration.
+// Initial values of the optimisations. The first start uses the assumed sensor errors. If the assumed delay requires a
+// fixed calibration, the second start uses another delay.
 struct Start {
   SensorErrors errors;
   double other_delay_s = 0.0;
@@ -297,7 +297,7 @@ Status descend_rounds(const Rounds& rounds, std::span<RateObservation> observati
 
 // If a device clearly contradicts its data sheet, enlarges the covariance of the sensor errors to the covariance of an
 // uncalibrated device. The correction keeps only sensor errors that the readings clearly determine. Returns the
-// standard deviations in use.
+// standard deviations of the sensor errors that are in use.
 SensorErrorSizes leave_open(const Rounds& rounds, const RateFit& fit, RoundsState& rounds_state, RateReport& health) {
   const bool open =
       rounds.delay_open() && (off_sheet(rounds_state.found, rounds.stated(), rounds.triads_asynchronous) ||

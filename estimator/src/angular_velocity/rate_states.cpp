@@ -136,8 +136,8 @@ std::vector<RateState> rate_states(const RateSmoother::Params& params, std::span
     const RateEstimate& estimate = solution.estimates[k];
     RateState& state = states[k];
     state = state_later(observations, solution.estimates, covariances, k, gyro_late_s);
-    // In flight, the motion is smoother than the gyro's readings. In other motion, interpolated readings are better
-    // than white jerk between knots.
+    // In flight, the motion is smoother than the gyro's readings. In other motion, interpolated readings are more
+    // accurate than the model of white jerk between samples.
     const bool by_readings = estimate.flight_weight < 0.5 && !o.at_rest && gyro_late_s == 0.0;
     if (by_readings && !own.empty() && own[k]) {
       const Vector3d g_sensitivity = errors.g_sensitivity_s_m * samples[k].specific_force_m_s2;

@@ -148,8 +148,8 @@ void RateStream::predict_covariance(State& state) const {
   newest.covariance_rad2_s2 += sigma.cwiseAbs2().asDiagonal();
 }
 
-// Marginalises the oldest sample: rate_stream.md (R90). The final weight follows from rate_smoother.md (R16) to (R19).
-// A sample in a short flight has a reduced weight: rate_stream.md (R92).
+// Marginalises the oldest sample: rate_stream.md (R90). The final flight weight of the sample follows from
+// rate_smoother.md (R16) to (R19). A sample in a short flight has a reduced weight: rate_stream.md (R92).
 void RateStream::marginalise(std::size_t first, State& state) const {
   Knot& oldest = state.window[first];
   const Knot& next = state.window[first + 1];
@@ -354,8 +354,8 @@ RigConstants::Matrix RateStream::inflated(const State& state) const {
   const double largest = std::sqrt(1.0 + params_.expert.inflation.covariance / (1.0 + samples));
   RigConstants::Vector factor;
   for (int i = 0; i < RigConstants::kSize; ++i) {
-    // The prior is the upper limit of each variance. The gyro's bias is excluded, because rest determines the bias, not
-    // flight.
+    // The inflated variance of a calibration constant is at most its prior variance. The gyro's bias is not inflated,
+    // because rest determines the bias, not flight.
     const bool of_gyro = i >= 3 && i < 6;
     const double before = std::sqrt(model_.prior_covariance()(i, i) / state.rig_covariance(i, i));
     factor[i] = of_gyro ? 1.0 : std::clamp(before, 1.0, largest);

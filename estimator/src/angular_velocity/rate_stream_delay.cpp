@@ -14,15 +14,15 @@ namespace {
 constexpr int kBeside = StrokeSums::kMostSamples;
 // Time constant of the impact statistics, as a number of intervals between readings.
 constexpr double kMemory = 2000.0;
-// kUpdateEvery_ns: time between two evaluations of the delay. kMoved_s: minimum change of the delay that is applied.
+// `kUpdateEvery_ns` is the time between two estimates of the delay. `kMoved_s` is the minimum change of the delay that
+// the stream applies.
 constexpr TimeNs kUpdateEvery_ns = 50'000'000;
 constexpr double kMoved_s = 3e-4;
-// kPlainOdds: if the odds of synchronous triads are below this value, impacts clearly contradict the data sheet.
-// kGuessFar: if a guess differs from the current delay by more than this many standard deviations, it replaces the
-// delay.
+// If the odds of synchronous triads are below `kPlainOdds`, impacts clearly contradict the data sheet. A guessed delay
+// replaces the current delay if their difference exceeds `kGuessFar` standard deviations.
 constexpr double kPlainOdds = 0.05, kGuessFar = 3.0;
-// kIntervalsMin: minimum number of intervals. kGainMin: minimum difference of two correlations, at the estimated and at
-// the stated delay. The first impacts of a tumble correlate by chance.
+// `kIntervalsMin` is the minimum number of intervals. `kGainMin` is the minimum difference between the correlations at
+// the estimated and at the stated delay. The first impacts of a tumble correlate by chance.
 constexpr double kIntervalsMin = 150.0, kGainMin = 0.06;
 // Maximum delay, in standard deviations of an uncalibrated device.
 constexpr double kReach = 3.0;
@@ -37,7 +37,7 @@ bool repeats_readings(const RateStream::State& state) {
 }
 
 // Integral of the norm of the specific force around a sample of the window. Between readings, the norm is linear.
-// Beyond the readings, the norm is constant.
+// Before the first and after the last reading, the norm is constant.
 class ForceAbout {
  public:
   ForceAbout(const std::vector<RateStream::Knot>& window, std::size_t middle, std::size_t first) {

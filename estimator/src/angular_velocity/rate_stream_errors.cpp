@@ -12,7 +12,8 @@ namespace {
 
 using Eigen::Matrix3d;
 
-// Time between two estimates of the sensor errors. A system of 29 unknowns costs more than a step of the stream.
+// Time between two estimates of the sensor errors. Each estimate of the sensor errors solves a system of 29 unknowns,
+// which costs more than a step of the stream.
 constexpr TimeNs kUpdateEvery_ns = 50'000'000;
 
 // Returns the covariance of a rate that is due to the uncertain sensor errors, limited to the largest rate:
@@ -68,8 +69,8 @@ KnownSensorErrors RateStream::sensor_errors(const State& state) const {
   return out;
 }
 
-// Computes the derivatives by the sensor errors: rate_stream.md (R101). The blocks must be eliminated, and the
-// estimates of the window and the calibration unchanged.
+// Computes the derivatives by the sensor errors: rate_stream.md (R101). Before the call, the blocks of the window must
+// be eliminated. Since the elimination, the estimates of the window and the calibration must not have changed.
 void RateStream::consider_errors(const arrow::BorderVector& rig_step, State& state) const {
   RateStreamDevice& device = state.device.front();
   const std::size_t count = state.window.size();
@@ -104,7 +105,7 @@ void RateStream::consider_errors(const arrow::BorderVector& rig_step, State& sta
   RateStreamDelay& delay = device.delay;
   if (delay.found) {
     if (const TriadDelay& guess = delay.guess; guess.sigma_s > 0.0) {
-      // the delay from impacts has full weight, so the division cancels the evidence weight
+      // Information from impacts has full weight. The division cancels the evidence weight.
       const double information = 1.0 / (DeviceUncertainty::kEvidenceWeight * guess.sigma_s * guess.sigma_s);
       window_evidence.information(SensorErrors::kDelay, SensorErrors::kDelay) += information;
       window_evidence.gradient[SensorErrors::kDelay] += information * (guess.delay_s - delay.in_use_s);

@@ -16,11 +16,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-// kOpen: limit of the errors of a plane's cross-axis sensitivities, in standard deviations. kPossibleMin: minimum
-// number of readings that may be at one tilted saturation level, within kBesideRail of the axis' largest reading.
-// kKink: for a rounded maximum of n readings, the height extrapolated from both sides is at most (n/(n - 1))^2 <= 2.25
-// times the measured height. A motion that saturation cuts off has a height above kKink times the measured height, and
-// above kPossibleNoise standard deviations of the noise.
+// `kOpen` limits the errors of a plane's cross-axis sensitivities, in standard deviations. A tilted saturation level
+// needs at least `kPossibleMin` readings within kBesideRail of the axis' largest reading. A rounded maximum of n
+// readings has an extrapolated height of at most (n/(n - 1))^2 <= 2.25 times the measured height. If saturation cuts
+// off a motion, the extrapolated height exceeds `kKink` times the measured height. The extrapolated height also exceeds
+// `kPossibleNoise` standard deviations of the noise.
 constexpr double kOpen = 3.0, kKink = 4.0, kPossibleNoise = 5.0;
 constexpr std::ptrdiff_t kPossibleMin = 3;
 
@@ -127,9 +127,9 @@ void RateStream::judge_from(std::size_t changed, State& state) const {
   }
 }
 
-// Returns whether a reading may be saturated: rate_stream.md (R93). With a known saturation level, the level must be
-// within reach of its uncertain cross-axis sensitivities. Without a known level, the test uses the largest reading so
-// far. That largest reading must be close to the saturation levels of the other sensing elements.
+// Returns whether a reading may be saturated: rate_stream.md (R93). If the saturation level is known, the reading must
+// be at the level within the uncertainty of the saturation plane. If the saturation level is unknown, the test uses the
+// largest reading so far. The largest reading must be close to the saturation levels of the other sensing elements.
 bool RateStream::may_clip(const ImuSample& sample, int axis, int sign, const State& state) const {
   const Vector3d& y = sample.angular_velocity_rad_s;
   const RailPlanes planes = state.rails.known.planes_in_use();

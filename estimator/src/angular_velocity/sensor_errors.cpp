@@ -56,8 +56,8 @@ Vector deviations(const SensorErrorSizes& s, const Shares& shares) {
 // If the probability of the data sheet's values is below kPlain, the readings clearly contradict the data sheet.
 constexpr double kPlain = 0.05;
 
-// Weight of the information about the sensor errors in their covariance. The weight is below 1, because errors of the
-// flight model last longer than a sample. The likelihood of a size of the sensor errors has full weight.
+// Weight of the readings' information in the covariance of the sensor errors. The weight is below 1, because errors of
+// the flight model last longer than a sample. The likelihood of a size of the sensor errors has full weight.
 constexpr double kEvidenceWeight = 0.03;
 
 struct Hypothesis {
@@ -82,8 +82,8 @@ Hypothesis posterior(const Matrix& information, const Matrix& learnt, const Vect
   Vector sharpened = scaled_h;
   all.solve_vector(sharpened);
   out.log_odds = log_prior + 0.5 * scaled_h.dot(sharpened) - all.half_log_determinant();
-  // The correction leaves scale and misalignment unchanged, because errors of the flight model look like scale and
-  // misalignment errors.
+  // The correction of sensor errors leaves scale and misalignment unchanged, because errors of the flight model look
+  // like scale and misalignment errors.
   Vector mean = Vector::Zero();
   mean.tail<kRest>() = scaled_h.tail<kRest>();
   dense::Cholesky(sharp.bottomRightCorner<kRest, kRest>()).solve_vector(mean.tail<kRest>());

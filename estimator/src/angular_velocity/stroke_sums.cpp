@@ -8,12 +8,13 @@ namespace tumble {
 
 namespace {
 
-// kStruckRate_rad_s: minimum rate of a moving body. kCorrelationMin: minimum correlation of an accepted delay.
-// kStruckSigma: standard deviation of the delay, as a fraction of the slower triad's period.
+// `kStruckRate_rad_s` is the minimum rate of a moving body. `kCorrelationMin` is the minimum correlation for an
+// accepted delay. `kStruckSigma` is the standard deviation of the delay, as a fraction of the slower triad's period.
 constexpr double kStruckRate_rad_s = 1.0, kCorrelationMin = 0.6, kStruckSigma = 0.15;
 constexpr double kStruckMin = 30.0;
-// kStroke_m_s2: minimum specific force of an impact. kFlying_m_s2: maximum specific force of free flight.
-// kFlyingShareMin: minimum fraction of intervals in flight. A body with impacts that never flies is hand-held.
+// `kStroke_m_s2` is the minimum specific force of an impact. `kFlying_m_s2` is the maximum specific force of free
+// flight. `kFlyingShareMin` is the minimum fraction of intervals in flight. A body with impacts that never flies is
+// hand-held.
 constexpr double kStroke_m_s2 = 30.0, kFlying_m_s2 = 5.0, kFlyingShareMin = 0.1;
 constexpr double kStrokesMin = 10.0;
 

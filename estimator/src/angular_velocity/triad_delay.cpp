@@ -133,7 +133,7 @@ double cost(const TriadReadings& accel, std::span<const Instant> instants, const
 }
 
 // Integral of the norm of the specific force, starting at the first reading. Between readings, the norm is linear.
-// Beyond the readings, the norm is constant.
+// After the last reading, the norm is constant.
 class ForceIntegral {
  public:
   explicit ForceIntegral(const TriadReadings& force)

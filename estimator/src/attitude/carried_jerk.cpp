@@ -13,8 +13,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-// kSecondDifference: variance of a second difference of readings, as a multiple of q P^3 with jerk density q and period
-// P. kJerkReach: time span of the second difference, in periods.
+// `kSecondDifference` is the variance of a second difference of readings, as a multiple of q P^3. The jerk density is
+// q, and the period is P. `kJerkReach` is the time span of the second difference, in periods.
 constexpr double kSecondDifference = 11.0 / 20.0, kJerkReach = 1.5;
 
 bool is_free(const GyroReadings& rates, std::size_t k, Eigen::Index axis) {
