@@ -43,7 +43,7 @@ RateSmoother::RateSmoother(const Params& params)
       rests_(params.expert.rests) {
   require_fields(params);
   if (params.calibrated_errors) require_known(*params.calibrated_errors);
-  (void)RateModel(params.model, 0.01);  // throws for invalid parameters
+  (void)RateModel(params.model, 0.01);  // the constructor throws for invalid parameters
 }
 
 Status RateSmoother::estimate(std::span<const ImuSample> samples,

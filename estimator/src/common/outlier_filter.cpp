@@ -13,7 +13,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Thresholds. docs/maths/outliers.md, "Thresholds", states the readings from which the thresholds were measured.
+// Thresholds of the outlier test. The section "Thresholds" in docs/maths/outliers.md lists the measurements behind
+// them.
 constexpr double kRateMin_rad_s = 1.0;    // smallest outlier of a gyro
 constexpr double kForceMin_m_s2 = 30.0;   // smallest outlier of an accelerometer
 constexpr double kAgreement = 3.0;        // an outlier is larger than this multiple of the neighbours' difference
@@ -24,13 +25,14 @@ constexpr double kHitMost_m_s = 20.0;     // limit of a velocity jump that lasts
 constexpr double kNear_s = 0.1;           // neighbours further away than this are not compared
 constexpr double kPeriodsAhead = 1.75;    // a longer step of the stamps is held: the next stamp may be earlier
 
-// A reading may be saturated from this fraction of the stated range on, and also if a large reading repeats.
+// A reading may be saturated above this fraction of the stated range. A large reading that repeats may also be
+// saturated.
 constexpr double kAtRange = 0.95;
 constexpr double kRepeats_rad_s = 1.0, kRepeats_m_s2 = 15.0;
 
 constexpr double kUnknown = std::numeric_limits<double>::infinity();
 
-/// One of the two triads.
+/// Gyro or accelerometer.
 struct Triad {
   Vector3d ImuSample::*reading;
   std::uint8_t clip_flags;
@@ -59,13 +61,13 @@ Triad accel_of(const OutlierFilter::Device& device) {
   return {&ImuSample::specific_force_m_s2, kClipAccel, device.accel_range_m_s2, kRepeats_m_s2};
 }
 
-/// Returns the time from an earlier stamp to a later stamp. The difference is unsigned, since the difference of any two
-/// stamps may not fit into a signed integer.
+/// Returns the time between two stamps. The subtraction is unsigned, since the difference of two stamps may not fit
+/// into a signed integer.
 double step_s(const ImuSample& from, const ImuSample& to) {
   return 1e-9 * static_cast<double>(static_cast<std::uint64_t>(to.time_ns) - static_cast<std::uint64_t>(from.time_ns));
 }
 
-/// Consecutive samples, oldest first.
+/// Consecutive samples, starting with the oldest sample.
 struct Sequence {
   std::array<const ImuSample*, 4> samples{};
   std::size_t count = 0;
@@ -81,8 +83,8 @@ Sequence passed_near(const OutlierFilter::State& state) {
   return out;
 }
 
-/// Returns the largest change from one reading to the next: outliers.md (O3). The change is unknown where saturation
-/// may hide it.
+/// Returns the largest change from one reading to the next: outliers.md (O3). If saturation may hide a change, the
+/// result is unknown.
 double largest_step(const Sequence& sequence, const Triad& triad) {
   double out = 0.0;
   for (std::size_t k = 1; k < sequence.count; ++k) {
@@ -92,7 +94,7 @@ double largest_step(const Sequence& sequence, const Triad& triad) {
   return out;
 }
 
-/// Returns the largest change between consecutive steps: outliers.md (O4).
+/// Returns the largest difference between two consecutive steps: outliers.md (O4).
 double largest_bend(const Sequence& sequence, const Triad& triad) {
   double out = 0.0;
   for (std::size_t k = 1; k < sequence.count; ++k) {
@@ -104,7 +106,7 @@ double largest_bend(const Sequence& sequence, const Triad& triad) {
   return out;
 }
 
-/// Returns how far a reading leaves both neighbours in one direction, on the axis with the largest departure:
+/// Returns how far a reading differs from both neighbours in one direction, on the axis with the largest difference:
 /// outliers.md (O1).
 double departure(const Vector3d& before, const Vector3d& now, const Vector3d& after) {
   double out = 0.0;
@@ -115,8 +117,8 @@ double departure(const Vector3d& before, const Vector3d& now, const Vector3d& af
   return out;
 }
 
-/// Returns the distance of a reading from the last reading that passed, or from the line through the last two if
-/// smaller: outliers.md (O2).
+/// Returns the distance of a reading from the last accepted reading, or from the line through the last two accepted
+/// readings, whichever is smaller: outliers.md (O2).
 double distance(const ImuSample& sample, const OutlierFilter::State& state, const Triad& triad) {
   const ImuSample &first = state.passed[0], &last = state.passed[1];
   const Vector3d step = triad.of(sample) - triad.of(last);
@@ -200,7 +202,7 @@ bool OutlierFilter::jumps(const ImuSample& sample, const State& state) const {
          distance(sample, state, accel_of(device_)) > accel_threshold(device_, sequence, sample, step);
 }
 
-/// Returns whether the delayed reading is an outlier, given the reading after it: outliers.md (O6).
+/// Returns whether the delayed reading is an outlier, given the following reading: outliers.md (O6).
 bool OutlierFilter::is_outlier(const ImuSample& held, const ImuSample& after, const State& state) const {
   const ImuSample& before = state.passed[1];
   if (state.count == 0 || step_s(before, held) > kNear_s || step_s(held, after) > kNear_s) return false;

@@ -15,7 +15,7 @@ namespace u = unknowns;
 using Motion = Eigen::Matrix<double, 9, 9>;
 using Params = LidarInertialOdometry::Params;
 
-// Prior of the speed and its correlation time. Robots that use the library are slower than kSpeed_m_s, except for
+// Standard deviation and correlation time of the prior of the speed. Robots rarely exceed kSpeed_m_s, and only for
 // moments.
 constexpr double kSpeed_m_s = 10.0, kSpeedTime_s = 1.0;
 // Standard deviations of a start in motion: the mean force of half a second differs from gravity by 1 m/s^2.
@@ -36,17 +36,18 @@ double yaw_rad(const Eigen::Quaterniond& q) {
   return 2.0 * std::atan2(q.z(), q.w());
 }
 
-/// Transforms errors of a motion to a frame that is moved and turned to the IMU. The movement of the frame is an error
-/// in the old frame.
+/// Returns the matrix that transforms errors of the motion to a frame at the IMU, turned by `turn`. The displacement of
+/// the frame is an error in the old frame.
 Motion by_frame(const Eigen::Matrix3d& turn, const Eigen::Vector3d& v_WI_m_s) {
   Motion T = Motion::Zero();
   T.block<2, 3>(3, 3) = turn.topRows<2>();
   T.block<3, 3>(6, 6) = turn;
-  T.block<3, 3>(6, 3) = so3::hat(v_WI_m_s).col(2) * turn.row(2);  // the yaw's error turns the velocity
+  T.block<3, 3>(6, 3) = so3::hat(v_WI_m_s).col(2) * turn.row(2);  // the yaw error turns the velocity
   return T;
 }
 
-/// Applies a Kalman update by a velocity of 0, which keeps E consistent with the gain of C.
+/// Applies a Kalman update by a velocity of 0 with standard deviation `sigma_m_s`. The gain follows from C. The
+/// covariance of the errors E is updated with this gain.
 void bound_speed(double sigma_m_s, MotionState& state, Motion& C, Motion& E) {
   const Eigen::Matrix3d R = sigma_m_s * sigma_m_s * Eigen::Matrix3d::Identity();
   const Eigen::Matrix3d S = u::block(C, u::velocity) + R;
@@ -111,15 +112,15 @@ StateEstimate without_place(const StateEstimate& reckoned, double step_s) {
   return of_motion(state, reckoned.mean.calibration, T * C * T.transpose(), T * E * T.transpose());
 }
 
-/// The frame is turned by the tilt error φ so that the IMU's attitude has no error. In the turned frame, velocity v and
-/// gravity g are turned back: δv + v × φ, g × φ.
+/// Returns the state estimate in a frame in which the IMU's attitude has no error. The frame is turned by the tilt
+/// error φ. In the turned frame, velocity v and gravity g have the errors δv + v × φ and g × φ.
 StateEstimate belief_at_first_sweep(const Params& params, const StateEstimate& reckoned) {
   MotionState start = reckoned.mean.state;
   start.covariance.setZero();
   u::variances(start.covariance, u::tilt)
       .setConstant(params.expert.start.level_sigma_rad * params.expert.start.level_sigma_rad);
   StateEstimate out = estimate_at_start(params, start);
-  Eigen::Matrix<double, 6, 9> T = Eigen::Matrix<double, 6, 9>::Zero();  // of velocity and gravity
+  Eigen::Matrix<double, 6, 9> T = Eigen::Matrix<double, 6, 9>::Zero();  // derivative of velocity and gravity
   T.block<3, 3>(0, 3) = so3::hat(start.v_WI_m_s);
   T.block<3, 3>(0, 6).setIdentity();
   const bool free_gravity = params.expert.gravity_sigma_m_s2 > 0.0;

@@ -47,14 +47,14 @@ void apply_calibration(const SweepCalibration& calibration, double later_s, std:
   }
 }
 
-/// mapping.md (R3): u.
+/// Computes u(t) of each point, the position without start and gravity: mapping.md (R3).
 void compute_levers(const SweepTrajectory& trajectory, std::span<const SweepPoint> points,
                     std::vector<Eigen::Vector3f>& levers_W_m) {
   levers_W_m.resize(points.size());
   trajectory.levers(points, levers_W_m);
 }
 
-/// mapping.md (R12).
+/// Transforms each point to the IMU frame at the target time: mapping.md (R12).
 void deskew(const SweepTrajectory& trajectory, std::span<const SweepPoint> points, double target_s,
             std::vector<Eigen::Vector3f>& positions_I_m) {
   compute_levers(trajectory, points, positions_I_m);

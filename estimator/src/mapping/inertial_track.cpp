@@ -16,7 +16,7 @@ using Params = LidarInertialOdometry::Params;
 
 constexpr TimeNs kArcStep_ns = 5'000'000;
 constexpr TimeNs kArcMost_ns = 10'000'000'000;  // longer than any flight
-constexpr double kArcOff_rad_s = 0.5;           // in addition to deviations: impacts change the rate by more
+constexpr double kArcOff_rad_s = 0.5;           // additional tolerance; impacts change the rate by more
 
 WindowRate rate_of(const MotionSample& sample) {
   return {sample.w_WI_I_rad_s, sample.rate_sigma_rad_s, sample.from_ns, sample.time_ns};
@@ -35,7 +35,7 @@ std::uint8_t railed_axes(const Params& params, const ImuSample& sample) {
 }  // namespace
 
 RestDetector::Params mapper_rest(const LidarInertialOdometry::Params& params) {
-  // the detection misses a rotation within the bound, so each axis gets a part of the bound
+  // The detector misses a rotation vector within the bound. Each of the three axes therefore gets a part of the bound.
   return {.rate_max_rad_s = params.expert.rest.rate_rad_s,
           .rate_spread_rad_s = params.expert.rest.rate_rad_s / std::numbers::sqrt3,
           .force_min_m_s2 = std::max(params.expert.gravity_m_s2 - params.expert.rest.force_m_s2, 0.0),
@@ -60,7 +60,7 @@ Status InertialTrack::check(const ImuSample& sample) const {
 
 void InertialTrack::take(const Params& params, const ImuSample& sample, const RateState& rate) {
   const TimeNs from_ns = last_ns().value_or(sample.time_ns);
-  // the first window has the length of the second
+  // The first window has no start time and gets the length of the second window.
   if (!boundary_ns_ && samples_.size() == 1) samples_[0].from_ns = 2 * from_ns - sample.time_ns;
   MotionSample next;
   next.from_ns = from_ns;
@@ -72,7 +72,7 @@ void InertialTrack::take(const Params& params, const ImuSample& sample, const Ra
   next.clipped_axes = static_cast<std::uint8_t>(rate.clipped_axes & kClipGyro);
   next.railed_axes = railed_axes(params, sample);
   const bool after_gap = next.time_ns - next.from_ns > kGap_ns;
-  // a reading refers to its own window, which is as long as the window before the gap
+  // after a gap, a reading's window is as long as the window before the gap
   if (after_gap && newest_ && !next.at_rest)
     next.from_ns = std::max(from_ns, next.time_ns - (newest_->time_ns - newest_->from_ns));
   next.bridges_gap = after_gap && next.from_ns == from_ns;
@@ -89,13 +89,13 @@ void InertialTrack::fill_gap(const Params& params, bool in_flight) {
   if (!in_flight || !fly_through(params, *before_newest_, *newest_))
     bridge_gap(params.expert.prior, *before_newest_, *newest_, samples_);
   if (undecided_rad_s_.empty()) return;
-  // one rate per sample; the last rate belongs to the pending sample
+  // The list contains one rate per sample. The last rate belongs to the pending sample.
   for (const MotionSample& part : std::span(samples_).subspan(first))
     undecided_rad_s_.insert(undecided_rad_s_.end() - 1, part.w_WI_I_rad_s);
 }
 
-/// Bridges the gap by the ballistic arc if the rate predicted at the gap's end agrees with the next reading:
-/// flight_arc.md (A12).
+/// Bridges the gap by a ballistic arc if the predicted rate agrees with the next reading: flight_arc.md (A12). The
+/// prediction assumes free flight up to the end of the gap.
 bool InertialTrack::fly_through(const Params& params, const WindowRate& before, const WindowRate& after) {
   if (after.from_ns - before.time_ns > kArcMost_ns) return false;
   const std::size_t first = samples_.size();
@@ -115,8 +115,9 @@ bool InertialTrack::fly_through(const Params& params, const WindowRate& before, 
   return true;
 }
 
-/// Decides whether the newest sample belongs to a flight, with the rates on both sides of the sample. Before a gap,
-/// uses the rate predicted by free flight. flight_arc.md (A3), (A4), (A5).
+/// Decides whether the newest sample belongs to a flight: flight_arc.md (A3), (A4), (A5). The test uses the rates
+/// before and after the sample. If a gap follows the sample, the rate after the sample is the prediction of free
+/// flight.
 bool InertialTrack::detect_flight(const Params& params, const MotionSample& next, bool after_gap) {
   MotionSample& now = samples_.back();
   if (now.in_flight) return true;
@@ -139,13 +140,13 @@ void InertialTrack::listen_for_rest(const Params& params, const ImuSample& sampl
   ImuSample received = sample;
   received.angular_velocity_rad_s = rate.w_WI_I_rad_s;
   const bool clipped = (rate.clipped_axes & kClipGyro) != 0;
-  // during the initial rest, the mean rate is the bias
+  // during the initial rest, the mean rate is the gyro's bias
   const Eigen::Vector3d bias = initial_.lasts ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : initial_.gyro_bias_rad_s;
   if (clipped) rest_ = {};
   if (!clipped && rests_.observe(received, rest_, bias)) next.rests_since_ns = rest_.first_ns;
   if (initial_.lasts) {
     if (!initial_.first_ns) initial_.first_ns = initial_.run_ns = sample.time_ns;
-    // the mean of a new run is as noisy as its readings, and noise may restart the run
+    // The mean of a new run is as noisy as single readings. Noise may therefore restart the run.
     if (next.rests_since_ns && seconds(*next.rests_since_ns - *initial_.first_ns) < params.expert.start.bias_rest_s)
       initial_.run_ns = next.rests_since_ns;
     initial_.lasts = next.rests_since_ns == initial_.run_ns;
@@ -162,7 +163,7 @@ void InertialTrack::listen_for_rest(const Params& params, const ImuSample& sampl
   undecided_rad_s_.clear();
 }
 
-/// Marks all samples since the start of a complete reading as motion if the reading shows motion.
+/// If a complete reading shows motion, marks all samples since the start of the reading as motion.
 void InertialTrack::take_back_rest(std::optional<TimeNs> rests_since_ns) {
   const std::size_t count = std::min(undecided_rad_s_.size(), samples_.size());
   for (std::size_t back = 1; back <= count; ++back) {

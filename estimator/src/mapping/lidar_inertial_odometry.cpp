@@ -113,7 +113,7 @@ Status LidarInertialOdometry::predict(std::span<const ImuSample> samples, std::s
   const mapping::MotionWindow motion{track.samples(), end_ns, resting_sweeps};
   const std::unique_ptr<const mapping::Prediction> at_start(
       new mapping::Prediction(mapping::predict(my.params, my.boundary, motion, trajectory, my.known)));
-  const Registration::Estimate& mean = at_start->prior.mean;  // includes an odometer reading
+  const Registration::Estimate& mean = at_start->prior.mean;  // already includes an odometer reading
   if (Status status =
           trajectory.build(mean.state, track.samples(), end_ns, mean.calibration.gravity_W_m_s2, mean.deficit_rad_s);
       !status.ok())

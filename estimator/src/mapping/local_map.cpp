@@ -11,8 +11,8 @@ namespace tumble::mapping {
 
 namespace {
 
-/// Uncertainty of the trajectory between start and end of a segment, as variance of a point. The variance is the
-/// trajectory's term of mapping.md (R64).
+/// Variance of a point due to the uncertain trajectory within a segment, relative to the segment's ends: mapping.md
+/// (R64).
 class PoseVariance {
  public:
   PoseVariance(const Registration::Matrix& covariance, const SweepTrajectory& trajectory)
@@ -57,7 +57,7 @@ std::size_t LocalMap::insert(const Params& params, const SweepToInsert& sweep, c
       const Eigen::Vector3f position = levers_W_m_[i] + trajectory.base_m(points[i].t_s).cast<float>();
       sight_.add(position);
       if (map_.is_taken(position)) continue;  // true for most points
-      // mapping.md (R64)
+      // standard deviation of an inserted point: mapping.md (R64)
       const double sigma_m = std::sqrt(noise.point_variance_m2(points[i]) + of_pose.at_m2(points[i]));
       if (sigma_m > sigma_max_m) continue;
       const std::uint32_t index =

@@ -38,7 +38,7 @@ Status Localisation::present() const {
   return {Trouble::out_of_range, "innovation of two sweeps", second_innovation_, innovation_max()};
 }
 
-/// mapping.md (R70), (R71).
+/// Returns an error if tracking failed (R70), or if sweeps contradict their predicted poses (R71): mapping.md.
 Status Localisation::verdict() const {
   if (largest_sigma_m_ > matched_m_)
     return {Trouble::out_of_range, "deviation of a sweep's position", largest_sigma_m_, matched_m_};

@@ -24,10 +24,10 @@ using Covariance = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMos
 template <int Values>
 using OfMotion = Eigen::Matrix<double, Values, kMotion>;
 
-constexpr int kIterations = 6;     // usually two or three are enough
-constexpr double kSettled = 1e-9;  // m, rad, m/s, rad/s
+constexpr int kIterations = 6;     // two or three iterations are usually enough
+constexpr double kSettled = 1e-9;  // convergence limit [m, rad, m/s, rad/s]
 
-/// Current unknowns relative to the prediction: unknowns at the boundary, and noise since the boundary.
+/// Current change of the unknowns relative to the prediction: unknowns at the boundary, and noise since the boundary.
 struct Offsets {
   Registration::Vector start = Registration::Vector::Zero();
   Eigen::Matrix<double, kMotion, 1> noise = Eigen::Matrix<double, kMotion, 1>::Zero();
@@ -57,8 +57,8 @@ class Sweep {
     return time_ns >= predicted_.state.time_ns - beyond_ns && time_ns <= window_.end_ns + beyond_ns;
   }
 
-  /// Evaluates the motion at a time within the sweep. The noise's standard deviations grow in proportion to time.
-  /// mapping.md (R34).
+  /// Evaluates the motion at a time within the sweep: mapping.md (R34). The standard deviations of the noise grow in
+  /// proportion to time.
   Moment at(TimeNs time_ns, const Offsets& offsets) const {
     Moment out;
     const double t_s = seconds(time_ns - predicted_.state.time_ns);
@@ -70,7 +70,7 @@ class Sweep {
     Registration::Estimate start = predicted_;
     start.add(moved);
     SweepTrajectory trajectory;
-    // no error is possible: add_sweep ensures that the samples cover the window
+    // build() cannot fail here, because add_sweep() ensures that the samples cover the window
     (void)trajectory.build(start.state, window_.samples, window_.end_ns, start.calibration.gravity_W_m_s2,
                            start.deficit_rad_s);
     std::size_t hint = 0;
@@ -90,7 +90,8 @@ class Sweep {
   const MotionWindow& window_;
 };
 
-/// `by_moment` is the derivative of the reading by errors of the motion at the reading's time.
+/// Adds a part of the reading's derivative. `by_moment` is the derivative by errors of the motion at the time of the
+/// reading.
 template <int Size>
 void add(const OfMotion<Size>& by_moment, const Moment& moment, Expected& out) {
   const Eigen::Matrix<double, Size, kUnknowns> by_start = by_moment * moment.by_start;
@@ -104,7 +105,7 @@ Expected nothing() {
           Covariance::Zero(Size, Size)};
 }
 
-/// mapping.md (R35).
+/// Predicts a velocity reading: mapping.md (R35).
 Expected expect(const VelocityReading& reading, const Sweep& sweep, const Offsets& offsets) {
   Expected out = nothing<3>();
   const Moment now = sweep.at(reading.time_ns, offsets);
@@ -118,7 +119,7 @@ Expected expect(const VelocityReading& reading, const Sweep& sweep, const Offset
   return out;
 }
 
-/// mapping.md (R36).
+/// Predicts an odometer reading of relative motion: mapping.md (R36).
 Expected expect(const MotionReading& reading, const Sweep& sweep, const Offsets& offsets) {
   Expected out = nothing<kMost>();
   const Moment from = sweep.at(reading.from_ns, offsets), to = sweep.at(reading.to_ns, offsets);
@@ -149,16 +150,16 @@ bool holds(const Sweep& sweep, const OdometerReading& reading) {
 template <int Size>
 using Gain = Eigen::Matrix<double, Size, Eigen::Dynamic, 0, Size, kMost>;
 
-/// Buffers of an update, on the heap because sandwich() needs the stack.
+/// Buffers of an update. The buffers are on the heap, because sandwich() needs the stack.
 struct Work {
   Matrix at_start, before, left;  ///< covariance at the start, the part due to noise; factor of the remaining errors
   Offsets offsets;
   Expected expected;
-  Gain<kUnknowns> by_start;  ///< for the unknowns at the boundary
-  Gain<kMotion> by_noise;    ///< for the noise since
+  Gain<kUnknowns> by_start;  ///< gain of the unknowns at the boundary
+  Gain<kMotion> by_noise;    ///< gain of the noise since the boundary
 };
 
-/// Computes the gains at the current offsets: mapping.md (R37).
+/// Computes the gains at the current linearisation point: mapping.md (R37).
 bool find_gains(const MotionNoise& within, Work& work) {
   const Expected& expected = work.expected;
   work.by_start = work.at_start * expected.by_start.transpose();
@@ -172,7 +173,7 @@ bool find_gains(const MotionNoise& within, Work& work) {
   return true;
 }
 
-/// Iterates to the optimum of reading and prediction; returns false without a solution.
+/// Iterates to the optimum of reading and prediction. Returns false if there is no solution.
 [[gnu::noinline]] bool settle(const OdometerReading& reading, const Sweep& sweep, const MotionNoise& within,
                               Work& work) {
   for (int iteration = 0; iteration < kIterations; ++iteration) {
@@ -190,19 +191,19 @@ bool find_gains(const MotionNoise& within, Work& work) {
   return true;
 }
 
-/// Applies the update, and the effect of the update on the boundary's errors: mapping.md (R38).
+/// Applies the update, and its effect on the errors at the boundary: mapping.md (R38).
 [[gnu::noinline]] void move(Work& work, Prediction& prediction) {
   Registration::Vector moved = work.offsets.start;
   u::segment(moved, u::motion) += work.offsets.noise;
   prediction.prior.mean.add(moved);
-  work.by_start.topRows<kMotion>() += work.by_noise;  // from here on, of the sum
+  work.by_start.topRows<kMotion>() += work.by_noise;  // from here on, the gain of the sum
   const Rows<kUnknowns> by_last = work.expected.by_start * prediction.by_last;
   prediction.by_last.noalias() -= work.by_start * by_last;
   work.left.setIdentity();
   work.left.noalias() -= work.by_start * work.expected.by_start;
 }
 
-/// Adds the noise within the sweep, reduced by the gains, and the noise of the reading: mapping.md (R38).
+/// Adds the noise within the sweep, which the gains reduce, and the noise of the reading: mapping.md (R38).
 [[gnu::noinline]] void add_noise(const MotionNoise& within, Work& work, Prediction& prediction) {
   const Gain<kUnknowns>& K = work.by_start;
   Eigen::Matrix<double, kUnknowns, kMotion> left = -K * work.expected.by_noise;
@@ -221,9 +222,9 @@ void weigh_reading(const OdometerReading& reading, const SweepBoundary& boundary
   const Sweep sweep(prediction.prior.mean, window);
   if (!holds(sweep, reading)) return;
   const auto work = std::make_unique<Work>();
-  // the update is weighted by the covariance C, like the registration: mapping.md section 6
+  // the gains follow from the covariance C, as in the registration: mapping.md section 6
   sandwich(prediction.by_last, boundary.state_estimate.weight, work->at_start);
-  Matrix& before = work->before;  // noise at the start: of the deficit, and of earlier saturation
+  Matrix& before = work->before;  // noise at the start: saturation deficit, earlier saturation
   before = prediction.noise;
   u::block(before, u::motion) -= within;
   work->at_start += before;

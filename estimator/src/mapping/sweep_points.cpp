@@ -18,7 +18,7 @@ Status SweepPoints::select(const Params& params, std::span<const LidarPoint> ret
   chosen_.clear();
   counts = {found.used, 0, found.rings_differ};
   if (Status status = check_selection(span_ns, returns, found); !status.ok()) return status;
-  // neighbours are on one ring, so a device without ring numbers has no neighbours
+  // Neighbours are on one ring. Without ring numbers, a point has no neighbours.
   if (found.rings_differ) counts.lone = lone_returns_.drop(noise_, all_);
   if (all_.empty()) return {Trouble::too_few, "points", 0.0, 1.0};
   return {};

@@ -15,10 +15,11 @@ namespace tumble {
 namespace {
 
 constexpr double kLeast = 0.02, kScaleDeviations = 5.0;
-// Duration of a span. The mapper's prior comes from the IMU and hides scale errors over short spans. Ranges that are 10
-// % too long give a scale of 1.02 to 1.03 over 0.1 s, and 1.08 over 0.4 s. Correct ranges give 0.998 to 1.006.
+// Duration of a span over which velocities are compared. Over short spans, the mapper's prior from the IMU hides scale
+// errors. If ranges are 10 % too long, the estimated scale is 1.02 to 1.03 over 0.1 s, and 1.08 over 0.4 s. For correct
+// ranges, the estimated scale is 0.998 to 1.006.
 constexpr double kSpan_s = 0.4;
-constexpr double kChange_m_s = 0.5;  // smaller changes of velocity are dominated by noise
+constexpr double kChange_m_s = 0.5;  // minimum change of velocity; noise dominates smaller changes
 constexpr std::size_t kChangesMin = 5, kChangesMax = 1000;
 constexpr std::size_t kSpanMax = 64;  // maximum number of buffered sweeps
 constexpr int kIterations = 10;
@@ -28,7 +29,7 @@ constexpr double kHuber = 1.5, kPerMedian = 1.4826;  // standard deviations; per
 
 using Change = SweepScaleWatch::Change;
 
-/// Integrals of the IMU along the run's attitudes.
+/// Integrals of the specific force along the attitudes of the run.
 class ImuMotion {
  public:
   template <class Sweeps>
@@ -38,8 +39,8 @@ class ImuMotion {
       attitudes_.insert(attitudes_.end(), sweep.trajectory.begin(), sweep.trajectory.end());
   }
 
-  /// Returns the mean velocity from `middle_ns` to `to_ns` minus the mean velocity from `from_ns` to `middle_ns`. The
-  /// result is empty if a force is saturated or in a gap.
+  /// Returns the mean velocity from `middle_ns` to `to_ns`, minus the mean velocity from `from_ns` to `middle_ns`. If a
+  /// force is saturated or missing in this time, the result is empty.
   std::optional<Eigen::Vector3d> change(TimeNs from_ns, TimeNs middle_ns, TimeNs to_ns) const {
     if (attitudes_.empty()) return std::nullopt;
     const auto later = [](const ImuSample& sample, TimeNs time_ns) { return sample.time_ns <= time_ns; };
@@ -76,7 +77,7 @@ class ImuMotion {
   std::vector<PoseState> attitudes_;
 };
 
-/// Returns whether surfaces constrain the sweep in some direction.
+/// Returns whether surfaces constrain the sweep in at least one direction.
 bool is_placed(const SweepReport& sweep) {
   return sweep.verdict == SweepVerdict::registered || sweep.verdict == SweepVerdict::degenerate;
 }
@@ -89,8 +90,8 @@ std::size_t sweeps_in(double span_s, const Sweeps& sweeps) {
   return static_cast<std::size_t>(std::clamp(std::round(count), 1.0, static_cast<double>(sweeps.size())));
 }
 
-/// Returns the change of velocity over the two spans that end with sweep `last`. The result is empty if the change is
-/// unknown or too small.
+/// Returns the change of velocity between the two spans before the end of sweep `last`. If the change is unknown or too
+/// small, the result is empty.
 template <class Sweeps>
 std::optional<Change> change_until(std::size_t last, std::size_t span, const Sweeps& sweeps,
                                    const ImuMotion& imu_motion) {
@@ -163,7 +164,7 @@ SweepScaleWatch::SweepScaleWatch(double gravity_m_s2, std::size_t samples_max)
 }
 
 void SweepScaleWatch::add(const ImuSample& sample) {
-  if (samples_.size() >= samples_max_) {  // the lidar is silent
+  if (samples_.size() >= samples_max_) {  // the lidar provides no sweeps
     samples_.clear();
     sweeps_.clear();
   }

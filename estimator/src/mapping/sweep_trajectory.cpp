@@ -12,8 +12,8 @@ namespace tumble {
 
 namespace {
 
-/// Returns the largest standard deviation of each axis among the segment's samples in which the axis was clipped. Later
-/// samples are not included.
+/// Returns the largest standard deviation of each axis over the samples of the segment in which the axis was clipped.
+/// The function ignores later samples.
 Eigen::Vector3d least_known(std::span<const MotionSample> samples, TimeNs end_ns) {
   Eigen::Vector3d sigma = Eigen::Vector3d::Zero();
   for (const MotionSample& sample : samples) {
@@ -25,20 +25,21 @@ Eigen::Vector3d least_known(std::span<const MotionSample> samples, TimeNs end_ns
   return sigma;
 }
 
-/// Returns the signed factors s_j of the saturation deficit for a sample, in proportion to the sample's uncertainty.
-/// mapping.md (R8).
+/// Returns the signed factors s_j of the saturation deficit for a sample: mapping.md (R8). The factors are proportional
+/// to the standard deviation of the sample.
 Eigen::Vector3d signed_shares(const MotionSample& sample, const Eigen::Vector3d& least_known_rad_s) {
   Eigen::Vector3d share = Eigen::Vector3d::Zero();
   for (int axis = 0; axis < 3; ++axis) {
     if (!(sample.clipped_axes >> axis & 1)) continue;
     share[axis] = least_known_rad_s[axis] > 0.0 ? sample.rate_sigma_rad_s[axis] / least_known_rad_s[axis] : 1.0;
-    // a saturated rate is larger in magnitude; a gap's error has no known sign
+    // A saturated rate has a larger true magnitude. The error in a gap has no known sign.
     if (sample.w_WI_I_rad_s[axis] < 0.0 && !sample.bridges_gap) share[axis] = -share[axis];
   }
   return share;
 }
 
-/// Returns the weights of the knots at a fraction of the segment: linear between neighbours, mapping.md (R7).
+/// Returns the weights of the deficit's knots at a fraction of the segment. The deficit is linear between neighbouring
+/// knots: mapping.md (R7).
 Eigen::Matrix<double, SweepTrajectory::kKnots, 1> knot_weights(double share) {
   Eigen::Matrix<double, SweepTrajectory::kKnots, 1> weights;
   const double place = std::clamp(share, 0.0, 1.0) * (SweepTrajectory::kKnots - 1);
@@ -46,12 +47,12 @@ Eigen::Matrix<double, SweepTrajectory::kKnots, 1> knot_weights(double share) {
   return weights;
 }
 
-/// Returns so3::exp(rate_rad_s * s), by its series, exact to rounding. The function is called for each point of a
-/// sweep, with small angles.
+/// Returns so3::exp(rate_rad_s * s) by its power series, exact to rounding. The series saves time, because each point
+/// of a sweep needs this rotation and its angle is small.
 Eigen::Quaterniond rotated_by(const Eigen::Vector3d& rate_rad_s, double s) {
   const double angle2 = s * s * rate_rad_s.squaredNorm();
   if (!(angle2 <= rotation_series::kAngle2_rad2)) return so3::exp(rate_rad_s * s);
-  const double h = 0.25 * angle2;  // half of the angle, squared
+  const double h = 0.25 * angle2;  // square of half of the angle
   double cosine = 1.0, sinc = 1.0;
   for (const auto& [of_cosine, of_sinc] : rotation_series::kRatios) {
     cosine = 1.0 - (h * of_cosine) * cosine;
@@ -85,7 +86,7 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
     return {Trouble::too_few, "imu time_ns", samples.empty() ? 0.0 : double(samples.back().time_ns), double(end_ns)};
   }
   if (samples.front().from_ns > start.time_ns) {
-    // the gap is in seconds, as in every gap error
+    // the status reports the gap in seconds, like every gap
     return {Trouble::gap, "imu window start", seconds(samples.front().from_ns - start.time_ns), 0.0};
   }
 
@@ -97,7 +98,7 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
   for (const MotionSample& sample : samples) {
     const TimeNs from = std::max(sample.from_ns, start.time_ns);
     const TimeNs to = std::min(sample.time_ns, end_ns);
-    // a segment of zero length still gets one interval, so that it can be evaluated
+    // a segment of zero length still gets one interval, so that the trajectory can be evaluated
     if (to < from || (to == from && !(end_ns == start.time_ns && intervals_.empty()))) continue;
     const double dt = seconds(to - from);
     const Eigen::Vector3d share = signed_shares(sample, sigma);
@@ -107,7 +108,7 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
     now.length_s = dt;
     now.deficit_share = share;
     now.knot_weight = knot_weights(duration_s_ > 0.0 ? (now.start_s + 0.5 * dt) / duration_s_ : 0.0);
-    // mapping.md (R7), (R5), (R4), (R6)
+    // rate with saturation deficit, and integration over the interval: mapping.md (R7), (R5), (R4), (R6)
     now.w_I = sample.w_WI_I_rad_s + share.cwiseProduct(deficit_rad_s * now.knot_weight);
     const Eigen::Matrix3d R = now.q_WI.toRotationMatrix();
     const Eigen::Matrix3d mean_rotation = R * so3::left_jacobian(now.w_I * dt);
@@ -119,7 +120,7 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
     if (clipped_axes_ == 0) continue;
     now.deficit_a = -so3::hat(now.a_W) * now.deficit_attitude;
     next.deficit_attitude = now.deficit_attitude + gained_by_deficit(now, dt);
-    // the force rotates with the mean attitude error of the interval, mapping.md (R10)
+    // the mean attitude error of the interval rotates the force: mapping.md (R10)
     const ByDeficit turn = -so3::hat(now.a_W) * (0.5 * (now.deficit_attitude + next.deficit_attitude));
     next.deficit_v = now.deficit_v + turn * dt;
     next.deficit_p = now.deficit_p + now.deficit_v * dt + turn * (0.5 * dt * dt);
@@ -136,7 +137,7 @@ const SweepTrajectory::Interval& SweepTrajectory::interval_at(double t_s, std::s
   return intervals_[i];
 }
 
-/// Evaluates mapping.md (R2), (R4), (R6) within an interval.
+/// Evaluates attitude, velocity and position within an interval: mapping.md (R2), (R4), (R6).
 SweepTrajectory::Instant SweepTrajectory::at(double t_s, std::size_t& hint) const {
   const double t = std::clamp(t_s, -kBeyond_s, duration_s_ + kBeyond_s);
   const Interval& now = interval_at(t, hint);
@@ -155,8 +156,8 @@ SweepTrajectory::Instant SweepTrajectory::at(double t_s, const Eigen::Vector3d& 
   return {now.q_WI * turned, now.preintegrated_p + s * now.preintegrated_v + (0.5 * s * s) * now.a_W};
 }
 
-/// Returns the attitude change by the saturation deficit up to `s` seconds into an interval, per unit of each knot's
-/// axes: mapping.md (R9).
+/// Returns the derivative of the attitude by the knots of the saturation deficit, `s` seconds into an interval:
+/// mapping.md (R9).
 SweepTrajectory::ByDeficit SweepTrajectory::gained_by_deficit(const Interval& now, double s) {
   if (now.deficit_share.isZero(0.0)) return ByDeficit::Zero();
   const Eigen::Matrix3d gained =
@@ -166,7 +167,7 @@ SweepTrajectory::ByDeficit SweepTrajectory::gained_by_deficit(const Interval& no
   return out;
 }
 
-/// Evaluates mapping.md (R9), (R10) within an interval.
+/// Returns the derivatives of attitude, velocity and position by the saturation deficit: mapping.md (R9), (R10).
 SweepTrajectory::DeficitDerivative SweepTrajectory::deficit_derivative(double t_s, std::size_t& hint) const {
   const double t = std::clamp(t_s, 0.0, duration_s_);
   const Interval& now = interval_at(t, hint);
@@ -194,7 +195,7 @@ MotionState SweepTrajectory::state(double t_s) const {
   return state;
 }
 
-/// mapping.md (R11).
+/// Returns the transition matrix from the start of the segment: mapping.md (R11).
 SweepTrajectory::Transition SweepTrajectory::transition(double t_s) const {
   const double t = std::clamp(t_s, 0.0, duration_s_);
   std::size_t hint = 0;

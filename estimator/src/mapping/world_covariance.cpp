@@ -52,15 +52,16 @@ Pose WorldCovariance::in_world(const Registration::Matrix& joint, const Eigen::V
   return P;
 }
 
-/// mapping.md (R61).
+/// Adds the drift of a sweep in its weakest direction: mapping.md (R61).
 void WorldCovariance::add_drift(double weakest_sigma_m, const Eigen::Matrix<double, 6, 1>& weakest_direction) {
   const double sigma_m = params_.drift_share * std::min(weakest_sigma_m, params_.drift_sigma_max_m);
   const Eigen::Vector3d direction = weakest_direction.head<3>();
   drift_m2_ += (sigma_m * sigma_m) * direction * direction.transpose();
 }
 
-/// Adds the error of a sweep to the map, by the lidar's pose in the middle of the sweep: mapping.md (R59), (R60). An
-/// error of the mounting is not an error of the map. A sweep's pose is less certain at start and end than on average.
+/// Adds the error of a sweep to the map error, at the lidar's pose in the middle of the sweep: mapping.md (R59), (R60).
+/// The pose is more uncertain at the start and end of a sweep than in its middle. An error of the mounting is not an
+/// error of the map.
 void WorldCovariance::add_insertion(double inserted_share, const SweepTrajectory& trajectory,
                                     const Registration::Matrix& errors, const Eigen::Vector3d& p_IL_m) {
   const double middle_s = 0.5 * trajectory.duration_s();

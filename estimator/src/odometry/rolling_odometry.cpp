@@ -12,10 +12,10 @@ namespace tumble {
 
 namespace {
 
-constexpr std::size_t kRecoveringUnits = 3;  // number of IMUs needed to recover a rate beyond the range
+constexpr std::size_t kRecoveringUnits = 3;  // minimum number of IMUs for recovering a rate beyond the range
 constexpr double kRecoveredSigma_rad_s = 1.0;
-constexpr double kUnknownRadiusShare = 0.05;  // prior of a radius that a known distance determines
-// Prior standard deviations of an IMU without a data sheet, mounted anywhere in the sphere.
+constexpr double kUnknownRadiusShare = 0.05;  // prior of an unknown radius, if a known distance determines the radius
+// Prior standard deviations of an IMU without a data sheet at an arbitrary position in the sphere.
 constexpr double kUnknownGyroBias_rad_s = 5e-3, kUnknownAccelBias_m_s2 = 0.4, kUnknownScale = 0.01,
                  kUnknownDelay_s = 5e-3, kUnknownLeverArm_m = 0.05;
 constexpr double kLevelInclinePerS = 1e-9;  // rate at which slopes begin on a level floor
@@ -42,7 +42,7 @@ constexpr std::array<std::array<const char*, 6>, ImuMerge::kImus> kFrozenFields 
        "seconds for which unit 4's accel y repeats one reading",
        "seconds for which unit 4's accel z repeats one reading"}}}};
 
-// Checks the radius of RollingOdometry, because the smoother's radius has no default.
+// Checks the radius of RollingOdometry here, because the radius of the smoother has no default.
 void require_stated(RollingOdometry::Params params) {
   params.expert.rolling.filter.radius_m = params.radius_m;
   require_fields(params);
@@ -65,7 +65,7 @@ ImuMerge::Params merge_params(const RollingOdometry::Params& params) {
   return out;
 }
 
-/// `units` IMUs are in use; `lever_arm_m` is the position of the merged IMU.
+/// Returns the parameters of the smoother for `units` IMUs. `lever_arm_m` is the position of the merged IMU.
 RollingSmoother::Params rolling_params(const RollingOdometry::Params& params, const ImuMerge::Params& merged,
                                        std::size_t units, const Eigen::Vector3d& lever_arm_m) {
   RollingSmoother::Params out = params.expert.rolling;
@@ -114,7 +114,7 @@ ImuSample at_time(TimeNs time_ns, ImuSample sample) {
   return sample;
 }
 
-/// Sets a sample to that of a unit without readings.
+/// Marks the sample of a unit as absent.
 void leave_out(ImuSample& sample) {
   sample.angular_velocity_rad_s.setConstant(std::numeric_limits<double>::quiet_NaN());
 }
@@ -246,7 +246,7 @@ Status RollingOdometry::add_imu(std::size_t unit, const ImuSample& sample) {
   return add_aligned(false);
 }
 
-/// Adds the readings of all complete common times; `ended` states that no further readings follow.
+/// Adds the readings at all common times that are complete. If `ended`, no further readings follow.
 Status RollingOdometry::add_aligned(bool ended) {
   Status first;
   UnitAlignment::Readings readings;
@@ -257,7 +257,7 @@ Status RollingOdometry::add_aligned(bool ended) {
   return first;
 }
 
-/// Stores a reading until finish(). A reading that is not finite is ignored.
+/// Stores a reading until finish(). Readings that are not finite are ignored.
 Status RollingOdometry::record(std::size_t unit, ImuSample sample) {
   if (!check_sample(sample).ok()) return {};
   std::vector<ImuSample>& samples = recorded_[unit];
@@ -267,7 +267,8 @@ Status RollingOdometry::record(std::size_t unit, ImuSample sample) {
   return {};
 }
 
-/// Adds the delayed samples, without the readings that the next samples do not confirm.
+/// Adds the delayed samples, except for readings that the outlier filter rejects after comparison with the next
+/// samples.
 Status RollingOdometry::add_held(std::span<const ImuSample> next) {
   if (!held_) return {};
   for (std::size_t k = 0; k < next.size(); ++k) {
@@ -290,12 +291,12 @@ Status RollingOdometry::add_inliers(std::span<const ImuSample> samples) {
   UnitRails::Samples flagged;
   rails_.flag(samples, rails_state_, flagged);
   flagged.front().time_ns = time_ns;
-  *merged_state_ = *merge_state_;  // all parts accept the sample, or none
+  *merged_state_ = *merge_state_;  // either all parts accept the sample or none
   Frozen frozen = frozen_;
   for (std::size_t k = 0; k < samples.size(); ++k) watches_[k].step(samples[k], frozen[k]);
   const std::span<ImuSample> judged = std::span(flagged).first(samples.size());
   if (Status status = exclude_frozen(frozen, judged); !status.ok()) {
-    frozen_ = frozen;  // for health()
+    frozen_ = frozen;  // health() reports the frozen axes
     return status;
   }
   if (Status status = merge_.step(judged, *merged_state_, merged); !status.ok()) return status;
@@ -324,7 +325,7 @@ std::size_t RollingOdometry::rejected_readings() const {
   return out;
 }
 
-/// Sets the readings of frozen units to NaN. Returns an error if no unit remains.
+/// Sets the readings of frozen units to NaN. If no unit remains, returns an error.
 Status RollingOdometry::exclude_frozen(const Frozen& states, std::span<ImuSample> samples) const {
   bool any = false, received = false;
   for (std::size_t k = 0; k < samples.size(); ++k) {

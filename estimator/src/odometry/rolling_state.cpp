@@ -62,7 +62,7 @@ void RollingOdometry::members(Self& s, Visitor& visit) {
   visit.with_nan("held", s.held_);
   visit.scratch(s.watches_);
   visit("frozen", s.frozen_);
-  visit.scratch(s.gravity_);  // of the parameters
+  visit.scratch(s.gravity_);  // derived from the parameters
   visit("gravity", s.gravity_state_);
   if constexpr (std::is_const_v<Self>) {
     const std::vector<RollingEstimate> waiting(s.done_.begin() + static_cast<std::ptrdiff_t>(s.taken_), s.done_.end());
@@ -94,7 +94,7 @@ Status RollingOdometry::load(std::span<const std::byte> bytes) {
 }
 
 Status RollingOdometry::saved_params(std::span<const std::byte> bytes, Params& params) {
-  Params read;  // two parameters have no default
+  Params read;  // two of the parameters have no default
   read.radius_m = 1.0;
   read.units.emplace_back();
   const RollingOdometry any(read);

@@ -13,10 +13,10 @@ namespace tumble {
 
 namespace {
 
-// Standard deviation of gravity's horizontal part, after levelling in a world that is not exactly level.
+// Standard deviation of the horizontal part of gravity after levelling, if the world is not exactly level.
 constexpr double kGravitySigma_m_s2 = 0.03;
 
-/// Returns the points fired at `from_ns` or later, with times relative to `from_ns`.
+/// Returns the points fired at `from_ns` or later. The times of the points are relative to `from_ns`.
 std::vector<LidarPoint> points_from(TimeNs from_ns, TimeNs start_ns, std::span<const LidarPoint> points) {
   std::vector<LidarPoint> out;
   out.reserve(points.size());
@@ -29,7 +29,7 @@ std::vector<LidarPoint> points_from(TimeNs from_ns, TimeNs start_ns, std::span<c
   return out;
 }
 
-/// Drops the sweeps that ended by `time_ns` and returns their number.
+/// Removes the sweeps that ended at or before `time_ns`, and returns their number.
 std::size_t drop_until(TimeNs time_ns, std::deque<WaitingSweep>& sweeps) {
   std::size_t dropped = 0;
   for (; !sweeps.empty() && sweeps.front().end_ns <= time_ns; sweeps.pop_front()) ++dropped;
@@ -76,7 +76,7 @@ LidarInertialOdometry::Params mapper_params(const TumblingOdometry::Params& para
 
 constexpr double kSilent_s = 1.0;       // silence of the lidar after which empty sweeps are inserted
 constexpr double kAhead_s = 1.0;        // maximum time by which a sweep may end after the newest sample
-constexpr double kSweepsMax_hz = 20.0;  // highest sweep rate of lidars: determines how many sweeps wait for the lag
+constexpr double kSweepsMax_hz = 20.0;  // maximum sweep rate of a lidar; limits how many sweeps wait for the lag
 
 }  // namespace
 
@@ -223,8 +223,8 @@ void TumblingOdometry::register_sweep(TimeNs start_ns, TimeNs end_ns, std::vecto
   second_pass_.advance(pass_);
 }
 
-/// Returns whether the sweep would be more than lag_s old at the sample after the newest sample. In addition, the whole
-/// lag except one period must follow the covering sample, which is not the case after a gap.
+/// Returns whether the sweep would be older than lag_s when the next sample arrives. In addition, samples for the lag
+/// minus one period must follow the sample that covers the sweep's end. After a gap, these samples are missing.
 bool TumblingOdometry::is_due(TimeNs end_ns) const {
   const std::optional<TimeNs> covering_ns = pass_.covering_ns(end_ns);
   if (!covering_ns) return false;
@@ -236,7 +236,8 @@ bool TumblingOdometry::is_due(TimeNs end_ns) const {
 void TumblingOdometry::register_covered() {
   while (!waiting_.empty()) {
     const TimeNs end_ns = waiting_.front().end_ns;
-    // the covering sample ends up to one period later, so its rate is reported one period earlier
+    // The sample that covers the sweep's end may end up to one period later. Its rate is therefore reported one period
+    // early.
     if (!pass_.covers(end_ns) && is_due(end_ns)) pass_.flush_until(pass_.needed_ns(end_ns));
     if (!pass_.covers(end_ns)) break;
     WaitingSweep sweep = std::move(waiting_.front());
@@ -247,7 +248,7 @@ void TumblingOdometry::register_covered() {
   if (!waiting_.empty() || !covered_ns) return;
   if (seconds(*covered_ns - *registered_ns_) > kSilent_s) {
     register_sweep(*covered_ns, *covered_ns, {});
-    if (done_.back().report.trajectory.empty()) done_.pop_back();  // no sweep has started the map
+    if (done_.back().report.trajectory.empty()) done_.pop_back();  // no sweep has started the map yet
     sweep_end_ns_ = *covered_ns;
   }
 }

@@ -7,7 +7,7 @@ namespace tumble {
 
 namespace {
 
-constexpr int kReadings = 512;               // stored readings per triad: some seconds at the extremes
+constexpr int kReadings = 512;               // stored readings per triad: some seconds near the extremes
 constexpr double kStatedMax_rad_s = 1000.0;  // RailDetector ignores larger ranges
 
 RailWatch::Params watch_params(const ImuSheet& sheet) {
