@@ -21,9 +21,9 @@ constexpr int kStateSize = 12, kRate = 0, kAcceleration = 3, kField = 6, kIron =
 using Vector = Eigen::Matrix<double, kStateSize, 1>;
 using Matrix = Eigen::Matrix<double, kStateSize, kStateSize>;
 
-// The unit of the field is 10 uT, so that the covariance is well scaled.
+// The filter measures the magnetic field in units of 10 uT, so that the covariance is well scaled.
 constexpr double kUnitT = 1e-5;
-// Largest factor by which a disturbance increases the variance.
+// Largest factor by which a magnetic disturbance increases the variance of a reading.
 constexpr double kDisturbedMax = 1e4;
 
 struct FieldFilter {
@@ -32,8 +32,8 @@ struct FieldFilter {
 
   void predict(double dt_s, double jerk_psd, double field_psd) {
     const Vector3d w = x.segment<3>(kRate), alpha = x.segment<3>(kAcceleration), b = x.segment<3>(kField);
-    // Readings are means over averaging windows, so between the centres of two windows the body rotates by the mean of
-    // the two rates.
+    // Each reading is a mean over an averaging window. Between the centres of two windows, the body rotates by the mean
+    // of the two rates.
     const Matrix3d turn = so3::exp(-dt_s * (w + 0.5 * dt_s * alpha)).toRotationMatrix();
     const Vector3d turned = turn * b;
     Matrix F = Matrix::Identity(), Q = Matrix::Zero();
@@ -63,7 +63,7 @@ struct FieldFilter {
   }
 };
 
-// Initialises the state from the first reading, which only determines the sum of field and hard iron.
+// Initialises the state from the first reading, which only determines the sum of Earth field and hard iron.
 void start_field(const Vector3d& reading, double noise, double iron, FieldFilter& filter) {
   filter.x.segment<3>(kField) = reading;
   filter.P.block<3, 3>(kField, kField).diagonal().setConstant(noise * noise + iron * iron);
@@ -117,7 +117,7 @@ Status MagnetometerRate::estimate(std::span<const ImuSample> samples, std::span<
     }
     for (int j = 0; j < 3; ++j) {
       double low = -params_.rate_max_rad_s, high = params_.rate_max_rad_s;
-      // a clipped reading still limits the rate on one side
+      // A reading at the saturation limit gives a one-sided bound of the true rate.
       if ((clippings[k].gyro >> j & 1) != 0 && reading[j] > 0.0) low = std::min(reading[j], high);
       if ((clippings[k].gyro >> j & 1) != 0 && reading[j] < 0.0) high = std::max(reading[j], low);
       filter.x[j] = std::clamp(filter.x[j], low, high);

@@ -13,27 +13,28 @@
 
 namespace tumble::baselines {
 
-/// Estimates angular rates from the rotation of the magnetic field: an extended Kalman filter over gyro and
+/// Estimates angular rates from the rotation of the magnetic field, by an extended Kalman filter over gyro and
 /// magnetometer.
 ///
-/// - State: rate, angular acceleration (white jerk), the field in IMU axes with b' = -w x b, and the sensor's hard
-///   iron.
-/// - Measurements: unclipped gyro axes and the magnetometer.
-/// - Field changes along the path (nearby iron) are process noise. The process noise increases if the measured field
-///   strength differs from the Earth's, as in the adaptive part of Tan's method.
-/// - Designed for bodies outdoors that spin fast about an axis perpendicular to the magnetic field (shells, balls). The
-///   rate about the field direction is not observable; the filter estimates this rate only by assuming smoothness. The
-///   filter mistakes the field of nearby steel for rotation.
-/// - Not modelled: bandwidth and delay of the magnetometer, soft iron, forces, and the loss of field strength by
-///   averaging over a window ((w dt)^2 / 24, 0.1 % at 15 rad/s and 100 Hz).
+/// The state contains the rate, the angular acceleration (white jerk), the field in IMU axes with b' = -w x b, and the
+/// sensor's hard iron. The measurements are the unclipped gyro axes and the magnetometer. Field changes along the path
+/// (nearby iron) are process noise. The process noise increases if the measured field strength differs from the
+/// Earth's, as in the adaptive part of Tan's method.
+///
+/// The method is designed for bodies outdoors that spin fast about an axis perpendicular to the magnetic field (shells,
+/// balls). The rate about the field direction is not observable; the filter estimates this rate only by assuming
+/// smoothness. The filter mistakes the field of nearby steel for rotation.
+///
+/// Bandwidth and delay of the magnetometer, soft iron and forces are not modelled. The filter also ignores that
+/// averaging over a window reduces the field strength by the fraction (w dt)^2 / 24, which is 0.1 % at 15 rad/s and 100
+/// Hz.
 ///
 /// Without a magnetometer, the filter bridges clipped readings by assuming a smooth rate.
 class MagnetometerRate {
  public:
   struct Params {
     RailDetector::Params rails = {};
-    bool tilted_rails = false;             ///< also detects tilted saturation planes (ClippingFinder); the published
-                                           ///< method only checks single axes
+    bool tilted_rails = false;             ///< also detects tilted rails (ClippingFinder)
     double gyro_noise_density = 5.236e-4;  ///< [rad/s/sqrt(Hz)]
     double field_noise_t = 5e-8;           ///< standard deviation of one reading [T]
     double hard_iron_t = 1e-6;             ///< standard deviation of the sensor's offset [T]
@@ -41,7 +42,7 @@ class MagnetometerRate {
     double disturbance_t_sqrt_s = 1e-6;    ///< change of the field along the path [T/sqrt(s)]
     double disturbed_share = 0.02;         ///< relative deviation of the field strength that doubles the noise power
     double jerk_psd = 1e7;                 ///< density of the white angular jerk [rad^2/s^5]
-    double rate_max_rad_s = 50.0;          ///< bound of the result
+    double rate_max_rad_s = 50.0;          ///< largest rate about one axis in the result
     double gap_max_s = 1.0;
 
     /// Visits every parameter with its name, unit and limits.
@@ -73,9 +74,9 @@ class MagnetometerRate {
   /// Throws InvalidParams if a parameter is outside its limits.
   explicit MagnetometerRate(const Params& params);
 
-  /// Computes one RateState per sample. `field_I_t` contains one magnetometer reading per sample, NaN if missing; the
-  /// span is empty if there is no magnetometer. On error, `out` is unchanged: `empty`, `too_few` (less than two
-  /// samples, or another number of fields), `non_finite`, `time_order`, `gap`. O(N).
+  /// Computes one RateState per sample in O(N). `field_I_t` contains one magnetometer reading per sample, NaN if
+  /// missing; the span is empty if there is no magnetometer. On error, `out` is unchanged. Errors: `empty`, `too_few`
+  /// (fewer than two samples, or a different number of magnetometer readings), `non_finite`, `time_order`, `gap`.
   Status estimate(std::span<const ImuSample> samples, std::span<const Eigen::Vector3d> field_I_t,
                   std::vector<RateState>& out) const;
 

@@ -45,7 +45,7 @@ Status PointwiseFilter::add_imu(const ImuSample& sample, unsigned clipped) {
   return {};
 }
 
-/// Predicts the state to a time in one step, with random walks of rate and force.
+/// Predicts the state at time `to_ns` in one step, with random walks of rate and force.
 void PointwiseFilter::advance(TimeNs to_ns) {
   const double dt = seconds(to_ns - time_ns_);
   if (!(dt > 0.0)) return;
@@ -67,8 +67,8 @@ void PointwiseFilter::advance(TimeNs to_ns) {
   P_.diagonal().segment<3>(12).array() += dt * params_.force_walk_m_s2_sqrt_s * params_.force_walk_m_s2_sqrt_s;
 }
 
-/// Processes one scalar measurement: residual = measured - expected; `row` is the derivative of the measurement with
-/// respect to the errors.
+/// Updates the state with one scalar measurement: residual = measured - expected. `row` is the derivative of the
+/// measurement with respect to the error state.
 void PointwiseFilter::update(const Vector& row, double residual, double variance) {
   if (!(row.dot(P_ * row) + variance > 0.0)) return;
   const Vector step = scalar_update(row, residual, variance, P_);
@@ -93,7 +93,7 @@ void PointwiseFilter::take(const Reading& reading) {
   }
 }
 
-/// mapping.md (R16), (R17): the first two equations, at a single instant.
+/// Implements the first two equations of (R16) and (R17) in mapping.md at a single instant.
 bool PointwiseFilter::take(const SweepPoint& point) {
   const Eigen::Vector3d lever = q_WI_ * point.x_I_m.cast<double>();
   const Eigen::Vector3d position = p_m_ + lever;
@@ -123,7 +123,7 @@ PoseState PointwiseFilter::pose() const {
   return pose;
 }
 
-/// Processes the sweep in order of time: points, IMU readings, and output poses.
+/// Processes points, IMU readings and output poses of the sweep in order of time.
 void PointwiseFilter::take_points(TimeNs start_ns, TimeNs end_ns, LidarInertialOdometry::SweepReport& report) {
   std::vector<char> updates(points_.size(), 0);
   for (const std::uint32_t index : chosen_) updates[index] = 1;

@@ -19,11 +19,11 @@ namespace tumble::baselines {
 
 /// Estimates motion and map from lidar and IMU with a filter that processes each lidar point at the point's own time
 /// (the method of Point-LIO, He et al., 2023). Angular velocity and specific force are random walks that the IMU
-/// measures; each point measures its distance to a plane of the map. Readings of clipped axes are ignored.
+/// measures. Each point measures its distance to a plane of the map. Readings of clipped axes are ignored.
 ///
 /// The error state contains position, attitude and velocity in W, and angular velocity and specific force in IMU axes.
-/// The filter applies each IMU reading at the middle of its averaging window. Not modelled: biases (the caller
-/// subtracts known biases), gravity, mounting and clock offset as states, iterated updates.
+/// The filter applies each IMU reading at the middle of its averaging window. The caller subtracts known biases.
+/// Biases, gravity, mounting and clock offset are not part of the state, and updates are not iterated.
 class PointwiseFilter {
  public:
   struct Params {
@@ -32,7 +32,7 @@ class PointwiseFilter {
     double range_min_m = 0.3;
     double range_max_m = 100.0;
     Eigen::AlignedBox3d own_body_L;  ///< returns inside belong to the robot; an empty box keeps all
-    double sweep_voxel_m = 0.25;     ///< one original point per voxel of a sweep updates the state
+    double sweep_voxel_m = 0.25;     ///< one point per voxel of a sweep updates the state
     double map_voxel_m = 0.5;
     double map_spacing_m = 0.1;
     int neighbours = 8;  ///< for the plane fit
@@ -86,7 +86,7 @@ class PointwiseFilter {
   /// accelerometer axis j. Errors: `time_order`, `non_finite`.
   Status add_imu(const ImuSample& sample, unsigned clipped);
 
-  /// Processes a sweep; the IMU samples up to the end of the sweep must be added before. Errors as in
+  /// Processes a sweep. The IMU samples up to the end of the sweep must be added before. The errors are those of
   /// LidarInertialOdometry::add_sweep.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points,
                    LidarInertialOdometry::SweepReport& report);
