@@ -7,7 +7,7 @@
 
 namespace tumble::scenarios {
 
-/// Returns the saturation levels stated in the record; a range of 0 means unknown.
+/// Returns the saturation levels stated in the record. A range of 0 means unknown.
 RailDetector::Params stated_rails(const sim::ImuRecord& record);
 
 /// Returns the unmodified gyro readings, one RateState per sample, with flags for clipped axes.

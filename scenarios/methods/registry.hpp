@@ -10,11 +10,11 @@
 #include "scenarios/methods/method.hpp"
 #include "tumble/common/imu.hpp"
 
-/// Registers the methods. A new method needs a file KIND_NAME.cpp that defines `Method KIND_NAME()`, a declaration
-/// here, a line in registry.cpp, and the file's name in CMakeLists.txt.
+/// Registers the methods. A new method needs a file KIND_NAME.cpp that defines `Method KIND_NAME()`, a declaration in
+/// this file, a line in registry.cpp, and the file's name in CMakeLists.txt.
 namespace tumble::scenarios {
 
-/// Computes an estimate. `parameters` is complete and within limits; `oracle.truth` is set if the method needs the
+/// Computes an estimate. `parameters` is complete and within limits. `oracle.truth` is set if the method needs the
 /// truth.
 using RunCore = Estimate (*)(const sim::Sensors&, const sim::Values& parameters, const OracleInput& oracle);
 
@@ -64,30 +64,30 @@ Method slam_poses_autogain_fusion();
 Method slam_poses_tumble();
 Method slam_rolling_prior();
 
-/// Rate stages that the rate methods and the slam chains share. Each stage returns one RateState per sample; on error,
-/// `out` is empty.
+/// These rate stages are shared by the rate methods and the slam chains. Each stage returns one RateState per sample.
+/// On error, `out` is empty.
 Status raw_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, std::vector<RateState>& out);
 Status unclipped_rates(const sim::Sensors& sensors, const sim::Truth& truth, std::vector<RateState>& out);
 
-/// Counts the rates by their source (for example measured or estimated) in `health`.
+/// Counts the rates in `health` by their source, for example measured or estimated.
 void count_sources(std::span<const RateState> rates, std::map<std::string, double>& health);
 
-/// Motion that is known in advance, as one velocity per IMU sample.
+/// A motion that is known in advance, as one velocity per IMU sample.
 struct KnownMotion {
   struct Velocity {
     Eigen::Vector3d v_WI_I_m_s = Eigen::Vector3d::Zero();
     double sigma_m_s = 0.0;
   };
   std::vector<Velocity> velocities;
-  double gravity_m_s2 = 0.0;      ///< gravity contained in the samples, which were generated from the motion
+  double gravity_m_s2 = 0.0;      ///< gravity in the samples generated from the motion
   double correction_max_m = 1.0;  ///< registrations with a larger correction are rejected
   double correction_max_rad = 1.0;
 };
 
 /// Options of the lidar-inertial chain.
 struct SlamChain {
-  /// Estimates lidar mounting, lidar clock offset and gravity. The recording is processed twice; the second pass starts
-  /// from the calibration of the first pass.
+  /// If true, the chain estimates lidar mounting, lidar clock offset and gravity. The recording is then processed
+  /// twice. The second pass starts from the calibration of the first pass.
   bool calibration = false;
   const KnownMotion* along = nullptr;  ///< motion that generated the samples
 };
@@ -95,8 +95,7 @@ struct SlamChain {
 struct SlamStage;
 
 /// Runs the lidar-inertial chain of all registration methods: deskewing with the rates in the estimate, registration,
-/// mapping. slam_settings.hpp describes the parameters. Returns true if the run ends with a pose that is known in its
-/// map.
+/// mapping. slam_settings.hpp describes the parameters. Returns true if the run ends with a known pose in its map.
 bool run_slam_chain(const sim::Sensors& sensors, std::span<const ImuSample> samples, const SlamStage& stage,
                     const SlamChain& chain, Estimate& estimate);
 

@@ -14,8 +14,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Sample times of a record, and the jitter removed from the stamps [s]. Decreasing stamps are kept, so that the bridge
-/// rejects them.
+/// Sample times of a record, and the jitter removed from the stamps [s]. Decreasing stamps are unchanged, so that the
+/// bridge rejects them.
 struct SampleTimes {
   std::vector<std::int64_t> times_ns;
   double corrected_jitter_s = 0.0;
@@ -29,7 +29,7 @@ SampleTimes sample_times(const sim::ImuRecord& record) {
 
 void keep_rows(const std::vector<bool>& kept, sim::ImuRecord& record) {
   const auto keep = [&](auto& rows) {
-    if (rows.size() != kept.size()) return;  // the device has none
+    if (rows.size() != kept.size()) return;  // the device has no such readings
     std::size_t count = 0;
     for (std::size_t k = 0; k < rows.size(); ++k) {
       if (kept[k]) rows[count++] = rows[k];

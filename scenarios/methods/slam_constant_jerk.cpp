@@ -10,14 +10,14 @@ namespace tumble::scenarios {
 
 namespace {
 
-// Observer gains per second, from the authors' settings (Chen et al.). IV-D).
+// Observer gains per second from the authors' settings (Chen et al., section IV-D).
 constexpr double kGainPosition = 4.5;
 constexpr double kGainVelocity = 11.25;
 constexpr double kGainAttitude = 4.0;
 constexpr double kGainGyroBias = 1.0;
 constexpr double kGainAccelBias = 2.25;
 constexpr double kBiasMax = 0.5;   // bound of both biases, as in the authors' code
-constexpr double kSpanMaxS = 0.2;  // longest correction step: the gains are made for sweeps, not gaps
+constexpr double kSpanMaxS = 0.2;  // longest correction step: gains suit sweeps, not gaps
 constexpr int kPartsOfSample = 4;  // subdivisions of a sample; rate and force are linear between them
 constexpr double kJerkPriorM = 0.5;
 constexpr double kJerkPriorRad = 0.2;

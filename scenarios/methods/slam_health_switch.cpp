@@ -15,7 +15,7 @@ constexpr double kSwitchPriorM = 0.5;
 constexpr double kSwitchPriorRad = 0.3;
 constexpr double kHealthyRad = 0.05;  // rotation error with a healthy gyro
 
-/// Uses the gyro's rotation while the gyro is healthy, else repeats the last rotation; the translation has constant
+/// Uses the gyro's rotation while the gyro is healthy, else repeats the last rotation. The translation has constant
 /// velocity. The gyro counts as unhealthy in sweeps with a saturated axis or a gap in the readings.
 class HealthSwitch : public TrajectoryModel {
  public:

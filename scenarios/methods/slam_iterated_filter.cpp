@@ -10,13 +10,14 @@ namespace tumble::scenarios {
 
 namespace {
 
-// Process noise in the authors' settings: standard deviation of one gyro reading and of one accelerometer reading.
+// These standard deviations of one gyro reading and one accelerometer reading are process noise in the authors'
+// settings.
 constexpr double kGyroSigmaRadS = 0.316;
 constexpr double kAccelSigmaMS2 = 0.316;
 constexpr double kStartSigmaMS = 0.1;
 
-/// Error-state Kalman filter with iterated updates. Predicts by strapdown integration with covariance, deskews the
-/// points to the sweep's end, then updates position, attitude and velocity iteratively with all planes.
+/// Error-state Kalman filter with iterated updates. The filter predicts by strapdown integration with covariance and
+/// deskews the points to the sweep's end. It then updates position, attitude and velocity iteratively with all planes.
 class IteratedFilter : public TrajectoryModel {
  public:
   IteratedFilter(std::span<const ImuSample> samples, std::span<const RateState> rates, const StartAtRest& start,
@@ -32,7 +33,8 @@ class IteratedFilter : public TrajectoryModel {
     motion.start.time_ns = from_ns;
     motion.samples = imu_motion(samples_, rates_, bias_, from_ns, to_ns);
     motion.gravity_m_s2 = gravity_m_s2_;
-    // Propagates the covariance of the start, and the noise of each step from its time on.
+    // The prediction propagates the covariance of the start, and adds the noise of each step from the time of the step
+    // on.
     SweepTrajectory trajectory;
     if (!trajectory.build(motion.start, motion.samples, to_ns, gravity_m_s2_).ok()) return motion;
     motion.end_covariance = trajectory.state(trajectory.duration_s()).covariance;

@@ -12,13 +12,12 @@
 #include "scenarios/methods/sphere_attitude.hpp"
 #include "tumble/common/so3.hpp"
 
-/// Builds maps from a rolling sphere with the rig's registration, with rolling odometry as the prior.
+/// Builds maps of a rolling sphere with the rig's registration and rolling odometry as the prior.
 namespace tumble::scenarios {
 
 namespace {
 
-// Uncertainty of a sweep's start relative to the last sweep's end, over 0.1 s, in addition to the velocity's
-// uncertainty.
+// Uncertainty of a sweep's start relative to the last sweep's end, over 0.1 s. The velocity's uncertainty is added.
 constexpr double kPriorSigmaM = 1e-4, kPriorSigmaRad = 2e-5, kPriorSigmaMS = 1e-4, kForceSigmaShare = 2e-3;
 
 /// Returns the chain's parameters with a tight prior from rolling, because consecutive sweeps see new, unmapped areas.
@@ -29,7 +28,7 @@ const Settings<SlamParams>& prior_settings() {
     params.odometry.expert.prior.sigma_rad = kPriorSigmaRad;
     params.odometry.expert.prior.sigma_m_s = kPriorSigmaMS;
     params.odometry.expert.prior.force_share = kForceSigmaShare;
-    // the following parameters belong to the generated samples
+    // The fixed parameters belong to the generated samples.
     return slam_settings(params, {"gravity_m_s2", "correction_max_m", "correction_max_rad"});
   }();
   return all;
@@ -86,14 +85,14 @@ const Settings<AlongParams>& along_settings() {
   return all;
 }
 
-/// Position method whose poses the registration follows.
+/// Position method whose poses are the prior of the registration.
 const Method& followed() {
   static const Method method = position_tumble();
   return method;
 }
 
 /// Generates IMU readings along the poses of the position method, with little gravity. The mapper integrates the
-/// generated readings within a sweep and thus follows the rolling odometry.
+/// generated readings within a sweep, and thus the rolling odometry is its prior.
 std::vector<ImuSample> samples_along(const Estimate& poses, const sim::Sensors& sensors, std::span<const ImuSample> raw,
                                      double gravity_m_s2) {
   const Eigen::Isometry3d& T_BI = sensors.imus.front().T_BI;
@@ -141,9 +140,7 @@ std::optional<Radius> radius_by_lidar(const Estimate& rolled, const Estimate& re
     for (; k + 1 < rolled.poses.size() && rolled.poses[k].time_ns < sweep.pose.time_ns; ++k) {
       if (rolled.contacts[k] != sim::ContactLabel::grip) open = false;
     }
-    if (sweep.verdict != SweepVerdict::registered)
-      continue;  // a predicted pose is rolling itself, hence no
-                 // independent measurement
+    if (sweep.verdict != SweepVerdict::registered) continue;  // a predicted pose is no independent measurement
     const Eigen::Vector3d p_rolled = rolled.poses[k].p_WA_m;
     const Eigen::Vector3d p_registered =
         (Eigen::Translation3d(sweep.pose.p_WA_m) * sweep.pose.q_WA * T_IG).translation();
@@ -211,7 +208,7 @@ KnownMotion motion_of(const Estimate& rolled, std::span<const ImuSample> samples
   return motion;
 }
 
-/// Registers sweeps with `rolled` as the prior between two sweeps.
+/// Registers sweeps with the motion `rolled` as the prior between two sweeps.
 Estimate register_along(const Estimate& rolled, const sim::Sensors& sensors, std::span<const ImuSample> raw,
                         const sim::Values& parameters, bool loosely) {
   Estimate estimate;
@@ -221,7 +218,7 @@ Estimate register_along(const Estimate& rolled, const sim::Sensors& sensors, std
   const AlongParams params = along_settings().read(parameters);
   const std::vector<ImuSample> samples = samples_along(rolled, sensors, raw, params.gravity_m_s2);
   estimate.status = raw_rates(sensors, samples, estimate.rates);
-  // the prior already contains the gyro noise
+  // The prior already contains the gyro noise.
   for (RateState& rate : estimate.rates) rate.covariance_rad2_s2.setZero();
   const KnownMotion motion = motion_of(rolled, samples, sensors, params, loosely);
   SlamChain chain;
@@ -230,7 +227,7 @@ Estimate register_along(const Estimate& rolled, const sim::Sensors& sensors, std
   return estimate;
 }
 
-/// Runs twice: with a weak prior to estimate the radius, then with a tight prior and the estimated radius.
+/// Runs the method twice: with a weak prior to estimate the radius, then with a tight prior and the estimated radius.
 Estimate run_rolling_prior(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   Estimate estimate;
   estimate.frame = Frame::imu;

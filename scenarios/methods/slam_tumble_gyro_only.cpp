@@ -18,8 +18,8 @@ const Settings<SlamParams>& slam_tumble_gyro_only_settings() {
   return all;
 }
 
-/// Initial value for a clipped rate: `readings` times the reading, plus a fraction of the cubic's excess over the
-/// reading in the gap.
+/// Initial value for a clipped rate. The value is `readings` times the reading, plus a fraction of the excess of the
+/// cubic over the reading in the gap.
 struct Guess {
   double readings, share_of_cubic;
 };
@@ -36,7 +36,7 @@ constexpr std::array<Guess, 10> kGuesses = {{{1.0, 0.7},
                                              {1.0, 0.3},
                                              {1.0, 1.5}}};
 
-/// Interpolates each gap of each axis by a cubic; saturation levels may be tilted planes.
+/// Interpolates each gap of each axis by a cubic. Saturation levels may be tilted planes.
 Status cubic_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, std::vector<RateState>& out) {
   baselines::ClippedBaseline::Params params;
   params.tilted_rails = true;

@@ -23,8 +23,8 @@ std::vector<TimedAttitude> attitudes_of(const Estimate& estimate) {
   return out;
 }
 
-/// Returns the rotation from IMU coordinates to the coordinates of the frame, or empty if the recording has no such
-/// sensor.
+/// Returns the rotation from IMU coordinates to the coordinates of the frame. Returns empty if the recording has no
+/// sensor of this frame.
 std::optional<Eigen::Quaterniond> q_AI(Frame frame, const sim::Sensors& sensors) {
   const Eigen::Quaterniond q_BI(sensors.imus.front().T_BI.linear());
   if (frame == Frame::imu) return Eigen::Quaterniond::Identity();
@@ -51,7 +51,7 @@ std::string text_of(const TurningFit& fit, const std::string& frame) {
 std::string turning_complaint(const Estimate& estimate, const sim::Sensors& sensors) {
   if (sensors.imus.empty()) return "";
   std::vector<CandidateFrame> frames;
-  // the stated frame comes first, so that the stated frame is chosen if two frames have equal mountings
+  // The stated frame is tested first, so that it is chosen if two frames have equal mountings.
   for (const Frame frame : {estimate.frame, Frame::imu, Frame::lidar, Frame::body}) {
     const auto mounting = q_AI(frame, sensors);
     if (mounting) frames.push_back({to_string(frame), *mounting});
