@@ -33,7 +33,7 @@ constexpr const char* kAccelPlanesKey = "accelerometer_planes_m_s2";
 constexpr const char* kAccelElementsKey = "accelerometer_elements";
 // Early calibration files lack the keys of the device errors.
 constexpr const char *kErrorsKey = "device_errors", *kErrorsCovarianceKey = "device_errors_covariance";
-// Standard deviation of the change of an accelerometer's cross-axis sensitivity between runs, equal to the gyro's value.
+// Standard deviation of the change of an accelerometer's cross-axis sensitivity between runs, equal to the gyro's.
 constexpr double kSlopeDrift = 2e-3;
 // Planes with lower log-odds are not saved, because a peak of the motion can resemble a saturation plane.
 constexpr double kSureLogOdds = 10.0;

@@ -28,12 +28,11 @@ const ClippingTruth& clipping_truth(const ScoredEstimate& scored);
 struct PairedRate {
   const RateState* estimate = nullptr;         ///< points into the estimate
   std::optional<ClippingTruth::Sample> truth;  ///< empty if unknown
-  std::size_t sample = 0;  ///< index of the primary IMU's sample whose window contains the instant; valid if the truth
-                           ///< is known
+  std::size_t sample = 0;                      ///< index of the primary IMU's sample at this instant, if known
 
   /// Returns the clipped axes (bit j: axis j), or 0 if the truth is unknown.
   std::uint8_t clipped_axes() const { return truth ? truth->clipped_axes : std::uint8_t{0}; }
-  /// Returns the estimated minus the true rate in true IMU axes; the truth must be known.
+  /// Returns the estimated minus the true rate, in true IMU axes. The truth must be known.
   Eigen::Vector3d error_rad_s() const { return estimate->w_WI_I_rad_s - truth->rate_rad_s; }
 };
 

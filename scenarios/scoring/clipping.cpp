@@ -53,7 +53,7 @@ std::uint8_t ClippingTruth::clipped_axes(std::size_t index) const {
   std::uint8_t axes = 0;
   for (int j = 0; j < 3; ++j) {
     const double lost = std::abs(truth_->gyro_unclipped_rad_s[index][j] - record_->gyro_rad_s[index][j]);
-    // written such that NaN counts as clipped
+    // The negated comparison is true for NaN, so that NaN counts as clipped.
     if (!(lost <= tolerance_rad_s_)) axes = static_cast<std::uint8_t>(axes | (1u << j));
   }
   return axes;

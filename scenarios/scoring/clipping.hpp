@@ -17,14 +17,16 @@ inline constexpr std::uint8_t kGyroClipFlags = 0b000111;
 ///
 /// All scores use one definition: axis j of a sample is clipped if the reading differs from the unclipped reading by
 /// more than a tolerance. The unclipped reading has the errors of the clipped reading but no saturation. The tolerance
-/// is one standard deviation of the gyro's white noise per sample, sqrt(density^2 / period), but at least 1e-6 rad/s;
-/// smaller losses do not matter. With tilted sensing elements (sim/imu/elements.hpp), one saturated element also
-/// changes the other axes, by entries of the inverse misalignment matrix times the saturation deficit of the element.
-/// The other axes count as clipped where their change exceeds the tolerance.
+/// is one standard deviation of the gyro's white noise per sample, sqrt(density^2 / period), but at least 1e-6 rad/s.
+/// Smaller differences do not matter.
 ///
-/// If the truth comes from a reference instrument (rates without unclipped readings: FORMAT.md, "References"), an axis
-/// is clipped where the reference confirms saturation (reference_clipping.hpp). Samples without a reference rate are
-/// not scored.
+/// With tilted sensing elements (sim/imu/elements.hpp), one saturated element also changes the other axes. The change
+/// is the saturation deficit of the element times an entry of the inverse misalignment matrix. The other axes count as
+/// clipped where their change exceeds the tolerance.
+///
+/// If the truth comes from a reference instrument, it has rates without unclipped readings (FORMAT.md, "References").
+/// An axis is then clipped where the reference confirms saturation (reference_clipping.hpp). Samples without a
+/// reference rate are not scored.
 class ClippingTruth {
  public:
   struct Sample {
@@ -36,23 +38,24 @@ class ClippingTruth {
   ClippingTruth(const sim::Sensors& sensors, const sim::Truth& truth);
 
   /// Returns the true rate and the clipped axes at an instant. Between two samples the rate is interpolated, and the
-  /// clipped axes are those of the sample whose averaging window contains the instant. Returns empty outside the
-  /// recording and where the rate is unknown. O(log N).
+  /// clipped axes belong to the sample whose averaging window contains the instant. Returns empty outside the recording
+  /// and where the rate is unknown. O(log N).
   std::optional<Sample> at(std::int64_t time_ns) const;
 
-  /// Returns the sample whose averaging window contains the instant; empty outside the recording. O(log N).
+  /// Returns the index of the sample whose averaging window contains the instant. Empty outside the recording. O(log
+  /// N).
   std::optional<std::size_t> index_at(std::int64_t time_ns) const;
 
   std::size_t size() const { return record_->time_ns.size(); }
   /// Returns true if the truth comes from a reference instrument.
   bool is_reference() const { return !reference_axes_.empty(); }
-  /// Returns true if the true rate of a sample is known; only the rates of a reference can be unknown.
+  /// Returns true if the true rate of a sample is known. Only the rates of a reference can be unknown.
   bool known(std::size_t index) const { return !is_reference() || truth_->rate_rad_s[index].allFinite(); }
   /// Returns the number of samples with a known true rate.
   std::size_t known_samples() const;
-  /// Returns the clipped axes of a sample, or 0 where the rate is unknown.
+  /// Returns the clipped axes of a sample, or 0 if its rate is unknown.
   std::uint8_t clipped_axes(std::size_t index) const;
-  /// Returns the largest difference of an axis to the unclipped reading, or to the reference.
+  /// Returns the largest difference over the axes between the reading and the unclipped reading or reference.
   double depth_rad_s(std::size_t index) const;
 
  private:
