@@ -12,7 +12,8 @@
 #include <tumble/tumble.hpp>
 #include <vector>
 
-/// Replaces the drivers of a robot: reads messages as lines of text, in order of time.
+/// Replaces the drivers of a robot: reads messages as lines of text, in order of time. A program of the robot writes
+/// these lines; `tumble` does not.
 ///
 ///     imu TIME_NS WX WY WZ FX FY FZ        rad/s and m/s^2, one line per IMU; several IMUs share the first one's stamp
 ///     sweep START_NS END_NS POINTS         then POINTS lines: X Y Z OFFSET_NS RING, metres in the lidar's axes

@@ -15,6 +15,9 @@ namespace tumble::python {
 
 namespace {
 
+/// Maximum number of keywords that an error message lists.
+constexpr std::size_t kListedMax = 12;
+
 std::string bounds_text(const Field& field) {
   const nb::object text = nb::str("within [{:g}, {:g}]").attr("format")(field.low, field.high);
   return nb::cast<std::string>(text);
@@ -79,9 +82,10 @@ void Keywords::done() const {
     const auto nearer = [&](const std::string& a, const std::string& b) {
       return distance(a, name) < distance(b, name);
     };
-    std::string text = "one of the keywords of " + of_;
+    std::string text = "one of the " + std::to_string(known_.size()) + " keywords of " + of_;
     if (!known_.empty()) text += " (nearest: " + *std::min_element(known_.begin(), known_.end(), nearer) + ")";
-    for (std::size_t k = 0; k < known_.size(); ++k) text += (k == 0 ? ": " : ", ") + known_[k];
+    for (std::size_t k = 0; k < known_.size() && known_.size() <= kListedMax; ++k)
+      text += (k == 0 ? ": " : ", ") + known_[k];
     raise_input("unknown", "keyword", nb::str(name.c_str()), nb::str(text.c_str()));
   }
 }

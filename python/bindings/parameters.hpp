@@ -44,7 +44,8 @@ class Keywords {
   /// Reads a number and checks the bounds of its field.
   void read(const std::string& name, const Field& field, bool whole, double& out);
   void read(const std::string& name, const Field& field, Eigen::Vector3d& out);
-  /// Raises TumbleError `unknown` for the first keyword that is not known. The message names all known keywords.
+  /// Raises TumbleError `unknown` for the first keyword that is not known. The message contains the nearest
+  /// known keyword, and all known keywords if they are few.
   void done() const;
 
  private:

@@ -55,7 +55,7 @@ RUN = """
     imu = sequence.recording().imus[0]
     pipeline = pipelines.get_pipeline("tumble")()
     body = dict(zip([f"own_body_{{end}}_{{axis}}_m" for end in ("low", "high") for axis in "xyz"],
-                    [*tumble.replay.RIG_BODY_L[0], *tumble.replay.RIG_BODY_L[1]]))
+                    [*tumble.processing.RIG_BODY_L[0], *tumble.processing.RIG_BODY_L[1]]))
     arm = dict(zip(["lever_arm_x_m", "lever_arm_y_m", "lever_arm_z_m"], imu.lever_arm_m.tolist()))
     left = pipeline.set_params(body | arm | {{"gyro_range_rad_s": imu.gyro_range_rad_s, "accel_range_m_s2": imu.accel_range_m_s2, "no": 1}})
     assert left == {{"no": 1}}, left
@@ -138,7 +138,7 @@ def test_recordings_as_a_data_set(recordings, tmp_path):
         imu = recording.imus[0]
         assert np.array_equal([each.stamp.to_nsec() - ORIGIN_NS for each in samples], imu.time_ns)
         assert np.array_equal([each.gyro for each in samples], imu.gyro) and np.array_equal([each.accel for each in samples], imu.accel)
-        own, low, high = recording.sweeps[5], *np.float32(tumble.replay.RIG_BODY_L)
+        own, low, high = recording.sweeps[5], *np.float32(tumble.processing.RIG_BODY_L)
         kept = ~np.all((own.position > low) & (own.position < high), axis=1)
         points = [p for p in sweeps[5].points if (p.x, p.y, p.z) != (0, 0, 0)]
         points.sort(key=lambda p: p.t.to_nsec())

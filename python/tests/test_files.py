@@ -334,3 +334,12 @@ def test_serving_a_rate_with_its_covariance(tmp_path):
         tumble.serve("rates", answer, ["a", "b"])
     with pytest.raises(SystemExit, match="usage"):
         tumble.serve("rate", answer, ["a"])
+
+
+def test_a_recording_is_printed_by_its_shapes():
+    recording = small()
+    text = repr(recording)
+    assert len(text) < 6000, "arrays would take tens of kilobytes"
+    assert f"gyro=<float64 {len(recording.imus[0])} x 3>" in text
+    assert "scenario='hill'" in text
+    assert repr(recording.truth.contacts).startswith("Contacts(time_ns=<int64 3>, ")

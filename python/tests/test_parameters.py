@@ -69,9 +69,8 @@ def test_defaults_are_accepted_and_unknown_names_are_not(name):
             make(name, **{wrong: 1.0})
         assert caught.value.trouble == "unknown"
         assert caught.value.value == wrong
-        assert listed[-1].name in str(caught.value), "names the known ones"
-        listed_names = str(caught.value).rsplit(": ", 1)[1].split(", ")
-        assert len(listed_names) == len(set(listed_names)), "each once"
+        assert f" keywords of {name} (nearest: " in str(caught.value)
+        assert len(str(caught.value)) < 500, "not some 200 names"
     with pytest.raises(tumble.TumbleError, match=f"nearest: {listed[0].name}"):
         make(name, **{listed[0].name + "s": 1.0})
 

@@ -98,6 +98,28 @@ BenchResult collect_bench_result(const Results& results, const Suite& suite, con
   return out;
 }
 
+void add_published(std::span<const BenchResult> published, Results& results) {
+  results.in_one_transaction([&] {
+    for (const BenchResult& result : published) {
+      const std::string origin = fmt::format("published result of build {}, {}", result.build, result.date);
+      results.set_note(method_note(result.kind, result.method), origin);
+      for (const BenchDraw& draw : result.draws) {
+        Outcome outcome;
+        outcome.scenario = draw.scenario;
+        outcome.seed = draw.seed;
+        outcome.kind = result.kind;
+        outcome.method = result.method;
+        outcome.status = draw.status;
+        if (draw.status != OutcomeStatus::ok) outcome.message = origin;
+        outcome.recording_digest = draw.recording;
+        for (const auto& [metric, value] : draw.values)
+          if (metric != kCost) outcome.scores.push_back({metric, value});
+        results.store(outcome);
+      }
+    }
+  });
+}
+
 void require_of_suite(const BenchResult& result, const Suite& suite) {
   const std::string digest = bench_suite_digest(suite);
   const std::string whose = full_name(result.kind, result.method);

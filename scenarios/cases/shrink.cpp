@@ -8,6 +8,7 @@
 #include <iterator>
 #include <map>
 #include <numeric>
+#include <span>
 #include <sstream>
 
 #include "scenarios/cases/complication.hpp"
@@ -43,6 +44,13 @@ class Run {
   }
   Outcome outcome(const Method& method, double timeout_s) const {
     return run_isolated(method, draw_, draw_, surface_ ? &*surface_ : nullptr, timeout_s);
+  }
+  /// Returns true if the method does not fail on this run with the true input.
+  bool is_cured(const TrueInput& input, const Method& method, const ShrinkOptions& options) const {
+    SimulatedDraw cured = draw_;
+    if (!input.replace(cured.recording.sensors, draw_.recording.truth)) return false;
+    return !options.failure.holds(
+        run_isolated(method, cured, scored_by(draw_, cured), surface_ ? &*surface_ : nullptr, options.timeout_s));
   }
 
  private:
@@ -81,6 +89,7 @@ class Shrinking {
     shrunk_.failure = failure_->describe();
     shrunk_.controlled = options.control && !options.failure.holds(run.outcome(*options.control, options.timeout_s));
     report("as drawn", true, shrunk_.drawn);
+    find_cure(run);
   }
 
   Shrunk run() {
@@ -97,6 +106,26 @@ class Shrinking {
   }
 
  private:
+  /// Finds the first single input whose truth cures the original run; the last input replaces all inputs.
+  void find_cure(const Run& run) {
+    const std::span<const TrueInput> single = true_inputs().first(true_inputs().size() - 1);
+    const auto cure = std::find_if(single.begin(), single.end(), [&](const TrueInput& input) {
+      return run.is_cured(input, method_, options_);
+    });
+    if (cure == single.end()) return;
+    cure_ = &*cure;
+    shrunk_.cure = cure->name;
+  }
+
+  /// Returns why a run that fails is not the failure of the original run, or an empty text.
+  std::string other_cause(const Run& run) const {
+    if (shrunk_.controlled && options_.failure.holds(run.outcome(*options_.control, options_.timeout_s)))
+      return "the control method fails too: " + options_.control->info.name;
+    if (cure_ != nullptr && !run.is_cured(*cure_, method_, options_))
+      return "another cause: the true input " + cure_->name + " does not cure it";
+    return "";
+  }
+
   /// Returns true if a simpler scenario fails like the original; the search then continues from the simpler scenario.
   /// Returns empty if the budget is used up.
   std::optional<bool> try_out(const Scenario& simpler, const std::string& what, Outcome* outcome_out = nullptr) {
@@ -107,9 +136,9 @@ class Shrinking {
       const Run run(data_, simpler, seed_, method_.info.kind);
       outcome = run.outcome(method_, options_.timeout_s);
       fails = failure_->holds(outcome);
-      if (fails && shrunk_.controlled && options_.failure.holds(run.outcome(*options_.control, options_.timeout_s))) {
+      if (const std::string other = fails ? other_cause(run) : ""; !other.empty()) {
         fails = false;
-        outcome.message = one_line("the control method fails too: " + options_.control->info.name);
+        outcome.message = one_line(other);
       }
     } catch (const std::exception& error) {  // the run is invalid and does not show the failure
       outcome.status = OutcomeStatus::rejected;
@@ -195,6 +224,7 @@ class Shrinking {
   const Method& method_;
   const ShrinkOptions& options_;
   std::optional<SameFailure> failure_;
+  const TrueInput* cure_ = nullptr;
   Shrunk shrunk_;
   std::vector<Complication> needed_;
 };

@@ -9,8 +9,10 @@
 #include <set>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/exchange/estimate_clock.hpp"
 #include "scenarios/methods/estimate_file.hpp"
 #include "scenarios/recordings/export_names.hpp"
+#include "scenarios/recordings/recording_clock.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/scoring/truth_track.hpp"
 
@@ -165,7 +167,8 @@ std::string plain_name(const std::string& method) {
 BagTrack in_bag(const std::string& name, const Estimate& estimate, const sim::Sensors& sensors,
                 const std::vector<PointStore>* points, const StoredTruth* truth) {
   if (estimate.poses.empty())
-    throw BadInput("the estimate holds no poses; a bag cannot store a rate or an attitude alone");
+    throw BadInput("the estimate contains no poses, so nothing can be added to the bag: rates and attitudes have no message in it; "
+        "choose an estimate of a position or slam method");
   const Eigen::Isometry3d T_AB = mounting_of(estimate, sensors, truth).inverse();
   const Alignment alignment = alignment_of(estimate, truth);
   BagTrack out;
@@ -182,14 +185,15 @@ void add_estimates(std::span<const std::filesystem::path> paths, const sim::Sens
   std::set<std::string> taken = export_names(sensors).taken;
   const std::string own =
       writing.points != nullptr ? digest(sensors, *writing.points, nullptr) : digest(sensors, nullptr);
+  const StampSpan span =
+      writing.truth == nullptr
+          ? span_of(sensors)
+          : StampSpan{0, writing.truth->period_ns * (static_cast<std::int64_t>(writing.truth->size()) - 1)};
   for (const std::filesystem::path& path : paths) {
     Kind kind{};
     std::string method;
     Estimate estimate = read_estimate(path, kind, method, sensors.imus.empty() ? Frame::body : Frame::imu);
-    const std::int64_t first_ns = estimate.poses.empty() ? 0 : estimate.poses.front().time_ns;
-    if (!std::filesystem::is_directory(path) && std::abs(first_ns - writing.origin_ns) < std::abs(first_ns)) {
-      for (PoseState& pose : estimate.poses) pose.time_ns -= writing.origin_ns;
-    }
+    move_to_clock(writing.origin_ns, span, estimate);
     try {
       require_own(path, own);
       const bool of_file = !std::filesystem::is_directory(path);

@@ -12,8 +12,8 @@
 
 namespace tumble::scenarios {
 
-/// Converts an estimate to a track of body poses, with the sensor mounting that the estimator used. Velocities are not
-/// written. If the truth is known, the track is aligned like the scores: to the true position and heading at the first
+/// Converts an estimate to a track of body poses, with the sensor mounting that the estimator used. Velocities are
+/// unknown. If the truth is known, the track is aligned like the scores: to the true position and heading at the first
 /// pose within the time of the truth (truth_track.hpp).
 ///
 /// The returns of the first lidar become point clouds. The interpolated estimated pose of the lidar transforms each

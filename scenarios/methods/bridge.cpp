@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/recordings/left_out.hpp"
 #include "tumble/angular_velocity/detail/recording_check.hpp"
 #include "tumble/common/detail/sample_check.hpp"
 
@@ -55,18 +56,39 @@ bool in_range(const sim::ImuRecord& record, const ImuSample& sample) {
   return check_range(record, sample.angular_velocity_rad_s, sample.specific_force_m_s2).ok();
 }
 
-// Removes single readings beyond the values that the device can measure. If readings beyond the limit are frequent or
-// lasting, they are kept, so that the recording is refused.
-void leave_out_wild(const sim::ImuRecord& record, std::vector<ImuSample>& samples) {
-  const auto beyond = [&](const ImuSample& sample) { return !in_range(record, sample); };
-  const auto count = std::count_if(samples.begin(), samples.end(), beyond);
-  if (count == 0 || static_cast<double>(count) > kWildShareMax * static_cast<double>(samples.size())) return;
-  const std::vector<bool> inlier = find_inliers(record);
-  std::size_t kept = 0;
+// Marks readings that are finite, within the values of any sensor, and whose stamps are in order. If too many readings
+// are faulty, all readings are marked, so that the recording is refused.
+std::vector<bool> find_usable(std::span<const ImuSample> samples) {
+  std::vector<bool> usable(samples.size(), true);
+  std::vector<TimeNs> stamps_ns;
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    if (inlier[k] || in_range(record, samples[k])) samples[kept++] = samples[k];
+    const auto is_reading = [](const Eigen::Vector3d& triad) {
+      return triad.allFinite() && triad.cwiseAbs().maxCoeff() <= kReadingMax;
+    };
+    usable[k] = is_reading(samples[k].angular_velocity_rad_s) && is_reading(samples[k].specific_force_m_s2);
+    if (usable[k]) stamps_ns.push_back(samples[k].time_ns);
   }
-  samples.resize(kept);
+  const std::vector<bool> in_order = stamps_in_order(stamps_ns);
+  std::size_t reading = 0;
+  for (std::size_t k = 0; k < usable.size(); ++k) {
+    if (usable[k]) usable[k] = in_order[reading++];
+  }
+  const auto faulty = static_cast<std::size_t>(std::count(usable.begin(), usable.end(), false));
+  if (!may_leave_out(faulty, usable.size())) usable.assign(usable.size(), true);
+  return usable;
+}
+
+// Removes faulty readings, and single readings beyond the values that the device can measure. If readings beyond the
+// limit are frequent or lasting, they are kept, so that the recording is refused.
+void leave_out_faulty(const sim::ImuRecord& record, std::vector<ImuSample>& samples) {
+  std::vector<bool> kept = find_usable(samples);
+  std::size_t beyond = 0;
+  for (std::size_t k = 0; k < samples.size(); ++k) beyond += kept[k] && !in_range(record, samples[k]) ? 1 : 0;
+  if (beyond > 0 && static_cast<double>(beyond) <= kWildShareMax * static_cast<double>(samples.size())) {
+    const std::vector<bool> inlier = find_inliers(record);
+    for (std::size_t k = 0; k < samples.size(); ++k) kept[k] = kept[k] && (inlier[k] || in_range(record, samples[k]));
+  }
+  keep_rows(kept, samples);
 }
 
 // Checks the assumptions of every method: readings are finite and within the device's range, stamps increase at the
@@ -112,12 +134,20 @@ std::vector<bool> find_inliers(const sim::ImuRecord& record) {
   const bool whole = record.gyro_rad_s.size() == count && record.accel_m_s2.size() == count &&
                      (record.clip_flags.empty() || record.clip_flags.size() == count);
   if (!whole) return all;
-  const std::vector<ImuSample> samples = samples_of(record);
+  std::vector<ImuSample> samples = samples_of(record);
+  std::vector<bool> kept = find_usable(samples);
+  keep_rows(kept, samples);
   if (!check_samples(samples, std::numeric_limits<double>::infinity()).ok()) return all;
-  return tumble::find_inliers(OutlierFilter({.gyro_range_rad_s = record.stated_gyro_range_rad_s,
-                                             .accel_range_m_s2 = record.stated_accel_range_m_s2,
-                                             .period_s = std::max(0.0, seconds(record.period_ns))}),
-                              samples);
+  const std::vector<bool> inlier =
+      tumble::find_inliers(OutlierFilter({.gyro_range_rad_s = record.stated_gyro_range_rad_s,
+                                          .accel_range_m_s2 = record.stated_accel_range_m_s2,
+                                          .period_s = std::max(0.0, seconds(record.period_ns))}),
+                           samples);
+  std::size_t reading = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    if (kept[k]) kept[k] = inlier[reading++];
+  }
+  return kept;
 }
 
 Status imu_samples(const sim::ImuRecord& record, std::vector<ImuSample>& out) {
@@ -128,7 +158,7 @@ Status imu_samples(const sim::ImuRecord& record, std::vector<ImuSample>& out) {
   require_length(place, "accel_m_s2", record.accel_m_s2.size(), count);
   if (!record.clip_flags.empty()) require_length(place, "clip_flags", record.clip_flags.size(), count);
   std::vector<ImuSample> samples = samples_of(record);
-  leave_out_wild(record, samples);
+  leave_out_faulty(record, samples);
   const Status status = check_stream(record, samples);
   if (status.ok()) out = std::move(samples);
   return status;

@@ -46,13 +46,14 @@ ImuSheet imu_sheet(const sim::ImuRecord& record);
 /// range in the record. A stated range of 0 disables the check.
 Status check_range(const sim::ImuRecord& record, const Eigen::Vector3d& gyro_rad_s, const Eigen::Vector3d& accel_m_s2);
 
-/// Tests the samples of an IMU with the library's OutlierFilter. Element k is true if sample k passes the filter. All
-/// samples pass if a reading is not finite, if stamps do not increase, or if the record's arrays differ in length.
-/// O(N).
+/// Tests the samples of an IMU. Element k is false if sample k is not finite, exceeds the values of any sensor, or has a
+/// stamp that is not in order. These three faults only count if few samples have them (may_leave_out). Element k is also
+/// false if the library's OutlierFilter rejects the sample. All samples pass if the record's arrays differ in length.
+/// O(N log N).
 std::vector<bool> find_inliers(const sim::ImuRecord& record);
 
-/// Converts the samples of an IMU, in order, and drops the single readings that find_inliers rejects. Returns `empty`,
-/// `non_finite`, `time_order`, `gap` (more than kGapMaxS) or `out_of_range`. The reason for `out_of_range` is
+/// Converts the samples of an IMU, in order, and drops the single faulty readings that find_inliers rejects. Returns
+/// `empty`, `non_finite`, `time_order`, `gap` (more than kGapMaxS) or `out_of_range`. The reason for `out_of_range` is
 /// check_range, or a median step that differs 20-fold from the stated period. On error, `out` is empty. Throws BadInput
 /// if the record's arrays differ in length. O(N).
 Status imu_samples(const sim::ImuRecord& record, std::vector<ImuSample>& out);

@@ -15,6 +15,7 @@
 #include "scenarios/methods/map_file.hpp"
 #include "scenarios/recordings/replace_file.hpp"
 #include "scenarios/recordings/table_file.hpp"
+#include "scenarios/recordings/trajectories/reference.hpp"
 #include "scenarios/regular_file.hpp"
 
 namespace tumble::scenarios {
@@ -368,7 +369,12 @@ Estimate read_estimate(const std::filesystem::path& path, Kind& kind, std::strin
     kind = Kind::position;
     method = path.stem().string();
     estimate.frame = tum_frame;
-    read_tum(path, estimate.poses, true);
+    if (is_pose_table(path)) {
+      for (const ReferencePose& pose : read_pose_table(path, false))
+        estimate.poses.push_back({pose.time_ns, pose.p_WA_m, pose.q_WA});
+    } else {
+      read_tum(path, estimate.poses, true);
+    }
     if (estimate.poses.empty()) throw BadInput(path.string() + ": contains no pose");
     return estimate;
   }

@@ -10,6 +10,9 @@
 
 namespace tumble::scenarios {
 
+/// Wall time of one run of an external method if its description states none; a Python file alone has no description.
+inline constexpr double kExternalTimeLimit_s = 600.0;
+
 /// An external method: a command described in a file NAME.yaml, or a Python function in NAME.py. EXTERNAL.md describes
 /// the keys and placeholders.
 struct ExternalDescription {
@@ -27,7 +30,7 @@ struct ExternalDescription {
   std::vector<std::string> version;      ///< command that prints the program's version; may be empty
   std::map<std::string, std::string> environment;
   Output output = Output::tum;
-  double time_limit_s = 600.0;
+  double time_limit_s = kExternalTimeLimit_s;
   double memory_limit_mib = 8192.0;
   std::string digest;  ///< digest of this file and of the files that the command names by {folder}
 };

@@ -42,15 +42,15 @@ const std::vector<Provision>& provisions() {
       {"pcd", "pcd", [](const sim::Sensors& sensors, const fs::path& to) { export_pcd(sensors, to); }},
       {"rosbag1", "recording.bag",
        [](const sim::Sensors& sensors, const fs::path& to) {
-         export_ros1_bag(sensors, {kExternalBagOrigin_ns, nullptr}, to);
+         export_ros1_bag(sensors, {kExportOrigin_ns, nullptr}, to);
        }},
       {"rosbag2", "rosbag2",
        [](const sim::Sensors& sensors, const fs::path& to) {
-         export_ros2_bag(sensors, {kExternalBagOrigin_ns, nullptr}, to);
+         export_ros2_bag(sensors, {kExportOrigin_ns, nullptr}, to);
        }},
       {"mcap", "recording.mcap",
        [](const sim::Sensors& sensors, const fs::path& to) {
-         export_mcap(sensors, {kExternalBagOrigin_ns, nullptr}, to);
+         export_mcap(sensors, {kExportOrigin_ns, nullptr}, to);
        }},
       {"sensors", "sensors.json",
        [](const sim::Sensors& sensors, const fs::path& to) { replace_file(to, sensors_text(sensors)); }},

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <fstream>
 #include <sstream>
 #include <string_view>
@@ -17,6 +16,8 @@
 #include "scenarios/methods/estimate_file.hpp"
 #include "scenarios/methods/turning_sense.hpp"
 #include "scenarios/recordings/clouds/cloud_file.hpp"
+#include "scenarios/recordings/number_text.hpp"
+#include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/recordings/table_file.hpp"
 
 namespace tumble::scenarios {
@@ -77,12 +78,13 @@ std::vector<double> stamps_of(const std::filesystem::path& file) {
   std::ifstream stream(file);
   for (std::string line; std::getline(stream, line);) {
     if (line.empty() || line.front() == '#' || line == "\r") continue;
-    char* end = nullptr;
-    const double stamp_s = std::strtod(line.c_str(), &end);
-    if (end == line.c_str() || !std::isfinite(stamp_s)) break;
+    std::string_view word = line;
+    word.remove_prefix(std::min(word.find_first_not_of(" \t"), word.size()));
+    double stamp_s = 0.0;
+    if (!parse_number(word.substr(0, word.find_first_of(" \t,;")), stamp_s) || !std::isfinite(stamp_s)) break;
     stamps_s.push_back(stamp_s);
   }
-  constexpr double kOrigin_s = 1e-9 * static_cast<double>(kExternalBagOrigin_ns);
+  constexpr double kOrigin_s = 1e-9 * static_cast<double>(kExportOrigin_ns);
   // The stamps are bag stamps in seconds.
   if (!stamps_s.empty() && stamps_s.front() > kOrigin_s / 2 && stamps_s.back() < kOrigin_s * 2)
     for (double& stamp_s : stamps_s) stamp_s -= kOrigin_s;
@@ -96,8 +98,8 @@ Estimate read_poses(const ExternalDescription& description, const std::filesyste
   Kind kind{};
   std::string method;
   Estimate estimate = read_estimate(file, kind, method, description.frame);
-  if (estimate.poses.front().time_ns > kExternalBagOrigin_ns / 2)
-    for (PoseState& pose : estimate.poses) pose.time_ns -= kExternalBagOrigin_ns;
+  if (estimate.poses.front().time_ns > kExportOrigin_ns / 2)
+    for (PoseState& pose : estimate.poses) pose.time_ns -= kExportOrigin_ns;
   if (description.kind != Kind::attitude) return estimate;
   for (const PoseState& pose : std::exchange(estimate.poses, {}))
     estimate.attitudes.push_back({pose.time_ns, pose.q_WA, Eigen::Matrix3d::Zero()});

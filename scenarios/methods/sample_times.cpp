@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "scenarios/methods/bridge.hpp"
+#include "scenarios/recordings/left_out.hpp"
 #include "tumble/common/sample_clock.hpp"
 
 namespace tumble::scenarios {
@@ -27,17 +28,9 @@ SampleTimes sample_times(const sim::ImuRecord& record) {
   return out;
 }
 
-void keep_rows(const std::vector<bool>& kept, sim::ImuRecord& record) {
-  const auto keep = [&](auto& rows) {
-    if (rows.size() != kept.size()) return;  // the device has no such readings
-    std::size_t count = 0;
-    for (std::size_t k = 0; k < rows.size(); ++k) {
-      if (kept[k]) rows[count++] = rows[k];
-    }
-    rows.resize(count);
-  };
-  keep(record.time_ns), keep(record.gyro_rad_s), keep(record.accel_m_s2), keep(record.clip_flags);
-  keep(record.magnetic_field_t);
+void keep_readings(const std::vector<bool>& kept, sim::ImuRecord& record) {
+  keep_rows(kept, record.time_ns), keep_rows(kept, record.gyro_rad_s), keep_rows(kept, record.accel_m_s2);
+  keep_rows(kept, record.clip_flags), keep_rows(kept, record.magnetic_field_t);
 }
 
 void restore_stamps(const sim::ImuRecord& timed, const sim::ImuRecord& stamped, std::vector<RateState>& rates) {
@@ -60,7 +53,7 @@ Estimate without_outliers(const sim::Sensors& sensors, const std::function<Estim
   }
   if (rejected == 0) return run(sensors);
   sim::Sensors kept = sensors;
-  for (std::size_t i = 0; i < inliers.size(); ++i) keep_rows(inliers[i], kept.imus[i]);
+  for (std::size_t i = 0; i < inliers.size(); ++i) keep_readings(inliers[i], kept.imus[i]);
   Estimate estimate = run(kept);
   estimate.health["rejected_readings"] = static_cast<double>(rejected);
   return estimate;

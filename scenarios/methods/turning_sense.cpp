@@ -13,6 +13,8 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr double kTurnsOtherwise = 0.5, kTurnsAsSaid = 0.15;
+/// Largest rotation difference that remains once a delay is corrected; the limit for references (reference_check.cpp).
+constexpr double kTurnsOnceCorrected = 0.3;
 
 std::vector<TimedAttitude> attitudes_of(const Estimate& estimate) {
   std::vector<TimedAttitude> out;
@@ -46,17 +48,24 @@ std::string text_of(const TurningFit& fit, const std::string& frame) {
   return out + (out.empty() ? "the poses" : " and the poses") + " belonged to the frame " + frame;
 }
 
-}  // namespace
-
-std::string turning_complaint(const Estimate& estimate, const sim::Sensors& sensors) {
-  if (sensors.imus.empty()) return "";
+/// Returns the frames that the attitudes may describe. Empty without an IMU or without the stated sensor. The stated
+/// frame comes first, so that it is chosen if two frames have equal mountings.
+std::vector<CandidateFrame> candidates(const Estimate& estimate, const sim::Sensors& sensors) {
   std::vector<CandidateFrame> frames;
-  // The stated frame is tested first, so that it is chosen if two frames have equal mountings.
+  if (sensors.imus.empty()) return frames;
   for (const Frame frame : {estimate.frame, Frame::imu, Frame::lidar, Frame::body}) {
     const auto mounting = q_AI(frame, sensors);
     if (mounting) frames.push_back({to_string(frame), *mounting});
-    if (frames.empty()) return "";
+    if (frames.empty()) break;
   }
+  return frames;
+}
+
+}  // namespace
+
+std::string turning_complaint(const Estimate& estimate, const sim::Sensors& sensors) {
+  const std::vector<CandidateFrame> frames = candidates(estimate, sensors);
+  if (frames.empty()) return "";
   const TurningCheck check = check_turning(attitudes_of(estimate), frames, sensors.imus.front(), 0.0);
   const TurningFit& best = check.reading.undelayed;
   if (check.pairs == 0 || check.stated.difference <= kTurnsOtherwise || best.difference >= kTurnsAsSaid) return "";
@@ -65,6 +74,20 @@ std::string turning_complaint(const Estimate& estimate, const sim::Sensors& sens
       "(difference {:.0f} %) if {}",
       to_string(estimate.frame), 100.0 * check.stated.difference, check.pairs, 100.0 * best.difference,
       text_of(best, frames[best.frame].name));
+}
+
+std::string clock_complaint(const Estimate& estimate, const sim::Sensors& sensors) {
+  const std::vector<CandidateFrame> frames = candidates(estimate, sensors);
+  if (frames.empty()) return "";
+  const TurningCheck check = check_turning(attitudes_of(estimate), frames, sensors.imus.front(), kDelaySearched_s);
+  const TurningFit& likely = check.reading.likely();
+  if (check.pairs == 0 || likely.written != Written::as_stated || likely.difference >= kTurnsOnceCorrected ||
+      !is_delayed(likely.delay_s))
+    return "";
+  return fmt::format(
+      "the attitudes do not rotate as the gyro does (difference {:.0f} % over {} pairs), but would (difference {:.0f} "
+      "%) at other times: their {}",
+      100.0 * check.stated.difference, check.pairs, 100.0 * likely.difference, delay_remedy(likely.delay_s));
 }
 
 }  // namespace tumble::scenarios

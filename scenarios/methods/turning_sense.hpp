@@ -5,8 +5,8 @@
 
 #include "scenarios/methods/method.hpp"
 
-/// Checks the rotation convention of external attitudes against the gyro. The check is needed because a pose file does
-/// not state its frame or quaternion convention.
+/// Checks the rotation convention and the clock of external attitudes against the gyro. The check is needed because a
+/// pose file does not state its frame, quaternion convention or clock.
 namespace tumble::scenarios {
 
 /// Returns a message if the attitudes or poses of `estimate` use a wrong convention, or "" if no wrong convention is
@@ -18,5 +18,10 @@ namespace tumble::scenarios {
 /// 0.15. Combinations of errors, and single-axis rotations that an error leaves unchanged, are not detected. The cost
 /// is proportional to the number of samples and poses.
 std::string turning_complaint(const Estimate& estimate, const sim::Sensors& sensors);
+
+/// Returns a message if the stamps of the attitudes or poses are wrong by a constant time from 0.15 to 5 s, or "" if no
+/// such delay is detected. Uses the check of references (recordings/trajectories/reference_check.hpp). Cost: half a
+/// second.
+std::string clock_complaint(const Estimate& estimate, const sim::Sensors& sensors);
 
 }  // namespace tumble::scenarios

@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <map>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "scenarios/errors.hpp"
@@ -30,11 +32,15 @@ struct Format {
   Notes (*write)(const path& recording, const path& out, const ExportChoices& choices);
 };
 
+std::int64_t origin_of_export(const path& recording) {
+  return export_origin_ns(read_info(recording).origin_ns);
+}
+
 Notes write_csv(const path& recording, const path& out, const ExportChoices&) {
   const sim::Sensors sensors = read_sensors(recording);
   std::optional<sim::Truth> truth;
   if (read_info(recording).has_truth) truth = read_truth(recording);
-  export_csv(sensors, truth ? &*truth : nullptr, out);
+  export_csv(sensors, truth ? &*truth : nullptr, out, origin_of_export(recording));
   ExportNames names = export_names(sensors);
   return joined(std::move(names.imus.notes), names.series.notes);
 }
@@ -59,7 +65,7 @@ Notes write_bag(const path& recording, const path& out, const ExportChoices& cho
 }
 
 Notes write_tum(const path& recording, const path& out, const ExportChoices& choices) {
-  export_tum(read_truth(recording, scratch_folder_of(out)), out, 0, choices.frame);
+  export_tum(read_truth(recording, scratch_folder_of(out)), out, origin_of_export(recording), choices.frame);
   return {};
 }
 
@@ -68,10 +74,10 @@ Notes write_kitti(const path& recording, const path& out, const ExportChoices& c
   return {};
 }
 
-template <void (*kExport)(const sim::Sensors&, const path&)>
+template <void (*kExport)(const sim::Sensors&, const path&, std::int64_t)>
 Notes write_sweeps(const path& recording, const path& out, const ExportChoices&) {
   const sim::Sensors sensors = read_sensors(recording);
-  kExport(sensors, out);
+  kExport(sensors, out, origin_of_export(recording));
   return export_names(sensors).lidars.notes;
 }
 
@@ -103,6 +109,17 @@ bool is_bag_format(const std::string& format) {
 std::string format_of_ending(const path& out) {
   const std::string ending = out.extension().string();
   return ending == ".mcap" ? "mcap" : ending == ".bag" ? "rosbag1" : ending == ".tum" ? "tum" : "";
+}
+
+void require_own_kind(const std::string& format, const path& out) {
+  static const std::map<std::string, std::set<std::string>> kEndings = {
+      {"mcap", {".mcap"}}, {"rosbag1", {".bag"}}, {"tum", {".tum", ".txt"}}, {"kitti", {".txt", ".kitti"}}};
+  const auto own = kEndings.find(format);
+  const std::string ending = out.extension().string();
+  if (own == kEndings.end() || ending.empty() || own->second.contains(ending)) return;
+  if (!std::filesystem::is_regular_file(out)) return;
+  throw BadInput(fmt::format("{}: exists and is of another kind than the format '{}'; name another output, ending in {}",
+                             out.string(), format, fmt::join(own->second, " or ")));
 }
 
 Notes export_recording(const path& recording, const std::string& format, const path& out,

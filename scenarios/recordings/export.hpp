@@ -21,6 +21,10 @@ bool is_bag_format(const std::string& format);
 /// Returns the format for a file extension (.mcap, .bag, .tum), and an empty text for other extensions.
 std::string format_of_ending(const std::filesystem::path& out);
 
+/// Throws BadInput if `out` is an existing file whose extension belongs to another kind of file than `format`, which
+/// the export would replace. Does not apply to formats that write a folder.
+void require_own_kind(const std::string& format, const std::filesystem::path& out);
+
 /// Options of an export format: extra content and sweep layout for bags, frame for trajectories.
 struct ExportChoices {
   bool truth = false;
@@ -34,7 +38,8 @@ struct ExportChoices {
 /// Writes a recording file in another format. The formats `tum` and `kitti` give one file with the true poses of a
 /// frame. The formats `mcap` and `rosbag1` give one file with the sensor data. The formats `csv`, `pcd`, `ply`,
 /// `rosbag2` and `rosbag2_mcap` give a folder, which is created if missing. `choices` states further content of bags
-/// (topics: bag.hpp). Existing files are replaced atomically.
+/// (topics: bag.hpp). Existing files are replaced atomically. All formats use one clock, with time 0 of the recording
+/// at export_origin_ns.
 ///
 /// Returns notes on sensors that were renamed (export_names.hpp) and on sensors without a message type in a bag. Throws
 /// BadInput for an unknown format (suggests the nearest name), data that the format needs and the recording lacks, or
@@ -47,9 +52,8 @@ std::vector<std::string> export_recording(const std::filesystem::path& recording
 /// exported or original name. Throws BadInput for another name and lists the known names.
 Eigen::Isometry3d true_mounting(const sim::Truth& truth, const std::string& frame);
 
-/// Writes one line "t x y z qx qy qz qw" per physics sample: T_WA of the frame A, and seconds from the start with nine
-/// decimals. Numbers are restored exactly when read; `origin_ns` is added to the times. Omits times without a known
-/// pose.
+/// Writes one line "t x y z qx qy qz qw" per physics sample: T_WA of the frame A, and seconds with nine decimals.
+/// Numbers are restored exactly when read; `origin_ns` is added to the times. Omits times without a known pose.
 void export_tum(const sim::Truth& truth, const std::filesystem::path& file, std::int64_t origin_ns = 0,
                 const std::string& frame = "body");
 /// Writes a truth on disk segment by segment.
@@ -64,13 +68,14 @@ void export_kitti(const sim::Truth& truth, const std::filesystem::path& file, co
 /// [rad/s], specific force [m/s^2]. Each quantity has its covariance in brackets, separated by spaces. The attitude is
 /// unknown, so its covariance starts with -1, as in ROS. Each additional sensor series has the columns stamp s, stamp
 /// ns, frame, and one column per quantity. With a truth, also writes truth.csv with time, T_WB, v_WB_W, w_WB_B, f_B,
-/// label. NAME is the exported name of the sensor (export_names).
-void export_csv(const sim::Sensors& sensors, const sim::Truth* truth, const std::filesystem::path& folder);
+/// label. NAME is the exported name of the sensor (export_names). `origin_ns` is added to the times.
+void export_csv(const sim::Sensors& sensors, const sim::Truth* truth, const std::filesystem::path& folder,
+                std::int64_t origin_ns = 0);
 
 /// Writes NAME_000000.ply (or .pcd) for each sweep, binary, not deskewed, in lidar axes: x y z intensity ring, and
 /// offset_ns if points have times. NAME_times.txt contains the sweep starts in seconds, which import_sweeps restores
-/// bit-exactly.
-void export_ply(const sim::Sensors& sensors, const std::filesystem::path& folder);
-void export_pcd(const sim::Sensors& sensors, const std::filesystem::path& folder);
+/// bit-exactly; `origin_ns` is added to these times.
+void export_ply(const sim::Sensors& sensors, const std::filesystem::path& folder, std::int64_t origin_ns = 0);
+void export_pcd(const sim::Sensors& sensors, const std::filesystem::path& folder, std::int64_t origin_ns = 0);
 
 }  // namespace tumble::scenarios

@@ -12,8 +12,8 @@
 #include <utility>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/recordings/foreign_file.hpp"
 #include "scenarios/recordings/hdf5_survey.hpp"
-#include "scenarios/regular_file.hpp"
 
 namespace tumble::scenarios::hdf5 {
 
@@ -22,7 +22,7 @@ namespace {
 constexpr std::size_t kSuperblockBytes = 48;
 
 Handle open_file(const std::filesystem::path& path) {
-  open_regular_file(path);  // Reports missing permission; HDF5 would call such a file damaged.
+  require_recording_file(path);  // Reports missing permission; HDF5 would call such a file damaged.
   require_survivable(path);
   Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (file.valid()) return file;

@@ -27,32 +27,45 @@ enum class AccelUnit { m_s2, g };
 enum class GyroUnit { rad_s, deg_s };
 
 /// Reads the readings of one IMU from a text table. The separator is the most frequent of comma, semicolon and tab in
-/// the first line.
+/// the first line that is no comment; blanks if the line has none. Comments, a row of units below the names, and a
+/// separator at the end of a line are accepted (tables/logged_table.hpp). Numbers may be in scientific notation.
 ///
 /// The names in the header identify the columns:
 /// - the names that export_csv writes (each once, no other names);
 /// - the short forms of the export_csv names (sec nsec wx.. fx.. or ax..);
 /// - flattened ROS messages: ".../header/stamp" (seconds), ".../angular_velocity/x", ".../linear_acceleration/x", and y
-///   and z;
+///   and z; also with points, as written by `rostopic echo -p` and bagpy. The header's stamps are used, not the times
+///   of recording;
 /// - names of loggers and data sets (tables/logger_columns.hpp): "time,gyro_x,...,accel_x,...", "#timestamp
 ///   [ns],w_RS_S_x [rad s^-1],...".
 ///
 /// Units that column names state are used. If the unit of times is not stated, the unit is inferred from the time steps
 /// and noted. If the first line has numbers, the line is a sample and columns are identified by position (from 0): 0
-/// stamp s, 1 stamp ns, 8-10 rate, 12-14 specific force.
+/// stamp s, 1 stamp ns, 8-10 rate, 12-14 specific force. `columns` names the columns instead ("time=t,gyro=gx,gy,gz,
+/// accel=ax,ay,az" without blanks; positions from 0 are possible too).
 ///
 /// `device` supplies properties that the file lacks: name, device, ranges, noise, T_BI; the period and the readings of
 /// `device` are replaced. Times count from the first stamp; the period is the median step. Stamps in whole milliseconds
 /// of an IMU with another period are resampled to the IMU's rate and noted (rounded_stamps.hpp). Units are checked
 /// against the size and rotation of gravity, with a note if the motion allows the check.
 ///
-/// Throws BadInput with file and line for unknown, repeated or missing columns, an unexpected unit, or differing
-/// numbers of columns. Also throws for an invalid or non-finite number, a stamp that does not increase, and a truncated
-/// last line. Throws BadInput for fewer than two samples, a median specific force outside 3 to 30 m/s^2, or a period
-/// outside 20 us to 2 s. Also throws if more than 1 % of the rates exceed twice the device's range (100 rad/s if not
-/// stated). Finally, throws if gravity rotates 57 times too fast or too slowly for the rates.
+/// Single lines with an invalid or non-finite number, another number of columns, or a stamp that does not increase are
+/// left out and noted (left_out.hpp), and so are readings whose values are all 0.
+///
+/// Throws BadInput with file and line for unknown, repeated or missing columns, an unexpected unit, or a truncated last
+/// line. Also throws if more than 5 % of the lines are faulty. Throws BadInput for fewer than two samples, a median
+/// specific force outside 3 to 30 m/s^2, or a period outside 20 us to 2 s. Also throws if more than 1 % of the rates
+/// exceed twice the device's range (100 rad/s if not stated). Finally, throws if gravity rotates 57 times too fast or
+/// too slowly for the rates.
 Imported import_imu_csv(const std::filesystem::path& path, const sim::ImuRecord& device,
-                        AccelUnit unit = AccelUnit::m_s2, GyroUnit gyro_unit = GyroUnit::rad_s);
+                        AccelUnit unit = AccelUnit::m_s2, GyroUnit gyro_unit = GyroUnit::rad_s,
+                        const std::string& columns = "");
+
+/// Reads all IMU tables (.csv) of a folder, such as a folder of `export --format csv`. The IMUs have the names of their
+/// files, and the first by name is the primary IMU. Other tables are left out with a note; tables of poses without.
+/// Throws BadInput like import_imu_csv, and if no table has IMU readings.
+Imported import_csv_folder(const std::filesystem::path& folder, const sim::ImuRecord& device, AccelUnit unit,
+                           GyroUnit gyro_unit);
 
 /// Files that contain the sweeps of one lidar.
 struct SweepSource {
@@ -69,8 +82,9 @@ struct SweepSource {
 /// Reads the sweeps of a lidar from one file per sweep, in natural order of the file names (sweep_stamps.hpp,
 /// cloud_file.hpp, sweep_builder.hpp). The stamp of a sweep comes from `times`, else from file names, else from
 /// absolute point times, else from `steady_ns`. Time 0 is the start of the first sweep, or the zero of the clock if the
-/// clock's zero is less than a second earlier. Throws BadInput with the file for errors of the readers, different
-/// numbers of stamps and files, files of several lidars, or sweeps without times.
+/// clock's zero is less than a second earlier. Single files that cannot be read or used are left out and noted. Throws
+/// BadInput with the file if more than 5 % of the files are faulty. Also throws for different numbers of stamps and
+/// files, files of several lidars, or sweeps without times.
 Imported import_sweeps(const SweepSource& source);
 
 /// A pose file of another program.

@@ -115,7 +115,8 @@ std::vector<sim::ContactTruth> from_columns(const ContactColumns& columns, const
 
 void require_format(const hdf5::Group& root) {
   if (!root.has_attribute("format") || root.text_attribute("format") != kRecordingFormat) {
-    root.fail("format", std::string("is not a recording: the attribute must be '") + kRecordingFormat + "'");
+    root.fail("format", std::string("is not a recording: the attribute must be '") + kRecordingFormat +
+                            "'; 'tumble import' converts HDF5 files of BROAD");
   }
   const std::int64_t version = root.int_attribute("format_version");
   if (version != kRecordingVersion) {

@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <limits>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/recordings/whole_seconds.hpp"
 
 namespace tumble::scenarios {
 
@@ -51,7 +53,22 @@ std::pair<std::int64_t, std::int64_t> span_of(const sim::Sensors& sensors) {
 }
 
 std::int64_t origin_of(std::int64_t first_ns) {
-  return first_ns >= 0 && first_ns < kOwnZero_ns ? 0 : first_ns;
+  for (const std::int64_t zero_ns : {std::int64_t{0}, kExportOrigin_ns})
+    if (first_ns >= zero_ns && first_ns < zero_ns + kOwnZero_ns) return zero_ns;
+  return first_ns;
+}
+
+std::optional<std::int64_t> clock_shift_ns(const StampSpan& moved, const StampSpan& fixed,
+                                           std::initializer_list<std::int64_t> shifts_ns) {
+  for (const std::int64_t shift_ns : shifts_ns)
+    if (moved.first <= fixed.second - shift_ns && moved.second >= fixed.first - shift_ns) return shift_ns;
+  return std::nullopt;
+}
+
+std::string clock_note(const std::string& what, std::int64_t shift_ns) {
+  return fmt::format("{} count from {}; {} s are {} them, because exported recordings start at {} s", what,
+                     shift_ns > 0 ? "zero" : "the start of exported recordings", std::abs(shift_ns) / kSecond_ns,
+                     shift_ns > 0 ? "added to" : "subtracted from", kExportOrigin_ns / kSecond_ns);
 }
 
 void start_clock(Imported& recording) {
@@ -65,20 +82,25 @@ void add_lidar(Imported& recording, BuiltSweeps built) {
 }
 
 void attach_imus(Imported& recording, Imported imu) {
-  const std::int64_t origin_ns = std::min(recording.info.origin_ns, imu.info.origin_ns);
   const auto [first, last] = span_of(recording.sensors);
   const auto [imu_first, imu_last] = span_of(imu.sensors);
-  const std::int64_t ahead_ns = imu.info.origin_ns - recording.info.origin_ns;
-  if (imu_first + ahead_ns > last || imu_last + ahead_ns < first) {
+  std::int64_t ahead_ns = imu.info.origin_ns - recording.info.origin_ns;
+  const auto shift_ns = clock_shift_ns({imu_first + ahead_ns, imu_last + ahead_ns}, {first, last},
+                                       {0, kExportOrigin_ns, -kExportOrigin_ns});
+  if (!shift_ns) {
     throw BadInput(
         fmt::format("the IMU readings are from {} to {} ns of the sweeps' clock, but the sweeps are from {} to {} ns; "
                     "check that both use the same clock",
                     imu_first + ahead_ns, imu_last + ahead_ns, first, last));
   }
+  if (*shift_ns != 0) recording.notes.push_back(clock_note("the IMU readings", *shift_ns));
+  imu.info.origin_ns += *shift_ns;
+  const std::int64_t origin_ns = std::min(recording.info.origin_ns, imu.info.origin_ns);
   shift(recording.sensors, recording.info.origin_ns - origin_ns);
   shift(imu.sensors, imu.info.origin_ns - origin_ns);
   recording.info.origin_ns = origin_ns;
   recording.info.attribution += "; " + imu.info.attribution;
+  recording.notes.insert(recording.notes.end(), imu.notes.begin(), imu.notes.end());
   for (sim::ImuRecord& each : imu.sensors.imus) recording.sensors.imus.push_back(std::move(each));
 }
 

@@ -2,21 +2,35 @@
 #pragma once
 
 #include <cstdint>
+#include <initializer_list>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "scenarios/recordings/import.hpp"
 
-/// Converts stamps of an imported recording to the recording's clock. Used only within scenarios/recordings.
+/// Converts stamps of imported files to the recording's clock.
 namespace tumble::scenarios {
 
 /// Returns the first and last time of the IMU samples and sweeps; a sweep lasts one period. Throws BadInput if the
 /// recording has neither IMU samples nor sweeps.
 std::pair<std::int64_t, std::int64_t> span_of(const sim::Sensors& sensors);
 
+/// First and last stamp.
+using StampSpan = std::pair<std::int64_t, std::int64_t>;
+
+/// Returns the first of `shifts_ns` that moves the stamps `moved` so that they overlap with `fixed`; empty if there is
+/// none. Exports of a simulated recording count from kExportOrigin_ns, but other files of the same recording may count
+/// from zero. This offset of 31 years is certain, because no recording lasts longer than a day.
+std::optional<std::int64_t> clock_shift_ns(const StampSpan& moved, const StampSpan& fixed,
+                                           std::initializer_list<std::int64_t> shifts_ns);
+
+/// Returns a note on a shift that clock_shift_ns found.
+std::string clock_note(const std::string& what, std::int64_t shift_ns);
+
 /// Returns time 0 for a first stamp: the first stamp, or the zero of the clock if the clock's zero is less than a
-/// second earlier.
+/// second earlier. Zeros are 0 and the start of exports, kExportOrigin_ns.
 std::int64_t origin_of(std::int64_t first_ns);
 
 /// Converts stamps from the source's clock to the recording's clock, and stores the origin.

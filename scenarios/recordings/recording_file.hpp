@@ -30,6 +30,16 @@ struct RecordingInfo {
   bool has_truth = false;
 };
 
+/// Stamp of time 0 in every export of a recording without `origin_ns`, such as a simulated one: 1 000 000 000 s after
+/// 1970, because ROS treats a stamp of 0 as unset.
+inline constexpr std::int64_t kExportOrigin_ns = 1'000'000'000'000'000'000;
+
+/// Returns the stamp of time 0 in every export of a recording: `origin_ns`, or kExportOrigin_ns if `origin_ns` is
+/// unknown or before 1970, because bags cannot store such stamps.
+inline std::int64_t export_origin_ns(std::int64_t origin_ns) {
+  return origin_ns > 0 ? origin_ns : kExportOrigin_ns;
+}
+
 /// Returns the XXH3 digest (128 bit) of every field of sensors and truth in a fixed order; equal data have equal
 /// digests.
 std::string digest(const sim::Sensors& sensors, const sim::Truth* truth);

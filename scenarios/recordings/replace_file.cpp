@@ -8,8 +8,13 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -90,13 +95,40 @@ void require_outside(const fs::path& output, std::span<const fs::path> inputs) {
   }
 }
 
+/// Returns the part of a temporary file's name that identifies the writing process: ".tumble-HOST-PID.".
+std::string process_mark(const std::string& pid) {
+  std::array<char, 17> host{};  // longer names are cut
+  if (gethostname(host.data(), host.size() - 1) != 0) host[0] = '\0';
+  return ".tumble-" + std::string(host.data()) + "-" + pid + ".";
+}
+
+/// Removes the temporary files of processes on this computer that no longer exist, as after SIGKILL. Looks into each
+/// folder once per process.
+void remove_abandoned(const fs::path& folder) {
+  static std::mutex mutex;
+  static std::set<fs::path> cleaned;
+  const std::lock_guard lock(mutex);
+  if (!cleaned.insert(folder).second) return;
+  const std::string mark = process_mark("");
+  const std::string start = mark.substr(0, mark.size() - 1);  // without the dot after the PID
+  std::error_code ignored;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder.empty() ? "." : folder, ignored)) {
+    const std::string name = entry.path().filename().string();
+    const std::size_t at = name.rfind(start);
+    if (!name.starts_with('.') || !name.ends_with(".tmp") || at == std::string::npos) continue;
+    const int pid = std::atoi(name.c_str() + at + start.size());
+    if (pid > 0 && kill(pid, 0) != 0 && errno == ESRCH) fs::remove(entry.path(), ignored);
+  }
+}
+
 }  // namespace
 
 OutputFile::OutputFile(const fs::path& path) : given_(path), place_(behind_links(path)) {
   require_replaceable(given_, place_);
   const SignalsWait until_listed;
   std::string stem(".");
-  stem.append(place_.filename().string()).append(".").append(std::to_string(getpid())).append(".");
+  stem.append(place_.filename().string()).append(process_mark(std::to_string(getpid())));
+  remove_abandoned(place_.parent_path());
   for (int attempt = 0; attempt < 1000; ++attempt) {
     unfinished_ = place_.parent_path() / (stem + std::to_string(attempt) + ".tmp");
     const Descriptor file(open(unfinished_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));

@@ -14,9 +14,10 @@
 namespace tumble::scenarios {
 
 /// A file under construction next to its final path. The file is removed unless it is moved to its final path, also
-/// when a signal ends the program (unfinished.hpp). Symbolic links are followed. An existing target must be a writable
-/// regular file; its mode and owner are kept. Throws BadInput with the path and the system's reason (missing folder, no
-/// permission, disk full, a device, a pipe).
+/// when a signal ends the program (unfinished.hpp). Files of processes that ended without removing them, as after
+/// SIGKILL, are removed by the next process that writes to the folder. Symbolic links are followed. An existing target
+/// must be a writable regular file; its mode and owner are kept. Throws BadInput with the path and the system's reason
+/// (missing folder, no permission, disk full, a device, a pipe).
 class OutputFile {
  public:
   explicit OutputFile(const std::filesystem::path& path);

@@ -4,17 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
-#include <cstdlib>
 #include <fstream>
 #include <istream>
+#include <optional>
 #include <span>
 #include <string>
-#include <system_error>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/recordings/whole_seconds.hpp"
+#include "scenarios/recordings/number_text.hpp"
 #include "scenarios/regular_file.hpp"
 #include "scenarios/text.hpp"
 
@@ -24,6 +21,11 @@ namespace {
 
 /// Write block size [bytes].
 constexpr std::size_t kBlock = 1 << 16;
+
+/// Returns true for the characters that may stand between numbers in a table of blanks, such as a TUM file.
+bool is_separator(char c) {
+  return c == '\t' || c == ',' || c == ';';
+}
 
 std::vector<std::string> split(const std::string& line, char separator) {
   std::vector<std::string> cells;
@@ -56,13 +58,6 @@ bool read_line(std::istream& file, const std::filesystem::path& path, int number
   return !line.empty();
 }
 
-template <typename T>
-bool parse(const std::string& text, T& value) {
-  const char* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  return error == std::errc() && stop == end;
-}
-
 }  // namespace
 
 TableWriter::TableWriter(const std::filesystem::path& path, char separator, const std::string& header)
@@ -86,17 +81,14 @@ void TableWriter::integer(std::int64_t value) {
 }
 
 void TableWriter::number(double value) {
-  char text[40];
-  const auto [end, error] = std::to_chars(text, text + sizeof(text), value);
-  cell(std::string(text, error == std::errc() ? end : text));
+  std::string text;
+  append_number(text, value);
+  cell(text);
 }
 
 void TableWriter::time_s(std::int64_t time_ns) {
-  const std::int64_t magnitude = std::llabs(time_ns);
-  std::string fraction = std::to_string(magnitude % kSecond_ns);
-  fraction.insert(0, 9 - fraction.size(), '0');
-  std::string text = time_ns < 0 ? "-" : "";
-  text.append(std::to_string(magnitude / kSecond_ns)).append(1, '.').append(fraction);
+  std::string text;
+  append_seconds(text, time_ns);
   cell(text);
 }
 
@@ -123,7 +115,7 @@ Table Table::read(const std::filesystem::path& path, char separator, const std::
     ++number;
     if (number == 1 && line.starts_with("\xef\xbb\xbf")) line.erase(0, 3);  // byte order mark of editors on Windows
     if (!line.empty() && line.back() == '\r') line.pop_back();
-    if (separator == ' ') std::replace(line.begin(), line.end(), '\t', ' ');
+    if (separator == ' ') std::replace_if(line.begin(), line.end(), is_separator, ' ');
     if (header_due) {
       if (line != header)
         throw BadInput(fmt::format("{}:1: header is '{}', must be '{}'", path.string(), shortened(line), header));
@@ -142,46 +134,28 @@ Table Table::read(const std::filesystem::path& path, char separator, const std::
   return table;
 }
 
+void Table::fail(const Row& row, std::size_t column, const std::string& what) const {
+  throw BadInput(path.string() + ":" + std::to_string(row.line) + ": '" + shortened(row.cells[column]) + "' is not " +
+                 what);
+}
+
 double Table::number(const Row& row, std::size_t column) const {
   double value = 0.0;
-  if (!parse(row.cells[column], value)) {
-    throw BadInput(path.string() + ":" + std::to_string(row.line) + ": '" + shortened(row.cells[column]) +
-                   "' is not a number");
-  }
+  if (!parse_number(row.cells[column], value)) fail(row, column, "a number");
   return value;
 }
 
 std::int64_t Table::integer(const Row& row, std::size_t column) const {
   std::int64_t value = 0;
-  if (!parse(row.cells[column], value)) {
-    throw BadInput(path.string() + ":" + std::to_string(row.line) + ": '" + shortened(row.cells[column]) +
-                   "' is not an integer");
-  }
+  if (!read_number(row.cells[column], value)) fail(row, column, "an integer");
   return value;
 }
 
 std::int64_t Table::time_ns(const Row& row, std::size_t column) const {
-  const std::string& text = row.cells[column];
-  const std::size_t point = text.find('.');
-  const bool plain = text.find_first_not_of("-0123456789.") == std::string::npos;
-  std::int64_t whole = 0;
-  std::int64_t fraction = 0;
-  // Epoch seconds with nine decimals exceed the precision of a double, so the whole part and the fraction are parsed
-  // separately.
-  if (plain && point != std::string::npos && point > 0 && parse(text.substr(0, point), whole)) {
-    std::string digits = text.substr(point + 1, 9);
-    digits.append(9 - digits.size(), '0');
-    const bool plain_part = digits.find_first_not_of("0123456789") == std::string::npos;
-    const bool fits = whole >= -kSecondsMax && whole <= kSecondsMax;
-    if (fits && plain_part && parse(digits, fraction))
-      return whole * kSecond_ns + (text.front() == '-' ? -fraction : fraction);
-  }
-  const double value_s = number(row, column);
-  if (!std::isfinite(value_s) || std::abs(value_s) > static_cast<double>(kSecondsMax)) {
-    throw BadInput(path.string() + ":" + std::to_string(row.line) + ": '" + shortened(text) +
-                   "' is not a time in seconds");
-  }
-  return static_cast<std::int64_t>(std::llround(value_s * 1e9));
+  // epoch seconds with nine decimals exceed the precision of a double
+  const std::optional<std::int64_t> time_ns = parse_time_ns(row.cells[column], 9);
+  if (!time_ns) fail(row, column, "a time in seconds");
+  return *time_ns;
 }
 
 }  // namespace tumble::scenarios

@@ -34,8 +34,9 @@ class TableWriter {
   bool row_empty_ = true;
 };
 
-/// Rows of text cells; every row has the expected number of cells. Skips empty lines and lines that start with '#'.
-/// Throws BadInput with path and line number for a wrong number of cells or an invalid value.
+/// Rows of text cells; every row has the expected number of cells. Skips empty lines and lines that start with '#'. In
+/// a table of blanks, tabs, commas and semicolons also separate cells. Throws BadInput with path and line number for a
+/// wrong number of cells or an invalid value.
 struct Table {
   struct Row {
     int line;
@@ -50,6 +51,9 @@ struct Table {
   std::int64_t integer(const Row& row, std::size_t column) const;
   std::int64_t time_ns(const Row& row,
                        std::size_t column) const;  ///< decimal seconds, converted to nanoseconds without a double
+
+ private:
+  [[noreturn]] void fail(const Row& row, std::size_t column, const std::string& what) const;
 };
 
 }  // namespace tumble::scenarios

@@ -21,10 +21,13 @@ bool end_error(const ScoredEstimate& scored, double& value) {
   return true;
 }
 
+/// Divides by the path of the body's centre (of a sphere's shell, else of mass), whatever the frame of the estimate:
+/// the path of a sensor that turns around the centre is longer, so shares in different frames would not be comparable.
 bool end_error_share(const ScoredEstimate& scored, double& value) {
   const std::vector<PairedPose>& poses = paired_track(scored).poses;
   if (poses.empty()) return false;
-  const double path_m = poses.back().path_m - poses.front().path_m;
+  const TruthTrack centre(scored.truth(), Frame::centre);
+  const double path_m = centre.path_m(poses.back().time_ns) - centre.path_m(poses.front().time_ns);
   if (path_m < kPathMinM) return false;
   value = (poses.back().estimate.p_WA_m - poses.back().truth.p_WA_m).norm() / path_m;
   return true;
@@ -99,8 +102,8 @@ std::vector<Metric> position_metrics() {
         Sense::lower},
        Kind::position,
        end_error},
-      {{"position_end_error_share", Unit::share, "position error at the end, as a share of the length of the true path",
-        Sense::lower, Place::headline},
+      {{"position_end_error_share", Unit::share,
+        "position error at the end, as a share of the true path of the body's centre", Sense::lower, Place::headline},
        Kind::position,
        end_error_share},
       {{"position_height_error_max_m", Unit::m, "largest height error", Sense::lower, Place::held},

@@ -27,6 +27,7 @@ bool is_cost(std::string_view name) {
 
 std::vector<MetricInfo> motion_quantities() {
   return {
+      {"motion_duration_s", Unit::s, "duration of the recording"},
       {"motion_moving_s", Unit::s, "time between first and last motion"},
       {"motion_path_m", Unit::m, "path length of the centre of mass"},
       {"motion_peak_rate_rad_s", Unit::rad_s, "largest angular velocity"},

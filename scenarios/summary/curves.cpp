@@ -196,7 +196,9 @@ std::string bin_label(const BinnedMetric& bin, double factor) {
 using Bins =
     std::map<std::pair<std::string, std::string>, std::map<double, std::pair<BinnedMetric, const std::string*>>>;
 
-Bins bins_of(const Runs& runs) {
+/// Returns the bins of the measures that any run has. Registered bins without samples are included, so that a curve
+/// shows where samples are missing.
+Bins bins_of(const Runs& runs, Names& names) {
   std::set<const std::string*> metrics;
   for (const auto& [method, own] : runs) {
     for (const Run& run : own) {
@@ -204,24 +206,29 @@ Bins bins_of(const Runs& runs) {
     }
   }
   Bins bins;
-  for (const std::string* metric : metrics) {
-    if (const auto bin = parse_binned(*metric)) bins[{bin->axis, bin->base}].try_emplace(bin->low, *bin, metric);
-  }
+  const auto add = [&](const std::string* metric, bool only_known) {
+    const auto bin = parse_binned(*metric);
+    if (!bin || (only_known && !bins.contains({bin->axis, bin->base}))) return;
+    bins[{bin->axis, bin->base}].try_emplace(bin->low, *bin, metric);
+  };
+  for (const std::string* metric : metrics) add(metric, false);
+  for (const Metric& metric : scenarios::metrics()) add(name_of(metric.info.name, names), true);
   return bins;
 }
 
-void add_sample_curves(const RunsBySetting& plain, std::vector<Curve>& all) {
+void add_sample_curves(const RunsBySetting& plain, Names& names, std::vector<Curve>& all) {
   for (const auto& [key, by_value] : plain) {
     const auto& [varied, scenario, kind] = key;
     const Runs& runs = by_value.begin()->second;
     const PickedRuns picked = all_of(runs);
-    for (const auto& [name, places] : bins_of(runs)) {
+    for (const auto& [name, places] : bins_of(runs, names)) {
       Curve curve{Curve::Source::samples, name.first, scenario, kind, name.second, {}};
       double rank = 0.0;
       for (const auto& [low, bin] : places) {
         CurvePoint place;
         place.x = ++rank;
         place.label = bin_label(bin.first, metric_style(bin.first.axis).factor);
+        curve.bins.push_back(place.label);
         add_place(picked, bin.second, place, curve);
       }
       keep(std::move(curve), all);
@@ -306,7 +313,7 @@ std::vector<Curve> find_curves(const Results& results, std::span<const DrawValue
   Collecting collecting;
   summary = summarize(results, names, [&](const OutcomeView& outcome) { collecting.add(outcome); });
   const RunsBySetting plain = collecting.sorted();
-  add_sample_curves(plain, all);
+  add_sample_curves(plain, names, all);
   add_draw_curves(plain, draws, names, all);
   return all;
 }

@@ -38,6 +38,8 @@ struct Curve {
   Kind kind = Kind::rate;
   std::string metric;
   std::vector<CurveLine> lines;  ///< in the order of the registry
+  /// For samples: the labels of all bins of the measure, also of bins without samples; point x is at bins[x - 1].
+  std::vector<std::string> bins = {};
 };
 
 /// Returns every curve in the results. Each scenario and headline metric has a curve for each varied number. Each

@@ -43,6 +43,8 @@ void DrawFiles::finish(const SimulatedDraw& draw, bool failed) {
     trouble_.clear();
     return folder_.reset();
   }
+  // a draw without one of its estimates, for example because the disk is full, is not kept at all
+  if (!trouble_.empty()) return folder_.reset();
   try {
     RecordingInfo info = keeping_.versions;
     info.scenario = draw.scenario;

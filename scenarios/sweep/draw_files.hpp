@@ -34,8 +34,8 @@ class DrawFiles {
 
   /// Returns the folder in which a method must write its estimate, or an empty path if the estimate is not needed.
   std::filesystem::path estimate(const MethodInfo& method);
-  /// Writes the recording and moves all files to their final folder, or removes all files. Existing estimates of other
-  /// methods from equal sensor data remain.
+  /// Writes the recording and moves all files to their final folder. After `miss`, or if a file cannot be written,
+  /// removes all files instead. Existing estimates of other methods from equal sensor data remain.
   void finish(const SimulatedDraw& draw, bool failed);
   /// Records that an estimate could not be written.
   void miss(const std::string& why) { trouble_ = why; }

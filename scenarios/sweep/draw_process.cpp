@@ -3,6 +3,7 @@
 
 #include <malloc.h>
 #include <poll.h>
+#include <stdlib.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -17,6 +18,7 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/estimate_file.hpp"
 #include "scenarios/recordings/recording_file.hpp"
+#include "scenarios/recordings/scratch_folder.hpp"
 #include "scenarios/sweep/message.hpp"
 #include "scenarios/sweep/motion_values.hpp"
 #include "scenarios/sweep/variation.hpp"
@@ -215,7 +217,14 @@ Outcome run_isolated(const Method& method, const SimulatedDraw& draw, const Simu
                      const sim::Surface* surface, double timeout_s, const std::filesystem::path& folder,
                      std::string* not_kept) {
   const double before_mib = resident_mib();
-  Process process([&](int fd) { run_method_child(method, draw, scored, surface, folder, fd); }, false);
+  // a child that is killed cannot remove its temporary files
+  const ScratchFolder temporary("run");
+  Process process(
+      [&](int fd) {
+        setenv("TMPDIR", temporary.path().c_str(), 1);
+        run_method_child(method, draw, scored, surface, folder, fd);
+      },
+      false);
   std::string text;
   const bool in_time = read_until(process, now_s() + timeout_s, text);
   if (!in_time) process.kill();

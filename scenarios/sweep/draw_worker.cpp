@@ -2,6 +2,7 @@
 #include "scenarios/sweep/draw_worker.hpp"
 
 #include <malloc.h>
+#include <stdlib.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -29,6 +30,7 @@ std::optional<std::string> next_line(int fd, std::string& buffer) {
 /// Runs in the worker process. Reads one line per task until an empty line.
 void serve(const WorkerTerms& terms, int tasks, int fd) {
   limit_memory(terms.memory_mib);
+  if (!terms.temporary.empty()) setenv("TMPDIR", terms.temporary.c_str(), 1);
   std::string buffer;
   while (const std::optional<std::string> line = next_line(tasks, buffer)) {
     if (line->empty()) return;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,8 @@ struct WorkerTerms {
   double timeout_s;                ///< time limit of a method
   double memory_mib;               ///< memory limit of the worker and of each process that it starts
   bool recordings_unseen = false;  ///< as in SweepOptions
+  /// Folder for temporary files of the worker and its methods, because a killed process cannot remove its own.
+  std::filesystem::path temporary = {};
 };
 
 /// A process that executes one simulated run after another. The process communicates in lines of text, so that no state

@@ -15,13 +15,19 @@ double share(std::size_t part, std::size_t whole) {
   return whole == 0 ? std::nan("") : static_cast<double>(part) / static_cast<double>(whole);
 }
 
+/// Returns the time from the first to the last sample of the primary IMU.
+double duration_s(const sim::ImuRecord& imu) {
+  return imu.time_ns.empty() ? 0.0 : 1e-9 * static_cast<double>(imu.time_ns.back() - imu.time_ns.front());
+}
+
 }  // namespace
 
 DrawValues motion_values(const std::string& scenario, std::uint64_t seed, const sim::Recording& recording) {
   DrawValues draw{scenario, seed, {}};
   if (recording.sensors.imus.empty()) return draw;
   const MotionSummary motion = summarise_motion(recording.sensors, recording.truth);
-  draw.values = {{"motion_moving_s", motion.moving_s},
+  draw.values = {{"motion_duration_s", duration_s(recording.sensors.imus.front())},
+                 {"motion_moving_s", motion.moving_s},
                  {"motion_path_m", motion.path_m},
                  {"motion_peak_rate_rad_s", motion.peak_rate_rad_s},
                  {"motion_peak_accel_m_s2", motion.peak_accel_m_s2},
@@ -43,7 +49,8 @@ DrawValues recorded_motion_values(const std::string& scenario, std::uint64_t see
   double peak_rad_s = 0.0;
   for (const Eigen::Vector3d& w : recording.sensors.imus.front().gyro_rad_s)
     peak_rad_s = std::max(peak_rad_s, w.norm());
-  draw.values = {{"motion_peak_rate_rad_s", peak_rad_s}};
+  draw.values = {{"motion_duration_s", duration_s(recording.sensors.imus.front())},
+                 {"motion_peak_rate_rad_s", peak_rad_s}};
   if (recording.truth.imus.empty() || recording.truth.imus.front().rate_rad_s.empty()) return draw;
   const ClippingTruth clipping(recording.sensors, recording.truth);
   std::size_t clipped = 0;

@@ -14,6 +14,7 @@
 #include "scenarios/methods/external_description.hpp"
 #include "scenarios/methods/external_method.hpp"
 #include "scenarios/provenance/data_digest.hpp"
+#include "scenarios/recordings/scratch_folder.hpp"
 #include "scenarios/sweep/draw_worker.hpp"
 #include "scenarios/sweep/results.hpp"
 #include "scenarios/sweep/run_again.hpp"
@@ -74,7 +75,7 @@ class Sweep {
         started_s_(now_s()),
         plan_(data, suite, options, database),
         kept_(database),
-        terms_{data, plan_, suite.timeout_s, options.memory_mib, options.recordings_unseen} {}
+        terms_{data, plan_, suite.timeout_s, options.memory_mib, options.recordings_unseen, temporary_.path()} {}
 
   SweepProgress run() {
     plan_.require_same_recordings(results_);
@@ -82,7 +83,13 @@ class Sweep {
     note_descriptions(results_, suite_);
     plan_.note_recordings(results_);
     progress_.draws_total = plan_.draws_total();
-    work([&] { return next_draw(); });
+    try {
+      work([&] { return next_draw(); });
+    } catch (...) {  // for example a full disk
+      discard_unfinished();
+      throw;
+    }
+    if (stopped()) discard_unfinished();
     if (options_.keep.which != Keep::Which::none && !stopped()) update_kept();
     for (DrawWorker& worker : workers_) note_peak(worker.dismiss());
     workers_.clear();
@@ -91,6 +98,18 @@ class Sweep {
   }
 
  private:
+  /// Ends the workers and removes what they have not finished to keep.
+  void discard_unfinished() {
+    for (DrawWorker& worker : workers_) worker.kill();
+    workers_.clear();
+    if (options_.keep.which == Keep::Which::none) return;
+    try {
+      kept_.discard_unfinished();
+    } catch (const BadInput& error) {
+      progress_.not_kept = error.what();
+    }
+  }
+
   using NextDraw = std::function<std::optional<DrawTask>()>;
 
   bool stopped() const { return options_.stop != nullptr && options_.stop->load(); }
@@ -279,6 +298,7 @@ class Sweep {
   double started_s_;
   SweepPlan plan_;
   KeptDraws kept_;
+  const ScratchFolder temporary_{"sweep"};  ///< removed after the workers
   WorkerTerms terms_;
   std::list<DrawWorker> workers_;
   SweepProgress progress_;

@@ -6,6 +6,7 @@
 
 #include <cstdlib>
 #include <fstream>
+#include <iterator>
 #include <sstream>
 
 #include "system/program.hpp"
@@ -44,6 +45,28 @@ class Bench : public ::testing::Test {
   }
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
 
+  /// The report that `bench` recommends compares both methods, and each command on its page works.
+  void expect_page_of(const std::string& database) const {
+    ASSERT_EQ(run_program({"report", database, "-o", path("page.html")}).status, 0);
+    const std::string page = read_file(folder_ / "page.html");
+    EXPECT_THAT(page, HasSubstr("theirs"));
+    EXPECT_THAT(page, HasSubstr("published result of build"));
+    const std::string text = page.substr(0, page.find("<script id=\"plotly\">"));
+    std::vector<std::string> verbs;
+    for (std::size_t at = 0; (at = text.find("<pre>tumble ", at)) != std::string::npos;) {
+      at += std::string("<pre>tumble ").size();
+      std::istringstream command(text.substr(at, text.find('<', at) - at));
+      std::vector<std::string> words{std::istream_iterator<std::string>(command), {}};
+      verbs.push_back(words.front());
+      if (words.front() == "run" || words.front() == "certify") continue;  // as for any other page
+      if (words.front() == "sweep") words.insert(words.end(), {"--examples", "0"});
+      const Ended ended = run_program(words);
+      EXPECT_EQ(ended.status, 0) << testing::PrintToString(words) << ended.err;
+    }
+    EXPECT_THAT(verbs, testing::IsSupersetOf({"sweep", "report", "compare"}));
+    EXPECT_THAT(verbs, Not(testing::Contains("sensitivity"))) << "which needs more draws";
+  }
+
   const fs::path folder_ = test_folder();
 };
 
@@ -57,9 +80,9 @@ TEST_F(Bench, MethodsOfStrangersAreHeldBesideOurs) {
   EXPECT_THAT(ended.out, HasSubstr("rate_error_clipped_median_rad_s"));
   EXPECT_THAT(ended.out, HasSubstr("mild (1)"));
   EXPECT_THAT(ended.out, HasSubstr("ValueError: out of luck"));
-  const std::vector<json> lines = lines_of(ended.out);
+  EXPECT_THAT(ended.out, Not(HasSubstr("\"format\""))) << "the table alone";
+  const std::vector<json> lines = lines_of(read_file(folder_ / "lines.jsonl"));
   ASSERT_EQ(lines.size(), 4u);
-  EXPECT_EQ(lines_of(read_file(folder_ / "lines.jsonl")), lines);
   EXPECT_EQ(lines[1]["method"], "doubtful");
   EXPECT_EQ(lines[3]["draws"][0]["status"], "crashed");
   const std::string metric = "rate_error_clipped_median_rad_s";
@@ -87,6 +110,8 @@ TEST_F(Bench, MethodsOfStrangersAreHeldBesideOurs) {
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(ended.out, HasSubstr("theirs"));
   EXPECT_THAT(ended.out, Not(HasSubstr("not compared")));
+  EXPECT_THAT(ended.err, HasSubstr("next: tumble report " + path("bench_compared.db") + " -o report.html"));
+  expect_page_of(path("bench_compared.db"));
   ended = beside("\"recording\":\"", "\"recording\":\"0");
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(ended.out, HasSubstr("not compared"));

@@ -2,7 +2,10 @@
 // Somebody else's command in run and sweep: what it answers is scored as ours is, and what goes wrong is an outcome.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <csignal>
+#include <cstdlib>
 #include <fstream>
 
 #include "scenarios/sweep/results.hpp"
@@ -73,6 +76,41 @@ TEST(External, WhatGoesWrongIsAnOutcomeOfTheSweep) {
   const Ended other = run_program(sweep, in_short_catalogue());
   EXPECT_EQ(other.status, 2);
   EXPECT_THAT(other.err, HasSubstr("rate/silent"));
+}
+
+// whether the method hangs when it is imported or when it runs, nothing of it is left when the user has waited enough
+TEST(External, AHangThatIsStoppedLeavesNoFolder) {
+  const fs::path folder = test_folder();
+  std::ofstream(folder / "small.yaml") << "name: small\ndoc: a draw\nmethods: [rate/raw]\ntimeout_s: 600\n"
+                                          "draws: {one: {hill: [1]}}\n";
+  const std::string hangs = describe(folder, "hangs", "touch started; exec sleep 600");
+  const std::vector<std::string> verbs[] = {
+      {"bench", hangs, "--suite", (folder / "small.yaml").string(), "--db", (folder / "b.db").string()},
+      {"triage", shared_scenario("hill"), "--seed", "1", "--method", hangs},
+      {"run", shared_scenario("hill"), "--seed", "1", "--method", hangs}};
+  for (const std::vector<std::string>& verb : verbs) {
+    const fs::path temporary = folder / (verb.front() + "_temporary");
+    fs::create_directory(temporary);
+    const auto has_started = [&] {
+      std::error_code gone;
+      for (const fs::directory_entry& each : fs::recursive_directory_iterator(temporary, gone))
+        if (each.path().filename() == "started") return true;
+      return false;
+    };
+    Running running(verb, [&, short_catalogue = in_short_catalogue()] {
+      short_catalogue();
+      setenv("TMPDIR", temporary.c_str(), 1);
+    });
+    while (!has_started() && !running.has_ended()) usleep(1000);
+    EXPECT_FALSE(running.has_ended()) << verb.front();
+    running.signal(SIGINT);
+    const Ended ended = running.wait();
+    EXPECT_NE(ended.status, 0) << verb.front();
+    EXPECT_TRUE(fs::is_empty(temporary)) << verb.front() << " left " << *fs::directory_iterator(temporary);
+    if (verb.front() == "run") {
+      EXPECT_THAT(ended.err, HasSubstr("hangs.yaml: a run is ended after 600 s")) << ended.err;
+    }
+  }
 }
 
 TEST(External, AGateHoldsItToItsAcceptedRun) {

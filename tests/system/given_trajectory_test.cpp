@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "scenarios/recordings/number_text.hpp"
+#include "scenarios/recordings/recording_file.hpp"
 #include "system/program.hpp"
 
 namespace tumble::system_test {
@@ -42,12 +43,12 @@ class GivenTrajectory : public testing::Test {
       std::ofstream file(tum);
       for (std::size_t k = 0; k < count; ++k) {
         std::istringstream words(lines_[k]);
-        double stamp_s = 0.0;
-        std::string rest;
-        words >> stamp_s;
+        std::string stamp, rest;
+        words >> stamp;
         std::getline(words, rest);
-        std::string stamp;
-        scenarios::append_seconds(stamp, std::lround(1e9 * stamp_s * factor));
+        const std::int64_t time_ns = scenarios::parse_time_ns(stamp, 9).value() - scenarios::kExportOrigin_ns;
+        stamp.clear();
+        scenarios::append_seconds(stamp, std::lround(static_cast<double>(time_ns) * factor));
         file << stamp << rest << '\n';
       }
     }

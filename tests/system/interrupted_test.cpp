@@ -51,7 +51,8 @@ TEST(Interrupted, NothingHalfDoneIsLeft) {
       fs::remove_all(folder);
       fs::create_directory(folder);
       std::vector<std::string> arguments = verb.arguments;
-      arguments.insert(arguments.end(), {"-o", (folder / "o").string()});
+      const std::string name = arguments.front() == "import" ? "o.h5" : "o";
+      arguments.insert(arguments.end(), {"-o", (folder / name).string()});
       EXPECT_EQ(status_after(arguments, folder, number), 128 + number) << verb.name;
       EXPECT_TRUE(fs::is_empty(folder)) << verb.name << " left " << fs::directory_iterator(folder)->path();
     }

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <chrono>
@@ -232,6 +233,23 @@ TEST(Sweep, KeepsItsTableWhenPicturesCannotBeLeft) {
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_EQ(json_of(ended)["draws_done"], 2);
   EXPECT_THAT(ended.err, HasSubstr("tumble: no pictures of single draws: "));
+}
+
+TEST(Report, AFullDiskLeavesNeitherPageNorBadge) {
+  const fs::path folder = test_folder();
+  const fs::path database = copy_of_sweep(folder, "r"), page = folder / "r.html", badge = folder / "r.svg";
+  const auto report = [&](rlim_t most) {
+    return run_program({"report", database.string(), "-o", page.string(), "--badge", badge.string()}, [=] {
+      in_short_catalogue()();
+      const rlimit limit = {most, most};
+      setrlimit(RLIMIT_FSIZE, &limit);
+    });
+  };
+  EXPECT_EQ(report(64 * 1024).status, 2) << "the badge fits, the page does not";
+  EXPECT_FALSE(fs::exists(page));
+  EXPECT_FALSE(fs::exists(badge));
+  EXPECT_EQ(report(RLIM_INFINITY).status, 0);
+  EXPECT_TRUE(fs::exists(page) && fs::exists(badge));
 }
 
 TEST(Report, OfAnAbsentDatabaseMakesNone) {

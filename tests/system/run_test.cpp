@@ -248,27 +248,58 @@ TEST(Render, RefusesAnEstimateOfAnotherRecording) {
 // the scenario alone: seed 1, ours beside the baseline, a folder named after it, and what to do next
 TEST(FirstRun, AScenarioAloneDoesSomethingGood) {
   const fs::path folder = test_folder();
-  const auto run = [&] {
-    return run_program({"run", "roll", "--json"}, [&, short_catalogue = in_short_catalogue()] {
+  const auto in_folder = [&](const std::vector<std::string>& words) {
+    return run_program(words, [&, short_catalogue = in_short_catalogue()] {
       short_catalogue();
       fs::current_path(folder);
     });
   };
-  const Ended ended = run();
+  const Ended ended = in_folder({"run", "roll", "--json"});
   ASSERT_EQ(ended.status, 0) << ended.err;
   const json said = json_of(ended);
   EXPECT_EQ(said["seed"], 1);
-  std::vector<std::string> methods;
-  for (const json& outcome : said["outcomes"]) methods.push_back(outcome["method"]);
-  EXPECT_THAT(methods, ::testing::ElementsAre("integrate", "tumble", "rolling", "tumble"));
+  const auto methods = [](const json& document) {
+    std::vector<std::string> names;
+    for (const json& outcome : document["outcomes"]) names.push_back(outcome["method"]);
+    return names;
+  };
+  EXPECT_THAT(methods(said), ::testing::ElementsAre("integrate", "tumble", "rolling", "tumble"));
   for (const char* file : {"recording.h5", "snapshots/scene.png", "estimates/position-tumble/estimate.json"})
     EXPECT_TRUE(fs::exists(folder / "roll" / file)) << file;
   EXPECT_THAT(ended.err, HasSubstr("results written to roll/"));
-  EXPECT_THAT(ended.err, HasSubstr("tumble sweep roll --seeds 1..8"));
-  // again: nothing is mixed with what is there
-  const Ended again = run();
+  EXPECT_THAT(ended.err, HasSubstr("tumble sweep roll --scenario roll --seeds 1..8"))
+      << "a suite of the same name would sweep all its scenarios";
+  // again, with a seed: the same methods, and nothing is mixed with what is there
+  const Ended again = in_folder({"run", "roll", "--seed", "3", "--json"});
   EXPECT_EQ(again.status, 0) << again.err;
+  EXPECT_EQ(methods(json_of(again)), methods(said));
   EXPECT_TRUE(fs::exists(folder / "roll_2" / "recording.h5"));
+  // the folder does not hide the scenario of its name
+  const Ended drawn = in_folder({"render", "roll", "--seed", "5", "--width", "160", "--height", "120", "-o", "x.png"});
+  EXPECT_EQ(drawn.status, 0) << drawn.err;
+  EXPECT_THAT(read_file(folder / "x.png"), StartsWith("\x89PNG"));
+}
+
+// a file is no scenario of the catalogue, which is all that `sweep` takes
+TEST(FirstRun, AScenarioFileIsNotToBeSwept) {
+  const fs::path folder = test_folder();
+  const std::string file = shared_scenario("roll");
+  const Ended ended = run_program({"run", file, "--seed", "1"}, [&] { fs::current_path(folder); });
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_THAT(ended.err, HasSubstr("tumble run " + file + " --seed 2"));
+  EXPECT_THAT(ended.err, testing::Not(HasSubstr("tumble sweep")));
+}
+
+TEST(Estimate, PrintsWhatMattersWithUnits) {
+  const fs::path folder = test_folder() / "e";
+  const Ended ended = run_program(
+      {"estimate", (shared_run("hill") / "recording.h5").string(), "--method", "rate/tumble", "-o", folder.string()});
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  EXPECT_LE(line_count(ended.out), 12u) << ended.out;
+  EXPECT_THAT(ended.out, HasSubstr("time from the first to the last of the angular rates"));
+  EXPECT_THAT(ended.out, HasSubstr("unit"));
+  EXPECT_THAT(ended.err, HasSubstr("health counters: --json, or " + (folder / "estimate.json").string()));
+  EXPECT_GT(json::parse(read_file(folder / "estimate.json"))["health"].size(), 10u);
 }
 
 /// What `--set` gives a method is taken, is told by the estimate, and a wrong name or value ends the program at once.

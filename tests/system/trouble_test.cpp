@@ -57,6 +57,45 @@ TEST(Trouble, FolderThatCannotBeWritten) {
                   "file/below");
 }
 
+TEST(Trouble, FilesOfAnotherKindAreNotReplaced) {
+  const fs::path folder = test_folder();
+  const std::string recording = (shared_run("roll") / "recording.h5").string();
+  std::ofstream(folder / "imu.csv") << "sec,nsec,wx,wy,wz,fx,fy,fz\n0,0,0,0,0,0,0,9.8\n";
+  const auto kept = [&](const char* name, std::vector<std::string> words, const char* ending) {
+    const fs::path file = folder / name;
+    std::ofstream(file) << "precious";
+    words.push_back(file.string());
+    expect_one_line(run_program(words), ending);
+    EXPECT_EQ(read_file(file), "precious") << words.front();
+  };
+  kept("a.h5", {"report", (folder / "x.db").string(), "-o"}, "a.h5: the name of this output must end in .html");
+  kept("a.html", {"report", (folder / "x.db").string(), "--badge"}, "must end in .svg");
+  kept("a.yaml", {"render", "roll", "--seed", "1", "-o"}, "must end in .png");
+  kept("a.png", {"render", recording, "--video", "-o"}, "must end in .webp");
+  kept("a.h5", {"replay", recording, "-o"}, "must end in .html");
+  kept("a.yaml", {"record", "roll", "--seed", "1", "-o"}, "must end in .h5 or .hdf5");
+  kept("a.csv", {"import", (folder / "imu.csv").string(), "-o"}, "must end in .h5 or .hdf5");
+  kept("a.h5", {"bench", "rate/raw", "-o"}, "must end in .jsonl");
+  kept("a.h5", {"export", recording, "--format", "tum", "-o"}, "name another output, ending in .tum or .txt");
+  kept("a.tum", {"export", recording, "--format", "mcap", "-o"}, "ending in .mcap");
+}
+
+TEST(Trouble, ABagForARecordingPointsToImport) {
+  const fs::path folder = test_folder();
+  const std::string bag = (folder / "a.bag").string(), out = (folder / "out").string();
+  std::ofstream(bag) << "#ROSBAG V2.0\n";
+  for (const std::vector<std::string>& words : {std::vector<std::string>{"estimate", bag, "--method", "rate/raw"},
+                                                {"replay", bag},
+                                                {"render", bag},
+                                                {"score", bag, bag},
+                                                {"export", bag},
+                                                {"estimate", folder.string(), "--method", "rate/raw"}}) {
+    const Ended ended = run_program(words);
+    EXPECT_EQ(ended.status, 2) << words.front();
+    EXPECT_THAT(ended.err, HasSubstr("must be a recording (FILE.h5); 'tumble import ")) << words.front();
+  }
+}
+
 TEST(Trouble, FullDiskLeavesNoPartialRecording) {
   const fs::path folder = test_folder();
   // a limit on the size of files stands for the disk that is full; a roll takes more than this

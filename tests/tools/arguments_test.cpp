@@ -131,11 +131,20 @@ TEST(PrepareFile, RefusesWhatCannotBeOneAndLeavesNothing) {
       std::filesystem::path(testing::TempDir()) / ("tumble_prepare_file_" + std::to_string(getpid()));
   std::filesystem::remove_all(folder);
   make_folder(folder);
-  EXPECT_THAT([&] { prepare_file(folder, {}); }, ThrowsMessage<BadInput>(HasSubstr("Is a directory")));
-  EXPECT_THAT([&] { prepare_file(folder / std::string(300, 'a'), {}); },
+  make_folder(folder / "a.h5");
+  EXPECT_THAT([&] { prepare_file(folder / "a.h5", {}, {".h5"}); },
+              ThrowsMessage<BadInput>(HasSubstr("Is a directory")));
+  EXPECT_THAT([&] { prepare_file(folder / (std::string(300, 'a') + ".h5"), {}, {".h5"}); },
               ThrowsMessage<BadInput>(HasSubstr("cannot be written")));
-  EXPECT_THAT([&] { prepare_file("/proc/self/x.h5", {}); }, ThrowsMessage<BadInput>(HasSubstr("cannot be written")));
-  EXPECT_NO_THROW(prepare_file(folder / "below" / "x.h5", {}));
+  EXPECT_THAT([&] { prepare_file("/proc/self/x.h5", {}, {".h5"}); },
+              ThrowsMessage<BadInput>(HasSubstr("cannot be written")));
+  EXPECT_THAT(
+      [&] {
+        prepare_file(folder / "none" / "x.yaml", {}, {".h5", ".hdf5"});
+      },
+      ThrowsMessage<BadInput>(HasSubstr("x.yaml: the name of this output must end in .h5 or .hdf5")));
+  EXPECT_FALSE(std::filesystem::exists(folder / "none"));
+  EXPECT_NO_THROW(prepare_file(folder / "below" / "x.h5", {}, {".h5"}));
   EXPECT_TRUE(std::filesystem::is_empty(folder / "below"));
 }
 

@@ -11,45 +11,18 @@
 #include <string>
 
 #include "scenarios/summary/comparison.hpp"
+#include "tests/tools/some_summary.hpp"
 #include "tools/report/plots.hpp"
 
 namespace tumble::tools {
 namespace {
 
 using scenarios::Kind;
-using scenarios::MethodSummary;
 using scenarios::MetricSummary;
 using scenarios::Section;
 using scenarios::Summary;
 using ::testing::HasSubstr;
 using ::testing::Not;
-
-MetricSummary metric(std::vector<double> values) {
-  MetricSummary out;
-  for (std::size_t i = 0; i < values.size(); ++i) out.seeds.push_back(i + 1);
-  out.centre = {values.front(), values.front(), values.front()};
-  out.values = std::move(values);
-  return out;
-}
-
-Summary page_summary(const std::string& scenario, const std::string& method = "saave") {
-  MethodSummary raw, saave;
-  raw.method = "raw";
-  raw.metrics["rate_error_clipped_median_rad_s"] = metric({2.0, 3.0});
-  saave.method = method;
-  saave.metrics["rate_error_clipped_median_rad_s"] = metric({0.1, 0.2});
-  Section section;
-  section.scenario = scenario;
-  section.kind = Kind::rate;
-  section.baseline = "raw";
-  section.methods = {raw, saave};
-  section.metrics = {"rate_error_clipped_median_rad_s"};
-  Summary summary;
-  summary.sections = {section};
-  summary.scenarios = {scenario};
-  summary.draws[scenario] = 2;
-  return summary;
-}
 
 /// An example with one picture, one plot and a legend, under names that would end an element.
 ShownExample evil_example(const std::string& evil) {
@@ -99,39 +72,6 @@ TEST(Page, EscapesEveryTextItIsGiven) {
   std::size_t scripts = 0;
   for (std::size_t at = page.find("</script>"); at != std::string::npos; at = page.find("</script>", at + 1)) ++scripts;
   EXPECT_EQ(scripts, 3u) << "figures, bundle and the page's own, and none out of the texts";
-}
-
-TEST(BoxFigure, HasATracePerMethodWithEveryDraw) {
-  const Figure figure = box_figure(page_summary("hill"), Kind::rate, "rate_error_clipped_median_rad_s", "");
-  ASSERT_EQ(nlohmann::json::parse(figure.traces).size(), 2u);
-  EXPECT_EQ(nlohmann::json::parse(figure.traces)[0]["name"], "raw");
-  EXPECT_EQ(nlohmann::json::parse(figure.traces)[1]["y"], nlohmann::json({0.1, 0.2}));
-  EXPECT_EQ(nlohmann::json::parse(figure.traces)[1]["x"], nlohmann::json({"hill", "hill"}));
-  EXPECT_EQ(nlohmann::json::parse(figure.layout)["yaxis"]["type"], "log") << "0.1 to 3 is more than a decade";
-  EXPECT_TRUE(box_figure(page_summary("hill"), Kind::slam, "map_overlap", "").empty());
-}
-
-// six colours: what comes after them has another symbol and filling, a line other dashes
-TEST(Page, TellsMoreMethodsApartThanThereAreColours) {
-  Summary summary = page_summary("hill");
-  Section& section = summary.sections[0];
-  while (section.methods.size() < 20) {
-    section.methods.push_back(section.methods[0]);
-    section.methods.back().method = "m" + std::to_string(section.methods.size());
-  }
-  const auto traces =
-      nlohmann::json::parse(box_figure(summary, Kind::rate, "rate_error_clipped_median_rad_s", "").traces);
-  ASSERT_EQ(traces.size(), 20u);
-  std::set<std::string> boxes, lines;
-  Plot plot;
-  for (std::size_t i = 0; i < traces.size(); ++i) {
-    boxes.insert(traces[i]["marker"]["color"].dump() + traces[i]["marker"]["symbol"].dump());
-    if (i < 18) boxes.insert(traces[i]["line"]["color"].dump() + traces[i]["fillcolor"].dump());
-    plot.lines.push_back({"line", static_cast<int>(i), 1.0, false, false, {0.0}, {0.0}});
-  }
-  for (const auto& line : nlohmann::json::parse(figure_of(plot, "a").traces)) lines.insert(line["line"].dump());
-  EXPECT_EQ(boxes.size(), 38u);
-  EXPECT_EQ(lines.size(), 20u);
 }
 
 TEST(Page, ShowsExamplesWithTheirPicturesAndPlots) {

@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <stdexcept>
 
 #include "tools/tumble/score_tables.hpp"
@@ -43,6 +45,26 @@ TEST(Table, CountsCharactersAndNotBytes) {
   table.add_row({"–°", "1"});
   table.add_row({"ab", "1"});
   EXPECT_EQ(table.text(), "x   y\n--  -\n–°  1\nab  1\n");
+}
+
+TEST(Table, ALongLastColumnWraps) {
+  Table table("", {"name", "meaning"});
+  std::string meaning;
+  for (int k = 0; k < 40; ++k) meaning += std::string(k == 0 ? "" : " ") + "seventeen-letters";
+  table.add_row({"a", meaning});
+  table.add_row({"b", "short"});
+  const auto longest = [&] {
+    std::istringstream lines(table.text());
+    std::size_t most = 0;
+    for (std::string line; std::getline(lines, line);) most = std::max(most, line.size());
+    return most;
+  };
+  EXPECT_GT(longest(), 700u) << "cells are whole unless asked for";
+  table.wrap_last();
+  EXPECT_LE(longest(), kLineMax);
+  EXPECT_NE(table.text().find("\n      seventeen-letters"), std::string::npos) << "under its own column";
+  EXPECT_NE(table.text().find("\nb     short\n"), std::string::npos);
+  EXPECT_NE(table.markdown().find(meaning), std::string::npos) << "other formats have no lines";
 }
 
 TEST(Table, MissingCellsAreEmptyAndSurplusOnesRefused) {

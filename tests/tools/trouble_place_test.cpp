@@ -38,16 +38,16 @@ std::string place_in(const sim::Sensors& sensors) {
 
 TEST(TroublePlace, NamesTheReading) {
   sim::Sensors sensors = sound();
-  sensors.imus[1].gyro_rad_s[42].y() = std::nan("");
+  for (std::size_t k = 42; k < 48; ++k) sensors.imus[1].gyro_rad_s[k].y() = std::nan("");
   EXPECT_EQ(place_in(sensors), "reading 42 of right, at 0.420 s");
   sensors = sound();
-  sensors.imus[1].accel_m_s2[7].z() = 1e200;
+  for (std::size_t k = 7; k < 13; ++k) sensors.imus[1].accel_m_s2[k].z() = 1e200;
   EXPECT_EQ(place_in(sensors), "reading 7 of right, at 0.070 s");
   sensors = sound();
   sensors.imus[1].gyro_rad_s[98].x() = sensors.imus[1].gyro_rad_s[99].x() = 21.0;
   EXPECT_EQ(place_in(sensors), "reading 98 of right, at 0.980 s") << "beyond twice the stated range, and it lasts";
   sensors = sound();
-  sensors.imus[1].time_ns[3] = sensors.imus[1].time_ns[2];
+  for (std::size_t k = 3; k < 9; ++k) sensors.imus[1].time_ns[k] = sensors.imus[1].time_ns[2];
   EXPECT_EQ(place_in(sensors), "reading 3 of right, at 0.020 s");
 }
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <nlohmann/json.hpp>
 
 #include "scenarios/summary/summary.hpp"
@@ -22,10 +21,6 @@ using scenarios::metric_style;
 using scenarios::MetricStyle;
 
 constexpr double kMetricDomainLow = 0.36, kFailureDomainHigh = 0.24;
-
-std::string with_unit(const std::string& name, const std::string& unit) {
-  return unit.empty() ? name : name + " [" + unit + "]";
-}
 
 /// Returns null for a value that is not finite, which leaves a gap in the plot.
 json shown(double value) {
@@ -120,19 +115,36 @@ bool wants_log(const Curve& curve) {
 json x_axis(const Curve& curve, const std::string& title) {
   json axis = {{"title", {{"text", title}}}, {"anchor", "y2"}};
   if (curve.source != Curve::Source::samples) return axis;
-  std::map<double, std::string> labels;
-  for (const CurveLine& line : curve.lines) {
-    for (const CurvePoint& point : line.points) labels.emplace(point.x, point.label);
-  }
   axis["tickvals"] = json::array();
   axis["ticktext"] = json::array();
-  for (const auto& [x, label] : labels) {
-    axis["tickvals"].push_back(x);
-    axis["ticktext"].push_back(plot_text(label));
+  for (std::size_t k = 0; k < curve.bins.size(); ++k) {
+    axis["tickvals"].push_back(k + 1);
+    axis["ticktext"].push_back(plot_text(curve.bins[k]));
   }
+  axis["range"] = {0.5, static_cast<double>(curve.bins.size()) + 0.5};
   // Plotly's automatic rotation would leave out the last label
-  if (labels.size() > 4) axis["tickangle"] = -30;
+  if (curve.bins.size() > 4) axis["tickangle"] = -30;
   return axis;
+}
+
+/// Adds a point without values for each bin in which the method has no samples, so that the line has a gap there.
+CurveLine with_gaps(const CurveLine& line, const std::vector<std::string>& bins) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  CurveLine out{line.method, {}};
+  auto point = line.points.begin();
+  for (std::size_t k = 0; k < bins.size(); ++k) {
+    const double x = static_cast<double>(k + 1);
+    if (point != line.points.end() && point->x == x) {
+      out.points.push_back(*point++);
+      continue;
+    }
+    CurvePoint none;
+    none.x = x;
+    none.failed_share = {kNone, kNone, kNone};
+    none.quantile_25 = none.median = none.quantile_75 = none.worst_5 = kNone;
+    out.points.push_back(none);
+  }
+  return out;
 }
 
 std::string caption_of(const Curve& curve) {
@@ -152,7 +164,7 @@ std::string caption_of(const Curve& curve) {
 
 }  // namespace
 
-Figure curve_figure(const Curve& curve) {
+Figure curve_figure(const Curve& curve, const Palette& palette) {
   Figure figure;
   figure.id = "curve-" + curve.scenario + "-" + to_string(curve.kind) + "-" + curve.axis + "-" + curve.metric;
   figure.caption = caption_of(curve);
@@ -161,13 +173,14 @@ Figure curve_figure(const Curve& curve) {
   const double x_factor = curve.source == Curve::Source::samples ? 1.0 : x_style.factor;
   json data = json::array(), lines = json::array();
   for (std::size_t i = 0; i < curve.lines.size(); ++i) {
-    const CurveLine& line = curve.lines[i];
-    const char* colour = method_colour(i).hex;
+    const CurveLine line = curve.bins.empty() ? curve.lines[i] : with_gaps(curve.lines[i], curve.bins);
+    const std::size_t index = palette.index(line.method, i);
+    const char* colour = method_colour(index).hex;
     add_bands(line, x_factor, y_style.factor, colour, data);
     json median = line_trace(line, x_factor, y_style.factor, &CurvePoint::median, true);
     median.update({{"mode", "lines+markers"},
-                   {"line", {{"color", colour}, {"width", 2.2}, {"dash", dash_of_round(colour_round(i))}}},
-                   {"marker", {{"color", colour}, {"size", 6}, {"symbol", symbol_of_round(colour_round(i))}}}});
+                   {"line", {{"color", colour}, {"width", 2.2}, {"dash", dash_of_round(colour_round(index))}}},
+                   {"marker", {{"color", colour}, {"size", 6}, {"symbol", symbol_of_round(colour_round(index))}}}});
     json worst = line_trace(line, x_factor, y_style.factor, &CurvePoint::worst_5, false);
     worst.update({{"mode", "lines"}, {"line", {{"color", colour}, {"width", 1.2}, {"dash", "dot"}}}});
     lines.push_back(std::move(median));
@@ -176,9 +189,9 @@ Figure curve_figure(const Curve& curve) {
   }
   for (json& each : lines) data.push_back(std::move(each));
   json layout = {
-      {"xaxis", x_axis(curve, with_unit(curve.axis, x_style.unit))},
+      {"xaxis", x_axis(curve, axis_title(curve.axis))},
       {"yaxis",
-       {{"title", {{"text", y_style.unit.empty() ? curve.metric : y_style.unit}}},
+       {{"title", {{"text", y_style.unit.empty() ? axis_title(curve.metric) : y_style.unit}}},
         {"domain", {kMetricDomainLow, 1.0}}}},
       {"yaxis2", {{"title", {{"text", "failed [%]"}}}, {"domain", {0.0, kFailureDomainHigh}}, {"range", {-4, 104}}}}};
   if (wants_log(curve))
@@ -189,7 +202,7 @@ Figure curve_figure(const Curve& curve) {
   return figure;
 }
 
-std::string curves_html(std::span<const Curve> curves, std::vector<Figure>& figures) {
+std::string curves_html(std::span<const Curve> curves, std::vector<Figure>& figures, const Palette& palette) {
   if (curves.empty()) return "";
   std::string out =
       "<h3>Curves</h3>\n<p>The line is the median over the draws, the band lies between the quartiles, and the dotted "
@@ -201,7 +214,7 @@ std::string curves_html(std::span<const Curve> curves, std::vector<Figure>& figu
     out += fmt::format("<details{}><summary>{} · {}</summary><div class=\"pair\">",
                        curve == curves.begin() ? " open" : "", html::escaped(first.scenario), to_string(first.kind));
     for (; curve != curves.end() && curve->scenario == first.scenario && curve->kind == first.kind; ++curve) {
-      Figure figure = curve_figure(*curve);
+      Figure figure = curve_figure(*curve, palette);
       out += "<figure><div class=\"plot\" id=\"" + html::escaped(figure.id) + "\"></div><figcaption>" +
              html::escaped(figure.caption) + "</figcaption></figure>\n";
       figures.push_back(std::move(figure));

@@ -34,19 +34,19 @@ std::string play_html(const ShownExample& shown) {
 }
 
 /// Places each wide plot in its own line and two other plots per line.
-std::string plots_html(const Example& example, std::vector<Figure>& figures) {
+std::string plots_html(const Example& example, const Palette& palette, std::vector<Figure>& figures) {
   std::string out;
   bool in_pair = false;
   for (const Plot& plot : example.plots) {
     if (plot.wide == in_pair) out += in_pair ? "</div>\n" : "<div class=\"pair\">";
     in_pair = !plot.wide;
-    figures.push_back(figure_of(plot, fmt::format("{}-{}-{}", plot.name, example.scenario, example.seed)));
+    figures.push_back(figure_of(plot, fmt::format("{}-{}-{}", plot.name, example.scenario, example.seed), palette));
     out += plot_html(figures.back(), plot.wide && plot.equal_scales);
   }
   return out + (in_pair ? "</div>\n" : "");
 }
 
-std::string example_html(const ShownExample& shown, std::vector<Figure>& figures) {
+std::string example_html(const ShownExample& shown, const Palette& palette, std::vector<Figure>& figures) {
   const Example& example = shown.example;
   std::string out = "<p>" + escaped(example.choice) + ". The sweep ran it again for this page";
   out += shown.of_these_results
@@ -54,7 +54,7 @@ std::string example_html(const ShownExample& shown, std::vector<Figure>& figures
              : ". It belongs to other results than these: of another build, or of an earlier run.</p>\n";
   if (!shown.replay_address.empty()) out += "<p>" + play_html(shown) + "</p>\n";
   for (const ExamplePicture& picture : example.pictures) out += picture_html(picture);
-  return out + plots_html(example, figures);
+  return out + plots_html(example, palette, figures);
 }
 
 }  // namespace
@@ -98,7 +98,8 @@ std::string failure_html(const ShownExample& shown) {
   return out + "</details>\n";
 }
 
-std::string examples_html(const std::vector<ShownExample>& examples, std::vector<Figure>& figures) {
+std::string examples_html(const std::vector<ShownExample>& examples, const Palette& palette,
+                          std::vector<Figure>& figures) {
   std::string out;
   for (const ShownExample& shown : examples) {
     const Example& example = shown.example;
@@ -106,7 +107,7 @@ std::string examples_html(const std::vector<ShownExample>& examples, std::vector
     out += fmt::format("<details id=\"{}\"{}><summary>One {} of <code>{}</code>, seed {}</summary>\n",
                        escaped(example_id(example.scenario, example.seed)), out.empty() ? " open" : "",
                        escaped(example.motion), escaped(example.scenario), example.seed) +
-           example_html(shown, figures) + "</details>\n";
+           example_html(shown, palette, figures) + "</details>\n";
   }
   return out;
 }

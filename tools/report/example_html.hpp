@@ -14,7 +14,8 @@ std::string moving_html(const ShownExample& shown);
 
 /// Shows single runs with pictures and plots; appends the plots to `figures`. The first example is open; all others are
 /// folded.
-std::string examples_html(const std::vector<ShownExample>& examples, std::vector<Figure>& figures);
+std::string examples_html(const std::vector<ShownExample>& examples, const Palette& palette,
+                          std::vector<Figure>& figures);
 
 /// Shows the picture of a run with failed methods, folded. `examples_html` leaves these runs out.
 std::string failure_html(const ShownExample& shown);

@@ -66,7 +66,7 @@ std::string motions_html(const PageContent& content, std::vector<Figure>& figure
     out += plot_html(map, true);
     figures.push_back(std::move(map));
   }
-  out += examples_html(content.examples, figures);
+  out += examples_html(content.examples, content.palette, figures);
   const std::vector<Figure> spreads = distribution_figures(content.motions);
   out += distributions_html(content.motions, spreads);
   figures.insert(figures.end(), spreads.begin(), spreads.end());
@@ -96,13 +96,13 @@ std::string errors_html(const PageContent& content, std::vector<Figure>& figures
   if (!content.errors.empty()) out += "<p>Each point is one draw. Each box shows the quartiles of one method.</p>\n";
   for (const Figure& figure : content.errors) out += plot_html(figure);
   figures.insert(figures.end(), content.errors.begin(), content.errors.end());
-  return out + scores_html(content.summary) + curves_html(content.curves, figures);
+  return out + scores_html(content.summary) + curves_html(content.curves, figures, content.palette);
 }
 
 std::string cost_html(const PageContent& content, std::vector<Figure>& figures) {
   if (content.cost.empty()) return "";
   figures.push_back(content.cost);
-  return plot_html(content.cost);
+  return plot_html(content.cost) + costs_html(content.costs);
 }
 
 std::string facts_html(const std::vector<Fact>& facts) {

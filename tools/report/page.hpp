@@ -11,6 +11,7 @@
 #include "scenarios/summary/sensitivity.hpp"
 #include "scenarios/summary/summary.hpp"
 #include "tools/examples/example.hpp"
+#include "tools/report/cost_html.hpp"
 #include "tools/report/curves.hpp"
 #include "tools/report/distributions.hpp"
 #include "tools/report/failures.hpp"
@@ -37,8 +38,10 @@ struct PageContent {
   std::vector<ShownExample> examples;  ///< single draws with pictures and plots
   scenarios::MotionMap motion_map;     ///< covers all draws, as does the next member
   std::vector<Spread> motions;
+  Palette palette;             ///< colours of the methods in all figures
   std::vector<Figure> errors;  ///< errors of all draws
   Figure cost;
+  std::vector<CostRow> costs;
   std::vector<Curve> curves;
   FailedDraws failed;
   std::vector<scenarios::RejectedDraw> rejected;

@@ -7,6 +7,31 @@
   const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
   const drawn = new Set();
 
+  // WCAG 2: relative luminance, and contrast of two luminances
+  const luminance = (rgb) => {
+    const [r, g, b] = rgb.map((c) => (c / 255 <= 0.03928 ? c / 255 / 12.92 : ((c / 255 + 0.055) / 1.055) ** 2.4));
+    return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+  };
+  const contrast = (a, b) => (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05);
+  const hexOf = (rgb) => '#' + rgb.map((c) => Math.round(c).toString(16).padStart(2, '0')).join('');
+  const rgbOf = (hex) => [1, 3, 5].map((k) => parseInt(hex.slice(k, k + 2), 16));
+
+  // lightens a colour until it stands out from the dark ground of a plot (contrast of at least 3)
+  function lightened(hex) {
+    const ground = luminance(rgbOf(colour('--card')));
+    let rgb = rgbOf(hex);
+    for (let k = 0; k < 20 && contrast(luminance(rgb), ground) < 3; ++k) rgb = rgb.map((c) => c + 0.1 * (255 - c));
+    return hexOf(rgb);
+  }
+  const paper = () => document.documentElement.classList.contains('paper');
+  const shown = (value) => {
+    if (!dark.matches || paper()) return value;
+    if (typeof value === 'string') return /^#[0-9a-f]{6}$/i.test(value) ? lightened(value) : value;
+    if (Array.isArray(value)) return typeof value[0] === 'number' ? value : value.map(shown);
+    if (value === null || typeof value !== 'object') return value;
+    return Object.fromEntries(Object.entries(value).map(([key, inner]) => [key, shown(inner)]));
+  };
+
   function themed(layout, width, height) {
     const axis = { gridcolor: colour('--rule'), linecolor: colour('--rule'), zerolinecolor: colour('--rule'), automargin: true };
     const narrow = width < 520;
@@ -48,7 +73,7 @@
     drawn.add(element);
     fit(element);
     const layout = Object.assign(themed(figure.layout, element.clientWidth, element.clientHeight), { width: element.clientWidth, height: element.clientHeight });
-    Plotly.react(element, figure.data, layout, { displaylogo: false, displayModeBar: false });
+    Plotly.react(element, shown(figure.data), layout, { displaylogo: false, displayModeBar: false });
     document.documentElement.dataset.drawn = String(drawn.size);
   }
 

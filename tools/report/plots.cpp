@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "scenarios/scoring/cost.hpp"
 #include "tools/pictures/colours.hpp"
@@ -49,13 +50,6 @@ json box(const std::string& name, std::size_t index) {
           {"y", json::array()}};
 }
 
-void add_values(json& trace, const std::string& group, const MetricSummary& metric, double factor) {
-  for (const double value : at_most(metric.values, kBoxPoints)) {
-    trace["x"].push_back(plot_text(group));
-    trace["y"].push_back(five_digits(value * factor));
-  }
-}
-
 bool wants_log(const json& traces) {
   double low = std::numeric_limits<double>::infinity(), high = 0.0;
   for (const json& trace : traces) {
@@ -67,44 +61,108 @@ bool wants_log(const json& traces) {
   return low > 0.0 && high > 10.0 * low;
 }
 
-/// Box plots of one metric: one box per method, grouped by scenario.
+/// Box plots of one metric: one box per method, in groups.
 class Boxes {
  public:
-  explicit Boxes(const std::string& metric) : metric_(metric), style_(scenarios::metric_style(metric)) {}
+  Boxes(const std::string& metric, const Palette& palette)
+      : metric_(metric), style_(scenarios::metric_style(metric)), palette_(palette) {}
 
-  void add(const Section& section, const std::string& prefix) {
+  void add(const Section& section, const std::string& group, bool with_failed) {
     for (const MethodSummary& method : section.methods) {
       const MetricSummary* values = method.find(metric_);
-      if (values == nullptr || values->values.empty()) continue;
-      const std::string name = prefix + method.method;
-      auto trace = std::find_if(traces_.begin(), traces_.end(), [&](const auto& t) { return t.first == name; });
+      if (values == nullptr) continue;
+      const std::size_t failed = with_failed ? values->failed.size() : 0;
+      if (values->values.empty() && failed == 0) continue;
+      auto trace =
+          std::find_if(traces_.begin(), traces_.end(), [&](const auto& t) { return t.first == method.method; });
       if (trace == traces_.end()) {
-        traces_.emplace_back(name, box(name, traces_.size()));
+        traces_.emplace_back(method.method, box(method.method, palette_.index(method.method, traces_.size())));
         trace = traces_.end() - 1;
       }
-      add_values(trace->second, section.scenario, *values, style_.factor);
+      add_values(trace->second, group, values->values, failed);
     }
   }
 
   /// Uses a logarithmic axis if values are positive and span more than a decade. Otherwise the axis starts at 0 if
   /// `from_zero` is set, or at the smallest value.
-  void put_into(Figure& figure, bool from_zero) const {
+  void put_into(Figure& figure, bool from_zero) {
     json data = json::array();
     for (const auto& [name, trace] : traces_) data.push_back(trace);
     json layout = {{"boxmode", "group"},
                    {"xaxis", {{"type", "category"}}},
-                   {"yaxis", axis(plot_text(metric_) + (style_.unit.empty() ? "" : " [" + style_.unit + "]"))}};
-    if (wants_log(data))
+                   {"yaxis", {{"title", {{"text", plot_text(axis_title(metric_))}}}}}};
+    const bool log = wants_log(data);
+    if (log)
       layout["yaxis"]["type"] = "log";
     else if (from_zero)
       layout["yaxis"]["rangemode"] = "tozero";
+    if (!failures_.empty()) add_failed(log, data, layout);
     set_plot(data, layout, figure);
   }
 
  private:
+  /// Failed runs of one box.
+  struct Failures {
+    std::string method, group;
+    std::size_t count;
+  };
+
+  void add_values(json& trace, const std::string& group, const std::vector<double>& values, std::size_t failed) {
+    // the shares of values and of failed runs remain if only some of the runs are drawn
+    const std::size_t all = values.size() + failed;
+    const std::size_t shown_failed = all <= kBoxPoints ? failed : (failed * kBoxPoints + all - 1) / all;
+    for (const double value : at_most(values, std::max<std::size_t>(2, std::min(all, kBoxPoints) - shown_failed))) {
+      trace["x"].push_back(plot_text(group));
+      trace["y"].push_back(five_digits(value * style_.factor));
+    }
+    if (shown_failed > 0) failures_.push_back({trace["name"], plot_text(group), shown_failed});
+  }
+
+  /// Adds the failed runs beyond the worst value of the figure, and a line with the word "failed".
+  void add_failed(bool log, json& data, json& layout) const {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const json& trace : data) {
+      for (const json& value : trace["y"]) {
+        low = std::min(low, value.get<double>());
+        high = std::max(high, value.get<double>());
+      }
+    }
+    if (low > high) low = high = 1.0;  // every run failed
+    const bool higher = scenarios::metric_info(metric_).sense == scenarios::Sense::higher;
+    const double span = high > low ? high - low : std::max(std::abs(high), 1.0);
+    const double level = five_digits(log      ? (higher ? low / 2.0 : high * 2.0)
+                                     : higher ? low - 0.15 * span
+                                              : high + 0.15 * span);
+    for (const Failures& failed : failures_) {
+      const auto trace =
+          std::find_if(data.begin(), data.end(), [&](const json& each) { return each["name"] == failed.method; });
+      for (std::size_t k = 0; k < failed.count; ++k) {
+        (*trace)["x"].push_back(failed.group);
+        (*trace)["y"].push_back(level);
+      }
+    }
+    layout["shapes"] = json::array({{{"type", "line"},
+                                     {"xref", "paper"},
+                                     {"x0", 0},
+                                     {"x1", 1},
+                                     {"y0", level},
+                                     {"y1", level},
+                                     {"layer", "below"},
+                                     {"line", {{"width", 1}, {"dash", "dot"}, {"color", "#888888"}}}}});
+    layout["annotations"] = json::array({{{"xref", "paper"},
+                                          {"x", 0},
+                                          {"xanchor", "left"},
+                                          {"y", log ? std::log10(level) : level},
+                                          {"yanchor", "bottom"},
+                                          {"showarrow", false},
+                                          {"text", "failed"}}});
+  }
+
   std::string metric_;
   MetricStyle style_;
+  const Palette& palette_;
   std::vector<std::pair<std::string, json>> traces_;
+  std::vector<Failures> failures_;
 };
 
 bool holds_more_than_shown(const Summary& summary, Kind kind, const std::string& metric) {
@@ -186,43 +244,78 @@ const char* dash_of_round(std::size_t round) {
   return kDashes[round % kDashes.size()];
 }
 
+void Palette::add(const std::string& method, std::optional<std::size_t> wanted) {
+  const std::string name = method.substr(method.rfind('/') + 1);
+  if (indices_.contains(name)) return;
+  const auto is_taken = [&](std::size_t index) {
+    return std::any_of(indices_.begin(), indices_.end(), [&](const auto& each) { return each.second == index; });
+  };
+  std::size_t index = wanted.value_or(0);
+  if (is_taken(index)) {
+    for (index = 0; is_taken(index); ++index) continue;
+  }
+  indices_.emplace(name, index);
+}
+
+std::size_t Palette::index(const std::string& method, std::size_t otherwise) const {
+  const auto found = indices_.find(method.substr(method.rfind('/') + 1));
+  return found == indices_.end() ? otherwise : found->second;
+}
+
+std::string axis_title(const std::string& metric) {
+  std::string name = metric;
+  const std::string unit = scenarios::metric_style(metric).unit;
+  const std::string in_unit = unit.empty() ? "" : " [" + unit + "]";
+  if (name.find('.') != std::string::npos) return name + in_unit;  // a key of a scenario
+  std::string suffix = std::string("_") + scenarios::symbol(scenarios::metric_info(metric).unit);
+  std::replace(suffix.begin(), suffix.end(), '/', '_');
+  if (name.ends_with(suffix)) name.resize(name.size() - suffix.size());
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name + in_unit;
+}
+
 double filling_of_round(std::size_t round) {
   static constexpr std::array kShares = {0.0, 0.45, 0.9};
   return kShares[round % kShares.size()];
 }
 
-Figure box_figure(const Summary& summary, Kind kind, const std::string& metric, const std::string& caption) {
+Figure box_figure(const Summary& summary, Kind kind, const std::string& metric, const std::string& caption,
+                  const Palette& palette) {
   Figure figure;
   figure.id = std::string(to_string(kind)) + "-" + metric;
   figure.caption = caption;
   if (holds_more_than_shown(summary, kind, metric))
-    figure.caption +=
-        fmt::format(" For a box with more draws, {} points are drawn, at equal steps of rank.", kBoxPoints);
-  Boxes boxes(metric);
+    figure.caption += fmt::format(" A box of more than {0} draws has {0} points, at equal steps of rank.", kBoxPoints);
+  Boxes boxes(metric, palette);
   for (const Section& section : summary.sections) {
-    if (section.kind == kind) boxes.add(section, "");
+    if (section.kind == kind) boxes.add(section, section.scenario, true);
   }
   boxes.put_into(figure, true);
   return figure;
 }
 
-Figure cost_figure(const Summary& summary) {
+Figure cost_figure(const Summary& summary, const Palette& palette) {
   Figure figure;
   figure.id = "cost";
   figure.caption =
       "CPU time of one estimate. Each draw is one point; a box has at most " + std::to_string(kBoxPoints) + " points.";
-  Boxes boxes(scenarios::estimate_cost().name);
-  for (const Section& section : summary.sections) boxes.add(section, std::string(to_string(section.kind)) + "/");
+  std::set<Kind> kinds;
+  for (const Section& section : summary.sections) kinds.insert(section.kind);
+  Boxes boxes(scenarios::estimate_cost().name, palette);
+  for (const Section& section : summary.sections)
+    boxes.add(section, kinds.size() == 1 ? section.scenario : section.scenario + ", " + to_string(section.kind), false);
   boxes.put_into(figure, false);
   return figure;
 }
 
-Figure figure_of(const Plot& plot, const std::string& id) {
+Figure figure_of(const Plot& plot, const std::string& id, const Palette& palette) {
   Figure figure;
   figure.id = id;
   figure.caption = plot.caption;
   json data = json::array();
-  for (const PlotLine& line : plot.lines) {
+  for (PlotLine line : plot.lines) {
+    if (line.colour != kTruthColour)
+      line.colour = static_cast<int>(palette.index(line.name, static_cast<std::size_t>(line.colour)));
     json trace = {{"type", "scatter"},
                   {"mode", "lines"},
                   {"name", plot_text(line.name)},

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
+#include <map>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,16 +39,35 @@ std::string plot_text(const std::string& text);
 /// them, sorted. The quantiles of the reduced list are close to those of all values. O(n log n).
 std::vector<double> at_most(std::vector<double> values, std::size_t most);
 
+/// Assigns one colour index to each method of a page, in order of first `add`. Methods of different kinds with one name
+/// share their colour.
+class Palette {
+ public:
+  /// `method` is a name, or KIND/NAME. Keeps the index of a known method; uses `wanted` if it is free.
+  void add(const std::string& method, std::optional<std::size_t> wanted = {});
+  /// Returns the index of the method, or `otherwise` for an unknown method.
+  std::size_t index(const std::string& method, std::size_t otherwise) const;
+
+ private:
+  std::map<std::string, std::size_t> indices_;
+};
+
+/// Returns the title of an axis in the metric's display unit: "attitude rmse [°]" for "attitude_rmse_rad". A
+/// varied key of a scenario stays as it is.
+std::string axis_title(const std::string& metric);
+
 /// Plots every run as a point next to a box of the quartiles. There is one box per method and scenario, with at most
-/// `kBoxPoints` points. The axis is logarithmic if values are positive and span more than a decade.
+/// `kBoxPoints` points. Failed runs are points of the box on the line "failed", beyond the worst value, so that the
+/// quartiles count failed runs as in the tables. The axis is logarithmic if values are positive and span more than a
+/// decade.
 Figure box_figure(const scenarios::Summary& summary, scenarios::Kind kind, const std::string& metric,
-                  const std::string& caption);
+                  const std::string& caption, const Palette& palette = {});
 
-/// Plots the CPU time of every method, one box per method and scenario, on a logarithmic axis.
-Figure cost_figure(const scenarios::Summary& summary);
+/// Plots the CPU time of every method, one box per method, scenario and kind, on a logarithmic axis.
+Figure cost_figure(const scenarios::Summary& summary, const Palette& palette = {});
 
-/// Converts a plot of an example to a figure.
-Figure figure_of(const Plot& plot, const std::string& id);
+/// Converts a plot of an example to a figure. Methods in `palette` get their colour of the page.
+Figure figure_of(const Plot& plot, const std::string& id, const Palette& palette = {});
 
 /// Returns the colour of a line in an example's plot, and of its legend entry.
 Colour colour_of(int colour);

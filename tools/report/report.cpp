@@ -65,7 +65,9 @@ bool are_of_here(const scenarios::Results& results, const ReportOptions& options
          (made_of.empty() || options.data.empty() || made_of == options.data);
 }
 
-std::vector<Fact> commands(const scenarios::Results& results, const ReportOptions& options) {
+/// Returns the commands that reproduce the page and extend it; leaves out commands that would refuse these results.
+std::vector<Fact> commands(const scenarios::Results& results, const ReportOptions& options,
+                           const PageContent& content) {
   const std::string database = scenarios::shell_word(options.database.string());
   std::vector<Fact> out;
   if (are_of_here(results, options)) {
@@ -77,19 +79,21 @@ std::vector<Fact> commands(const scenarios::Results& results, const ReportOption
   }
   if (!options.page.empty())
     out.emplace_back("This page", "tumble report " + database + " -o " + scenarios::shell_word(options.page.string()));
-  out.emplace_back("Paired differences as tables (--metric NAME for other metrics)", "tumble compare " + database);
-  out.emplace_back("Influence of every number on each method", "tumble sensitivity " + database + " --all");
+  if (!content.comparison.failures.empty())
+    out.emplace_back("Paired differences as tables (--metric NAME for other metrics)", "tumble compare " + database);
+  if (!content.sensitivity.empty())
+    out.emplace_back("Influence of every number on each method", "tumble sensitivity " + database + " --all");
   return out;
 }
 
 /// Plots the headline metrics of each kind. Verdicts are left out, because the table shows their fraction.
-std::vector<Figure> errors_of_all_draws(const Summary& summary) {
+std::vector<Figure> errors_of_all_draws(const Summary& summary, const Palette& palette) {
   std::vector<Figure> figures;
   for (const Kind kind : {Kind::rate, Kind::attitude, Kind::position, Kind::slam}) {
     for (const std::string& name : scenarios::headline_metrics(kind)) {
       const scenarios::MetricInfo& info = scenarios::metric_info(name);
       if (info.unit != scenarios::Unit::verdict)
-        figures.push_back(box_figure(summary, kind, name, fmt::format("{}: {}.", name, info.doc)));
+        figures.push_back(box_figure(summary, kind, name, fmt::format("{}: {}.", name, info.doc), palette));
     }
   }
   std::erase_if(figures, [](const Figure& figure) { return figure.empty(); });
@@ -160,6 +164,21 @@ void add_examples(const scenarios::Results& results, const ReportOptions& option
   if (content.examples.empty()) content.warnings.push_back(how_to_get_pictures(results, options));
 }
 
+/// Takes the colours of the examples' pictures first, because pictures cannot be recoloured.
+Palette palette_of(const PageContent& content) {
+  Palette palette;
+  for (const ShownExample& shown : content.examples) {
+    if (shown.example.of_failure || shown.example.pictures.empty()) continue;
+    for (const auto& [name, colour] : shown.example.pictures.front().legend)
+      if (colour != kTruthColour) palette.add(name, static_cast<std::size_t>(colour));
+  }
+  for (const scenarios::Section& section : content.summary.sections)
+    for (const scenarios::MethodSummary& method : section.methods) palette.add(method.method);
+  for (const Curve& curve : content.curves)
+    for (const CurveLine& line : curve.lines) palette.add(line.method);
+  return palette;
+}
+
 }  // namespace
 
 PageContent report_content(ReportInput input, const ReportOptions& options) {
@@ -173,16 +192,19 @@ PageContent report_content(ReportInput input, const ReportOptions& options) {
   content.comparison = scenarios::compare(summary, {});
   content.motion_map = scenarios::motion_map(input.draws);
   content.motions = std::move(input.motions);
-  content.errors = errors_of_all_draws(summary);
-  content.cost = cost_figure(summary);
   content.curves = std::move(input.curves);
+  if (!content.recorded && !summary.sections.empty()) add_examples(results, options, content);
+  content.palette = palette_of(content);
+  content.errors = errors_of_all_draws(summary, content.palette);
+  content.cost = cost_figure(summary, content.palette);
+  content.costs = cost_rows(summary, input.draws);
   content.failed = failed_draws(results, summary, options.database);
   content.rejected = results.rejected();
   content.sensitivity = std::move(input.sensitivity);
   content.sensitivity_note = std::move(input.sensitivity_note);
   content.methods = listed_methods(summary);
   content.versions = versions(results, summary, options);
-  content.commands = commands(results, options);
+  content.commands = commands(results, options, content);
   content.certificates = results.certificates();
   if (content.certificates.empty() && !content.recorded)
     content.warnings.push_back("These results contain no certificate of their build.");
@@ -190,7 +212,6 @@ PageContent report_content(ReportInput input, const ReportOptions& options) {
     content.versions.emplace_back("certificate", certificate_summary(certificate));
     if (!certificate.passes()) content.warnings.push_back("The certificate of build " + certificate.build + " fails.");
   }
-  if (!content.recorded && !summary.sections.empty()) add_examples(results, options, content);
   return content;
 }
 

@@ -40,6 +40,9 @@ const MethodSummary* best_method(const Section& section, const std::string& metr
     const MetricSummary* own = method.find(metric);
     if (own == nullptr || method.needs_truth) continue;
     const double value = own->centre.value;
+    // full coverage is nearer to the target than partial coverage, but any overestimated covariance reaches it
+    if (info.sense == Sense::two_sided && info.unit == scenarios::Unit::share && info.target < 1.0 && value >= 1.0)
+      continue;
     if (best == nullptr || is_better(info, value, best->find(metric)->centre.value)) best = &method;
   }
   return best;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <stdexcept>
 
 namespace tumble::tools {
@@ -21,6 +22,22 @@ void append_line(std::string& out, std::string line) {
   out += line + "\n";
 }
 
+/// Splits a text at spaces into lines of at most `width` characters; a longer word gets its own line.
+std::vector<std::string> wrapped(const std::string& text, std::size_t width) {
+  std::vector<std::string> lines(1);
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    std::string& line = lines.back();
+    if (line.empty())
+      line = word;
+    else if (character_count(line) + 1 + character_count(word) <= width)
+      line += " " + word;
+    else
+      lines.push_back(word);
+  }
+  return lines;
+}
+
 }  // namespace
 
 Table::Table(std::string title, std::vector<std::string> header)
@@ -35,9 +52,15 @@ void Table::add_row(std::vector<std::string> cells) {
 
 std::string Table::text() const {
   std::vector<std::size_t> width(header_.size());
+  std::size_t before_last = 0;
   for (std::size_t i = 0; i < header_.size(); ++i) {
     width[i] = character_count(header_[i]);
     for (const auto& row : rows_) width[i] = std::max(width[i], character_count(row[i]));
+    if (i + 1 < header_.size()) before_last += width[i] + 2;
+  }
+  if (wrapped_) {
+    const std::size_t most = std::max(kLineMax / 3, kLineMax - std::min(kLineMax, before_last));
+    width.back() = std::min(width.back(), most);
   }
   const auto line = [&](const std::vector<std::string>& cells) {
     std::string joined;
@@ -51,7 +74,15 @@ std::string Table::text() const {
   std::vector<std::string> rule;
   for (const std::size_t w : width) rule.emplace_back(w, '-');
   append_line(out, line(rule));
-  for (const auto& row : rows_) append_line(out, line(row));
+  for (std::vector<std::string> row : rows_) {
+    const std::vector<std::string> last =
+        wrapped_ ? wrapped(row.back(), width.back()) : std::vector<std::string>{row.back()};
+    for (const std::string& part : last) {
+      row.back() = part;
+      append_line(out, line(row));
+      row.assign(row.size(), "");
+    }
+  }
   return out;
 }
 

@@ -17,6 +17,8 @@ class Table {
   void add_row(std::vector<std::string> cells);
   /// Right-aligns the columns from `index` on, for numbers.
   void align_right_from(std::size_t index) { right_from_ = index; }
+  /// Wraps the last column of `text()` at spaces, so that lines have at most kLineMax characters where possible.
+  void wrap_last() { wrapped_ = true; }
 
   bool empty() const { return rows_.empty(); }
   /// Returns title, header, rule and rows; lines have no trailing spaces.
@@ -31,7 +33,11 @@ class Table {
   std::vector<std::string> header_;
   std::vector<std::vector<std::string>> rows_;
   std::size_t right_from_;
+  bool wrapped_ = false;
 };
+
+/// Length of the lines of a table with `wrap_last`; the last column has at least a third of this width.
+inline constexpr std::size_t kLineMax = 160;
 
 /// Formats a number with four significant digits; "-" if the number is not finite.
 std::string number_text(double value);

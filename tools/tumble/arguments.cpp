@@ -7,9 +7,10 @@
 #include <algorithm>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/methods/external_description.hpp"
 #include "scenarios/methods/external_method.hpp"
+#include "scenarios/recordings/foreign_file.hpp"
 #include "scenarios/recordings/replace_file.hpp"
-#include "scenarios/regular_file.hpp"
 #include "scenarios/scoring/score.hpp"
 #include "scenarios/sweep/sweep.hpp"
 #include "scenarios/text.hpp"
@@ -97,6 +98,14 @@ scenarios::MethodPointer one_method(const std::string& name, double time_limit_s
   throw BadInput(line);
 }
 
+void note_time_limits(const Session& session, std::span<const std::string> names) {
+  for (const std::string& name : names) {
+    if (!scenarios::is_method_file(name)) continue;
+    session.note(fmt::format("{}: a run is ended after {:g} s; the key time_limit_s of a description sets the limit",
+                             name, scenarios::read_external(name).time_limit_s));
+  }
+}
+
 std::string metric_of(const scenarios::Method& method, const std::string& name) {
   if (name.empty()) return scenarios::headline_metrics(method.info.kind).front();
   std::vector<std::string> known;
@@ -123,7 +132,7 @@ std::function<void(const std::string&)> a_suite(const Session& session) {
 }
 
 void a_recording(const std::string& file) {
-  scenarios::require_regular_file(file);
+  scenarios::require_recording_file(file);
 }
 
 int available_processors() {
@@ -145,8 +154,19 @@ void prepare_output(const std::filesystem::path& output, std::span<const std::fi
   if (output.has_parent_path()) make_folder(output.parent_path());
 }
 
-void prepare_file(const std::filesystem::path& output, std::span<const std::filesystem::path> inputs) {
-  prepare_output(output, inputs);
+void require_ending(const std::filesystem::path& output, std::span<const std::string_view> endings) {
+  const std::string ending = output.extension().string();
+  if (std::find(endings.begin(), endings.end(), ending) != endings.end()) return;
+  std::string allowed;
+  for (const std::string_view each : endings) allowed.append(allowed.empty() ? "" : " or ").append(each);
+  throw BadInput(output.string() + ": the name of this output must end in " + allowed);
+}
+
+void prepare_file(const std::filesystem::path& output, std::span<const std::filesystem::path> inputs,
+                  const std::vector<std::string_view>& endings) {
+  scenarios::require_not_an_input(output, inputs);
+  require_ending(output, endings);
+  if (output.has_parent_path()) make_folder(output.parent_path());
   const scenarios::OutputFile tried(output);
 }
 

@@ -6,6 +6,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -40,6 +41,9 @@ std::vector<scenarios::MethodPointer> select_methods(const std::vector<std::stri
 /// Returns the method with this name. External methods have a time limit of `time_limit_s`.
 scenarios::MethodPointer one_method(const std::string& name, double time_limit_s);
 
+/// States how long a run of each external method among `names` may take, because such a run may hang.
+void note_time_limits(const Session& session, std::span<const std::string> names);
+
 /// Returns the named metric of the method's kind, or the first metric of the kind if `name` is empty.
 std::string metric_of(const scenarios::Method& method, const std::string& name);
 
@@ -53,7 +57,7 @@ std::function<void(const std::string&)> a_scenario(const Session& session);
 /// Returns a check that rejects names that are neither a suite, a suite file nor a scenario.
 std::function<void(const std::string&)> a_suite(const Session& session);
 
-/// Refuses a recording whose file does not exist, before CLI11 reports missing options.
+/// Refuses a missing file and a file that is no recording, before CLI11 reports missing options.
 void a_recording(const std::string& file);
 
 /// Returns the number of processors that this process may use.
@@ -65,8 +69,16 @@ void make_folder(const std::filesystem::path& folder);
 /// computation starts.
 void prepare_output(const std::filesystem::path& output, std::span<const std::filesystem::path> inputs);
 
+/// Throws BadInput if the extension of an output is not one of `endings`, so that a file of another kind is never
+/// replaced.
+void require_ending(const std::filesystem::path& output, std::span<const std::string_view> endings);
+
 /// Checks that an output file can be written, before the computation starts, and leaves no file behind. Throws BadInput
-/// if the output is one of the inputs.
-void prepare_file(const std::filesystem::path& output, std::span<const std::filesystem::path> inputs);
+/// if the output is one of the inputs or has none of the extensions `endings`.
+void prepare_file(const std::filesystem::path& output, std::span<const std::filesystem::path> inputs,
+                  const std::vector<std::string_view>& endings);
+
+/// Extensions of a recording that the program writes.
+inline const std::vector<std::string_view> kRecordingEndings = {".h5", ".hdf5"};
 
 }  // namespace tumble::tools

@@ -4,6 +4,7 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstdio>
@@ -16,6 +17,7 @@
 #include "scenarios/provenance/data_digest.hpp"
 #include "scenarios/provenance/text_digest.hpp"
 #include "scenarios/recordings/replace_file.hpp"
+#include "scenarios/sweep/results.hpp"
 #include "scenarios/sweep/sweep_notes.hpp"
 #include "tools/tumble/arguments.hpp"
 #include "tools/tumble/bench_page.hpp"
@@ -120,13 +122,40 @@ BenchPage page_of(const scenarios::Results& results, const scenarios::Suite& sui
   return page;
 }
 
-/// Prints the page, followed by one JSON line per method that ran. With --json only the JSON lines are printed.
+/// Prints the page; with --json, prints one JSON line per method that ran instead.
 void print(const Session& session, const std::vector<Table>& tables, const std::string& lines) {
-  if (!session.json) session.print(tables, {});
-  if (!session.json && session.format != TableFormat::text) return;
-  const std::string text = (session.json ? "" : "\n") + lines;
-  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
+  if (!session.json) return session.print(tables, {});
+  if (std::fwrite(lines.data(), 1, lines.size(), stdout) != lines.size() || std::fflush(stdout) != 0)
     throw BadInput(std::string("standard output: ") + std::strerror(errno));
+}
+
+/// Returns the command of the sweep that measures the same runs, for the note in the database.
+std::string sweep_command(const BenchOptions& options, const scenarios::Suite& suite) {
+  std::string words = scenarios::shell_word(options.suite.empty() ? suite.name : options.suite);
+  for (const std::string& method : options.methods) words += " --method " + scenarios::shell_word(method);
+  return words;
+}
+
+/// Writes a database with the measured and the stored results for `report`. The measured database stays free of stored
+/// results, because a sweep would take them for runs that are done. Returns the database to report.
+fs::path database_to_report(const fs::path& measured, const scenarios::Results& results, const BenchPage& page) {
+  std::vector<BenchResult> others = page.stored;
+  std::erase_if(others, [&](const BenchResult& stored) {
+    return std::ranges::any_of(page.ran, [&](const BenchResult& own) { return own.method == stored.method; });
+  });
+  if (others.empty()) return measured;
+  fs::path path = measured;
+  path.replace_filename(measured.stem().string() + "_compared.db");
+  scenarios::OutputFile file(path);
+  {
+    scenarios::Results compared(file.unfinished(), scenarios::Results::Mode::create_or_append);
+    for (const auto& [key, text] : results.notes()) compared.set_note(key, text);
+    scenarios::MergeCounts counts;
+    compared.absorb(results, false, counts);
+    scenarios::add_published(others, compared);
+  }
+  file.move_into_place();
+  return path;
 }
 
 int bench(const Session& session, const BenchOptions& options) {
@@ -134,7 +163,7 @@ int bench(const Session& session, const BenchOptions& options) {
   const std::vector<scenarios::MethodPointer> methods = methods_of(options);
   const scenarios::Suite suite = suite_of(data, options, methods.front()->info.kind);
   std::vector<BenchResult> stored = stored_results(data, options, suite);
-  if (!options.lines.empty()) prepare_file(options.lines, {});
+  if (!options.lines.empty()) prepare_file(options.lines, {}, {".jsonl"});
   const fs::path database = database_of(data, options, suite, methods);
   if (database.has_parent_path()) make_folder(database.parent_path());
   session.note(fmt::format("{}, {} draws; results in {}; a stopped run continues there", suite.name, suite.draw_count(),
@@ -149,6 +178,7 @@ int bench(const Session& session, const BenchOptions& options) {
   const scenarios::SweepProgress final = sweep_with_progress(session, data, suite, owner, how);
   if (final.draws_done < final.draws_total) return say_stopped(final);
 
+  scenarios::open_results(data, suite, database).set_note(scenarios::kCommandNote, sweep_command(options, suite));
   const scenarios::Results results(database, scenarios::Results::Mode::read_only);
   const BenchPage page = page_of(results, suite, options, methods, std::move(stored));
   std::string lines;
@@ -160,7 +190,10 @@ int bench(const Session& session, const BenchOptions& options) {
     scenarios::store_bench_results(file, page.ran);
   }
   print(session, bench_tables(suite, page, results.outcomes()), lines);
-  session.note(fmt::format("next: tumble report {} -o report.html", database.string()));
+  if (options.lines.empty() && !session.json)
+    session.note("for publication: '-o FILE.jsonl' writes the results as one line of JSON per method");
+  session.note(fmt::format("next: tumble report {} -o report.html",
+                           scenarios::shell_word(database_to_report(database, results, page).string())));
   return kDone;
 }
 
@@ -174,7 +207,7 @@ Action declare_bench(VerbOptions& verb, const Session& session) {
   verb.add("--suite", options->suite, "suite with named draws [the standard suite of the kind]");
   verb.add("--beside", options->beside, "FILE.jsonl with published results to compare").one_at_a_time();
   verb.add("--jobs", options->jobs, "number of parallel processes [all processors]").whole(1, 1024).shows_default();
-  verb.add("-o,--output", options->lines, "FILE.jsonl for the lines of JSON");
+  verb.add("-o,--output", options->lines, "FILE.jsonl for the results, one line of JSON per method");
   verb.add("--db", options->database, "results database [in this folder, named after suite, method and version]");
   verb.add_flag("--store", options->store, "store the lines with the results in the source tree");
   return [&session, options] { return bench(session, *options); };

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
 
 #include "scenarios/errors.hpp"
@@ -73,20 +74,40 @@ scenarios::Estimate run_of(const scenarios::Method& method, const sim::Sensors& 
   }
 }
 
-/// Lists the content of an estimate and its health counters.
+/// Health counters that the table shows; --json and estimate.json contain all counters.
+struct ShownCounter {
+  const char *name, *meaning, *unit;
+};
+constexpr ShownCounter kShownCounters[] = {
+    {"readings_missing", "IMU readings that are missing", ""},
+    {"sweeps_registered", "sweeps aligned with the map", ""},
+    {"end_sigma_m", "standard deviation of the last position", "m"},
+    {"end_sigma_rad", "standard deviation of the last attitude", "rad"},
+};
+
+/// Lists the content of an estimate, with units.
 Table summary(const scenarios::Estimate& estimate) {
-  Table table("", {"estimate", "value"});
+  Table table("", {"estimate", "value", "unit"});
   table.align_right_from(1);
-  table.add_row({"status", estimate.status.message()});
-  const auto count = [&](const char* what, std::size_t size) {
-    if (size > 0) table.add_row({what, std::to_string(size)});
+  table.add_row({"status", estimate.status.message(), ""});
+  const auto count = [&](const char* what, const auto& rows) {
+    if (!rows.empty()) table.add_row({what, std::to_string(rows.size()), ""});
   };
-  count("rates", estimate.rates.size());
-  count("attitudes", estimate.attitudes.size());
-  count("poses", estimate.poses.size());
-  count("sweeps", estimate.sweeps.size());
-  count("map points", estimate.map.size());
-  for (const auto& [name, value] : estimate.health) table.add_row({name, number_text(value)});
+  const auto cover = [&](const char* what, const auto& states) {
+    count(what, states);
+    if (states.empty()) return;
+    const double covered_s = 1e-9 * static_cast<double>(states.back().time_ns - states.front().time_ns);
+    table.add_row({std::string("time from the first to the last of the ") + what, number_text(covered_s), "s"});
+  };
+  cover("angular rates", estimate.rates);
+  cover("attitudes", estimate.attitudes);
+  cover("poses", estimate.poses);
+  count("sweeps", estimate.sweeps);
+  count("map points", estimate.map);
+  for (const ShownCounter& shown : kShownCounters) {
+    const auto counter = estimate.health.find(shown.name);
+    if (counter != estimate.health.end()) table.add_row({shown.meaning, number_text(counter->second), shown.unit});
+  }
   return table;
 }
 
@@ -104,6 +125,7 @@ int run_estimate(const Session& session, const EstimateOptions& options) {
   const std::vector<scenarios::Method> methods = scenarios::with_parameters(selected, options.parameters);
   scenarios::OutputFolder folder(options.folder);
   learnt.require_place();
+  note_time_limits(session, std::span(&options.method, 1));
   scenarios::Estimate estimate = run_of(methods.front(), sensors);
   if (!scenarios::states_digest(options.recording)) add_doubt({scenarios::Doubt::About::digest}, estimate);
   scenarios::write_estimate(options.folder, method.info.name, method.info.kind, estimate,
@@ -118,6 +140,8 @@ int run_estimate(const Session& session, const EstimateOptions& options) {
                                    {"digest", scenarios::digest(estimate)},
                                    {"health", estimate.health}};
   session.print({summary(estimate)}, document);
+  session.note(fmt::format("all {} health counters: --json, or {}", estimate.health.size(),
+                           (options.folder / "estimate.json").string()));
   if (const std::string caution = learnt.caution(sensors); !caution.empty()) session.note(caution);
   // printed also after a failure, because a sensor fault may be the cause
   for (const std::string& line : verdict_lines(estimate)) session.note(full_name(method.info) + ": " + line);

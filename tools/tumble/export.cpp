@@ -72,6 +72,8 @@ int export_as(const Session& session, const ExportOptions& options) {
     throw scenarios::BadInput("--frame applies to trajectories only (kitti, tum)");
   std::vector<std::filesystem::path> inputs = options.estimates;
   inputs.push_back(options.recording);
+  scenarios::require_not_an_input(options.out, inputs);
+  scenarios::require_own_kind(format, options.out);
   prepare_output(options.out, inputs);
   scenarios::ExportChoices choices{options.with_truth};
   if (!options.frame.empty()) choices.frame = options.frame;

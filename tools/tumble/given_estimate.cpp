@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/exchange/estimate_clock.hpp"
 #include "scenarios/methods/estimate_file.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "tools/tumble/arguments.hpp"
@@ -22,6 +23,9 @@ scenarios::Frame frame_of(const std::string& name, bool has_imu) {
   return Frame::imu;
 }
 
+namespace {
+
+/// Checks the digest of the sensor data that an estimate states.
 void require_own(const std::filesystem::path& estimate, const std::filesystem::path& recording,
                  const sim::Sensors& sensors) {
   const std::string made_from = scenarios::estimated_sensors(estimate);
@@ -29,6 +33,21 @@ void require_own(const std::filesystem::path& estimate, const std::filesystem::p
   if (made_from.empty() || made_from == own) return;
   throw scenarios::BadInput(estimate.string() + ": was made from another recording (its sensors have the digest " +
                             made_from + ", but those of " + recording.string() + " have the digest " + own + ")");
+}
+
+scenarios::StampSpan span_of(const sim::Sensors& sensors, const sim::Truth* truth) {
+  if (truth == nullptr) return scenarios::span_of(sensors);
+  return {0, truth->period_ns * (static_cast<std::int64_t>(truth->q_WB.size()) - 1)};
+}
+
+}  // namespace
+
+scenarios::Estimate read_given(const GivenEstimate& given, const sim::Sensors& sensors, const sim::Truth* truth,
+                               scenarios::Kind& kind, std::string& method) {
+  require_own(given.path, given.recording, sensors);
+  scenarios::Estimate estimate = scenarios::read_estimate(given.path, kind, method, given.tum_frame);
+  scenarios::move_to_clock(scenarios::read_info(given.recording).origin_ns, span_of(sensors, truth), estimate);
+  return estimate;
 }
 
 }  // namespace tumble::tools

@@ -14,9 +14,14 @@ namespace tumble::tools {
 /// there is no IMU. Throws BadInput that suggests the nearest known frame.
 scenarios::Frame frame_of(const std::string& name, bool has_imu);
 
-/// Checks the digest of the sensor data that an estimate states. Throws BadInput if the digest is not that of the
-/// recording.
-void require_own(const std::filesystem::path& estimate, const std::filesystem::path& recording,
-                 const sim::Sensors& sensors);
+struct GivenEstimate {
+  std::filesystem::path path, recording;
+  scenarios::Frame tum_frame;  ///< frame of the poses in a TUM file
+};
+
+/// Reads an estimate of the recording and converts its stamps to the recording's clock (estimate_clock.hpp). `truth`
+/// may be null. Throws BadInput for read errors, and if the estimate states the digest of other sensor data.
+scenarios::Estimate read_given(const GivenEstimate& given, const sim::Sensors& sensors, const sim::Truth* truth,
+                               scenarios::Kind& kind, std::string& method);
 
 }  // namespace tumble::tools

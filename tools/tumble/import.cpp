@@ -19,11 +19,17 @@ namespace {
 using scenarios::BadInput;
 using scenarios::Imported;
 
+Imported imu_table(const Session& session, const ImportOptions& options, const std::filesystem::path& file) {
+  return scenarios::import_imu_csv(file, imu_sheet(session, options), accel_unit(options), gyro_unit(options),
+                                   options.columns);
+}
+
 /// Imports files of one format.
 Imported import_format(const Session& session, const ImportOptions& options, const std::string& format) {
-  if (format == "csv")
-    return scenarios::import_imu_csv(options.path, imu_sheet(session, options), accel_unit(options),
-                                     gyro_unit(options));
+  if (format == "csv" && std::filesystem::is_directory(options.path))
+    return scenarios::import_csv_folder(options.path, imu_sheet(session, options), accel_unit(options),
+                                        gyro_unit(options));
+  if (format == "csv") return imu_table(session, options, options.path);
   if (format == "broad") {
     Imported imported = scenarios::import_broad(options.path);
     complete(imu_sheet(session, options), imported.sensors.imus.front());
@@ -102,16 +108,16 @@ int import_from(const Session& session, const ImportOptions& options) {
   const std::string format = format_of(options);
   require_fitting(options, format);
   prepare_file(options.out,
-               std::vector<std::filesystem::path>{options.path, options.imu, options.times, options.reference});
+               std::vector<std::filesystem::path>{options.path, options.imu, options.times, options.reference},
+               kRecordingEndings);
   Imported imported = import_format(session, options, format);
   if (!options.imu.empty()) {
-    scenarios::attach_imus(imported, scenarios::import_imu_csv(options.imu, imu_sheet(session, options),
-                                                               accel_unit(options), gyro_unit(options)));
+    scenarios::attach_imus(imported, imu_table(session, options, options.imu));
   }
   if (const std::filesystem::path file = reference_file(options, format); !file.empty()) {
     scenarios::attach_reference(imported, reference_source(options, file, !imported.sensors.lidars.empty()));
     if (options.reference.empty())
-      imported.notes.push_back("the reference is " + file.filename().string() + ", found in the folder of the sweeps");
+      imported.notes.push_back("the reference is " + file.filename().string() + ", found in the imported folder");
   }
   for (std::string& note : scenarios::lidar_rotation_notes(options.path.string(), imported, gyro_unit(options)))
     imported.notes.push_back(std::move(note));

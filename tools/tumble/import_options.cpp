@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <set>
 
 #include "scenarios/draw/data_sheet.hpp"
 #include "scenarios/errors.hpp"
@@ -19,49 +17,6 @@ namespace tumble::tools {
 namespace {
 
 using scenarios::BadInput;
-
-const std::vector<std::string> kFormats = {"airbrakes", "broad",   "csv",     "kitti",   "mcap", "pcd", "odometry",
-                                           "ply",       "repoimu", "rosbag1", "rosbag2", "tum",  "vtk"};
-
-/// Suggests the bag's folder if the user named one of the files in the folder.
-std::string bag_hint(const std::filesystem::path& folder) {
-  std::set<std::string> bags;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    const std::string ending = entry.path().extension().string();
-    if (ending == ".bag" || ending == ".mcap" || ending == ".db3") bags.insert(entry.path().filename().string());
-  }
-  if (bags.empty()) return "";
-  return "; import one of the " + std::to_string(bags.size()) + " bags in the folder at a time, for example " +
-         *bags.begin();
-}
-
-/// Detects the format from the files in a folder.
-std::string format_of_folder(const std::filesystem::path& folder) {
-  const std::map<std::string, std::string> known = {
-      {".ply", "ply"}, {".pcd", "pcd"}, {".bin", "kitti"}, {".vtk", "vtk"}};
-  if (std::filesystem::exists(folder / "metadata.yaml")) return "rosbag2";
-  std::string found;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    const auto format = known.find(entry.path().extension().string());
-    if (format == known.end() || format->second == found) continue;
-    if (!found.empty()) {
-      throw BadInput(folder.string() + ": contains files of formats " + found + " and " + format->second +
-                     "; select one with --format");
-    }
-    found = format->second;
-  }
-  if (found.empty())
-    throw BadInput(folder.string() + ": contains no .ply, .pcd, .vtk or .bin file and no metadata.yaml of a bag" +
-                   bag_hint(folder));
-  return found;
-}
-
-/// Detects the format from the first line.
-std::string format_of_csv(const std::filesystem::path& file) {
-  if (scenarios::is_repoimu(file)) return "repoimu";
-  if (scenarios::is_odometry(file)) return "odometry";
-  return scenarios::is_airbrakes(file) ? "airbrakes" : "csv";
-}
 
 bool is_bag(const std::string& format) {
   return format == "mcap" || format.starts_with("rosbag");
@@ -141,7 +96,8 @@ void declare_lidar(VerbOptions& verb, ImportOptions& options) {
   verb.add("--stem", options.stem,
            "start of the file names before their number, if the folder contains several series");
   verb.add("--times", options.times,
-           "file with one time stamp per line for each sweep or pose, s [STEM_times.txt or times.txt in the folder of "
+           "file with one time stamp per line for each sweep or pose, s or a date in UTC [STEM_times.txt or times.txt "
+           "in the folder of "
            "the sweeps, else the file names, else the times of the points]");
   verb.add("--sweep-period", options.sweep_period_s,
            "duration of a sweep, s; without time stamps also the time between sweeps [median step]")
@@ -159,13 +115,15 @@ void declare_lidar(VerbOptions& verb, ImportOptions& options) {
 
 void declare_reference(VerbOptions& verb, ImportOptions& options) {
   verb.add("--reference", options.reference,
-           "poses that serve as truth: a TUM file or a table of nav_msgs/Odometry in the clock of the sweeps, or a "
-           "KITTI file with one pose per sweep [trajectory.csv in the folder of VTK sweeps]");
+           "poses that serve as truth: a TUM file or a table of poses with named columns (EuRoC ground truth, "
+           "nav_msgs/Odometry) in the clock of the sensors, or a KITTI file with one pose per sweep [trajectory.csv in "
+           "the folder of VTK sweeps, truth.csv in a folder of CSV tables]");
   verb.add("--reference-frame", options.reference_frame,
            "frame of the reference poses: lidar or body [file: lidar if there is one; topic: the frame named in its "
            "messages, else body]");
   verb.add("--reference-topic", options.reference_topic,
-           "topic of a bag with poses that serve as truth: nav_msgs/Odometry or geometry_msgs/PoseStamped [none]");
+           "topic of a bag with poses that serve as truth: nav_msgs/Odometry, geometry_msgs/PoseStamped or "
+           "geometry_msgs/TransformStamped [none]");
   verb.add_flag(
       "--align-reference", options.align_reference,
       "repoimu: removes delay, rotation and tilt of the reference, as estimated from the motion [only reported]");
@@ -177,9 +135,10 @@ void declare_reference(VerbOptions& verb, ImportOptions& options) {
 
 void declare(VerbOptions& verb, ImportOptions& options) {
   verb.add("PATH", options.path,
-           "file or folder to import: lidar sweeps (PLY, PCD, VTK, KITTI .bin); IMU readings (CSV with the columns of "
-           "sensor_msgs/Imu, BROAD HDF5 or RepoIMU CSV with optical reference, AirbrakesV2 flight log); a bag (ROS 1 "
-           "file, ROS 2 folder, MCAP file); or poses (TUM, KITTI, a table of nav_msgs/Odometry)")
+           "file or folder to import: lidar sweeps (PLY, PCD, VTK, KITTI .bin); IMU readings (CSV of a logger or of "
+           "sensor_msgs/Imu, or the folder of a CSV export, BROAD HDF5 or RepoIMU CSV with optical reference, "
+           "AirbrakesV2 flight log); a bag (ROS 1 file or folder of its parts, ROS 2 folder, MCAP file); or poses (TUM, "
+           "KITTI, a table with named columns such as EuRoC's ground truth)")
       .required();
   verb.add("--format", options.format,
            "airbrakes, broad, csv, kitti, mcap, odometry, pcd, ply, repoimu, rosbag1, rosbag2, tum or vtk [from "
@@ -190,6 +149,9 @@ void declare(VerbOptions& verb, ImportOptions& options) {
       "--accel-unit", options.accel_unit,
       "unit of the accelerometer in a CSV or bag: m/s^2 or g [m/s^2; for a bag g if the readings at rest indicate it]");
   verb.add("--gyro-unit", options.gyro_unit, "unit of the gyro in a CSV or bag: rad/s or deg/s [rad/s]");
+  verb.add("--columns", options.columns,
+           "columns of IMU readings in a CSV file: time=NAME,gyro=X,Y,Z,accel=X,Y,Z with the names in the header, or "
+           "positions from 0 [known names]");
   verb.add("--lever-arm", options.lever_arm_m, "X Y Z: vector from the robot's centre of mass to the IMU, m [0 0 0]")
       .words(3);
   verb.add("--robot", options.robot, "type of robot: rig, sphere or pendulum; some methods need it [unknown]");
@@ -197,34 +159,15 @@ void declare(VerbOptions& verb, ImportOptions& options) {
       .within(1e-3, 10.0);
   verb.add("--imu-topic", options.imu_topics,
            "IMU topic of a bag (sensor_msgs/Imu); the first is the primary IMU [all]");
-  verb.add("--lidar-topic", options.lidar_topics, "lidar topic of a bag (sensor_msgs/PointCloud2) [all]");
+  verb.add("--lidar-topic", options.lidar_topics,
+           "lidar topic of a bag (sensor_msgs/PointCloud2); methods map with the first [all, topics whose points have "
+           "times first]");
   verb.add("--stamps", options.stamps,
            "time stamps of a bag: 'header' from the messages; 'record' from the bag, if headers have no usable stamps; "
            "with 'record' a sweep starts one period earlier [header]");
   declare_lidar(verb, options);
   declare_reference(verb, options);
   verb.add("-o,--output", options.out, "recording to write, FILE.h5").required();
-}
-
-std::string format_of(const ImportOptions& options) {
-  if (!options.format.empty()) require_known("format", options.format, kFormats);
-  std::error_code error;
-  const bool folder = std::filesystem::is_directory(options.path, error);
-  // a pipe can be read only once, so a pipe is not opened here
-  if (!folder && options.format != "tum" && std::filesystem::exists(options.path, error))
-    scenarios::require_regular_file(options.path);
-  if (!options.format.empty()) return options.format;
-  if (folder) return format_of_folder(options.path);
-  const std::string ending = options.path.extension().string();
-  if (ending == ".csv") return format_of_csv(options.path);
-  if (ending == ".bag") return "rosbag1";
-  if (ending == ".db3" || ending == ".zstd") return "rosbag2";
-  if (ending == ".mcap") return "mcap";
-  if (ending == ".hdf5" || ending == ".h5") return "broad";
-  if (ending == ".tum" || ending == ".txt" || ending == ".kitti") return scenarios::pose_format(options.path);
-  throw BadInput(options.path.string() +
-                 ": cannot detect the format from this file name; give --format (broad, csv, kitti, mcap, rosbag1, "
-                 "rosbag2 or tum)");
 }
 
 void require_fitting(const ImportOptions& options, const std::string& format) {
@@ -238,6 +181,8 @@ void require_fitting(const ImportOptions& options, const std::string& format) {
          "applies only to IMU readings in a CSV file or bag");
   refuse(!options.gyro_unit.empty() && !csv && !bag, "--gyro-unit",
          "applies only to IMU readings in a CSV file or bag");
+  refuse(!options.columns.empty() && (!csv || (format == "csv" && std::filesystem::is_directory(options.path))),
+         "--columns", "applies only to a CSV file with IMU readings");
   refuse(!options.stamps.empty() && !bag, "--stamps", "applies only to a bag");
   refuse(options.align_reference && format != "repoimu", "--align-reference", "applies only to a RepoIMU recording");
   refuse(!options.reference.empty() && log, "--reference",
@@ -323,9 +268,9 @@ scenarios::SweepSource sweep_source(const Session& session, const ImportOptions&
 }
 
 std::filesystem::path reference_file(const ImportOptions& options, const std::string& format) {
-  const std::filesystem::path beside = options.path / "trajectory.csv";
-  const bool norlab = format == "vtk" && options.reference.empty() && scenarios::is_odometry(beside);
-  return norlab ? beside : options.reference;
+  if (!options.reference.empty() || (format != "vtk" && format != "csv")) return options.reference;
+  const std::filesystem::path beside = options.path / (format == "vtk" ? "trajectory.csv" : "truth.csv");
+  return scenarios::is_pose_table(beside) ? beside : options.reference;
 }
 
 scenarios::ReferenceSource reference_source(const ImportOptions& options, const std::filesystem::path& file,
@@ -359,6 +304,8 @@ scenarios::BagReading bag_reading(const Session& session, const ImportOptions& o
     reading.reference_of = of_lidar ? scenarios::ReferenceOf::lidar : scenarios::ReferenceOf::body;
   }
   reading.imu = imu_sheet(session, options);
+  reading.imu_placed = !options.lever_arm_m.empty();
+  reading.lidar_placed = !options.T_body_lidar.empty();
   if (!options.accel_unit.empty()) reading.accel_unit = accel_unit(options);
   reading.gyro_unit = gyro_unit(options);
   if (!options.stamps.empty()) {

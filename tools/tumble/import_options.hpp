@@ -19,7 +19,7 @@ struct ImportOptions {
   std::string format, robot;
   double radius_m = 0.0;
   // properties of the IMU
-  std::string device, accel_unit, gyro_unit;
+  std::string device, accel_unit, gyro_unit, columns;
   std::vector<double> lever_arm_m;
   std::filesystem::path imu;
   // properties of the lidar
@@ -53,8 +53,8 @@ scenarios::AccelUnit accel_unit(const ImportOptions& options);
 scenarios::GyroUnit gyro_unit(const ImportOptions& options);
 
 scenarios::SweepSource sweep_source(const Session& session, const ImportOptions& options, const std::string& format);
-/// Returns the file of reference poses: the file that the user names, or a file that norlab's mapper stored next to the
-/// sweeps; empty if there is none.
+/// Returns the file of reference poses: the file that the user names, a file that norlab's mapper stored next to the
+/// sweeps, or truth.csv in a folder of tables; empty if there is none.
 std::filesystem::path reference_file(const ImportOptions& options, const std::string& format);
 /// Reference poses are assumed to be those of the lidar if the recording has a lidar and the user states no frame.
 scenarios::ReferenceSource reference_source(const ImportOptions& options, const std::filesystem::path& file,

@@ -342,7 +342,8 @@ Action declare_list(VerbOptions& verb, const Session& session) {
   verb.add("WHAT", *what, "scenarios, methods, metrics, sensors or suites").required();
   verb.add("NAME", *only, "name of one of them, to list all its parameters");
   return [&session, what, only] {
-    const Listing out = listing(session, *what, *only);
+    Listing out = listing(session, *what, *only);
+    for (Table& table : out.tables) table.wrap_last();
     session.print(out.tables, out.document);
     return static_cast<int>(kDone);
   };

@@ -39,7 +39,7 @@ int record(const Session& session, const RecordOptions& options) {
   const scenarios::Scenario scenario = scenarios::load_scenario(data, options.scenario);
   const std::uint64_t seed = seed_of(scenario, options.seed);
   const sim::ResolvedSituation situation = scenarios::draw(data, scenario, seed);
-  prepare_file(options.file, std::vector<std::filesystem::path>{options.scenario});
+  prepare_file(options.file, std::vector<std::filesystem::path>{options.scenario}, kRecordingEndings);
 
   const sim::Recording recording = sim::simulate(sim::BuiltSituation(situation, data.models()), options.threads);
   const scenarios::RecordingInfo info =

@@ -48,8 +48,10 @@ struct RenderContent {
 };
 
 bool is_recording(const std::string& what) {
-  // a name with a recording's extension means a file, even if the file does not exist
-  return std::filesystem::exists(what) ? !what.ends_with(".yaml") : what.ends_with(".h5") || what.ends_with(".hdf5");
+  // a name with a recording's extension means a file, even if the file does not exist; a folder is never a recording,
+  // so that the folder that 'tumble run hill' writes does not hide the scenario
+  if (std::filesystem::exists(what) && !std::filesystem::is_directory(what)) return !what.ends_with(".yaml");
+  return what.ends_with(".h5") || what.ends_with(".hdf5");
 }
 
 /// Loads world, sensors and truth of a recording.
@@ -71,8 +73,8 @@ void load_recording(const scenarios::DataRoot& data, const RenderOptions& option
   for (const std::filesystem::path& folder : options.estimates) {
     scenarios::Kind kind;
     std::string method;
-    require_own(folder, options.what, content.sensors);
-    const scenarios::Estimate estimate = scenarios::read_estimate(folder, kind, method, scenarios::Frame::imu);
+    const scenarios::Estimate estimate =
+        read_given({folder, options.what, scenarios::Frame::imu}, content.sensors, &content.truth, kind, method);
     Path path = estimated_path(estimate, content.sensors, content.truth);
     if (path.empty()) throw BadInput(folder.string() + ": contains no poses to draw");
     content.scene.estimates.push_back(std::move(path));
@@ -101,8 +103,8 @@ int render_maps(const Session& session, const RenderOptions& options, const scen
   for (const std::filesystem::path& folder : options.estimates) {
     scenarios::Kind kind;
     std::string method;
-    require_own(folder, options.what, content.sensors);
-    const scenarios::Estimate estimate = scenarios::read_estimate(folder, kind, method, scenarios::Frame::imu);
+    const scenarios::Estimate estimate =
+        read_given({folder, options.what, scenarios::Frame::imu}, content.sensors, &content.truth, kind, method);
     maps.push_back(map_by_error(full_name(kind, method), estimate, content.truth, surface));
     const ErrorMap& map = maps.back();
     if (map.points_W_m.empty()) throw BadInput(folder.string() + ": contains no map to draw");
@@ -150,8 +152,6 @@ std::vector<std::uint8_t> video_of(const Session& session, const RenderOptions& 
 void require_video(const RenderOptions& options) {
   if (!is_recording(options.what)) throw BadInput("--video needs a recording; '" + options.what + "' is a scenario");
   if (options.film > 0 || options.map) throw BadInput("--video, --film and --map exclude each other; give only one");
-  if (options.output.extension() != ".webp")
-    throw BadInput("--video writes a WebP file: " + options.output.string() + " must end in .webp");
 }
 
 void write_picture(const Session& session, const RenderOptions& options, const Scene& scene) {
@@ -170,7 +170,7 @@ int render(const Session& session, const RenderOptions& options) {
   if (options.video) require_video(options);
   std::vector<std::filesystem::path> inputs = options.estimates;
   inputs.emplace_back(options.what);
-  prepare_file(options.output, inputs);
+  prepare_file(options.output, inputs, {options.video ? ".webp" : ".png"});
   if (is_recording(options.what) && !options.seed.empty()) {
     throw BadInput("--seed applies to a scenario; '" + options.what + "' is a recording of one draw");
   }

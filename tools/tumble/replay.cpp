@@ -53,8 +53,8 @@ void load_estimates(const Session& session, const ReplayOptions& options, Replay
   for (const std::filesystem::path& path : options.estimates) {
     scenarios::Kind kind;
     std::string method;
-    require_own(path, options.recording, content.sensors);
-    scenarios::Estimate estimate = scenarios::read_estimate(path, kind, method, frame);
+    scenarios::Estimate estimate = read_given({path, options.recording, frame}, content.sensors,
+                                              content.truth ? &*content.truth : nullptr, kind, method);
     if (estimate.poses.empty() && estimate.rates.empty()) {
       session.note(path.string() + ": left out, because it contains neither poses nor rates");
       continue;
@@ -72,7 +72,7 @@ std::string title_of(const scenarios::RecordingInfo& info, const std::filesystem
 int make_replay(const Session& session, const ReplayOptions& options) {
   std::vector<std::filesystem::path> inputs = {options.recording};
   inputs.insert(inputs.end(), options.estimates.begin(), options.estimates.end());
-  prepare_file(options.page, inputs);
+  prepare_file(options.page, inputs, {".html"});
   const scenarios::RecordingInfo info = scenarios::read_info(options.recording);
   ReplayContent content;
   load_recording(session, options, info, content);

@@ -9,8 +9,10 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <list>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "scenarios/certificate/certificate_text.hpp"
 #include "scenarios/errors.hpp"
@@ -175,18 +177,23 @@ PageContent content_of(const Session& session, const ReportVerbOptions& options,
 void write_page(const Session& session, const ReportVerbOptions& options, ReportInput input) {
   const std::string plotly = options.page.empty() ? "" : read_text(session.plotly());
   const PageContent content = content_of(session, options, std::move(input));
-  if (!options.badge.empty()) scenarios::replace_file(options.badge, badge_svg(badge_of(content)));
-  if (options.page.empty()) return;
-  for (const std::string& warning : content.warnings) session.note(warning);
-  scenarios::replace_file(options.page, page_html(content, plotly));
+  // both files are complete before the first is moved, so that a full disk leaves neither
+  std::list<scenarios::OutputFile> files;
+  const auto write = [&](const std::filesystem::path& path, const std::string& text) {
+    files.emplace_back(path).write(std::as_bytes(std::span(text)));
+  };
+  if (!options.badge.empty()) write(options.badge, badge_svg(badge_of(content)));
+  if (!options.page.empty()) {
+    for (const std::string& warning : content.warnings) session.note(warning);
+    write(options.page, page_html(content, plotly));
+  }
+  for (scenarios::OutputFile& file : files) file.move_into_place();
 }
 
 int report(const Session& session, const ReportVerbOptions& options) {
-  for (const std::filesystem::path& output : {options.page, options.badge}) {
-    if (!output.empty()) prepare_file(output, std::vector<std::filesystem::path>{options.database});
-  }
-  if (!options.badge.empty() && options.badge == options.page)
-    throw scenarios::BadInput("--badge and --output name the same file, " + options.page.string());
+  const std::vector<std::filesystem::path> inputs = {options.database};
+  if (!options.page.empty()) prepare_file(options.page, inputs, {".html"});
+  if (!options.badge.empty()) prepare_file(options.badge, inputs, {".svg"});
   const scenarios::Results results(options.database, scenarios::Results::Mode::read_only);
   const std::vector<scenarios::DrawValues> draws = results.draws();
   Summary summary;

@@ -39,10 +39,10 @@ struct RunOptions {
   fs::path learnt;
 };
 
-/// Returns true if the command line states only a scenario, as for a first try of the program.
+/// Returns true if the command line states only a scenario and perhaps a seed, as for a first try of the program.
 bool is_bare(const RunOptions& options) {
-  return options.seed.empty() && options.methods.empty() && options.folder.empty() && options.learnt.empty() &&
-         options.parameters.empty() && options.vary.empty();
+  return options.methods.empty() && options.folder.empty() && options.learnt.empty() && options.parameters.empty() &&
+         options.vary.empty();
 }
 
 /// Returns the scenario's name, or the first of NAME_2, NAME_3, ... that does not exist.
@@ -84,7 +84,9 @@ RunOptions first_run(RunOptions options, const scenarios::Scenario& scenario) {
   return options;
 }
 
-void say_what_next(const Session& session, const RunOptions& options, const scenarios::RunResult& result) {
+/// Suggests further commands. `sweep` takes scenarios of the catalogue only, and a suite may have the same name.
+void say_what_next(const Session& session, const RunOptions& options, const scenarios::RunResult& result,
+                   bool in_catalogue) {
   const std::string folder = options.folder.string();
   session.note("results written to " + folder +
                "/: recording.h5, situation.yaml, estimates/, snapshots/scene.png and film.png, replay.html");
@@ -98,8 +100,11 @@ void say_what_next(const Session& session, const RunOptions& options, const scen
         "maps, coloured by error");
   }
   say(fmt::format("tumble run {} --seed 2 -o {}_seed_2", options.scenario, folder), "another draw with every method");
-  say(fmt::format("tumble sweep {} --seeds 1..8 --db {}.db", options.scenario, folder), "eight draws");
-  say(fmt::format("tumble report {0}.db -o {0}.html", folder), "tables and one page with them");
+  if (in_catalogue) {
+    say(fmt::format("tumble sweep {0} --scenario {0} --seeds 1..8 --db {1}.db", options.scenario, folder),
+        "eight draws with every method");
+    say(fmt::format("tumble report {0}.db -o {0}.html", folder), "tables and one page with them");
+  }
   say("tumble list methods", "all methods");
 }
 
@@ -209,6 +214,7 @@ int run(const Session& session, const RunOptions& given) {
   if (!options.folder.empty()) folder.emplace(options.folder);
   learnt.require_place();
 
+  note_time_limits(session, options.methods);
   const scenarios::Setting setting = setting_of(data, options, seed);
   const scenarios::RunResult result = scenarios::run_situation(data, scenario, seed, pointers(methods), options.threads,
                                                                scenarios::Lidars::simulated, setting);
@@ -222,7 +228,7 @@ int run(const Session& session, const RunOptions& given) {
   say_troubles(session, result);
   if (const std::string caution = learnt.caution(result.recording.sensors); !caution.empty()) session.note(caution);
   if (const std::string moving = end_in_motion(result.recording.truth); !moving.empty()) session.note(moving);
-  if (first) say_what_next(session, options, result);
+  if (first) say_what_next(session, options, result, !given.scenario.ends_with(".yaml"));
   return kDone;
 }
 
@@ -234,8 +240,10 @@ Action declare_run(VerbOptions& verb, const Session& session) {
       .required()
       .check(a_scenario(session));
   verb.add("--seed", options->seed, "seed of the draw [1; for a named case: its own]");
-  verb.add("--method", options->methods,
-           "method, for example 'saave' or 'rate/saave'; repeat for more [all that apply]")
+  verb.add(
+          "--method", options->methods,
+          "method, for example 'saave' or 'rate/saave'; repeat for more [with only a scenario and a seed: the baseline "
+          "and our method of each kind; else all that apply]")
       .one_at_a_time();  // each --method takes exactly one word
   verb.add("--set", options->parameters,
            "METHOD.PARAMETER=NUMBER, for example rate/tumble_lag.lag_s=0.5; repeat for more ('tumble list methods "
@@ -246,13 +254,16 @@ Action declare_run(VerbOptions& verb, const Session& session) {
   verb.add("--threads", options->threads, "number of threads for the lidar; the result does not depend on it")
       .whole(1, 1024)
       .shows_default();
-  verb.add("-o,--output", options->folder, "folder for recording, estimates, pictures and replay [nothing is written]");
+  verb.add("-o,--output", options->folder,
+           "folder for recording, estimates, pictures and replay [with only a scenario and a seed: named after the "
+           "scenario; else nothing is written]");
   verb.add("--learnt", options->learnt,
            "FILE.json with the calibration of the rig from which 'rate/tumble' and 'rate/tumble_lag' start, if it "
            "exists; receives the calibration of this run");
   verb.footer(
-      "With a scenario only, the program runs our methods and the baselines and writes everything to a folder with the "
-      "scenario's name.");
+      "With only a scenario and a seed, the program runs our methods and the baselines and writes everything to a "
+      "folder "
+      "with the scenario's name.");
   return [&session, options] { return run(session, *options); };
 }
 

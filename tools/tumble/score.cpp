@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -33,14 +32,6 @@ struct ScoreOptions {
   std::string frame, kind;
 };
 
-/// Converts external poses with time stamps of the recording's source to the recording's clock. The conversion applies
-/// if the clock's origin is nearer to the stamps than zero is.
-void move_to_clock(std::int64_t origin_ns, scenarios::Estimate& estimate) {
-  const std::int64_t first = estimate.poses.empty() ? 0 : estimate.poses.front().time_ns;
-  if (std::abs(first - origin_ns) >= std::abs(first)) return;
-  for (PoseState& pose : estimate.poses) pose.time_ns -= origin_ns;
-}
-
 /// Accepts estimate and recording in either order, because other verbs take the recording first. The file extension
 /// identifies the recording.
 void order(ScoreOptions& options) {
@@ -59,9 +50,10 @@ void require_common_time(const ScoreOptions& options, const scenarios::Estimate&
   const double first_s = 1e-9 * static_cast<double>(estimate.poses.front().time_ns);
   const double last_s = 1e-9 * static_cast<double>(estimate.poses.back().time_ns);
   if (first_s <= end_s && last_s >= 0.0) return;
-  throw scenarios::BadInput(fmt::format(
-      "{}: the poses cover {:.3f} s to {:.3f} s, but the truth of {} covers 0 to {:.3f} s; the clocks may differ",
-      options.estimate.string(), first_s, last_s, options.recording.string(), end_s));
+  throw scenarios::BadInput(
+      fmt::format("{}: the poses cover {:.3f} s to {:.3f} s, but the truth of {} covers 0 to {:.3f} s; shift the "
+                  "time stamps of the poses to the start of the recording",
+                  options.estimate.string(), first_s, last_s, options.recording.string(), end_s));
 }
 
 constexpr double kHoleShare = 0.2;  // share of the recording; a longer gap counts as a divergence (scenarios::verdict)
@@ -200,12 +192,13 @@ struct Claim {
   bool foreign = false;  ///< an external trajectory without information about its method
 };
 
-/// Adds the information that an external estimate does not contain.
+/// Adds the information that an external estimate does not contain, and reports a wrong convention or clock.
 void complete_foreign(const Session& session, const ScoreOptions& options, Claim& claim) {
   claim.kind = kind_of(options.kind, claim.sensors);
-  move_to_clock(claim.info.origin_ns, claim.estimate);
-  const std::string complaint = scenarios::turning_complaint(claim.estimate, claim.sensors);
-  if (!complaint.empty()) session.note("caution: " + complaint);
+  for (const auto& complain : {scenarios::turning_complaint, scenarios::clock_complaint}) {
+    const std::string complaint = complain(claim.estimate, claim.sensors);
+    if (!complaint.empty()) session.note("caution: " + complaint);
+  }
 }
 
 Claim read_claim(const Session& session, const ScoreOptions& options) {
@@ -217,9 +210,8 @@ Claim read_claim(const Session& session, const ScoreOptions& options) {
   if (!scenarios::states_digest(options.recording))
     session.note(options.recording.string() + ": contains no digest of its data, so damage cannot be detected");
   claim.truth = scenarios::read_truth(options.recording);
-  claim.estimate = scenarios::read_estimate(options.estimate, claim.kind, claim.method,
-                                            frame_of(options.frame, !claim.truth.imus.empty()));
-  require_own(options.estimate, options.recording, claim.sensors);
+  claim.estimate = read_given({options.estimate, options.recording, frame_of(options.frame, !claim.truth.imus.empty())},
+                              claim.sensors, &claim.truth, claim.kind, claim.method);
   claim.foreign = !std::filesystem::is_directory(options.estimate);
   if (!claim.foreign && scenarios::estimated_sensors(options.estimate).empty())
     session.note("caution: " + options.estimate.string() +
@@ -298,6 +290,7 @@ Action declare_score(VerbOptions& verb, const Session& session) {
            "a lidar and no rolling sphere]");
   return [&session, options] {
     order(*options);
+    a_recording(options->recording.string());
     return score_estimate(session, *options);
   };
 }

@@ -92,9 +92,10 @@ json to_json(const Shrunk& shrunk, const std::string& metric, const ShrinkVerbOp
   const auto side = [&](const scenarios::Outcome& outcome) {
     return json{{"status", to_string(outcome.status)}, {"value", finite(value_of(outcome.scores, metric))}};
   };
-  return {{"failure", shrunk.failure},       {"metric", metric},          {"drawn", side(shrunk.drawn)},
-          {"shrunk", side(shrunk.left)},     {"runs", shrunk.runs},       {"complete", shrunk.complete},
-          {"controlled", shrunk.controlled}, {"lines", std::move(lines)}, {"case", options.file.string()}};
+  return {{"failure", shrunk.failure},       {"metric", metric},    {"drawn", side(shrunk.drawn)},
+          {"shrunk", side(shrunk.left)},     {"runs", shrunk.runs}, {"complete", shrunk.complete},
+          {"controlled", shrunk.controlled}, {"cure", shrunk.cure}, {"lines", std::move(lines)},
+          {"case", options.file.string()}};
 }
 
 /// Returns the command that repeats the shrinking.
@@ -153,7 +154,7 @@ int run_shrink(const Session& session, const ShrinkVerbOptions& options) {
   const double time_limit_s = 0.9 * shrinking.timeout_s;
   const scenarios::MethodPointer method = one_method(options.method, time_limit_s);
   const std::string metric = metric_of(*method, options.metric);
-  prepare_file(options.file, std::vector<std::filesystem::path>{options.scenario, options.method});
+  prepare_file(options.file, std::vector<std::filesystem::path>{options.scenario, options.method}, {".yaml"});
   if (options.worse_than) shrinking.failure = {metric, *options.worse_than};
   shrinking.control = control_of(options, *method, scenario, time_limit_s);
   shrinking.budget = options.budget;
@@ -172,9 +173,11 @@ int run_shrink(const Session& session, const ShrinkVerbOptions& options) {
   scenarios::replace_file(options.file, scenarios::to_yaml(made));
   session.print({lines_table(shrunk, metric), outcomes_table(shrunk, metric)}, to_json(shrunk, metric, options));
   session.note(fmt::format(
-      "{}: {} runs, {}; {}; case file: {}", shrunk.failure, shrunk.runs,
+      "{}: {} runs, {}; {}; {}; case file: {}", shrunk.failure, shrunk.runs,
       shrunk.complete ? "nothing more can be removed" : "the budget is used up; a larger --budget may remove more",
-      control_text(shrunk, shrinking), options.file.string()));
+      control_text(shrunk, shrinking),
+      shrunk.cure.empty() ? "no single true input cures it" : "the true input " + shrunk.cure + " cures it",
+      options.file.string()));
   return kDone;
 }
 

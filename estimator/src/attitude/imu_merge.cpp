@@ -120,7 +120,9 @@ ImuSample ImuMerge::merge(State& state) const {
   const TimeNs time_ns = state.last_time_ns;
   Readings readings{};
   Flags finite{}, present{};
-  Vectors raw_rates{}, raw_forces{}, rates{}, forces{};
+  Vectors raw_rates, raw_forces, rates{}, forces{};
+  raw_rates.fill(Eigen::Vector3d::Zero());  // units without readings keep zero
+  raw_forces.fill(Eigen::Vector3d::Zero());
   for (std::size_t k = 0; k < count; ++k) {
     finite[k] = state.units[k].window.readings > 0;
     if (!finite[k]) continue;

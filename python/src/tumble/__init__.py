@@ -66,7 +66,7 @@ from .method import describe_method, serve
 from .placing import point_errors
 from .program import ProgramError, call, estimate, program, record, results, run, score, score_rows, sweep
 from .recordings import Imu, Lidar, Recording, Series, read, write
-from .replay import Tumble, rate, rolling, sheet_of, tumbling, tumbling_options
+from .processing import Tumble, rate, rolling, sheet_of, tumbling, tumbling_options
 from .truth import Contacts, ImuTruth, LidarTruth, SeriesTruth, Truth
 
 __version__ = importlib.metadata.version("tumble")

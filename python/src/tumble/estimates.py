@@ -14,12 +14,13 @@ import numpy.typing as npt
 from .checks import having, path_of, refusal, unmasked
 from .errors import TumbleError
 from .files import beside
+from .shown import Shown
 
 Array = npt.NDArray[Any]
 
 
-@dataclass
-class Trajectory:
+@dataclass(repr=False)
+class Trajectory(Shown):
     """Poses of a frame in the world, in order of time."""
 
     time_ns: Array  #: (N,) int64
@@ -97,8 +98,8 @@ def read_tum(path: str | os.PathLike[str], separator: str | None = None) -> Traj
     return Trajectory(stamps, numbers[:, :3], numbers[:, 3:])
 
 
-@dataclass
-class RateTable:
+@dataclass(repr=False)
+class RateTable(Shown):
     """Angular velocities of an estimate that was read from disk."""
 
     time_ns: Array  #: (N,) int64
@@ -108,8 +109,8 @@ class RateTable:
     source: Array  #: (N,) uint8
 
 
-@dataclass
-class Estimate:
+@dataclass(repr=False)
+class Estimate(Shown):
     """Contents of the folder of an estimate. Members whose file is missing are None."""
 
     method: str

@@ -9,6 +9,7 @@ import pathlib
 import shutil
 import sqlite3
 import subprocess
+import tempfile
 from collections.abc import Iterable, Mapping, Sequence
 from numbers import Integral, Real
 from typing import Any
@@ -122,9 +123,18 @@ def run(scenario: Path, seed: int = 1, methods: Path | Iterable[Path] = (), fold
         settings: Mapping[str, Number] | None = None) -> dict[str, Any]:
     """Draws, simulates, estimates and scores one situation. With `folder`, also writes recording, estimates and pictures.
 
-    Returns the JSON output of the program.
+    methods: one or several names; default: all that apply. Returns the JSON output of the program.
     """
-    words = ["--seed", _seed("seed", seed), *_methods(methods), *_settings(settings), *(["-o", folder] if folder else [])]
+    words: list[Path | Number] = ["--seed", _seed("seed", seed), *_methods(methods), *_settings(settings)]
+    if len(words) > 2 or folder is not None:
+        words += ["-o", folder] if folder is not None else []
+        return _run(scenario, words)
+    # with a seed alone, the program would select methods and write to a folder named after the scenario
+    with tempfile.TemporaryDirectory() as scratch:
+        return _run(scenario, [*words, "-o", pathlib.Path(scratch) / "run"])
+
+
+def _run(scenario: Path, words: Sequence[Path | Number]) -> dict[str, Any]:
     report: dict[str, Any] = json.loads(call("run", _named("scenario", scenario), *words, "--json"))
     return report
 

@@ -15,13 +15,14 @@ from .checks import having, number_from, path_of, refusal, rigid, rising, unmask
 from .errors import TumbleError
 from .files import beside, optional
 from .hdf5 import XYZ, Group, missing, put, same_length
+from .shown import Shown
 from .truth import Truth, read_truth, require_quantity, write_truth
 
 Array = npt.NDArray[Any]
 
 
-@dataclass
-class Imu:
+@dataclass(repr=False)
+class Imu(Shown):
     """Samples of one IMU. T_BI (4, 4) is its pose in body axes, relative to the centre of mass. A range or density of 0 is not stated."""
 
     time_ns: Array  #: (N,) int64, end of each sample's window
@@ -53,8 +54,8 @@ class Imu:
         return self.time_ns, self.gyro, self.accel, self.clip_flags
 
 
-@dataclass
-class Sweep:
+@dataclass(repr=False)
+class Sweep(Shown):
     """One sweep of a lidar. The arrays are views of the recording."""
 
     start_ns: int
@@ -65,8 +66,8 @@ class Sweep:
     intensity: Array  #: (M,) float32
 
 
-@dataclass
-class Lidar:
+@dataclass(repr=False)
+class Lidar(Shown):
     """Returns of a lidar, in order of sweeps. T_BL (4, 4) is the pose of the lidar in body axes."""
 
     sweep_start_ns: Array  #: (S,) int64
@@ -121,8 +122,8 @@ class Lidar:
         return (self[k] for k in range(len(self)))
 
 
-@dataclass
-class Series:
+@dataclass(repr=False)
+class Series(Shown):
     """Samples of any other sensor: one number per time and quantity, `series["pressure_pa"]`. T_BX (4, 4) is its pose in body axes."""
 
     time_ns: Array  #: (N,) int64, end of each sample's window
@@ -143,8 +144,8 @@ class Series:
         return self.values[quantity]
 
 
-@dataclass
-class Recording:
+@dataclass(repr=False)
+class Recording(Shown):
     """A recording: sensor data, and ground truth if it is known."""
 
     imus: list[Imu] = field(default_factory=list)  #: the first is the primary IMU

@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from .errors import TumbleError
 from .hdf5 import XYZ, Group, put, put_texts
+from .shown import Shown
 
 Array = npt.NDArray[Any]
 
@@ -20,8 +21,8 @@ def _none(dtype: str, *columns: int) -> Any:
     return field(default_factory=lambda: np.zeros((0, *columns), dtype))
 
 
-@dataclass
-class ImuTruth:
+@dataclass(repr=False)
+class ImuTruth(Shown):
     """Ground truth of one IMU. N is the number of its samples, or 0 if unknown.
 
     A reading that differs from the unclipped reading was clipped. A real recording may have the rates only.
@@ -42,8 +43,8 @@ class ImuTruth:
     magnetic_field_t: Array | None = None  #: (N, 3), T: true mean over the window
 
 
-@dataclass
-class LidarTruth:
+@dataclass(repr=False)
+class LidarTruth(Shown):
     """True positions of the returns of a lidar. P is the number of its points, or 0 if unknown."""
 
     name: str = ""
@@ -52,8 +53,8 @@ class LidarTruth:
     surface_id: Array = _none("i4")  #: (P,) int32, index into Truth.surfaces; -1: unknown, -2: cage of the robot
 
 
-@dataclass
-class SeriesTruth:
+@dataclass(repr=False)
+class SeriesTruth(Shown):
     """True values of the sensor of a Series."""
 
     name: str = ""
@@ -65,8 +66,8 @@ class SeriesTruth:
         return self.values[quantity]
 
 
-@dataclass
-class Contacts:
+@dataclass(repr=False)
+class Contacts(Shown):
     """Contacts in order of time. A simulation step may have several contacts or none."""
 
     time_ns: Array = _none("i8")  #: (C,) int64
@@ -80,8 +81,8 @@ class Contacts:
         return len(self.time_ns)
 
 
-@dataclass
-class Truth:
+@dataclass(repr=False)
+class Truth(Shown):
     """Ground truth in steps of period_ns from time 0.
 
     For a real recording, the measurements of a reference instrument; NaN at times without a measurement.

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/not_finite.hpp"
 #include "scenarios/recordings/bags/bag_layout.hpp"
 #include "scenarios/recordings/import.hpp"
 #include "scenarios/recordings/stored_truth.hpp"
@@ -29,9 +30,11 @@ struct BagTrack {
     std::int64_t time_ns = 0;
     Eigen::Vector3d p_WB_m = Eigen::Vector3d::Zero();
     Eigen::Quaterniond q_WB = Eigen::Quaterniond::Identity();
-    Eigen::Vector3d v_WB_B_m_s = Eigen::Vector3d::Zero(), w_WB_B_rad_s = Eigen::Vector3d::Zero();
-    /// Covariance of (position in W, attitude error phi in W), as in PoseState; zero if unknown.
+    Eigen::Vector3d v_WB_B_m_s = kUnknown, w_WB_B_rad_s = kUnknown;
+    /// Covariance of (position in W, attitude error phi in W), as in PoseState; a block of zeros is unknown.
     Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+    bool exact = false;  ///< a true pose: zeros are the covariance
+    inline static const Eigen::Vector3d kUnknown = Eigen::Vector3d::Constant(kNaN);
   };
   std::string name;  ///< letters, digits and _
   std::vector<Pose> poses;
@@ -43,7 +46,7 @@ struct BagTrack {
 
 /// Options for writing a recording to a bag.
 struct BagWriting {
-  std::int64_t origin_ns = 0;  ///< stamp of time 0; 0: 1 000 000 000 s after 1970, because ROS treats 0 as unset
+  std::int64_t origin_ns = 0;          ///< of the recording; see export_origin_ns
   const StoredTruth* truth = nullptr;  ///< written if not null
   std::vector<BagTrack> tracks = {};   ///< estimates; names are unique and differ from export_names' `taken`
   SweepLayout sweeps = own_sweep_layout();
@@ -52,9 +55,6 @@ struct BagWriting {
   std::optional<ReaderNames> names = {};  ///< if set: only the first IMU and the first lidar, with these names
   bool empty_sweeps = true;               ///< false: omits sweeps without points
 };
-
-/// Returns the stamp of time 0 in a bag [ns since 1970]: `origin_ns`, or the default if `origin_ns` is 0.
-std::int64_t bag_origin_ns(const BagWriting& writing);
 
 /// Writes a recording as a bag, in one of three formats:
 ///
@@ -71,7 +71,8 @@ std::int64_t bag_origin_ns(const BagWriting& writing);
 ///   intensity ring time. The time is in float32 seconds after the stamp (4 ns resolution within 0.1 s). The field
 ///   offset_ns states the time in whole nanoseconds. The two time fields are omitted for points without times. `sweeps`
 ///   can choose another point layout;
-/// - "/truth" (nav_msgs/Odometry of "body" in "world", at most every 5 ms), "/TRACK" and "/TRACK/points";
+/// - "/truth" (nav_msgs/Odometry of "body" in "world", at most every 5 ms), "/TRACK" and "/TRACK/points". Unknown
+///   values have the variance -1, as in sensor_msgs/Imu, and an unknown twist is zero;
 /// - "/tf_static": each sensor in "body", from the calibration that the estimator uses;
 /// - "/tf": "body" in "world" from the truth, else from the first track; all further tracks use a frame "TRACK";
 /// - "/clock" (rosgraph_msgs/Clock), published with the first message after every 10 ms.
@@ -96,30 +97,36 @@ enum class ReferenceOf { named, body, lidar };
 struct BagReading {
   std::vector<std::string> imu_topics;    ///< the first is the primary one; empty: all of type Imu, in the bag's order
   std::vector<std::string> lidar_topics;  ///< empty: all of type PointCloud2 or CustomMsg
-  std::string reference_topic;            ///< Odometry or PoseStamped; "": none
+  std::string reference_topic;            ///< Odometry, PoseStamped or TransformStamped; "": none
   ReferenceOf reference_of = ReferenceOf::named;
   sim::ImuRecord imu;                   ///< values that messages lack: device, ranges, noise, T_BI
+  bool imu_placed = false;              ///< the user states T_BI of `imu`, also if it is the identity
+  bool lidar_placed = false;            ///< the same for T_BL of `sweeps.device`
   std::optional<AccelUnit> accel_unit;  ///< empty: m/s^2 as in sensor_msgs/Imu, or g if the readings indicate g
   GyroUnit gyro_unit = GyroUnit::rad_s;
   StampSource stamps = StampSource::header;
   SweepReading sweeps;
 };
 
-/// Reads a ROS 1 bag (not encrypted), a ROS 2 bag, or an MCAP file. A ROS 2 bag is a folder or a single file: SQLite or
-/// MCAP, plain or Zstandard-compressed per file or message. An MCAP file may have messages of ROS 2 (cdr) or ROS 1, in
-/// plain, LZ4 or Zstandard chunks, with or without index.
+/// Reads a ROS 1 bag (a file or a folder of its parts, not encrypted), a ROS 2 bag, or an MCAP file. A ROS 2 bag is a
+/// folder or a single file: SQLite or MCAP, plain or Zstandard-compressed per file or message. An MCAP file may have
+/// messages of ROS 2 (cdr) or ROS 1, in plain, LZ4 or Zstandard chunks, with or without index.
 ///
 /// Times are taken from the source `stamps`; notes state how the stamps of headers and records differ. Units are
 /// checked against gravity as for a CSV file; specific force in g at rest, as from Livox drivers, is converted and
 /// noted. Each sensor is named after its topic. Points are read as in import_sweeps. Unless topics are chosen, clouds
-/// in "world", "map" or "odom" are skipped, because such clouds are not raw sensor data. Duplicate messages (stamp and
-/// content) are read once.
+/// in "world", "map" or "odom" are skipped, because such clouds are not raw sensor data, and lidars whose points have
+/// times come first. Duplicate messages (stamp and content) are read once. Single faulty messages are left out and
+/// noted (left_out.hpp).
+///
+/// The parts of a ROS 1 bag in a folder are merged by time. Files of a ROS 2 bag are read by time, including files that
+/// are named like the listed files but are missing in metadata.yaml.
 ///
 /// If /tf_static states the pose of a sensor in "body" or "base_link", or else relative to another sensor, this pose is
-/// used unless the caller states a pose. With `sweeps.scratch`, memory only holds one sweep, the IMU data (57 bytes per
+/// used unless the caller states a pose. With `sweeps.scratch`, memory only holds one sweep, the IMU data (81 bytes per
 /// sample) and some bytes per message; otherwise memory holds all points. Throws BadInput with file and location for
-/// damaged or truncated data, a missing topic or wrong type, a stamp that does not increase, or a cycle of frames.
-Imported import_ros1_bag(const std::filesystem::path& file, const BagReading& reading);
+/// damaged or truncated data, a missing topic or wrong type, more than 5 % of faulty messages, or a cycle of frames.
+Imported import_ros1_bag(const std::filesystem::path& path, const BagReading& reading);
 Imported import_ros2_bag(const std::filesystem::path& path, const BagReading& reading);
 Imported import_mcap(const std::filesystem::path& file, const BagReading& reading);
 

@@ -24,6 +24,12 @@ std::array<double, 9> covariance_of(double density_sqrt_hz, std::int64_t period_
   return {variance, 0, 0, 0, variance, 0, 0, 0, variance};
 }
 
+/// Sets the variances of three rows to "unknown".
+void set_unknown(std::size_t first_row, std::array<double, 36>& covariance) {
+  constexpr std::size_t kRows = 6;
+  for (std::size_t row = first_row; row < first_row + 3; ++row) covariance[row * kRows + row] = -1.0;
+}
+
 struct NamedType {
   const char* name;
   ros::PointField::Type type;
@@ -95,8 +101,16 @@ ros::Odometry odometry_message(const BagTrack::Pose& pose, const std::string& ch
   out.position = array_of<3>(pose.p_WB_m);
   out.orientation_xyzw = array_of<4>(pose.q_WB.coeffs());
   out.pose_covariance = array_of<36>(pose.covariance);  // row order equals column order: the matrix is symmetric
-  out.linear_velocity = array_of<3>(pose.v_WB_B_m_s);
-  out.angular_velocity = array_of<3>(pose.w_WB_B_rad_s);
+  if (!pose.exact && pose.covariance.topLeftCorner<3, 3>().isZero(0.0)) set_unknown(0, out.pose_covariance);
+  if (!pose.exact && pose.covariance.bottomRightCorner<3, 3>().isZero(0.0)) set_unknown(3, out.pose_covariance);
+  if (pose.v_WB_B_m_s.allFinite())
+    out.linear_velocity = array_of<3>(pose.v_WB_B_m_s);
+  else
+    set_unknown(0, out.twist_covariance);
+  if (pose.w_WB_B_rad_s.allFinite())
+    out.angular_velocity = array_of<3>(pose.w_WB_B_rad_s);
+  else
+    set_unknown(3, out.twist_covariance);
   return out;
 }
 

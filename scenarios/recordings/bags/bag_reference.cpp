@@ -15,6 +15,7 @@ namespace {
 
 constexpr const char* kOdometry = "nav_msgs/Odometry";
 constexpr const char* kPoseStamped = "geometry_msgs/PoseStamped";
+constexpr const char* kTransformStamped = "geometry_msgs/TransformStamped";
 
 /// Poses and the frame that their messages name; "" if no frame is named.
 struct NamedPoses {
@@ -22,20 +23,36 @@ struct NamedPoses {
   std::string frame;
 };
 
+ReferencePose pose_in(const ros::TransformStamped& message) {
+  ReferencePose pose{0, Eigen::Vector3d::Map(message.translation.data()), {}};
+  pose.q_WA.coeffs() = Eigen::Vector4d::Map(message.rotation_xyzw.data());
+  return pose;
+}
+
+/// For Odometry and PoseStamped.
+template <class Message>
+ReferencePose pose_in(const Message& message) {
+  ReferencePose pose{0, Eigen::Vector3d::Map(message.position.data()), {}};
+  pose.q_WA.coeffs() = Eigen::Vector4d::Map(message.orientation_xyzw.data());
+  return pose;
+}
+
 template <class Message>
 NamedPoses read_poses(const OpenedBag& bag, const std::string& topic, StampSource source) {
   NamedPoses out;
   std::vector<ReferencePose>& poses = out.poses;
   BagStamps stamps(source);
   bag.read<Message>(topic, [&](const Message& message, const MessageOrigin& origin) {
-    ReferencePose pose{stamps.take(stamp_of(message.header), origin.record_ns, origin.where),
-                       Eigen::Vector3d::Map(message.position.data()),
-                       {}};
-    pose.q_WA.coeffs() = Eigen::Vector4d::Map(message.orientation_xyzw.data());
+    const std::int64_t header_ns = stamp_of(message.header);
+    stamps.add(header_ns, origin.record_ns);
+    ReferencePose pose = pose_in(message);
+    pose.time_ns = stamps.chosen(header_ns, origin.record_ns, origin.where);
+    if (!poses.empty() && pose.time_ns <= poses.back().time_ns)
+      throw BadInput(origin.where + ": " + stamps.disorder(poses.size()));
     if (std::string problem = problem_of(pose, poses.empty() ? nullptr : &poses.back()); !problem.empty())
       throw BadInput(origin.where + ": " + problem);
     poses.push_back(pose);
-    if constexpr (std::is_same_v<Message, ros::Odometry>) out.frame = without_slash(message.child_frame_id);
+    if constexpr (!std::is_same_v<Message, ros::PoseStamped>) out.frame = without_slash(message.child_frame_id);
   });
   return out;
 }
@@ -44,8 +61,9 @@ NamedPoses reference_poses(const OpenedBag& bag, const std::string& topic, Stamp
   const std::string type = bag.topic(topic).type;
   if (type == kOdometry) return read_poses<ros::Odometry>(bag, topic, source);
   if (type == kPoseStamped) return read_poses<ros::PoseStamped>(bag, topic, source);
-  throw BadInput(
-      fmt::format("{}: topic '{}' is of type {}, must be {} or {}", bag.place, topic, type, kOdometry, kPoseStamped));
+  if (type == kTransformStamped) return read_poses<ros::TransformStamped>(bag, topic, source);
+  throw BadInput(fmt::format("{}: topic '{}' is of type {}, must be {}, {} or {}", bag.place, topic, type, kOdometry,
+                             kPoseStamped, kTransformStamped));
 }
 
 /// Returns the mounting of the reference frame: the user's choice, else the frame that the messages name, if the bag

@@ -8,9 +8,9 @@
 /// Used only within scenarios/recordings/bags.
 namespace tumble::scenarios {
 
-/// Uses the poses of `reading.reference_topic` (Odometry or PoseStamped) as the truth of the recording. The user
-/// chooses the frame of the poses; else the frame is an Odometry's child_frame_id if the bag contains its transform.
-/// Throws BadInput with topic and message.
+/// Uses the poses of `reading.reference_topic` (Odometry, PoseStamped or TransformStamped) as the truth of the
+/// recording. The user chooses the frame of the poses; else the frame is the child_frame_id of the messages if the bag
+/// contains its transform. Throws BadInput with topic and message.
 void attach_reference(const OpenedBag& bag, const SensorPlaces& places, const BagReading& reading, Imported& out);
 
 }  // namespace tumble::scenarios

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/recordings/left_out.hpp"
 #include "scenarios/recordings/whole_seconds.hpp"
 
 namespace tumble::scenarios {
@@ -50,39 +51,58 @@ std::int64_t stamp_of(const ros::Header& header) {
   return std::int64_t{header.sec} * kSecond_ns + header.nanosec;
 }
 
-std::int64_t BagStamps::take(std::int64_t header_ns, std::int64_t record_ns, const std::string& where) {
-  const bool by_header = source_ == StampSource::header;
-  if (!by_header && (record_ns < 0 || record_ns > kLast_ns)) {
+std::int64_t BagStamps::chosen(std::int64_t header_ns, std::int64_t record_ns, const std::string& where) const {
+  if (source_ == StampSource::header) return header_ns;
+  if (record_ns < 0 || record_ns > kLast_ns)
     throw BadInput(fmt::format("{}: the record's stamp is {} ns, must be from 0 to {}", where, record_ns, kLast_ns));
+  return record_ns;
+}
+
+void BagStamps::add(std::int64_t header_ns, std::int64_t record_ns) {
+  header_ns_.push_back(header_ns);
+  record_ns_.push_back(record_ns);
+}
+
+std::string BagStamps::disorder(std::size_t k) const {
+  if (k == 0) return "the time stamp is far from the others";
+  const std::string header = "the header's " + course(header_ns_[k - 1], header_ns_[k]),
+                    record = "the record's " + course(record_ns_[k - 1], record_ns_[k]);
+  const bool by_header = source_ == StampSource::header;
+  const bool header_rises = header_ns_[k] > header_ns_[k - 1], record_rises = record_ns_[k] > record_ns_[k - 1];
+  const bool rises = by_header ? header_rises : record_rises, other_rises = by_header ? record_rises : header_rises;
+  return fmt::format("the time stamp {}: {}{}", rises ? "is out of order" : "does not increase",
+                     by_header ? header + ", " + record : record + ", " + header,
+                     rises || !other_rises ? ""
+                     : by_header           ? "; set '--stamps record' to use the record stamps"
+                                           : "; set '--stamps header' to use the header stamps");
+}
+
+std::pair<std::int64_t, std::int64_t> BagStamps::lag_ns() const {
+  std::pair<std::int64_t, std::int64_t> out{};
+  const std::vector<bool> in_order = stamps_in_order(times_ns());
+  bool first = true;
+  for (std::size_t k = 0; k < in_order.size(); ++k) {
+    if (!in_order[k]) continue;
+    const std::int64_t lag = between(header_ns_[k], record_ns_[k]);
+    out = first ? std::pair(lag, lag) : std::pair(std::min(out.first, lag), std::max(out.second, lag));
+    first = false;
   }
-  if (header_ns_ && (by_header ? header_ns <= *header_ns_ : record_ns <= *record_ns_)) {
-    const std::string header = "the header's " + course(*header_ns_, header_ns),
-                      record = "the record's " + course(*record_ns_, record_ns);
-    const bool other_rises = by_header ? record_ns > *record_ns_ : header_ns > *header_ns_;
-    throw BadInput(
-        where + ": the time stamp does not increase: " + (by_header ? header + ", " + record : record + ", " + header) +
-        (!other_rises ? ""
-         : by_header  ? "; set '--stamps record' to use the record stamps"
-                      : "; set '--stamps header' to use the header stamps"));
-  }
-  const std::int64_t lag_ns = between(header_ns, record_ns);
-  least_lag_ns_ = header_ns_ ? std::min(least_lag_ns_, lag_ns) : lag_ns;
-  most_lag_ns_ = header_ns_ ? std::max(most_lag_ns_, lag_ns) : lag_ns;
-  header_ns_ = header_ns, record_ns_ = record_ns;
-  return by_header ? header_ns : record_ns;
+  return out;
 }
 
 bool BagStamps::other_clock() const {
-  return least_lag_ns_ < -kAhead_ns || most_lag_ns_ >= kSecond_ns;
+  const auto [least_ns, most_ns] = lag_ns();
+  return least_ns < -kAhead_ns || most_ns >= kSecond_ns;
 }
 
 std::string BagStamps::remark() const {
-  if (!header_ns_ || (least_lag_ns_ > -kSaid_ns && most_lag_ns_ < kSaid_ns)) return "";
-  const bool changes = between(least_lag_ns_, most_lag_ns_) > kSteady_ns;
+  const auto [least_ns, most_ns] = lag_ns();
+  if (least_ns > -kSaid_ns && most_ns < kSaid_ns) return "";
+  const bool changes = between(least_ns, most_ns) > kSteady_ns;
   const std::string taken = source_ == StampSource::header ? "headers" : "records";
   return fmt::format(
       "{}the bag recorded its messages {} to {} after their header stamps{}; this import uses the stamps of the {}",
-      other_clock() || changes ? "caution: " : "", seconds_text(least_lag_ns_), seconds_text(most_lag_ns_),
+      other_clock() || changes ? "caution: " : "", seconds_text(least_ns), seconds_text(most_ns),
       other_clock() ? "; the clocks may differ"
       : changes     ? "; one of the clocks may drift"
                     : "",

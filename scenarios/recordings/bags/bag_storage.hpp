@@ -41,15 +41,22 @@ class BagReader {
   virtual void read(const std::string& topic, const Take& take) = 0;
   /// Returns true if the topic's messages are CDR, false for ROS 1's layout.
   virtual bool cdr(const std::string& topic) const = 0;
+
+  std::vector<std::string> notes;  ///< for the user, for example on files that the bag's metadata does not list
 };
+
+/// Note on a bag of several files.
+inline constexpr const char* kFilesSorted =
+    "the files of the bag are not listed in the order of time; they are read in the order of time";
 
 std::unique_ptr<BagWriter> make_ros1_writer(const std::filesystem::path& file);
 std::unique_ptr<BagWriter> make_ros2_writer(const std::filesystem::path& folder);
 std::unique_ptr<BagWriter> make_mcap_writer(const std::filesystem::path& file);
 std::unique_ptr<BagWriter> make_ros2_mcap_writer(const std::filesystem::path& folder);
-std::unique_ptr<BagReader> open_ros1_bag(const std::filesystem::path& file);
+/// Opens a file, or a folder of files that are parts of one recording; their messages are merged by time.
+std::unique_ptr<BagReader> open_ros1_bag(const std::filesystem::path& path);
 std::unique_ptr<BagReader> open_ros2_bag(const std::filesystem::path& path);
-/// Opens several files that form one bag, in order.
+/// Opens several files that form one bag; they are read in the order of their first messages.
 std::unique_ptr<BagReader> open_mcap(const std::vector<std::filesystem::path>& files);
 
 /// Checks every length, position and offset in the records of a ROS 1 bag against the file size, because librosbag does

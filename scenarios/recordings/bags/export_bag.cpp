@@ -10,12 +10,12 @@
 #include "scenarios/recordings/bags/bag_storage.hpp"
 #include "scenarios/recordings/bags/sweep_messages.hpp"
 #include "scenarios/recordings/export_names.hpp"
+#include "scenarios/recordings/recording_file.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
 
-constexpr std::int64_t kOrigin_ns = 1000000000ll * 1000000000ll;
 constexpr std::int64_t kTruthStep_ns = 5000000, kClockStep_ns = 10000000;
 constexpr const char *kWorld = "world", *kBody = "body";
 
@@ -45,6 +45,7 @@ BagTrack::Pose pose_of(const StoredTruth& truth, std::size_t i) {
   BagTrack::Pose pose{static_cast<std::int64_t>(i) * truth.period_ns, state.p_WB_m[0], state.q_WB[0]};
   pose.v_WB_B_m_s = state.q_WB[0].conjugate() * state.v_WB_m_s[0];
   pose.w_WB_B_rad_s = state.w_WB_B_rad_s[0];
+  pose.exact = true;
   return pose;
 }
 
@@ -114,12 +115,10 @@ class Export {
       : sensors_(sensors),
         writing_(writing),
         bag_(bag),
-        origin_ns_(bag_origin_ns(writing)),
+        origin_ns_(export_origin_ns(writing.origin_ns)),
         imus_(names_of_imus(sensors, writing.names)),
         lidars_(names_of_lidars(sensors, writing.names)),
-        body_(writing.names ? writing.names->body_frame : kBody) {
-    if (origin_ns_ < 0) throw BadInput("the recording begins before 1970; bags cannot store such time stamps");
-  }
+        body_(writing.names ? writing.names->body_frame : kBody) {}
 
   void all() {
     std::vector<Event> events = events_of(sensors_, imus_.size(), lidars_.size(), writing_);
@@ -236,10 +235,6 @@ void write_bag(const sim::Sensors& sensors, const BagWriting& writing, BagWriter
 }
 
 }  // namespace
-
-std::int64_t bag_origin_ns(const BagWriting& writing) {
-  return writing.origin_ns != 0 ? writing.origin_ns : kOrigin_ns;
-}
 
 void export_ros1_bag(const sim::Sensors& sensors, const BagWriting& writing, const std::filesystem::path& file) {
   write_bag(sensors, writing, *make_ros1_writer(file));

@@ -123,6 +123,13 @@ class McapReader : public BagReader {
  public:
   explicit McapReader(const std::vector<std::filesystem::path>& files) {
     for (const std::filesystem::path& file : files) files_.push_back(std::make_unique<File>(file));
+    const auto first_ns = [](const auto& file) {
+      return file->segments().empty() ? ~std::uint64_t{0} : file->segments().front().first_ns;
+    };
+    const auto earlier = [&](const auto& a, const auto& b) { return first_ns(a) < first_ns(b); };
+    if (std::is_sorted(files_.begin(), files_.end(), earlier)) return;
+    std::stable_sort(files_.begin(), files_.end(), earlier);
+    notes.emplace_back(kFilesSorted);
   }
 
   std::vector<BagTopic> topics() override {

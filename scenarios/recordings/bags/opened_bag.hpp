@@ -7,6 +7,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/bags/bag_storage.hpp"
+#include "scenarios/recordings/left_out.hpp"
 #include "sim/parameters.hpp"
 
 /// Used only within scenarios/recordings/bags.
@@ -16,6 +17,7 @@ namespace tumble::scenarios {
 struct MessageOrigin {
   std::string where;
   std::int64_t record_ns;
+  std::size_t number;  ///< position in the topic
 };
 
 /// An open bag with its topics and its location for error messages.
@@ -32,7 +34,18 @@ struct OpenedBag {
     }
     const std::string near = sim::nearest_name(name, names);
     throw BadInput(place + ": there is no topic '" + name + "'" +
-                   (near.empty() ? "" : "; did you mean '" + near + "'?"));
+                   (near.empty() ? "" : "; did you mean '" + near + "'?") + " (existing topics:" + topic_list() + ")");
+  }
+
+  /// Lists the topics with their types, for messages.
+  std::string topic_list() const {
+    std::string out;
+    for (const BagTopic& each : topics) out += (out.empty() ? " " : ", ") + each.name + " " + each.type;
+    return out.empty() ? " none" : out;
+  }
+
+  std::string place_of(const std::string& name, std::size_t message) const {
+    return place + ": message " + std::to_string(message) + " of " + name;
   }
 
   /// Returns the named topics, which must have a matching type; without names, returns all topics of a matching type.
@@ -49,19 +62,21 @@ struct OpenedBag {
     return out;
   }
 
-  /// Calls `take(message, origin)` for each message of the topic.
+  /// Calls `take(message, origin)` for each message of the topic. Counts messages that cannot be decoded in `left_out`;
+  /// if `left_out` is null, throws BadInput.
   template <class Message, class Take>
-  void read(const std::string& name, Take&& take) const {
+  void read(const std::string& name, Take&& take, LeftOut* left_out = nullptr) const {
     std::size_t number = 0;
     reader.read(name, [&](ros::Bytes& bytes, std::int64_t record_ns) {
-      const std::string where = place + ": message " + std::to_string(number++) + " of " + name;
+      const std::string where = place_of(name, number++);
       Message message;
       try {
         message = reader.cdr(name) ? ros::from_cdr<Message>(bytes) : ros::from_ros1<Message>(bytes);
       } catch (const ros::BadMessage& error) {
-        throw BadInput(where + ": " + error.what());
+        if (left_out == nullptr) throw BadInput(where + ": " + error.what());
+        return left_out->add("faulty data", where + ": " + error.what());
       }
-      take(message, MessageOrigin{where, record_ns});
+      take(message, MessageOrigin{where, record_ns, number - 1});
     });
   }
 };

@@ -78,6 +78,7 @@ class UnpackedFiles : public BagReader {
       unpack(file, unpacked.back());
     }
     bag_ = open(unpacked);
+    notes = bag_->notes;
   }
   std::vector<BagTopic> topics() override { return bag_->topics(); }
   void read(const std::string& topic, const Take& take) override { bag_->read(topic, take); }
@@ -90,8 +91,9 @@ class UnpackedFiles : public BagReader {
 
 class UnpackedMessages : public BagReader {
  public:
-  UnpackedMessages(std::unique_ptr<BagReader> bag, std::string place)
-      : bag_(std::move(bag)), place_(std::move(place)) {}
+  UnpackedMessages(std::unique_ptr<BagReader> bag, std::string place) : bag_(std::move(bag)), place_(std::move(place)) {
+    notes = bag_->notes;
+  }
   std::vector<BagTopic> topics() override { return bag_->topics(); }
   void read(const std::string& topic, const Take& take) override {
     std::size_t number = 0;

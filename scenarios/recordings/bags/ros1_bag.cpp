@@ -14,12 +14,16 @@
 #include <boost/make_shared.hpp>
 #include <exception>
 #include <memory>
+#include <set>
 #include <string>
+#include <utility>
 #include <variant>
+#include <vector>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/bags/bag_storage.hpp"
 #include "scenarios/recordings/bags/ros1_chunks.hpp"
+#include "scenarios/recordings/lower_extension.hpp"
 #include "scenarios/recordings/replace_file.hpp"
 
 namespace tumble::scenarios {
@@ -114,6 +118,9 @@ TypedBytes typed(const ros::PointCloud2& message) {
 TypedBytes typed(const ros::Odometry& message) {
   return typed_as<nav_msgs::Odometry>(message);
 }
+TypedBytes typed(const ros::TransformStamped& message) {
+  return typed_as<geometry_msgs::TransformStamped>(message);
+}
 // The build does not include the headers of these three types; the checksums are those of the message definitions.
 TypedBytes typed(const ros::TFMessage& message) {
   const std::string inner = ::ros::message_traits::Definition<geometry_msgs::TransformStamped>::value();
@@ -195,33 +202,51 @@ class Ros1BagWriter : public BagWriter {
   std::unique_ptr<rosbag::Bag> bag_;
 };
 
+/// Parts of one recording that are farther apart are separate recordings.
+constexpr double kPartsApart_s = 60.0;
+
 class Ros1BagReader : public BagReader {
  public:
-  explicit Ros1BagReader(const std::filesystem::path& file) : file_(file) {
-    check_ros1_bag(file);
-    if (has_lz4_chunks(file))
-      open_unpacked();
-    else
-      open(file);
+  explicit Ros1BagReader(const std::filesystem::path& path) : path_(path) {
+    if (!std::filesystem::is_directory(path)) {
+      add(path);
+      return;
+    }
+    std::set<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::directory_iterator(path)) {
+      if (lower_extension(entry.path()) == ".bag") files.insert(entry.path());
+    }
+    if (files.empty()) throw BadInput(path.string() + ": contains no file that ends in .bag");
+    std::string names;
+    for (const std::filesystem::path& file : files) {
+      add(file);
+      names += " " + file.filename().string();
+    }
+    if (files.size() < 2) return;
+    require_one_recording();
+    notes.push_back("these bags are read together as parts of one recording:" + names);
   }
 
   std::vector<BagTopic> topics() override {
-    return guarded(file_, kUnreadable, [&] {
-      rosbag::View view(bag_);
-      std::vector<const rosbag::ConnectionInfo*> connections = view.getConnections();
-      std::sort(connections.begin(), connections.end(), [](const auto* a, const auto* b) { return a->id < b->id; });
+    return guarded(path_, kUnreadable, [&] {
       std::vector<BagTopic> topics;
-      for (const rosbag::ConnectionInfo* each : connections) {
-        const auto same = [&](const BagTopic& topic) { return topic.name == each->topic; };
-        if (std::none_of(topics.begin(), topics.end(), same)) topics.push_back({each->topic, each->datatype});
+      for (const auto& bag : bags_) {
+        rosbag::View view(*bag);
+        std::vector<const rosbag::ConnectionInfo*> connections = view.getConnections();
+        std::sort(connections.begin(), connections.end(), [](const auto* a, const auto* b) { return a->id < b->id; });
+        for (const rosbag::ConnectionInfo* each : connections) {
+          const auto same = [&](const BagTopic& topic) { return topic.name == each->topic; };
+          if (std::none_of(topics.begin(), topics.end(), same)) topics.push_back({each->topic, each->datatype});
+        }
       }
       return topics;
     });
   }
 
   void read(const std::string& topic, const Take& take) override {
-    guarded(file_, kUnreadable, [&] {
-      rosbag::View view(bag_, rosbag::TopicQuery(topic));
+    guarded(path_, kUnreadable, [&] {
+      rosbag::View view;  // merges the bags by time
+      for (const auto& bag : bags_) view.addQuery(*bag, rosbag::TopicQuery(topic));
       ros::Bytes bytes;
       for (const rosbag::MessageInstance& message : view) {
         bytes.resize(message.size());
@@ -235,40 +260,70 @@ class Ros1BagReader : public BagReader {
   bool cdr(const std::string&) const override { return false; }
 
  private:
-  void open_unpacked() {
+  void add(const std::filesystem::path& file) {
+    check_ros1_bag(file);
+    if (has_lz4_chunks(file))
+      open_unpacked(file);
+    else
+      open(file);
+  }
+
+  void require_one_recording() const {
+    guarded(path_, kUnreadable, [&] {
+      std::set<std::pair<double, double>> spans;
+      for (const auto& bag : bags_) {
+        rosbag::View view(*bag);
+        if (view.size() > 0) spans.emplace(view.getBeginTime().toSec(), view.getEndTime().toSec());
+      }
+      double end = spans.empty() ? 0.0 : spans.begin()->second;
+      for (const auto& [from, to] : spans) {
+        if (from - end > kPartsApart_s)
+          throw BadInput(
+              fmt::format("{}: the bags are {:.0f} s apart, so they are not parts of one recording; import "
+                          "one bag at a time",
+                          path_.string(), from - end));
+        end = std::max(end, to);
+      }
+    });
+  }
+
+  void open_unpacked(const std::filesystem::path& file) {
     const std::filesystem::path folder = std::filesystem::temp_directory_path();
-    require_room(folder);
+    require_room(file, folder);
     // The file is unlinked once it is open, so it disappears with the reader or the process; until then, a signal
     // removes it.
     const OutputFile unpacked(folder / "tumble_unpacked.bag");
-    copy_ros1_bag(file_, unpacked.unfinished(), [](Ros1Chunk& chunk) {
+    copy_ros1_bag(file, unpacked.unfinished(), [](Ros1Chunk& chunk) {
       if (chunk.compression == "lz4") unpack_lz4(chunk);
     });
     try {
       check_ros1_bag(unpacked.unfinished());
     } catch (const BadInput& error) {
-      throw BadInput(file_.string() +
+      throw BadInput(file.string() +
                      ": unpacked: " + std::string(error.what()).substr(unpacked.unfinished().string().size() + 2));
     }
     open(unpacked.unfinished());
   }
 
   /// The free disk space is checked first, because a full disk affects other programs.
-  void require_room(const std::filesystem::path& folder) const {
-    const std::uint64_t needed = bytes_unpacked(file_), free = std::filesystem::space(folder).available;
+  static void require_room(const std::filesystem::path& file, const std::filesystem::path& folder) {
+    const std::uint64_t needed = bytes_unpacked(file), free = std::filesystem::space(folder).available;
     if (needed <= free) return;
     throw BadInput(fmt::format(
         "{}: its unpacked LZ4 chunks need {} bytes, but {} has only {} bytes free; set TMPDIR to another folder",
-        file_.string(), needed, folder.string(), free));
+        file.string(), needed, folder.string(), free));
   }
 
   void open(const std::filesystem::path& file) {
-    guarded(file_, kUnreadable, [&] { bag_.open(file.string(), rosbag::bagmode::Read); });
+    guarded(path_, kUnreadable, [&] {
+      bags_.push_back(std::make_unique<rosbag::Bag>());
+      bags_.back()->open(file.string(), rosbag::bagmode::Read);
+    });
   }
 
   static constexpr const char* kUnreadable = "cannot be read as a ROS 1 bag";
-  std::filesystem::path file_;
-  rosbag::Bag bag_;
+  std::filesystem::path path_;
+  std::vector<std::unique_ptr<rosbag::Bag>> bags_;
 };
 
 }  // namespace
@@ -277,8 +332,8 @@ std::unique_ptr<BagWriter> make_ros1_writer(const std::filesystem::path& file) {
   return std::make_unique<Ros1BagWriter>(file);
 }
 
-std::unique_ptr<BagReader> open_ros1_bag(const std::filesystem::path& file) {
-  return std::make_unique<Ros1BagReader>(file);
+std::unique_ptr<BagReader> open_ros1_bag(const std::filesystem::path& path) {
+  return std::make_unique<Ros1BagReader>(path);
 }
 
 }  // namespace tumble::scenarios

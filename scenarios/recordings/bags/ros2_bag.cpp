@@ -18,6 +18,8 @@
 #include "scenarios/recordings/bags/packed_bag.hpp"
 #include "scenarios/recordings/bags/ros2_definitions.hpp"
 #include "scenarios/recordings/bags/ros2_metadata.hpp"
+#include "scenarios/recordings/clouds/sweep_stamps.hpp"
+#include "scenarios/recordings/lower_extension.hpp"
 #include "scenarios/recordings/replace_file.hpp"
 #include "scenarios/regular_file.hpp"
 
@@ -151,6 +153,7 @@ struct StoredBag {
   std::string kind = "sqlite3";
   std::vector<path> files;
   std::string packed = {};
+  std::string note = {};
 };
 
 /// Returns the compression of the bag from the bag's metadata.
@@ -169,11 +172,29 @@ std::string packed_by(const YAML::Node& root, const path& metadata) {
   return mode;
 }
 
+/// Adds files of the folder that are named like the listed files, except for their number, but are not listed.
+void add_unlisted(const path& folder, StoredBag& bag) {
+  const auto stem = [](const path& file) { return stem_of(file.extension() == ".zstd" ? file.stem() : file); };
+  const path& listed = bag.files.front();
+  std::set<path> found;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const path& file = entry.path();
+    if (file.extension() == listed.extension() && stem(file) == stem(listed) &&
+        std::ranges::find(bag.files, file) == bag.files.end())
+      found.insert(file);
+  }
+  if (found.empty()) return;
+  bag.note = "caution: metadata.yaml does not list these files, which are read as parts of the bag:";
+  for (const path& file : found) bag.note += " " + file.filename().string();
+  bag.files.insert(bag.files.end(), found.begin(), found.end());
+}
+
 StoredBag storage_of(const path& bag) {
   if (!std::filesystem::is_directory(bag)) {
-    const bool packed = bag.extension() == ".zstd";
+    const bool packed = lower_extension(bag) == ".zstd";
     const path name = packed ? bag.stem() : bag;
-    return {name.extension() == ".mcap" ? "mcap" : "sqlite3", {bag}, packed ? "file" : ""};
+    return {
+        .kind = lower_extension(name) == ".mcap" ? "mcap" : "sqlite3", .files = {bag}, .packed = packed ? "file" : ""};
   }
   const path metadata = bag / "metadata.yaml";
   if (!std::filesystem::is_regular_file(metadata)) fail_at(bag, "has no metadata.yaml: not a ROS 2 bag");
@@ -194,6 +215,7 @@ StoredBag storage_of(const path& bag) {
     fail_at(metadata, "not the metadata of a ROS 2 bag: " + what);
   }
   if (out.files.empty()) fail_at(metadata, "relative_file_paths lists no file");
+  add_unlisted(bag, out);
   return out;
 }
 
@@ -201,6 +223,7 @@ class Ros2BagReader : public BagReader {
  public:
   explicit Ros2BagReader(std::vector<path> files) : files_(std::move(files)) {
     for (const path& file : files_) require_regular_file(file);
+    if (files_.size() > 1) sort_files();
   }
 
   std::vector<BagTopic> topics() override {
@@ -239,6 +262,19 @@ class Ros2BagReader : public BagReader {
   bool cdr(const std::string&) const override { return true; }
 
  private:
+  /// Sorts the files by their first messages.
+  void sort_files() {
+    std::map<path, std::int64_t> first_ns;
+    for_files([&](const path& file, SQLite::Database& database) {
+      SQLite::Statement query(database, "SELECT MIN(timestamp) FROM messages");
+      first_ns[file] = query.executeStep() && !query.getColumn(0).isNull() ? query.getColumn(0).getInt64() : INT64_MAX;
+    });
+    const auto earlier = [&](const path& a, const path& b) { return first_ns[a] < first_ns[b]; };
+    if (std::is_sorted(files_.begin(), files_.end(), earlier)) return;
+    std::stable_sort(files_.begin(), files_.end(), earlier);
+    notes.emplace_back(kFilesSorted);
+  }
+
   template <class Call>
   void for_files(Call&& call) {
     for (const path& file : files_) {
@@ -265,9 +301,14 @@ std::unique_ptr<BagReader> open_ros2_bag(const path& bag) {
     if (storage.kind == "mcap") return open_mcap(files);
     return std::make_unique<Ros2BagReader>(files);
   };
-  if (storage.packed == "file") return open_packed_files(storage.files, open);
-  if (storage.packed == "message") return with_packed_messages(open(storage.files), bag.string());
-  return open(storage.files);
+  const auto reader = [&]() -> std::unique_ptr<BagReader> {
+    if (storage.packed == "file") return open_packed_files(storage.files, open);
+    if (storage.packed == "message") return with_packed_messages(open(storage.files), bag.string());
+    return open(storage.files);
+  };
+  std::unique_ptr<BagReader> out = reader();
+  if (!storage.note.empty()) out->notes.push_back(storage.note);
+  return out;
 }
 
 }  // namespace tumble::scenarios

@@ -88,14 +88,17 @@ void fields(Archive& archive, Odometry& odometry) {
 }
 
 template <class Archive>
+void fields(Archive& archive, TransformStamped& transform) {
+  header_fields(archive, transform.header);
+  archive(transform.child_frame_id);
+  archive(transform.translation);
+  archive(transform.rotation_xyzw);
+}
+
+template <class Archive>
 void fields(Archive& archive, TFMessage& message) {
   constexpr std::size_t kTransformBytes = 72;
-  list(archive, message.transforms, kTransformBytes, [&](TransformStamped& each) {
-    header_fields(archive, each.header);
-    archive(each.child_frame_id);
-    archive(each.translation);
-    archive(each.rotation_xyzw);
-  });
+  list(archive, message.transforms, kTransformBytes, [&](TransformStamped& each) { fields(archive, each); });
 }
 
 template <class Archive>

@@ -93,7 +93,7 @@ struct LivoxCustomMsg {
 };
 
 /// Message types that are written; type names are those of ROS 1.
-using Message = std::variant<Imu, PointCloud2, Odometry, TFMessage, Clock, LivoxCustomMsg>;
+using Message = std::variant<Imu, PointCloud2, Odometry, TransformStamped, TFMessage, Clock, LivoxCustomMsg>;
 inline const char* type_of(const Imu&) {
   return "sensor_msgs/Imu";
 }
@@ -102,6 +102,9 @@ inline const char* type_of(const PointCloud2&) {
 }
 inline const char* type_of(const Odometry&) {
   return "nav_msgs/Odometry";
+}
+inline const char* type_of(const TransformStamped&) {
+  return "geometry_msgs/TransformStamped";
 }
 inline const char* type_of(const TFMessage&) {
   return "tf2_msgs/TFMessage";

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/bags/sensor_places.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include <sstream>
@@ -18,19 +20,23 @@ std::string pose_text(const Eigen::Isometry3d& T) {
   return out.str();
 }
 
-bool is_given(const Eigen::Isometry3d& T_BA) {
-  return !T_BA.isApprox(Eigen::Isometry3d::Identity());
-}
-
 }  // namespace
 
-void SensorPlaces::place(const std::string& topic, const std::string& frame, const char* option,
+std::string sensor_name(std::string topic) {
+  while (topic.starts_with('/')) topic.erase(0, 1);
+  if (topic.ends_with("/points")) topic.resize(topic.size() - 7);
+  std::replace(topic.begin(), topic.end(), '/', '_');
+  return topic;
+}
+
+void SensorPlaces::place(const std::string& topic, const std::string& frame, const char* option, bool given,
                          Eigen::Isometry3d& T_BA, std::vector<std::string>& notes) {
+  given = given || !T_BA.isApprox(Eigen::Isometry3d::Identity());
   const std::string body = frames_.body();
   const auto stated = body.empty() ? std::nullopt : frames_.pose(body, frame, where_);
   if (stated) {
-    place_in_body(topic, *stated, T_BA, notes);
-  } else if (!is_given(T_BA)) {
+    place_in_body(topic, *stated, given, T_BA, notes);
+  } else if (!given) {
     if (const Placed* beside = neighbour(frame); beside != nullptr) {
       T_BA = beside->T_BA * *frames_.pose(beside->frame, frame, where_);
       notes.push_back(
@@ -46,11 +52,11 @@ void SensorPlaces::place(const std::string& topic, const std::string& frame, con
   placed_.push_back({topic, frame, T_BA});
 }
 
-void SensorPlaces::place_in_body(const std::string& topic, const Eigen::Isometry3d& stated, Eigen::Isometry3d& T_BA,
-                                 std::vector<std::string>& notes) const {
+void SensorPlaces::place_in_body(const std::string& topic, const Eigen::Isometry3d& stated, bool given,
+                                 Eigen::Isometry3d& T_BA, std::vector<std::string>& notes) const {
   constexpr double kSame = 1e-3;  // m, and approximately rad
   const std::string body = frames_.body();
-  if (!is_given(T_BA)) {
+  if (!given) {
     T_BA = stated;
     notes.push_back(fmt::format("{}: placed in '{}' by /tf_static, {}", topic, body, pose_text(stated)));
   } else if (!(T_BA.matrix() - stated.matrix()).isZero(kSame)) {

@@ -10,6 +10,9 @@
 
 namespace tumble::scenarios {
 
+/// Converts a topic to a sensor name: "/imu/data" to imu_data, "/lidar/points" to lidar.
+std::string sensor_name(std::string topic);
+
 /// Stores the mountings of a bag's sensors on the body, from /tf_static or from the user. Used only within
 /// scenarios/recordings/bags.
 class SensorPlaces {
@@ -17,12 +20,12 @@ class SensorPlaces {
   /// `where` is the topic's location for messages.
   SensorPlaces(StaticFrames frames, std::string where) : frames_(std::move(frames)), where_(std::move(where)) {}
 
-  /// Sets the mounting T_BA from /tf_static. If the user has already set T_BA (it is not the identity), only
+  /// Sets the mounting T_BA from /tf_static. If the user has set T_BA (`given`, or not the identity), only
   /// differences are reported. The mounting refers to the body's frame if the bag has one, else to the first earlier
   /// sensor that is connected to this sensor. If /tf_static does not state the mounting, a note names the option that
   /// sets the mounting.
-  void place(const std::string& topic, const std::string& frame, const char* option, Eigen::Isometry3d& T_BA,
-             std::vector<std::string>& notes);
+  void place(const std::string& topic, const std::string& frame, const char* option, bool given,
+             Eigen::Isometry3d& T_BA, std::vector<std::string>& notes);
 
   /// Returns the mounting of a frame that is connected to the body, and empty for other frames.
   std::optional<Eigen::Isometry3d> of(const std::string& frame) const;
@@ -34,7 +37,7 @@ class SensorPlaces {
     std::string topic, frame;
     Eigen::Isometry3d T_BA;
   };
-  void place_in_body(const std::string& topic, const Eigen::Isometry3d& stated, Eigen::Isometry3d& T_BA,
+  void place_in_body(const std::string& topic, const Eigen::Isometry3d& stated, bool given, Eigen::Isometry3d& T_BA,
                      std::vector<std::string>& notes) const;
   /// Returns the first earlier sensor that /tf_static connects to the frame.
   const Placed* neighbour(const std::string& frame) const;

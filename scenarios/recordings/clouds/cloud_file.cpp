@@ -19,6 +19,7 @@
 #include "scenarios/recordings/clouds/bin_layout.hpp"
 #include "scenarios/recordings/clouds/pcl_reader.hpp"
 #include "scenarios/recordings/clouds/vtk_file.hpp"
+#include "scenarios/recordings/lower_extension.hpp"
 #include "scenarios/regular_file.hpp"
 
 namespace tumble::scenarios {
@@ -214,7 +215,7 @@ const std::vector<double>* Cloud::find(const std::string& name) const {
 }
 
 Cloud read_cloud(const std::filesystem::path& path, const std::string& bin_columns) {
-  const std::string ending = path.extension().string();
+  const std::string ending = lower_extension(path);
   if (ending == ".ply") return read_points(path, read_ply_header(path), PclFormat::ply);
   if (ending == ".pcd") return read_points(path, read_pcd_header(path), PclFormat::pcd);
   if (ending == ".bin") return read_bin(path, bin_columns);

@@ -47,8 +47,8 @@ void append_points(std::string& out, const sim::LidarRecord& lidar, std::size_t 
   }
 }
 
-void export_sweeps(const sim::Sensors& sensors, const std::filesystem::path& folder, const char* extension,
-                   std::string (*header)(std::size_t, bool)) {
+void export_sweeps(const sim::Sensors& sensors, const std::filesystem::path& folder, std::int64_t origin_ns,
+                   const char* extension, std::string (*header)(std::size_t, bool)) {
   if (sensors.lidars.empty()) throw BadInput("the recording has no lidar, so there is no sweep to export");
   const std::vector<std::string> stems = export_names(sensors).lidars.names;
   OutputFolder output(folder);
@@ -59,7 +59,7 @@ void export_sweeps(const sim::Sensors& sensors, const std::filesystem::path& fol
     for (std::size_t sweep = 0; sweep < lidar.sweep_start_ns.size(); ++sweep) {
       const std::size_t first = lidar.sweep_first[sweep];
       const std::size_t end = lidar.sweep_first[sweep + 1];
-      append_seconds(times, lidar.sweep_start_ns[sweep]);
+      append_seconds(times, origin_ns + lidar.sweep_start_ns[sweep]);
       times += '\n';
       std::string bytes = header(end - first, has_timed_points(lidar));
       append_points(bytes, lidar, first, end);
@@ -74,12 +74,12 @@ void export_sweeps(const sim::Sensors& sensors, const std::filesystem::path& fol
 
 }  // namespace
 
-void export_ply(const sim::Sensors& sensors, const std::filesystem::path& folder) {
-  export_sweeps(sensors, folder, ".ply", ply_header);
+void export_ply(const sim::Sensors& sensors, const std::filesystem::path& folder, std::int64_t origin_ns) {
+  export_sweeps(sensors, folder, origin_ns, ".ply", ply_header);
 }
 
-void export_pcd(const sim::Sensors& sensors, const std::filesystem::path& folder) {
-  export_sweeps(sensors, folder, ".pcd", pcd_header);
+void export_pcd(const sim::Sensors& sensors, const std::filesystem::path& folder, std::int64_t origin_ns) {
+  export_sweeps(sensors, folder, origin_ns, ".pcd", pcd_header);
 }
 
 }  // namespace tumble::scenarios

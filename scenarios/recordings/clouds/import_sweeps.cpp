@@ -29,11 +29,12 @@ path times_file(const SweepSource& source, const std::vector<path>& files) {
   return {};
 }
 
-/// Returns one stamp per file, or an empty list if the stamps are unknown.
-std::vector<std::int64_t> stamps_of(const SweepSource& source, const std::vector<path>& files) {
+/// Returns one stamp per file, or an empty list if the stamps are unknown. See read_stamps for `disorder`.
+std::vector<std::int64_t> stamps_of(const SweepSource& source, const std::vector<path>& files,
+                                    std::vector<std::string>& disorder) {
   const path file = times_file(source, files);
   if (file.empty()) return stamps_in_names(files);
-  std::vector<std::int64_t> stamps = read_stamps(file);
+  std::vector<std::int64_t> stamps = read_stamps(file, &disorder);
   if (stamps.size() != files.size()) {
     throw BadInput(fmt::format("{}: holds {} time stamps, but there are {} sweeps in {}; must be equal", file.string(),
                                stamps.size(), files.size(), source.folder.string()));
@@ -51,7 +52,8 @@ std::vector<std::int64_t> steady_stamps(std::size_t count, std::int64_t step_ns)
 
 Imported import_sweeps(const SweepSource& source) {
   const std::vector<path> files = sweep_files(source.folder, ending_of(source.format), source.stem);
-  std::vector<std::int64_t> stamps = stamps_of(source, files);
+  std::vector<std::string> disorder;
+  std::vector<std::int64_t> stamps = stamps_of(source, files, disorder);
   SweepReading reading = source.reading;
   Imported out;
   if (stamps.empty() && source.steady_ns > 0) {
@@ -59,11 +61,25 @@ Imported import_sweeps(const SweepSource& source) {
     reading.assumed = true;
     out.notes.push_back("the sweeps have no time stamps; their times follow from the given period only");
   }
+  const std::vector<bool> in_order = stamps_in_order(stamps);
+  std::vector<std::int64_t> kept = stamps;
+  keep_rows(in_order, kept);
+  LeftOut left_out("clouds");
+  for (std::size_t k = 0; k < stamps.size(); ++k) {
+    if (in_order[k]) continue;
+    const bool decreases = k < disorder.size() && !disorder[k].empty();
+    left_out.add("a wrong time stamp",
+                 decreases ? disorder[k] : files[k].string() + ": the time stamp is out of order");
+  }
+  left_out.require_few(kept.size());
   const std::int64_t given_ns = reading.device.sweep_period_ns;
-  SweepBuilder builder(std::move(reading), given_ns > 0 ? given_ns : median_step_ns(stamps));
+  SweepBuilder builder(std::move(reading), given_ns > 0 ? given_ns : median_step_ns(kept), std::move(left_out));
   for (std::size_t k = 0; k < files.size(); ++k) {
+    if (!stamps.empty() && !in_order[k]) continue;
     const std::optional<std::int64_t> stamp = stamps.empty() ? std::nullopt : std::optional(stamps[k]);
-    builder.add(stamp, read_cloud(files[k], source.bin_columns), files[k].string());
+    std::optional<Cloud> cloud;
+    builder.left_out().guard([&] { cloud = read_cloud(files[k], source.bin_columns); });
+    if (cloud) builder.add(stamp, std::move(*cloud), files[k].string());
   }
   add_lidar(out, builder.finish(source.folder.string(), out.notes));
   out.info.attribution = fmt::format("imported from {}, {} sweeps in format {}", source.folder.filename().string(),

@@ -5,6 +5,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "scenarios/errors.hpp"
@@ -25,13 +26,17 @@ constexpr std::array<TimeUnit, 4> kUnits = {{{"s", 1e9}, {"ms", 1e6}, {"us", 1e3
 constexpr std::array<const char*, 8> kNames = {"t",          "time",        "timestamp",   "timestamps",
                                                "time_stamp", "offset_time", "time_offset", "offset"};
 /// The times of a sweep must span this fraction of the period: at least a sector of 7 degrees, at most some overlap.
-/// Units differ by factors of 1000, so at most one unit fits.
-constexpr double kSpanMin = 0.02, kSpanMax = 1.5;
+/// Units differ by factors of 1000, so at most one unit fits. A shorter span, as of times that count from each packet,
+/// still fits exactly one unit.
+constexpr double kSpanMin = 0.02, kSpanMax = 1.5, kShortSpanMin = kSpanMax / 1000.0;
 /// Stamps after 1973, in seconds, exceed this value.
 constexpr double kEpochMin_s = 1e8;
 /// With at least this many points, the times of a sweep span the sweep's period. Fewer points may span any short part
 /// of the period and do not contradict a stated unit.
 constexpr double kPointsThatSpan = 100.0;
+
+/// Of this many clouds with absolute times, at least two start more than two periods after the clock's zero.
+constexpr std::size_t kCloudsToCompare = 5;
 
 std::string lower(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
@@ -65,28 +70,40 @@ std::string choose_field(const Cloud& cloud, const SweepReading& reading, const 
     if (!is_time(name)) continue;
     const bool states = unit_of_name(lower(name)) != nullptr, stated = unit_of_name(lower(found)) != nullptr;
     if (!found.empty() && states == stated)
-      throw BadInput(
-          fmt::format("{}: the fields '{}' and '{}' may both be point times; select one", where, found, name));
+      throw BadInput(fmt::format("{}: the fields '{}' and '{}' may both be point times; select one with --time-field",
+                                 where, found, name));
     if (found.empty() || states) found = name;  // prefer the field whose name states the unit
   }
   return found;
 }
+
+/// Times farther from the median than this many interquartile ranges are damaged.
+constexpr double kDamaged = 20.0;
 
 /// Returns the first and last time of the valid points.
 std::pair<double, double> reach(const Cloud& cloud, const std::string& field) {
   std::pair<double, double> out(INFINITY, -INFINITY);
   const std::vector<double>* times = cloud.find(field);
   if (times == nullptr) return out;
-  for (const double time : *times) {
-    if (!std::isfinite(time)) continue;
+  std::vector<double> finite;
+  std::ranges::copy_if(*times, std::back_inserter(finite), [](double time) { return std::isfinite(time); });
+  if (finite.empty()) return out;
+  const auto quantile = [&](std::size_t quarter) {
+    const auto at = finite.begin() + static_cast<std::ptrdiff_t>((finite.size() - 1) * quarter / 4);
+    std::nth_element(finite.begin(), at, finite.end());
+    return *at;
+  };
+  const double middle = quantile(2), range = quantile(3) - quantile(1);
+  for (const double time : finite) {
+    if (range > 0.0 && std::abs(time - middle) > kDamaged * range) continue;
     out.first = std::min(out.first, time);
     out.second = std::max(out.second, time);
   }
   return out;
 }
 
-bool fits(double span, const TimeUnit& unit, double period_ns) {
-  return span * unit.ns > kSpanMin * period_ns && span * unit.ns <= kSpanMax * period_ns;
+bool fits(double span, const TimeUnit& unit, double period_ns, double least = kSpanMin) {
+  return span * unit.ns > least * period_ns && span * unit.ns <= kSpanMax * period_ns;
 }
 
 std::string share_of(double span, const TimeUnit& unit, double period_ns) {
@@ -112,7 +129,7 @@ void require_no_other_unit(const TimeUnit& stated, double span, double period_ns
 /// Determines the unit from the size of the numbers.
 double unit_by_size(double span, double largest, double period_ns, const std::string& field, const std::string& where) {
   for (const TimeUnit& unit : kUnits) {
-    if (period_ns > 0.0 && fits(span, unit, period_ns)) return unit.ns;
+    if (period_ns > 0.0 && fits(span, unit, period_ns, kShortSpanMin)) return unit.ns;
     // For stamps since 1970, returns the largest plausible unit.
     if (!(period_ns > 0.0) && largest >= kEpochMin_s * 1e9 / unit.ns && largest < kEpochMin_s * 1e12 / unit.ns)
       return unit.ns;
@@ -126,9 +143,9 @@ double unit_by_size(double span, double largest, double period_ns, const std::st
                     "one sweep (--sweep-period)",
                     line));
   }
-  line += ": in none of s, ms, us and ns is this 2 to 150 % of the sweep period of ";
+  line += ": in none of s, ms, us and ns is this 0.15 to 150 % of the sweep period of ";
   append_number(line, period_ns * 1e-6);
-  throw BadInput(line + " ms; give the unit");
+  throw BadInput(line + " ms; give the unit (--time-unit)");
 }
 
 }  // namespace
@@ -149,6 +166,12 @@ PointTimeRule find_point_times(const std::vector<Cloud>& first, std::int64_t per
     largest = std::max({largest, std::abs(begin), std::abs(end)});
   }
   if (rule.field.empty() || spans.empty()) return {};
+  const bool stamped = period_ns > 0 && !reading.assumed;
+  if (stamped && std::ranges::max(spans) == 0.0 && upper_median(points) >= kPointsThatSpan) {
+    rule.field.clear();
+    rule.constant = true;
+    return rule;
+  }
   const std::string unit = reading.time_unit;
   const auto* named =
       std::find_if(kUnits.begin(), kUnits.end(), [&](const TimeUnit& each) { return unit == each.name; });
@@ -160,11 +183,14 @@ PointTimeRule find_point_times(const std::vector<Cloud>& first, std::int64_t per
     require_no_other_unit(*named, span, period, rule.field, where);
   rule.unit_ns =
       named != nullptr && named != kUnits.end() ? named->ns : unit_by_size(span, largest, period, rule.field, where);
+  rule.short_span = upper_median(points) >= kPointsThatSpan && period > 0.0 && span * rule.unit_ns <= kSpanMin * period;
+  std::size_t far = 0;
   for (const Cloud& cloud : first) {
     const auto [begin, end] = reach(cloud, rule.field);
     const double bound = period_ns > 0 ? 2.0 * period : kEpochMin_s * 1e9;
-    if (end >= begin && std::abs(begin) * rule.unit_ns > bound) rule.absolute = true;
+    if (end >= begin && std::abs(begin) * rule.unit_ns > bound) ++far;
   }
+  rule.absolute = far > (spans.size() >= kCloudsToCompare ? 1 : 0);  // one of many may be damaged
   return rule;
 }
 

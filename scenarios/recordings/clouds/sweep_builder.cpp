@@ -6,12 +6,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <set>
-#include <span>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/clouds/sweep_stamps.hpp"
+#include "scenarios/recordings/upper_median.hpp"
 
 namespace tumble::scenarios {
 
@@ -21,9 +22,10 @@ namespace {
 constexpr std::ptrdiff_t kProbe = 10;
 constexpr double kByteIntensity = 255.0;
 constexpr double kPointFar_m = 1e6;
-constexpr double kBeyond = 2.0;        // multiple of the data sheet's range
-constexpr double kFarthest_m = 500.0;  // default limit without a data sheet: beyond the range of robot lidars
-constexpr double kOverlapMost = 1.05;  // longest sweep relative to the time between sweeps
+constexpr double kBeyond = 2.0;         // multiple of the data sheet's range
+constexpr double kFarthest_m = 500.0;   // default limit without a data sheet: beyond the range of robot lidars
+constexpr std::size_t kBackwards = 20;  // ratio of falling to rising point times, in the order of storage
+constexpr double kOverlapMost = 1.05;   // longest sweep relative to the time between sweeps
 /// Longest point offset while the period is unknown.
 constexpr std::int64_t kOffsetMax_ns = 1000000000;
 
@@ -69,20 +71,27 @@ std::string said(const PointTimeRule& rule) {
                      rule.absolute ? " of the clock" : " after the sweep's time stamp");
 }
 
-/// Converts the field's numbers to whole nanoseconds.
-std::vector<std::int64_t> whole_times(const std::vector<double>& numbers, const std::vector<std::size_t>& kept,
-                                      double unit_ns, const std::string& where) {
-  constexpr double kBound = 9.2e18;
-  std::vector<std::int64_t> times;
-  for (const std::size_t i : kept) {
-    const double time = numbers[i] * unit_ns;
-    if (!(std::abs(time) < kBound)) {
-      throw BadInput(fmt::format("{}: point {}: the time is {}, must be finite and within 292 years", where, i,
-                                 std::to_string(numbers[i])));
-    }
-    times.push_back(std::llround(time));
+/// A time in the middle of a sweep; points farther than the longest sweep from this time are mistimed.
+std::int64_t middle_of(const std::vector<std::optional<std::int64_t>>& times_ns) {
+  std::vector<std::int64_t> known;
+  for (const auto& time : times_ns) {
+    if (time) known.push_back(*time);
   }
-  return times;
+  return upper_median(std::move(known));
+}
+
+/// Returns the ring numbers. Throws BadInput for an invalid number.
+std::vector<std::uint16_t> rings_of(const Cloud& cloud, const std::vector<std::size_t>& kept,
+                                    const std::string& where) {
+  const std::vector<double>* column = first_of(cloud, kRingNames);
+  std::vector<std::uint16_t> rings;
+  for (const std::size_t i : kept) {
+    const double ring = column != nullptr ? (*column)[i] : 0.0;
+    if (!(ring >= 0.0 && ring <= 65535.0 && ring == std::floor(ring)))
+      throw BadInput(fmt::format("{}: point {}: ring is {}, must be a whole number from 0 to 65535", where, i, ring));
+    rings.push_back(static_cast<std::uint16_t>(ring));
+  }
+  return rings;
 }
 
 }  // namespace
@@ -100,19 +109,41 @@ void SweepBuilder::find_rule() {
   for (Waiting& sweep : waiting_) first.push_back(std::move(sweep.cloud));
   rule_ = find_point_times(first, period_ns_, reading_, waiting_.front().where);
   if (rule_->field.empty()) {
-    record_.point_times = reading_.not_skewed ? sim::PointTimes::not_skewed : sim::PointTimes::unknown;
+    const bool not_skewed = reading_.not_skewed || rule_->constant;
+    record_.point_times = not_skewed ? sim::PointTimes::not_skewed : sim::PointTimes::unknown;
   }
-  for (std::size_t k = 0; k < waiting_.size(); ++k) {
-    waiting_[k].cloud = std::move(first[k]);
-    take(waiting_[k]);
-  }
+  for (std::size_t k = 0; k < waiting_.size(); ++k) waiting_[k].cloud = std::move(first[k]);
+  other_clock_ = has_other_clock();
+  for (Waiting& sweep : waiting_) take(sweep);
   waiting_.clear();
 }
 
+/// Returns true if the absolute times of most of the first clouds are far from the clouds' stamps.
+bool SweepBuilder::has_other_clock() const {
+  if (!rule_->absolute || reading_.assumed || period_ns_ <= 0) return false;
+  std::size_t apart = 0, all = 0;
+  for (const Waiting& sweep : waiting_) {
+    const std::vector<double>* column = sweep.cloud.find(rule_->field);
+    if (!sweep.stamp_ns || column == nullptr) continue;
+    std::vector<double> times;  // rays without a return may have the time 0
+    std::ranges::copy_if(*column, std::back_inserter(times), [](double t) { return std::isfinite(t) && t != 0.0; });
+    if (times.empty()) continue;
+    const double middle_ns = upper_median(std::move(times)) * rule_->unit_ns;
+    ++all;
+    const double most_ns = static_cast<double>(longest_sweep_ns() + period_ns_);
+    if (std::abs(middle_ns - static_cast<double>(*sweep.stamp_ns)) > most_ns) ++apart;
+  }
+  return 2 * apart > all;
+}
+
 void SweepBuilder::take(Waiting& sweep) {
+  last_point_ns_.emplace_back();
+  left_out_.guard([&] { read(sweep); });
+}
+
+void SweepBuilder::read(Waiting& sweep) {
   if (reading_.assumed && rule_->absolute) sweep.stamp_ns.reset();
-  const std::vector<std::size_t> kept =
-      sweep.cloud.points > 0 ? hits(sweep.cloud, sweep.where) : std::vector<std::size_t>{};
+  std::vector<std::size_t> kept = sweep.cloud.points > 0 ? hits(sweep.cloud, sweep.where) : std::vector<std::size_t>{};
   misses_ += sweep.cloud.points - kept.size();
   if (!sweep.cloud.viewpoint.empty() && viewpoints_++ == 0)
     first_viewpoint_ = sweep.where + ": " + sweep.cloud.viewpoint;
@@ -120,58 +151,116 @@ void SweepBuilder::take(Waiting& sweep) {
     ++skipped_;
     return;
   }
-  const std::int64_t start_ns = take_times(sweep, kept);
+  std::vector<std::int64_t> times_ns = point_times(sweep, kept);
+  const std::int64_t start_ns = start_of(sweep, times_ns);
   std::vector<std::int64_t>& starts = record_.sweep_start_ns;
   if (!starts.empty() && start_ns <= starts.back()) {
     throw BadInput(fmt::format("{}: the sweep starts at {}; it must start after the previous sweep, which starts at {}",
                                sweep.where, in_ns(start_ns), in_ns(starts.back())));
   }
+  const std::vector<std::uint16_t> rings = rings_of(sweep.cloud, kept, sweep.where);
+  if (is_far(sweep, kept)) return;
   starts.push_back(start_ns);
-  const auto offsets = std::span(record_.offset_ns).last(kept.size());
-  last_point_ns_.push_back(start_ns + (kept.empty() ? 0 : *std::max_element(offsets.begin(), offsets.end())));
   record_.sweep_first.push_back(points());
+  for (const std::int64_t time_ns : times_ns) {
+    record_.offset_ns.push_back(static_cast<std::uint32_t>(time_ns - start_ns));
+    longest_ns_ = std::max(longest_ns_, time_ns - start_ns);
+  }
+  for (std::size_t k = 1; k < times_ns.size(); ++k) {
+    rises_ += times_ns[k] > times_ns[k - 1] ? 1 : 0;
+    falls_ += times_ns[k] < times_ns[k - 1] ? 1 : 0;
+  }
+  last_point_ns_.back() = times_ns.empty() ? start_ns : *std::max_element(times_ns.begin(), times_ns.end());
+  record_.ring.insert(record_.ring.end(), rings.begin(), rings.end());
   take_points(sweep, kept);
-  take_rings(sweep, kept);
   if (store_) store_->take(record_);
 }
 
-/// Returns the start of the sweep; stores the time offsets of the points from this start.
-std::int64_t SweepBuilder::take_times(const Waiting& sweep, const std::vector<std::size_t>& kept) {
-  const auto no_offsets = [&] { record_.offset_ns.resize(record_.offset_ns.size() + kept.size(), 0); };
+/// Returns the times of the points in the stamps' clock, or the start for points without times. Removes a few mistimed
+/// points from `kept`. Throws BadInput if there are many.
+std::vector<std::int64_t> SweepBuilder::point_times(const Waiting& sweep, std::vector<std::size_t>& kept) {
   if (rule_->field.empty() || kept.empty()) {
     if (!sweep.stamp_ns) throw BadInput(sweep.where + ": neither the sweep nor its points have a time stamp");
-    no_offsets();
-    return *sweep.stamp_ns;
+    return std::vector<std::int64_t>(kept.size(), *sweep.stamp_ns);
   }
   const std::vector<double>* numbers = sweep.cloud.find(rule_->field);
   if (numbers == nullptr)
     throw BadInput(fmt::format("{}: there is no field '{}', which other sweeps have", sweep.where, rule_->field));
-  std::vector<std::int64_t> times = whole_times(*numbers, kept, rule_->unit_ns, sweep.where);
-  if (!rule_->absolute) {
-    if (!sweep.stamp_ns)
-      throw BadInput(sweep.where + ": its point times are relative, but the sweep has no time stamp");
-    for (std::int64_t& time : times) time += *sweep.stamp_ns;
+  if (!rule_->absolute && !sweep.stamp_ns)
+    throw BadInput(sweep.where + ": its point times are relative, but the sweep has no time stamp");
+  constexpr double kBound = 4.6e18;  // differences fit in int64
+  const std::int64_t origin_ns = rule_->absolute ? 0 : *sweep.stamp_ns;
+  std::vector<std::optional<std::int64_t>> times_ns;
+  for (const std::size_t i : kept) {
+    const double time_ns = (*numbers)[i] * rule_->unit_ns;
+    times_ns.push_back(std::abs(time_ns) + static_cast<double>(std::abs(origin_ns)) < kBound
+                           ? std::optional(origin_ns + std::llround(time_ns))
+                           : std::nullopt);
   }
-  const std::int64_t first = *std::min_element(times.begin(), times.end());
-  const std::int64_t bound = period_ns_ > 0 ? 2 * period_ns_ : kOffsetMax_ns;
-  std::int64_t start = sweep.stamp_ns.value_or(first);
-  if (start - first > bound || first - start > bound) {
-    throw BadInput(
-        fmt::format("{}: its first point is at {}, but its time stamp is {}; the difference must be at most {}. Check "
-                    "the clock and the unit",
-                    sweep.where, in_ns(first), in_ns(start), in_ns(bound)));
-  }
-  if (start > first || first - start >= bound / 2) start = first;
-  for (std::size_t k = 0; k < times.size(); ++k) {
-    const std::int64_t offset = times[k] - start;
-    if (offset > bound || offset > std::numeric_limits<std::uint32_t>::max()) {
-      throw BadInput(fmt::format("{}: point {} is {} after the start of the sweep; this must be at most {}",
-                                 sweep.where, kept[k], in_ns(offset), in_ns(bound)));
+  const std::int64_t middle_ns = middle_of(times_ns), bound_ns = longest_sweep_ns();
+  std::vector<std::size_t> timed;
+  std::vector<std::int64_t> out;
+  std::string first_mistimed;
+  for (std::size_t k = 0; k < kept.size(); ++k) {
+    if (times_ns[k] && *times_ns[k] - middle_ns <= bound_ns && middle_ns - *times_ns[k] <= bound_ns) {
+      timed.push_back(kept[k]);
+      out.push_back(*times_ns[k]);
+    } else if (first_mistimed.empty()) {
+      first_mistimed = times_ns[k]
+                           ? fmt::format("{}: point {} is {} after the middle of the sweep; this must be within {}",
+                                         sweep.where, kept[k], in_ns(*times_ns[k] - middle_ns), in_ns(bound_ns))
+                           : fmt::format("{}: point {}: the time is {}, must be finite and within 146 years",
+                                         sweep.where, kept[k], std::to_string((*numbers)[kept[k]]));
     }
-    record_.offset_ns.push_back(static_cast<std::uint32_t>(offset));
-    longest_ns_ = std::max(longest_ns_, offset);
+  }
+  const std::size_t mistimed = kept.size() - timed.size();
+  if (mistimed > 0 && !may_leave_out(mistimed, kept.size())) throw BadInput(first_mistimed);
+  if (mistimed > 0 && mistimed_ == 0) first_mistimed_ = first_mistimed;
+  mistimed_ += mistimed;
+  kept = std::move(timed);
+  return out;
+}
+
+std::int64_t SweepBuilder::longest_sweep_ns() const {
+  return period_ns_ > 0 ? 2 * period_ns_ : kOffsetMax_ns;
+}
+
+/// Returns the start of the sweep. Moves the times of another clock to the stamp.
+std::int64_t SweepBuilder::start_of(const Waiting& sweep, std::vector<std::int64_t>& times_ns) const {
+  if (times_ns.empty()) return *sweep.stamp_ns;
+  const std::int64_t first = *std::min_element(times_ns.begin(), times_ns.end()), bound = longest_sweep_ns();
+  std::int64_t start = sweep.stamp_ns.value_or(first);
+  if (other_clock_ && sweep.stamp_ns) {
+    for (std::int64_t& time : times_ns) time += start - first;
+  } else {
+    if (start - first > bound || first - start > bound) {
+      throw BadInput(
+          fmt::format("{}: its first point is at {}, but its time stamp is {}; the difference must be at most {}. "
+                      "Check the clock and the unit",
+                      sweep.where, in_ns(first), in_ns(start), in_ns(bound)));
+    }
+    if (start > first || first - start >= bound / 2) start = first;
+  }
+  const std::int64_t last = *std::max_element(times_ns.begin(), times_ns.end());
+  if (last - start > bound || last - start > std::numeric_limits<std::uint32_t>::max()) {
+    throw BadInput(fmt::format("{}: its last point is {} after the start of the sweep; this must be at most {}",
+                               sweep.where, in_ns(last - start), in_ns(bound)));
   }
   return start;
+}
+
+/// Returns true, and counts the cloud as left out, if most points are beyond twice the lidar's range.
+bool SweepBuilder::is_far(const Waiting& sweep, const std::vector<std::size_t>& kept) {
+  if (kept.empty()) return false;
+  const std::vector<double>&x = *sweep.cloud.find("x"), &y = *sweep.cloud.find("y"), &z = *sweep.cloud.find("z");
+  const auto beyond = static_cast<std::size_t>(std::ranges::count_if(kept, [&](std::size_t i) {
+    return Eigen::Vector3d(x[i], y[i], z[i]).cast<float>().norm() > kBeyond * range_max_m();
+  }));
+  beyond_ += beyond;
+  if (2 * beyond <= kept.size()) return false;
+  far_ += kept.size();
+  left_out_.add_unlimited("most points beyond twice the lidar's range", sweep.where);
+  return true;
 }
 
 void SweepBuilder::take_points(const Waiting& sweep, const std::vector<std::size_t>& kept) {
@@ -183,7 +272,6 @@ void SweepBuilder::take_points(const Waiting& sweep, const std::vector<std::size
     const Eigen::Vector3d position(x[i], y[i], z[i]);
     record_.position_L_m.push_back(position.cast<float>());
     record_.range_m.push_back(record_.position_L_m.back().norm());
-    if (record_.range_m.back() > kBeyond * range_max_m()) ++beyond_;
     const bool lit = intensity != nullptr && std::isfinite((*intensity)[i]) && (*intensity)[i] >= 0.0;
     record_.intensity.push_back(lit ? static_cast<float>((*intensity)[i]) : 0.0f);
     brightest_ = std::max(brightest_, record_.intensity.back());
@@ -196,18 +284,6 @@ void SweepBuilder::take_points(const Waiting& sweep, const std::vector<std::size
         std::any_of(kIntensityNames.begin(), kIntensityNames.end(), is))
       continue;
     ++ignored_[name];
-  }
-}
-
-void SweepBuilder::take_rings(const Waiting& sweep, const std::vector<std::size_t>& kept) {
-  const std::vector<double>* rings = first_of(sweep.cloud, kRingNames);
-  for (const std::size_t i : kept) {
-    const double ring = rings != nullptr ? (*rings)[i] : 0.0;
-    if (!(ring >= 0.0 && ring <= 65535.0 && ring == std::floor(ring))) {
-      throw BadInput(
-          fmt::format("{}: point {}: ring is {}, must be a whole number from 0 to 65535", sweep.where, i, ring));
-    }
-    record_.ring.push_back(static_cast<std::uint16_t>(ring));
   }
 }
 
@@ -226,14 +302,37 @@ double SweepBuilder::range_max_m() const {
 
 /// Throws BadInput if ranges are probably in mm. Single points beyond the range in the data sheet are accepted.
 void SweepBuilder::require_range(const std::string& where) const {
-  if (2 * beyond_ <= points()) return;
+  const std::size_t all = points() + far_;
+  if (2 * beyond_ <= all) return;
   throw BadInput(fmt::format(
       "{}: {} of {} points are farther than {:g} m, twice {}; at most half may be. Check that x, y and z are in metres",
-      where, beyond_, points(), kBeyond * range_max_m(),
+      where, beyond_, all, kBeyond * range_max_m(),
       reading_.range_max_m > 0.0 ? "the range of the data sheet" : "the range of any robot lidar"));
 }
 
 void SweepBuilder::note_what_was_left(std::vector<std::string>& notes) const {
+  std::string names;
+  for (const auto& [name, sweeps] : ignored_) names += " " + name;
+  if (left_out_.count() > 0) notes.push_back(left_out_.note(record_.sweep_start_ns.size() + skipped_));
+  if (mistimed_ > 0)
+    notes.push_back(fmt::format("caution: {} points with times outside their sweep are left out (first: {})", mistimed_,
+                                first_mistimed_));
+  if (other_clock_)
+    notes.push_back(
+        "caution: the point times belong to another clock than the time stamps of the sweeps. They count from the "
+        "first point of each sweep, which is assumed to be measured at the sweep's time stamp");
+  if (falls_ > kBackwards * (rises_ + 1))
+    notes.push_back(
+        "caution: the point times run backwards: points that are stored later have earlier times. Unless the driver "
+        "stores the last point first, the times are wrong and deskewing doubles the distortion");
+  if (rule_ && rule_->constant)
+    notes.push_back(
+        "caution: all points of a sweep have the same time, so the sweeps are read as not skewed; if the lidar turns "
+        "during a sweep, set its driver to provide point times");
+  if (rule_ && rule_->short_span)
+    notes.push_back(
+        "caution: the point times span less than 2 % of the sweep period; check the unit (set '--time-unit'), or set "
+        "'--not-skewed' if the times count from the start of each packet");
   if (misses_ > 0)
     notes.push_back(std::to_string(misses_) +
                     " points are missing returns (not finite, beyond 1000 km, or at the origin)");
@@ -245,16 +344,16 @@ void SweepBuilder::note_what_was_left(std::vector<std::string>& notes) const {
                     "axes (first VIEWPOINT: {})",
                     viewpoints_, first_viewpoint_));
   if (record_.point_times == sim::PointTimes::unknown)
-    notes.push_back("the points have no time stamps, so sweeps cannot be deskewed");
-  std::string names;
-  for (const auto& [name, sweeps] : ignored_) names += " " + name;
+    notes.push_back("the points have no time stamps, so sweeps cannot be deskewed" +
+                    (names.empty() ? "" : "; if one of these fields has the times, set '--time-field':" + names));
   if (!names.empty()) notes.push_back("ignored fields:" + names);
 }
 
 BuiltSweeps SweepBuilder::finish(const std::string& where, std::vector<std::string>& notes) {
   if (!rule_ && !waiting_.empty()) find_rule();
-  if (points() == 0) throw BadInput(where + ": no sweep has a point");
+  left_out_.require_few(record_.sweep_start_ns.size() + skipped_);
   require_range(where);
+  if (points() == 0) throw BadInput(where + ": no sweep has a point");
   record_.sweep_first.push_back(points());
   record_.name = reading_.device.name;
   record_.device = reading_.device.device;

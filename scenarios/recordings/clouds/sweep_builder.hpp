@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "scenarios/recordings/clouds/cloud_file.hpp"
+#include "scenarios/recordings/left_out.hpp"
 #include "scenarios/recordings/point_store.hpp"
 #include "sim/recording.hpp"
 
@@ -28,18 +29,22 @@ struct SweepReading {
 
 /// Name and unit of the point times in a series of clouds.
 struct PointTimeRule {
-  std::string field;      ///< "": the points have no times
-  double unit_ns = 1.0;   ///< unit of the field [ns]
-  bool absolute = false;  ///< times are absolute, not relative to the sweep's stamp
+  std::string field;        ///< "": the points have no times
+  double unit_ns = 1.0;     ///< unit of the field [ns]
+  bool absolute = false;    ///< times are absolute, not relative to the sweep's stamp
+  bool constant = false;    ///< all points of a sweep have one time in the field; `field` is then empty
+  bool short_span = false;  ///< the times span only a small part of the sweep period
 };
 
 /// Finds the time field and its unit from the first clouds. Names (any case): t time timestamp timestamps time_stamp
 /// offset_time time_offset offset_ns. A suffix _s _ms _us _ns states the unit. If no name states the unit, the unit is
-/// chosen such that a sweep's times (median over the clouds) span 2 to 150 % of `period_ns`. If the period is unknown
-/// (0), the size of stamps since 1970 determines the unit.
+/// chosen such that a sweep's times (median over the clouds) span 0.15 to 150 % of `period_ns`, which at most one unit
+/// does. If the period is unknown (0), the size of stamps since 1970 determines the unit. If all times of a sweep are
+/// equal, the points have no times.
 ///
 /// A stated unit is rejected if another unit fits, the stated unit does not fit, and the sweeps have at least 100
-/// points. Times are absolute if they start more than two periods from 0 in any cloud. If two fields have usual names,
+/// points. Times are absolute if they start more than two periods from 0 in any cloud, or in two of five
+/// and more clouds. If two fields have usual names,
 /// the field whose name states the unit is used. Throws BadInput, with a message that starts with `where`, for a
 /// missing or ambiguous field, or if no unit fits.
 PointTimeRule find_point_times(const std::vector<Cloud>& first, std::int64_t period_ns, const SweepReading& reading,
@@ -49,8 +54,8 @@ PointTimeRule find_point_times(const std::vector<Cloud>& first, std::int64_t per
 struct BuiltSweeps {
   sim::LidarRecord lidar;
   std::optional<PointStore> points;
-  std::vector<std::int64_t> last_point_ns = {};  ///< last point of each sweep in the stamps' clock; its start for
-                                                 ///< points without times
+  /// Last point of each added cloud in the stamps' clock; its start for points without times; empty if left out.
+  std::vector<std::optional<std::int64_t>> last_point_ns = {};
 };
 
 /// Builds a lidar record from clouds that arrive in order of time. Memory holds the first ten clouds, and afterwards
@@ -61,21 +66,30 @@ struct BuiltSweeps {
 /// the maximum. Ring numbers ("ring", "line", "channel") are integers up to 65535. A sweep starts at its stamp. If the
 /// first point of a sweep is earlier than the stamp, or later by a period, the sweep starts at the first point, so that
 /// no offset is negative. Only the columns x, y and z are required.
+///
+/// A few points with times outside the sweep are left out. A cloud that cannot be used is left out: with a missing
+/// field, a start that does not increase, an invalid ring, many points with times outside the sweep, or most points
+/// beyond twice the lidar's range. If absolute point times and stamps belong to different clocks, the times count from
+/// the first point of each sweep, which is assumed to be measured at the stamp.
 class SweepBuilder {
  public:
   /// `period_ns` is the period of find_point_times: the stated period of the device, or the median step of the stamps.
-  SweepBuilder(SweepReading reading, std::int64_t period_ns) : reading_(std::move(reading)), period_ns_(period_ns) {
+  /// `left_out` counts the clouds that the caller left out.
+  SweepBuilder(SweepReading reading, std::int64_t period_ns, LeftOut left_out = LeftOut("clouds"))
+      : reading_(std::move(reading)), period_ns_(period_ns), left_out_(std::move(left_out)) {
     if (!reading_.scratch.empty()) store_.emplace(reading_.scratch);
   }
 
-  /// Adds a sweep; error messages start with `where`. Throws BadInput for missing x, y or z, a stamp that does not
-  /// increase, a time outside two sweep periods, or an invalid ring.
+  /// Adds a sweep; messages start with `where`. Throws BadInput if the times of the first clouds cannot be interpreted.
   void add(std::optional<std::int64_t> stamp_ns, Cloud cloud, std::string where);
+
+  /// Clouds that are left out, to which the caller adds clouds that cannot be read.
+  LeftOut& left_out() { return left_out_; }
 
   /// Returns the record in the stamps' clock, and adds notes, for example on how point times were read. Without a
   /// stated period, the period is the median step of the stamps, or the latest point offset if that is larger. Throws
-  /// BadInput, with a message that starts with `where`, if there are no points, if most points are beyond twice the
-  /// range in the data sheet, or if there is a single sweep of unknown length.
+  /// BadInput, with a message that starts with `where`, if too many clouds are left out, if there are no points, if
+  /// most points are beyond twice the range in the data sheet, or if there is a single sweep of unknown length.
   BuiltSweeps finish(const std::string& where, std::vector<std::string>& notes);
 
  private:
@@ -85,11 +99,15 @@ class SweepBuilder {
     std::string where;
   };
   void find_rule();  ///< determines the time rule from the waiting clouds, then adds them
+  bool has_other_clock() const;
   void take(Waiting& sweep);
-  std::int64_t take_times(const Waiting& sweep, const std::vector<std::size_t>& kept);
+  void read(Waiting& sweep);
+  std::vector<std::int64_t> point_times(const Waiting& sweep, std::vector<std::size_t>& kept);
+  std::int64_t start_of(const Waiting& sweep, std::vector<std::int64_t>& times_ns) const;
+  bool is_far(const Waiting& sweep, const std::vector<std::size_t>& kept);
   void take_points(const Waiting& sweep, const std::vector<std::size_t>& kept);
-  void take_rings(const Waiting& sweep, const std::vector<std::size_t>& kept);
   void scale_intensity(std::vector<std::string>& notes);
+  std::int64_t longest_sweep_ns() const;  ///< also the largest distance of a point from the stamp of its sweep
   double range_max_m() const;
   void require_range(const std::string& where) const;
   void note_what_was_left(std::vector<std::string>& notes) const;
@@ -103,8 +121,13 @@ class SweepBuilder {
   std::optional<PointStore> store_;
   float brightest_ = 0.0f;
   std::int64_t longest_ns_ = 0;  ///< largest point offset
-  std::vector<std::int64_t> last_point_ns_;
-  std::size_t misses_ = 0, dark_ = 0, skipped_ = 0, beyond_ = 0;
+  LeftOut left_out_;
+  bool other_clock_ = false;  ///< absolute point times and stamps belong to different clocks
+  std::vector<std::optional<std::int64_t>> last_point_ns_;
+  std::size_t misses_ = 0, dark_ = 0, skipped_ = 0, beyond_ = 0, far_ = 0;  ///< far: points of clouds left out as far
+  std::size_t mistimed_ = 0;                    ///< number of points with times outside their sweep
+  std::string first_mistimed_;                  ///< message on the first of these points
+  std::size_t rises_ = 0, falls_ = 0;           ///< numbers of points that are later and earlier than the point before
   std::size_t viewpoints_ = 0;                  ///< number of sweeps with a viewpoint
   std::string first_viewpoint_;                 ///< first viewpoint, with its file
   std::map<std::string, std::size_t> ignored_;  ///< ignored columns, with their number of sweeps

@@ -5,15 +5,15 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
-#include <limits>
 #include <optional>
 #include <string_view>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/recordings/number_text.hpp"
+#include "scenarios/recordings/lower_extension.hpp"
 #include "scenarios/recordings/table_file.hpp"
 #include "scenarios/recordings/upper_median.hpp"
-#include "scenarios/recordings/whole_seconds.hpp"
+#include "scenarios/text.hpp"
 
 namespace tumble::scenarios {
 
@@ -55,27 +55,6 @@ std::string_view take_digits(std::string_view& text) {
   return digits;
 }
 
-std::int64_t value_of(std::string_view digits) {
-  std::int64_t value = 0;
-  std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  return value;
-}
-
-/// Returns `count` units plus `rest_ns`, both non-negative, in nanoseconds; empty beyond the year 2262, where
-/// nanoseconds overflow.
-std::optional<std::int64_t> in_ns(std::int64_t count, std::int64_t unit_ns, std::int64_t rest_ns = 0) {
-  if (count > (std::numeric_limits<std::int64_t>::max() - rest_ns) / unit_ns) return std::nullopt;
-  return count * unit_ns + rest_ns;
-}
-
-/// Returns nanoseconds since 1970; the number of digits determines the unit. Returns empty for other numbers of digits.
-std::optional<std::int64_t> epoch_ns(std::string_view digits) {
-  if (digits.size() == 13) return in_ns(value_of(digits), 1000000);
-  if (digits.size() == 16) return in_ns(value_of(digits), 1000);
-  if (digits.size() == 19 && digits <= "9223372036854775807") return value_of(digits);
-  return std::nullopt;
-}
-
 std::optional<std::int64_t> stamp_in_name(const std::filesystem::path& file) {
   const std::string stem = file.stem().string();
   std::string_view rest = stem;
@@ -87,12 +66,11 @@ std::optional<std::int64_t> stamp_in_name(const std::filesystem::path& file) {
     const std::string_view seconds = take_digits(rest);
     const bool whole = !seconds.empty() && seconds.size() <= 10;
     if (whole && (decimals ? last.size() <= 9 : last.size() == 9 && seconds.size() >= 9)) {
-      std::string fraction(last);
-      fraction.resize(9, '0');
-      return in_ns(value_of(seconds), kSecond_ns, value_of(fraction));
+      return parse_time_ns(std::string(seconds) + "." + std::string(last), 9);
     }
   }
-  return epoch_ns(last);
+  const bool epoch = last.size() == 13 || last.size() == 16 || last.size() == 19;
+  return epoch ? parse_stamp_ns(last) : std::nullopt;
 }
 
 }  // namespace
@@ -112,7 +90,7 @@ std::vector<std::filesystem::path> sweep_files(const std::filesystem::path& fold
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const std::filesystem::path& path = entry.path();
-    const bool fits = path.extension() == ending && !path.filename().string().starts_with('.');
+    const bool fits = lower_extension(path) == ending && !path.filename().string().starts_with('.');
     if (fits && (stem.empty() || stem_of(path) == stem)) files.push_back(path);
   }
   if (files.empty()) {
@@ -143,18 +121,22 @@ std::vector<std::int64_t> stamps_in_names(const std::vector<std::filesystem::pat
                              without->string(), stamps.size()));
 }
 
-std::vector<std::int64_t> read_stamps(const std::filesystem::path& file) {
-  const Table table = Table::read(file, ' ', "", 1);
+std::vector<std::int64_t> read_stamps(const std::filesystem::path& file, std::vector<std::string>* disorder) {
+  const Table table = Table::read(file, '\n', "", 1);  // a line is a cell: dates contain blanks
   std::vector<std::int64_t> stamps;
   for (const Table::Row& row : table.rows) {
-    const std::string& text = row.cells[0];
-    const bool digits = std::all_of(text.begin(), text.end(), is_digit);
-    const std::optional<std::int64_t> whole = digits ? epoch_ns(text) : std::nullopt;
-    const std::int64_t stamp = whole ? *whole : table.time_ns(row, 0);
+    const std::optional<std::int64_t> found = parse_stamp_ns(row.cells[0]);
+    if (!found)
+      throw BadInput(fmt::format("{}:{}: '{}' is not a time: seconds, digits of ms, us or ns, or a date in UTC",
+                                 file.string(), row.line, shortened(row.cells[0])));
+    const std::int64_t stamp = *found;
+    std::string wrong;
     if (!stamps.empty() && stamp <= stamps.back()) {
-      throw BadInput(fmt::format("{}:{}: the time stamp {} ns does not increase; the previous one is {} ns",
-                                 file.string(), row.line, stamp, stamps.back()));
+      wrong = fmt::format("{}:{}: the time stamp {} ns does not increase; the previous one is {} ns", file.string(),
+                          row.line, stamp, stamps.back());
     }
+    if (disorder == nullptr && !wrong.empty()) throw BadInput(wrong);
+    if (disorder != nullptr) disorder->push_back(std::move(wrong));
     stamps.push_back(stamp);
   }
   return stamps;

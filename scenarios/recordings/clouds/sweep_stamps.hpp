@@ -8,9 +8,9 @@
 
 namespace tumble::scenarios {
 
-/// Returns the files of a folder with this extension (".ply") in natural order ("9" before "10"), ignoring leading
-/// zeros and hidden files. The stem is the name before its last numbers ("lidar" in "lidar_000012"). The stem must
-/// equal `stem`; if `stem` is empty, all files must have an equal stem. Throws BadInput for a missing folder, no
+/// Returns the files of a folder with this extension (".ply", in any case) in natural order ("9" before "10"), ignoring
+/// leading zeros and hidden files. The stem is the name before its last numbers ("lidar" in "lidar_000012"). The stem
+/// must equal `stem`; if `stem` is empty, all files must have an equal stem. Throws BadInput for a missing folder, no
 /// matching file, or several stems.
 std::vector<std::filesystem::path> sweep_files(const std::filesystem::path& folder, const std::string& ending,
                                                const std::string& stem);
@@ -24,10 +24,11 @@ std::string stem_of(const std::filesystem::path& file);
 /// file if only some names have stamps.
 std::vector<std::int64_t> stamps_in_names(const std::vector<std::filesystem::path>& files);
 
-/// Reads stamps from a text file, one stamp per line; '#' starts a comment. Stamps are decimal seconds, or integers of
-/// 16 or 19 digits (us, ns). Throws BadInput with file and line for a text that is not a number, or a stamp that does
-/// not increase.
-std::vector<std::int64_t> read_stamps(const std::filesystem::path& file);
+/// Reads stamps from a text file, one stamp per line; '#' starts a comment. Stamps are decimal seconds, whole numbers
+/// of 13, 16 or 19 digits (ms, us, ns), or dates in UTC, as in the raw data of KITTI. Throws BadInput with file and
+/// line for another text, or a stamp that does not increase. If `disorder` is given, stamps that do not increase are
+/// accepted; `disorder` then has a message for each of these stamps, and "" for the others.
+std::vector<std::int64_t> read_stamps(const std::filesystem::path& file, std::vector<std::string>* disorder = nullptr);
 
 /// Returns the upper median step of increasing times, or 0 for fewer than two times.
 std::int64_t median_step_ns(const std::vector<std::int64_t>& times_ns);

@@ -104,7 +104,7 @@ std::vector<std::string> export_for(const path& recording, const std::string& pe
   writing.empty_sweeps = dialect.takes_empty;
   writing.names = dialect.names(facts);
   writing.sweeps = dialect.sweeps(facts);
-  const std::int64_t origin_ns = bag_origin_ns(writing);
+  const std::int64_t origin_ns = export_origin_ns(info.origin_ns);
   write_bag(dialect, sensors, writing, folder / dialect.bag_name);
   if (with_truth) export_tum(read_truth(recording, scratch), folder / "truth.tum", origin_ns);
   std::vector<std::string> configuration;

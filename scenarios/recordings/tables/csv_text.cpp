@@ -8,8 +8,8 @@
 #include <system_error>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/recordings/number_text.hpp"
 #include "scenarios/regular_file.hpp"
-#include "scenarios/text.hpp"
 
 namespace tumble::scenarios {
 
@@ -22,14 +22,23 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-/// Returns the most frequent separator in the first line.
+/// Returns the first line that is neither empty nor a comment; the first line if there is none.
+std::string_view first_row(std::string_view text) {
+  for (std::string_view rest = text; !rest.empty();) {
+    const std::string_view line = trimmed(rest.substr(0, rest.find('\n')));
+    if (!line.empty() && !is_comment(line)) return line;
+    rest.remove_prefix(std::min(rest.find('\n'), rest.size() - 1) + 1);
+  }
+  return text.substr(0, text.find('\n'));
+}
+
 char likely_separator(std::string_view text) {
-  const std::string_view line = text.substr(0, text.find('\n'));
+  const std::string_view line = first_row(text);
   char most = ',';
   for (const char separator : {';', '\t'}) {
     if (std::count(line.begin(), line.end(), separator) > std::count(line.begin(), line.end(), most)) most = separator;
   }
-  return most;
+  return line.find(most) == std::string_view::npos ? ' ' : most;
 }
 
 /// Throws BadInput unless the file is UTF-8 text with lines; this check precedes the check of columns, to give a better
@@ -59,7 +68,7 @@ CsvText::CsvText(const std::filesystem::path& path, char separator) : name_(path
     throw BadInput(name_ + ":" + std::to_string(lines) +
                    ": the last line has no line end; the file may be truncated within a number");
   }
-  if (text_.starts_with("\xEF\xBB\xBF")) at_ = 3;  // byte order mark
+  if (text_.starts_with("\xEF\xBB\xBF")) at_.at = 3;  // byte order mark
   text_.erase(text_.find_last_not_of(" \t\r\n") + 1);
   text_ += '\n';
 }
@@ -69,18 +78,24 @@ CsvText::CsvText(const std::filesystem::path& path) : CsvText(path, ',') {
 }
 
 bool CsvText::next(CsvLine& line) {
-  if (at_ >= text_.size()) return false;
-  const std::size_t end = text_.find('\n', at_);  // always found: the text ends in a newline
-  std::string_view text = std::string_view(text_).substr(at_, end - at_);
-  at_ = end + 1;
-  line.where = name_ + ":" + std::to_string(++number_);
+  if (at_.at >= text_.size()) return false;
+  const std::size_t end = text_.find('\n', at_.at);  // always found: the text ends in a newline
+  std::string_view text = std::string_view(text_).substr(at_.at, end - at_.at);
+  at_ = {end + 1, at_.lines + 1};
+  line.where = name_ + ":" + std::to_string(at_.lines);
   line.fields.clear();
-  for (std::size_t comma = text.find(separator_); comma != std::string_view::npos; comma = text.find(separator_)) {
-    line.fields.push_back(trimmed(text.substr(0, comma)));
-    text.remove_prefix(comma + 1);
+  const bool blanks = separator_ == ' ';  // consecutive blanks separate once
+  if (blanks) text = trimmed(text);
+  for (std::size_t cut = text.find(separator_); cut != std::string_view::npos; cut = text.find(separator_)) {
+    if (!blanks || cut > 0) line.fields.push_back(trimmed(text.substr(0, cut)));
+    text.remove_prefix(cut + 1);
   }
   line.fields.push_back(trimmed(text));
   return true;
+}
+
+bool is_comment(std::string_view line) {
+  return line.starts_with('#') || line.starts_with('%') || line.starts_with("//");
 }
 
 void fail(const CsvLine& line, const std::string& what) {
@@ -91,7 +106,7 @@ double csv_number(const CsvLine& line, std::size_t index, const std::string& col
   const std::string_view text = line.fields[index];
   double value = 0.0;
   const std::string place = line.where + ": column " + column + " ";
-  if (!read_number(text, value)) {
+  if (!parse_number(text, value)) {
     const bool comma = text.find(',') != std::string_view::npos;
     throw BadInput(place + "must be a number; it is '" + std::string(text) + "'" +
                    (comma ? "; use a decimal point" : ""));
@@ -102,7 +117,7 @@ double csv_number(const CsvLine& line, std::size_t index, const std::string& col
 
 bool is_number(std::string_view field) {
   double value = 0.0;
-  return read_number(field, value);
+  return parse_number(field, value);
 }
 
 }  // namespace tumble::scenarios

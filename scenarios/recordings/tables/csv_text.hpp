@@ -20,20 +20,31 @@ struct CsvLine {
 /// The lines of a file in memory. Accepts Windows line ends; ignores empty lines at the end.
 class CsvText {
  public:
-  /// Separates fields with the most frequent separator in the first line: comma, semicolon or tab.
+  /// Separates fields with the most frequent separator in the first line that is no comment: comma, semicolon or tab;
+  /// blanks if the line has none of these.
   explicit CsvText(const std::filesystem::path& path);
   /// Throws BadInput with the file if the file is missing or empty, or if the last line has no newline and may be
   /// truncated.
   CsvText(const std::filesystem::path& path, char separator);
   /// Reads the next line; returns false at the end.
   bool next(CsvLine& line);
+  /// Position between two lines; `back_to` continues reading there.
+  struct Place {
+    std::size_t at = 0;
+    int lines = 0;
+  };
+  Place place() const { return at_; }
+  void back_to(const Place& place) { at_ = place; }
+  const std::string& name() const { return name_; }
 
  private:
   std::string name_, text_;
   char separator_;
-  std::size_t at_ = 0;
-  int number_ = 0;
+  Place at_;
 };
+
+/// Returns true for a line that begins with '#', '%' or '//'.
+bool is_comment(std::string_view line);
 
 /// Throws BadInput with the line's location and the message.
 [[noreturn]] void fail(const CsvLine& line, const std::string& what);

@@ -6,6 +6,7 @@
 #include "scenarios/recordings/export_names.hpp"
 #include "scenarios/recordings/number_text.hpp"
 #include "scenarios/recordings/replace_file.hpp"
+#include "scenarios/recordings/whole_seconds.hpp"
 
 namespace tumble::scenarios {
 
@@ -30,7 +31,12 @@ std::string covariance_text(double density_sqrt_hz, std::int64_t period_ns) {
   return text + "]";
 }
 
-std::string imu_text(const sim::ImuRecord& imu, const std::string& frame) {
+void append_stamp(std::string& text, std::int64_t stamp_ns) {
+  append_number(text, stamp_ns / kSecond_ns);
+  append_number(text += ',', stamp_ns % kSecond_ns);
+}
+
+std::string imu_text(const sim::ImuRecord& imu, const std::string& frame, std::int64_t origin_ns) {
   const std::string gyro_covariance = covariance_text(imu.gyro_noise_rad_s_sqrt_hz, imu.period_ns);
   const std::string accel_covariance = covariance_text(imu.accel_noise_m_s2_sqrt_hz, imu.period_ns);
   std::string text =
@@ -38,8 +44,7 @@ std::string imu_text(const sim::ImuRecord& imu, const std::string& frame) {
       "covariance,"
       "fx_m_s2,fy_m_s2,fz_m_s2,linear_acceleration_covariance\n";
   for (std::size_t i = 0; i < imu.time_ns.size(); ++i) {
-    append_number(text, imu.time_ns[i] / 1000000000);
-    append_number(text += ',', imu.time_ns[i] % 1000000000);
+    append_stamp(text, origin_ns + imu.time_ns[i]);
     text += "," + frame + "," + kNoAttitude;
     append_all(text, imu.gyro_rad_s[i]);
     text += gyro_covariance;
@@ -49,13 +54,12 @@ std::string imu_text(const sim::ImuRecord& imu, const std::string& frame) {
   return text;
 }
 
-std::string series_text(const sim::SeriesRecord& series, const std::string& frame) {
+std::string series_text(const sim::SeriesRecord& series, const std::string& frame, std::int64_t origin_ns) {
   std::string text = "stamp_s,stamp_ns,frame_id";
   for (const sim::Quantity& quantity : series.quantities) text += "," + quantity.name;
   text += '\n';
   for (std::size_t i = 0; i < series.time_ns.size(); ++i) {
-    append_number(text, series.time_ns[i] / 1000000000);
-    append_number(text += ',', series.time_ns[i] % 1000000000);
+    append_stamp(text, origin_ns + series.time_ns[i]);
     text += "," + frame;
     for (const sim::Quantity& quantity : series.quantities) append_number(text += ',', quantity.values[i]);
     text += '\n';
@@ -63,12 +67,12 @@ std::string series_text(const sim::SeriesRecord& series, const std::string& fram
   return text;
 }
 
-std::string truth_text(const sim::Truth& truth) {
+std::string truth_text(const sim::Truth& truth, std::int64_t origin_ns) {
   std::string text =
       "time_ns,x_W_m,y_W_m,z_W_m,qx,qy,qz,qw,vx_W_m_s,vy_W_m_s,vz_W_m_s,wx_B_rad_s,wy_B_rad_s,wz_B_rad_s,"
       "fx_B_m_s2,fy_B_m_s2,fz_B_m_s2,label\n";
   for (std::size_t i = 0; i < truth.p_WB_m.size(); ++i) {
-    append_number(text, static_cast<std::int64_t>(i) * truth.period_ns);
+    append_number(text, origin_ns + static_cast<std::int64_t>(i) * truth.period_ns);
     append_all(text, truth.p_WB_m[i]);
     append_all(text, truth.q_WB[i].coeffs());
     append_all(text, truth.v_WB_m_s[i]);
@@ -86,18 +90,19 @@ std::string truth_text(const sim::Truth& truth) {
 
 }  // namespace
 
-void export_csv(const sim::Sensors& sensors, const sim::Truth* truth, const std::filesystem::path& folder) {
+void export_csv(const sim::Sensors& sensors, const sim::Truth* truth, const std::filesystem::path& folder,
+                std::int64_t origin_ns) {
   const ExportNames names = export_names(sensors);
   OutputFolder output(folder);
   for (std::size_t i = 0; i < sensors.imus.size(); ++i) {
     const std::string& stem = names.imus.names[i];
-    replace_file(folder / (stem + ".csv"), imu_text(sensors.imus[i], stem));
+    replace_file(folder / (stem + ".csv"), imu_text(sensors.imus[i], stem, origin_ns));
   }
   for (std::size_t i = 0; i < sensors.series.size(); ++i) {
     const std::string& stem = names.series.names[i];
-    replace_file(folder / (stem + ".csv"), series_text(sensors.series[i], stem));
+    replace_file(folder / (stem + ".csv"), series_text(sensors.series[i], stem, origin_ns));
   }
-  if (truth != nullptr) replace_file(folder / "truth.csv", truth_text(*truth));
+  if (truth != nullptr) replace_file(folder / "truth.csv", truth_text(*truth, origin_ns));
   output.keep();
 }
 

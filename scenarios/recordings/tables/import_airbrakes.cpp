@@ -43,6 +43,19 @@ Eigen::Vector3d vector(const CsvLine& line, const Columns3& columns, const char*
   return {csv_number(line, columns[0], name), csv_number(line, columns[1], name), csv_number(line, columns[2], name)};
 }
 
+std::int64_t stamp_ns(const CsvLine& line, std::size_t column, std::size_t columns) {
+  if (line.fields.size() != columns) {
+    throw BadInput(fmt::format("{}: has {} columns, but the header has {}; must be equal", line.where,
+                               line.fields.size(), columns));
+  }
+  const double time_s = csv_number(line, column, "timestamp_seconds");
+  if (!(time_s >= 0.0 && time_s <= kAirbrakesStampMax_s)) {
+    throw BadInput(
+        fmt::format("{}: timestamp_seconds is {}, must be within 0 and {}", line.where, time_s, kAirbrakesStampMax_s));
+  }
+  return std::llround(time_s * 1e9);
+}
+
 template <class T>
 void keep(std::vector<T>& rows, std::size_t first, std::size_t end) {
   if (rows.empty()) return;
@@ -92,27 +105,31 @@ Imported import_airbrakes(const std::filesystem::path& path) {
   sim::ImuRecord imu;
   imu.name = "imu";
   std::size_t doubled = 0;
+  LeftOut left_out("readings");
+  std::vector<std::string> places;
   while (text.next(line)) {
-    if (line.fields.size() != count) {
-      throw BadInput(fmt::format("{}: has {} columns, but the header has {}; must be equal", line.where,
-                                 line.fields.size(), count));
-    }
-    const double time_s = csv_number(line, stamp, "timestamp_seconds");
-    if (!(time_s >= 0.0 && time_s <= kAirbrakesStampMax_s)) {
-      throw BadInput(fmt::format("{}: timestamp_seconds is {}, must be within 0 and {}", line.where, time_s,
-                                 kAirbrakesStampMax_s));
-    }
-    const std::int64_t time_ns = std::llround(time_s * 1e9);
-    if (!imu.time_ns.empty() && time_ns == imu.time_ns.back()) {
-      ++doubled;
-      continue;
-    }
-    add_reading(line.where, time_ns, scale_of(GyroUnit::deg_s) * vector(line, rate, "raw_angular_rate"),
-                scale_of(AccelUnit::g) * vector(line, force, "raw_acceleration"), imu);
-    if (magnetic) imu.magnetic_field_t.push_back(kTeslaPerMicrotesla * vector(line, field, "magnetic_field"));
+    left_out.guard([&] {
+      const std::int64_t time_ns = stamp_ns(line, stamp, count);
+      if (!imu.time_ns.empty() && time_ns == imu.time_ns.back()) {
+        ++doubled;
+        return;
+      }
+      const Eigen::Vector3d field_t =
+          magnetic ? kTeslaPerMicrotesla * vector(line, field, "magnetic_field") : Eigen::Vector3d(0.0, 0.0, 0.0);
+      add_reading(line.where, time_ns, scale_of(GyroUnit::deg_s) * vector(line, rate, "raw_angular_rate"),
+                  scale_of(AccelUnit::g) * vector(line, force, "raw_acceleration"), imu);
+      if (magnetic) imu.magnetic_field_t.push_back(field_t);
+      places.push_back(line.where);
+    });
   }
+  const auto where = [&](std::size_t k) { return places[k]; };
+  const std::string bursts = leave_out_faulty(where, nullptr, left_out, imu);
   Imported out;
+  for (const std::string& note : {left_out.note(imu.time_ns.size()), bursts}) {
+    if (!note.empty()) out.notes.push_back(note);
+  }
   keep_longest_segment(imu, out.notes);
+  imu.period_ns = 0;  // the period of the longest segment
   finish_readings(path.string(), AccelUnit::g, imu);
   const std::int64_t first_ns = imu.time_ns.front();
   for (std::int64_t& time : imu.time_ns) time -= first_ns;

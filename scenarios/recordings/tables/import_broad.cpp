@@ -13,6 +13,7 @@
 #include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/recordings/tables/imu_readings.hpp"
 #include "scenarios/recordings/trajectories/reference.hpp"
+#include "scenarios/recordings/trajectories/reference_check.hpp"
 #include "scenarios/recordings/trajectories/reference_rate.hpp"
 
 namespace tumble::scenarios {
@@ -105,6 +106,9 @@ Imported import_broad(const std::filesystem::path& path) {
   out.info.attribution = kBroadAttribution + path.stem().string();
   out.sensors.imus.push_back(read_imu(root, rate_hz));
   out.reference = read_reference(root, out.sensors.imus.front());
+  if (out.reference)
+    out.notes.push_back(check_reference(known_poses(*out.reference, out.sensors.imus.front()),
+                                        Eigen::Isometry3d::Identity(), out.sensors, path.string()));
   std::string problem = find_problem(out.sensors);
   if (problem.empty() && out.reference) problem = find_problem(*out.reference);
   if (!problem.empty()) throw BadInput(path.string() + ": " + problem);

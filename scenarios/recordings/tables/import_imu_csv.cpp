@@ -2,14 +2,16 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <map>
 #include <optional>
 #include <string>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/import.hpp"
-#include "scenarios/recordings/tables/csv_text.hpp"
 #include "scenarios/recordings/tables/imu_columns.hpp"
 #include "scenarios/recordings/tables/imu_readings.hpp"
+#include "scenarios/recordings/tables/logged_table.hpp"
+#include "scenarios/recordings/tables/logger_columns.hpp"
 
 namespace tumble::scenarios {
 
@@ -46,36 +48,71 @@ void say_columns(const ImuColumns& columns, bool stated, std::vector<std::string
   if (!others.empty()) notes.push_back("ignored columns: " + others);
 }
 
+/// Several IMUs in one table alternate row by row. Keeps the rows of the first IMU; returns a note, or "" if the table
+/// has one IMU. More numbers than this are a counter of rows.
+std::string keep_one_imu(LoggedTable& table, std::size_t id) {
+  constexpr std::size_t kImusMax = 8;
+  std::map<std::string, std::size_t> rows;
+  std::string first;
+  CsvLine line;
+  while (rows.size() <= kImusMax && table.next(line)) {
+    if (rows.empty()) first = line.fields[id];
+    ++rows[std::string(line.fields[id])];
+  }
+  table.restart();
+  if (rows.size() < 2 || rows.size() > kImusMax) return "";
+  const std::string name(table.header().fields[id]);
+  std::string others;
+  for (const auto& [number, count] : rows)
+    if (number != first) others += fmt::format("{}{} ({} rows)", others.empty() ? "" : ", ", number, count);
+  table.keep(id, first);
+  return fmt::format("column '{}' numbers several IMUs; the rows of {} are read, these are left out: {}", name, first,
+                     others);
+}
+
+/// Reads the samples of the columns and their places in the file. Faulty rows are counted in `left_out`.
+sim::ImuRecord readings_of(LoggedTable& table, const ImuColumns& columns, const sim::ImuRecord& device, AccelUnit unit,
+                           GyroUnit gyro_unit, LeftOut& left_out, std::vector<std::string>& places) {
+  sim::ImuRecord imu = without_readings(device);
+  CsvLine line;
+  for (bool more = true; more;) {
+    left_out.guard([&] {
+      more = table.next(line);
+      if (!more) return;
+      add_reading(line.where, stamp_ns(line, columns), scale_of(gyro_unit) * vector(line, columns.rate),
+                  scale_of(unit) * vector(line, columns.force), imu);
+      places.push_back(line.where);
+    });
+  }
+  return imu;
+}
+
 }  // namespace
 
 Imported import_imu_csv(const std::filesystem::path& path, const sim::ImuRecord& device, AccelUnit unit,
-                        GyroUnit gyro_unit) {
-  CsvText text(path);
-  CsvLine line;
-  text.next(line);
-  ImuColumns columns = imu_columns(line);
-  unit = chosen(columns.accel_unit, unit, AccelUnit::m_s2, line);
-  gyro_unit = chosen(columns.gyro_unit, gyro_unit, GyroUnit::rad_s, line);
+                        GyroUnit gyro_unit, const std::string& choice) {
+  LoggedTable table(path);
+  ImuColumns columns = choice.empty() ? imu_columns(table) : chosen_columns(table, choice);
+  unit = chosen(columns.accel_unit, unit, AccelUnit::m_s2, table.header());
+  gyro_unit = chosen(columns.gyro_unit, gyro_unit, GyroUnit::rad_s, table.header());
   Imported out;
+  if (columns.id) out.notes.push_back(keep_one_imu(table, *columns.id));
   if (columns.stamp_form == StampForm::decimal) {
     const bool stated = columns.stamp_decimals.has_value();
-    if (!stated) columns.stamp_decimals = decimals_by_step(text, columns.stamp, line.fields.size(), path.string());
+    if (!stated) columns.stamp_decimals = decimals_by_step(table, columns.stamp, path.string());
     say_columns(columns, stated, out.notes);
   }
-  sim::ImuRecord imu = without_readings(device);
-  const std::size_t count = line.fields.size();
-  const auto add = [&] {
-    require_width(line, count);
-    add_reading(line.where, stamp_ns(line, columns), scale_of(gyro_unit) * vector(line, columns.rate),
-                scale_of(unit) * vector(line, columns.force), imu);
-  };
-  if (!columns.has_header) add();
-  while (text.next(line)) add();
+  LeftOut left_out("readings");
+  std::vector<std::string> places;
+  sim::ImuRecord imu = readings_of(table, columns, device, unit, gyro_unit, left_out, places);
+  const auto where = [&](std::size_t k) { return places[k]; };
+  const std::string bursts = leave_out_faulty(where, nullptr, left_out, imu);
   finish_readings(path.string(), unit, imu);
   const std::string evened = even_out_stamps(imu);
-  for (const std::string& remark : {evened, gaps_text(imu), rates_text(path.string(), imu, gyro_unit)}) {
-    if (!remark.empty()) out.notes.push_back(remark);
-  }
+  for (const std::string& remark :
+       {left_out.note(imu.time_ns.size()), bursts, evened, gaps_text(imu), rates_text(path.string(), imu, gyro_unit)})
+    out.notes.push_back(remark);
+  std::erase(out.notes, "");
   const std::int64_t first_ns = imu.time_ns.front();
   for (std::int64_t& time : imu.time_ns) time -= first_ns;
   out.info.attribution = fmt::format("imported from {}, first time stamp {} ns", path.filename().string(), first_ns);

@@ -11,12 +11,14 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/not_finite.hpp"
 #include "scenarios/recordings/import.hpp"
+#include "scenarios/recordings/left_out.hpp"
 #include "scenarios/recordings/recording_check.hpp"
 #include "scenarios/recordings/tables/csv_text.hpp"
 #include "scenarios/recordings/tables/imu_readings.hpp"
 #include "scenarios/recordings/tables/repeated_readings.hpp"
 #include "scenarios/recordings/tables/steady_stamps.hpp"
 #include "scenarios/recordings/trajectories/align_reference.hpp"
+#include "scenarios/recordings/trajectories/reference_check.hpp"
 #include "scenarios/recordings/trajectories/reference_glitches.hpp"
 #include "scenarios/recordings/trajectories/reference_rate.hpp"
 
@@ -49,6 +51,7 @@ struct Log {
   std::vector<StampBounds> rounding;  ///< of the printed stamps
   std::size_t decimal_commas = 0;
   std::vector<std::string> where;
+  LeftOut left_out{"readings"};
 };
 
 /// Returns names such as "Vicon Orientation/W"; the name of a group is above the group's first column.
@@ -143,6 +146,37 @@ std::vector<StampBounds> rounding_of(const std::vector<int>& decimals) {
   return bounds;
 }
 
+void add_row(const CsvLine& line, const RepoimuColumns& columns, Log& log, std::vector<int>& digits) {
+  const std::size_t found = line.fields.size();
+  const bool trailing = columns.open_ended && found == columns.count && line.fields.back().empty();
+  if (found != columns.count - (columns.open_ended ? 1 : 0) && !trailing) {
+    fail(line, fmt::format("has {} columns, must have {}", found, columns.count - (columns.open_ended ? 1 : 0)));
+  }
+  DecimalNumbers numbers(line, log.decimal_commas);
+  const double time_s = numbers.at(columns.time, "Time");
+  if (!(time_s >= 0.0 && time_s <= kRepoimuStampMax_s))
+    fail(line, fmt::format("Time is {} s, must be within 0 and {}", time_s, kRepoimuStampMax_s));
+  const std::int64_t time_ns = std::llround(time_s * 1e9);
+  if (!log.readings.time_ns.empty() && time_ns < log.readings.time_ns.back()) {
+    fail(line, fmt::format("Time decreases: {:.9g} s after {:.9g} s", time_s,
+                           1e-9 * static_cast<double>(log.readings.time_ns.back())));
+  }
+  const auto& a = columns.attitude;
+  const char* attitude = "Vicon Orientation";
+  const ReferencePose pose{time_ns,
+                           Eigen::Vector3d::Constant(kNaN),
+                           {numbers.or_unknown(a[0], attitude), numbers.or_unknown(a[1], attitude),
+                            numbers.or_unknown(a[2], attitude), numbers.or_unknown(a[3], attitude)}};
+  const Eigen::Vector3d force = numbers.at(columns.force, "IMU Acceleration"),
+                        rate = numbers.at(columns.rate, "IMU Gyroscope");
+  log.poses.push_back(pose);
+  log.readings.time_ns.push_back(time_ns);
+  log.readings.accel_m_s2.push_back(force);
+  log.readings.gyro_rad_s.push_back(rate);
+  log.where.push_back(line.where);
+  digits.push_back(decimals(line.fields[columns.time]));
+}
+
 Log read_log(const std::filesystem::path& path) {
   CsvText text(path, ';');
   CsvLine groups, line;
@@ -151,34 +185,8 @@ Log read_log(const std::filesystem::path& path) {
   const RepoimuColumns columns = columns_of(groups, line);
   Log log;
   std::vector<int> digits;
-  while (text.next(line)) {
-    const std::size_t found = line.fields.size();
-    const bool trailing = columns.open_ended && found == columns.count && line.fields.back().empty();
-    if (found != columns.count - (columns.open_ended ? 1 : 0) && !trailing) {
-      fail(line, fmt::format("has {} columns, must have {}", found, columns.count - (columns.open_ended ? 1 : 0)));
-    }
-    DecimalNumbers numbers(line, log.decimal_commas);
-    const double time_s = numbers.at(columns.time, "Time");
-    if (!(time_s >= 0.0 && time_s <= kRepoimuStampMax_s))
-      fail(line, fmt::format("Time is {} s, must be within 0 and {}", time_s, kRepoimuStampMax_s));
-    const std::int64_t time_ns = std::llround(time_s * 1e9);
-    if (!log.readings.time_ns.empty() && time_ns < log.readings.time_ns.back()) {
-      fail(line, fmt::format("Time decreases: {:.9g} s after {:.9g} s", time_s,
-                             1e-9 * static_cast<double>(log.readings.time_ns.back())));
-    }
-    const auto& a = columns.attitude;
-    const char* attitude = "Vicon Orientation";
-    ReferencePose pose{time_ns,
-                       Eigen::Vector3d::Constant(kNaN),
-                       {numbers.or_unknown(a[0], attitude), numbers.or_unknown(a[1], attitude),
-                        numbers.or_unknown(a[2], attitude), numbers.or_unknown(a[3], attitude)}};
-    log.poses.push_back(pose);
-    log.readings.time_ns.push_back(time_ns);
-    log.readings.accel_m_s2.push_back(numbers.at(columns.force, "IMU Acceleration"));
-    log.readings.gyro_rad_s.push_back(numbers.at(columns.rate, "IMU Gyroscope"));
-    log.where.push_back(line.where);
-    digits.push_back(decimals(line.fields[columns.time]));
-  }
+  while (text.next(line)) log.left_out.guard([&] { add_row(line, columns, log, digits); });
+  log.left_out.require_few(log.where.size());
   log.rounding = rounding_of(digits);
   return log;
 }
@@ -259,6 +267,7 @@ void add_reference(const std::filesystem::path& path, Log& log, bool align, Impo
   out.notes.push_back(alignment.text() + (align             ? ": removed"
                                           : alignment.known ? ": not removed; set --align-reference to remove it"
                                                             : ""));
+  out.notes.push_back(check_reference(log.poses, Eigen::Isometry3d::Identity(), out.sensors, path.string()));
   try {
     out.reference = reference_truth(log.poses, imu.time_ns.back());
   } catch (const BadInput& error) {
@@ -289,6 +298,7 @@ Imported import_repoimu(const std::filesystem::path& path, bool align) {
   if (log.where.size() < 2)
     throw BadInput(fmt::format("{}: has {} samples; it needs at least 2", path.string(), log.where.size()));
   require_attitudes(path, log);
+  if (log.left_out.count() > 0) out.notes.push_back(log.left_out.note(log.where.size()));
   out.info.origin_ns = log.readings.time_ns.front();
   for (std::int64_t& time : log.readings.time_ns) time -= out.info.origin_ns;
   steady(log, out.notes);

@@ -4,14 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
-#include <charconv>
 #include <cmath>
 #include <string_view>
 
 #include "scenarios/draw/strict_yaml.hpp"
 #include "scenarios/errors.hpp"
-#include "scenarios/recordings/tables/csv_text.hpp"
+#include "scenarios/recordings/number_text.hpp"
 #include "scenarios/recordings/tables/logger_columns.hpp"
 #include "scenarios/recordings/upper_median.hpp"
 #include "scenarios/recordings/whole_seconds.hpp"
@@ -19,8 +17,6 @@
 namespace tumble::scenarios {
 
 namespace {
-
-constexpr std::int64_t kLatest_ns = kSecondsMax * kSecond_ns;
 
 /// Minimum number of columns of a sensor_msgs/Imu table without header.
 constexpr std::size_t kColumnsByPlace = 15;
@@ -45,8 +41,22 @@ std::optional<std::size_t> find_column(const CsvLine& header, const std::string&
   return found;
 }
 
+/// Finds names that end in `name`, with points or slashes between the parts: "/imu/header/stamp",
+/// "field.header.stamp".
 std::optional<std::size_t> find_ending(const CsvLine& header, const std::string& name) {
-  return find_column(header, name, [&](std::string_view field) { return field.ends_with(name); });
+  return find_column(header, name, [&](std::string_view field) {
+    std::string parts(field);
+    std::replace(parts.begin(), parts.end(), '.', '/');
+    return parts.ends_with(name);
+  });
+}
+
+/// Finds a column under one of several endings.
+std::optional<std::size_t> find_any_ending(const CsvLine& header, const std::vector<std::string>& names) {
+  for (const std::string& name : names) {
+    if (const auto found = find_ending(header, name)) return found;
+  }
+  return std::nullopt;
 }
 
 std::optional<std::size_t> find_any(const CsvLine& header, const std::vector<std::string>& names) {
@@ -78,17 +88,33 @@ class RequiredColumns {
   std::string missing_;
 };
 
-/// Finds columns such as ".../header/stamp", as tools that flatten messages write them.
+/// Finds the stamp of a message's header. `rostopic echo -p` names it "field.header.stamp" and writes nanoseconds;
+/// other tools write seconds, or seconds and nanoseconds in two columns. Returns false if there is none.
+bool find_header_stamp(const CsvLine& header, ImuColumns& layout) {
+  const auto seconds = find_any_ending(header, {"header/stamp/sec", "header/stamp/secs"});
+  const auto rest = find_any_ending(header, {"header/stamp/nsec", "header/stamp/nsecs", "header/stamp/nanosec"});
+  if (seconds && rest) {
+    layout.stamp = *seconds, layout.stamp_ns = *rest;
+    return true;
+  }
+  const auto stamp = find_ending(header, "header/stamp");
+  if (!stamp) return false;
+  layout.stamp_form = StampForm::decimal;
+  layout.stamp = *stamp;
+  layout.stamp_decimals = header.fields[*stamp].starts_with("field.") ? 0 : 9;
+  return true;
+}
+
+/// Finds columns of flattened messages. The stamp of the header takes precedence over the time of recording.
 std::optional<ImuColumns> flattened(const CsvLine& header) {
   ImuColumns layout;
+  if (!find_header_stamp(header, layout)) return std::nullopt;
   RequiredColumns columns(header);
-  columns.take(find_ending(header, "header/stamp"), "header/stamp", layout.stamp);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::string rate = "angular_velocity/" + kAxes[axis], force = "linear_acceleration/" + kAxes[axis];
     columns.take(find_ending(header, rate), rate, layout.rate[axis]);
     columns.take(find_ending(header, force), force, layout.force[axis]);
   }
-  layout.stamp_form = StampForm::seconds;
   return columns.complete() ? std::optional(layout) : std::nullopt;
 }
 
@@ -133,44 +159,9 @@ std::int64_t whole_number(const CsvLine& line, std::size_t column, std::int64_t 
   return static_cast<std::int64_t>(value);
 }
 
-bool all_digits(std::string_view text) {
-  return std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
-}
-
-/// Integer part and decimals of a number.
-struct Decimal {
-  std::string_view whole, part;
-
-  explicit Decimal(std::string_view text)
-      : whole(text.substr(0, text.find('.'))), part(text.substr(std::min(whole.size() + 1, text.size()))) {}
-  bool sound() const { return !whole.empty() && all_digits(whole) && all_digits(part); }
-};
-
-/// Converts a number in a unit with this many decimals to nanoseconds, without the rounding of a double; empty if the
-/// number is invalid.
-std::optional<std::int64_t> scaled_ns(const Decimal& number, std::size_t decimals) {
-  std::string digits = std::string(number.whole) + std::string(number.part.substr(0, decimals));
-  digits.resize(number.whole.size() + decimals, '0');
-  std::int64_t whole_ns = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), whole_ns);
-  if (!number.sound() || error != std::errc() || whole_ns > kLatest_ns) return std::nullopt;
-  return whole_ns + (number.part.size() > decimals && number.part[decimals] >= '5' ? 1 : 0);
-}
-
-std::int64_t seconds_ns(const CsvLine& line, std::size_t column) {
-  const std::string_view text = line.fields[column];
-  const Decimal number(text);
-  const auto ns = number.whole.size() <= 10 && number.part.size() <= 9 ? scaled_ns(number, 9) : std::nullopt;
-  if (ns) return *ns;
-  fail(line, fmt::format("column {} must be seconds with at most nine decimals; it is '{}'", column, text));
-}
-
 std::int64_t decimal_ns(const CsvLine& line, std::size_t column, int decimals) {
-  const std::string_view text = line.fields[column];
-  if (const auto ns = scaled_ns(Decimal(text), static_cast<std::size_t>(decimals))) return *ns;
-  fail(line,
-       fmt::format("column {} must be a time, digits with or without a decimal point, up to the year 2255; it is '{}'",
-                   column, text));
+  if (const auto ns = parse_time_ns(line.fields[column], decimals)) return *ns;
+  fail(line, fmt::format("column {} must be a time up to the year 2255; it is '{}'", column, line.fields[column]));
 }
 
 /// Returns true if seconds and nanoseconds are in separate columns.
@@ -186,14 +177,15 @@ bool is_own(std::string_view field) {
 
 }  // namespace
 
-ImuColumns imu_columns(const CsvLine& first) {
-  if (is_number(first.fields.front())) {
-    ImuColumns columns;
-    columns.has_header = false;
+ImuColumns imu_columns(const LoggedTable& table) {
+  const CsvLine& first = table.header();
+  if (!table.has_header()) {
     if (first.fields.size() < kColumnsByPlace) {
-      fail(first, fmt::format("has {} columns and no header; it needs {}", first.fields.size(), kColumnsByPlace));
+      fail(first, fmt::format("has {} columns and no header; it needs {}. Name the columns by their positions from 0: "
+                              "--columns time=0,gyro=1,2,3,accel=4,5,6",
+                              first.fields.size(), kColumnsByPlace));
     }
-    return columns;
+    return {};
   }
   if (std::optional<ImuColumns> columns = flattened(first)) return *columns;
   const bool own = std::any_of(first.fields.begin(), first.fields.end(), is_own);
@@ -204,39 +196,29 @@ ImuColumns imu_columns(const CsvLine& first) {
   }
   fail(first,
        "contains no known column name: stamp_s, stamp_ns, wx_rad_s, ..., fx_m_s2, ... (as written by 'export'), "
-       ".../header/stamp, .../angular_velocity/x, ..., or logger names (time, gyro_x, ..., accel_x, ...). A file "
-       "without a header is possible too");
+       ".../header/stamp, .../angular_velocity/x, ..., or logger names (time, gyro_x, ..., accel_x, ...). Name the "
+       "columns: --columns time=NAME,gyro=X,Y,Z,accel=X,Y,Z");
 }
 
 std::int64_t stamp_ns(const CsvLine& line, const ImuColumns& columns) {
-  switch (columns.stamp_form) {
-    case StampForm::seconds:
-      return seconds_ns(line, columns.stamp);
-    case StampForm::decimal:
-      return decimal_ns(line, columns.stamp, columns.stamp_decimals.value_or(9));
-    case StampForm::split:
-      break;
-  }
-  return whole_number(line, columns.stamp, kLatest_ns / kSecond_ns) * kSecond_ns +
+  if (columns.stamp_form == StampForm::decimal)
+    return decimal_ns(line, columns.stamp, columns.stamp_decimals.value_or(9));
+  return whole_number(line, columns.stamp, kSecondsMax) * kSecond_ns +
          whole_number(line, columns.stamp_ns, kSecond_ns - 1);
 }
 
-void require_width(const CsvLine& line, std::size_t columns) {
-  if (line.fields.size() == columns) return;
-  fail(line, fmt::format("has {} columns, but the first line has {}; must be equal", line.fields.size(), columns));
-}
-
-int decimals_by_step(CsvText text, std::size_t stamp, std::size_t columns, const std::string& file) {
+int decimals_by_step(LoggedTable& table, std::size_t stamp, const std::string& file) {
   constexpr std::size_t kLooked = 1000;
   constexpr double kLeast_s = 0.9e-3, kMost_s = 0.1;
   std::vector<double> steps;
   CsvLine line;
-  for (double last = 0.0; steps.size() <= kLooked && text.next(line);) {
-    require_width(line, columns);
+  table.restart();
+  for (double last = 0.0; steps.size() <= kLooked && table.next(line);) {
     const double now = number(line, stamp);
     steps.push_back(now - last);
     last = now;
   }
+  table.restart();
   if (steps.size() < 2) return 9;  // too few samples; reported later
   steps.erase(steps.begin());      // the first stamp is no step
   const double step = upper_median(steps);

@@ -10,16 +10,15 @@
 #include <vector>
 
 #include "scenarios/recordings/import.hpp"
-#include "scenarios/recordings/tables/csv_text.hpp"
+#include "scenarios/recordings/tables/logged_table.hpp"
 
 /// Finds the IMU columns of a table. Used only within scenarios/recordings.
 namespace tumble::scenarios {
 
 /// Format of time stamps.
 enum class StampForm {
-  split,    ///< whole seconds, and nanoseconds in another column
-  seconds,  ///< "1617333602.223639727", at most nine decimals
-  decimal   ///< a decimal number in some unit
+  split,   ///< whole seconds, and nanoseconds in another column
+  decimal  ///< a decimal number in some unit
 };
 
 struct ImuColumns {
@@ -27,28 +26,24 @@ struct ImuColumns {
   std::size_t stamp = 0, stamp_ns = 1;
   std::optional<int> stamp_decimals;  ///< for `decimal`: 9 for seconds, 0 for nanoseconds; empty: unit not stated
   std::array<std::size_t, 3> rate = {8, 9, 10}, force = {12, 13, 14};  ///< default: a plain sensor_msgs/Imu
+  std::optional<std::size_t> id;                                       ///< column that numbers the IMUs of the table
   std::optional<GyroUnit> gyro_unit;                                   ///< unit stated by the names
   std::optional<AccelUnit> accel_unit;
-  bool has_header = true;
   std::vector<std::string> left_out;  ///< names of ignored columns
 };
 
-/// Interprets the first line. Names take precedence over positions. Known names are those of tools that flatten ROS
-/// messages (".../angular_velocity/x"), of `export` (each once and no other names), short forms of the export names
-/// (sec nsec wx.. fx..), and names of loggers (logger_columns.hpp). If the first line contains numbers, it is a sample,
-/// and columns are identified by position. Throws BadInput with file and line for unknown, repeated or missing columns.
-ImuColumns imu_columns(const CsvLine& first);
+/// Finds the columns of a table. Names take precedence over positions. Known names are those of tools that flatten ROS
+/// messages (".../angular_velocity/x", "field.angular_velocity.x"), of `export` (each once and no other names), short
+/// forms of the export names (sec nsec wx.. fx..), and names of loggers (logger_columns.hpp). Without a header, columns
+/// are identified by position. Throws BadInput with file and line for unknown, repeated or missing columns.
+ImuColumns imu_columns(const LoggedTable& table);
 
 /// Returns a line's stamp in nanoseconds. Throws BadInput with file, line and column.
 std::int64_t stamp_ns(const CsvLine& line, const ImuColumns& columns);
 
-/// Throws BadInput, with a message that starts with the line's location, unless the line has this many columns.
-void require_width(const CsvLine& line, std::size_t columns);
-
 /// Infers the unit of stamps from up to a thousand steps, as a number of decimals: the unit among s, ms, us and ns that
 /// gives 10 to 1000 samples per second. At most one unit fits; for other sample rates, the file must state the unit.
-/// `text` starts at the first sample; lines must have `columns` fields. Throws BadInput, with a message that starts
-/// with the file, if no unit fits.
-int decimals_by_step(CsvText text, std::size_t stamp, std::size_t columns, const std::string& file);
+/// Reads the samples from the start; `file` begins the message. Throws BadInput if no unit fits.
+int decimals_by_step(LoggedTable& table, std::size_t stamp, const std::string& file);
 
 }  // namespace tumble::scenarios

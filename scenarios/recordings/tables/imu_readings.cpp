@@ -106,6 +106,54 @@ constexpr double kLeastCorrelation = 0.8;
 /// Change of gravity's direction that ends a brisk window.
 constexpr double kBriskRotation = 0.25;
 
+/// Steps within a burst, relative to the mean step. Half of the steps must be this short.
+constexpr double kBurstStep = 0.2, kBurstShare = 0.5;
+constexpr std::size_t kLeastBursts = 10;
+constexpr std::int64_t kBurstsApart_ns = 1'000'000'000;
+
+std::string disorder_text(const std::vector<std::int64_t>& times_ns, std::size_t reading) {
+  if (reading == 0 || times_ns[reading] > times_ns[reading - 1])
+    return fmt::format("the time stamp {} ns is out of order", times_ns[reading]);
+  return fmt::format("the time stamp does not increase: {} ns after the first; the previous one is at {}",
+                     times_ns[reading] - times_ns.front(), times_ns[reading - 1] - times_ns.front());
+}
+
+/// Distributes the readings of each burst evenly over the time since the previous burst, whose last reading was just
+/// taken when the burst arrived. Returns a note, or "" without bursts.
+std::string even_out_bursts(sim::ImuRecord& imu) {
+  std::vector<std::int64_t>& times = imu.time_ns;
+  if (times.size() < 2) return "";
+  std::int64_t sum = 0;
+  std::size_t steps = 0;
+  for (std::size_t k = 1; k < times.size(); ++k) {
+    const std::int64_t step = times[k] - times[k - 1];
+    if (step < 0) return "";
+    if (step < kBurstsApart_ns) sum += step, ++steps;
+  }
+  if (steps == 0 || sum == 0) return "";
+  const double short_ns = kBurstStep * static_cast<double>(sum) / static_cast<double>(steps);
+  std::vector<std::size_t> ends;  // one after the last reading of each burst
+  for (std::size_t k = 1; k <= times.size(); ++k) {
+    if (k == times.size() || static_cast<double>(times[k] - times[k - 1]) > short_ns) ends.push_back(k);
+  }
+  if (ends.size() < kLeastBursts ||
+      static_cast<double>(times.size() - ends.size()) < kBurstShare * static_cast<double>(times.size()))
+    return "";
+  const std::int64_t period_ns = sum / static_cast<std::int64_t>(steps);
+  std::int64_t before = times[ends.front() - 1] - static_cast<std::int64_t>(ends.front()) * period_ns;
+  for (std::size_t b = 0, first = 0; b < ends.size(); first = ends[b++]) {
+    const std::int64_t last = times[ends[b] - 1];
+    const auto count = static_cast<std::int64_t>(ends[b] - first);
+    const std::int64_t step = std::min((last - before) / count, 2 * period_ns);  // after a gap, from the burst's end
+    for (std::size_t k = first; k < ends[b]; ++k) times[k] = last - static_cast<std::int64_t>(ends[b] - 1 - k) * step;
+    before = last;
+  }
+  return fmt::format(
+      "caution: the readings arrive in {} bursts of about {} with nearly equal time stamps; they are distributed over "
+      "the time between the bursts",
+      ends.size(), times.size() / ends.size());
+}
+
 }  // namespace
 
 std::string gaps_text(const sim::ImuRecord& imu) {
@@ -226,6 +274,7 @@ std::string rates_text(const std::string& where, const sim::ImuRecord& imu, Gyro
 sim::ImuRecord without_readings(sim::ImuRecord device) {
   for (auto* rows : {&device.gyro_rad_s, &device.accel_m_s2}) rows->clear();
   device.time_ns.clear();
+  device.period_ns = 0;
   device.clip_flags.clear();
   return device;
 }
@@ -239,21 +288,43 @@ void add_reading(const std::string& where, std::int64_t stamp_ns, const Eigen::V
           fmt::format("{}: a reading has the magnitude {} rad/s or m/s^2, must be at most {}, the limit of any sensor",
                       where, rounded(value), rounded(kSensorReadingMax)));
   }
-  if (!imu.time_ns.empty() && stamp_ns <= imu.time_ns.back()) {
-    throw BadInput(fmt::format("{}: the time stamp does not increase: {} ns after the first; the previous one is at {}",
-                               where, stamp_ns - imu.time_ns.front(), imu.time_ns.back() - imu.time_ns.front()));
-  }
   imu.time_ns.push_back(stamp_ns);
   imu.gyro_rad_s.push_back(rate_rad_s);
   imu.accel_m_s2.push_back(force_m_s2);
   imu.clip_flags.push_back(0);
 }
 
+std::string leave_out_faulty(const ReadingText& where, const ReadingText& disorder, LeftOut& left_out,
+                             sim::ImuRecord& imu) {
+  const std::string bursts = even_out_bursts(imu);
+  std::vector<bool> kept = stamps_in_order(imu.time_ns);
+  std::vector<std::int64_t> in_order;
+  for (std::size_t k = 0; k < kept.size(); ++k) {
+    if (kept[k])
+      in_order.push_back(imu.time_ns[k]);
+    else
+      left_out.add("a wrong time stamp", where(k) + ": " + (disorder ? disorder(k) : disorder_text(imu.time_ns, k)));
+  }
+  left_out.require_few(in_order.size());
+  imu.period_ns = median_step_ns(in_order);  // lost readings do not change the period
+  std::size_t lost = 0;
+  for (std::size_t k = 0; k < kept.size(); ++k) {
+    if (!kept[k] || !imu.gyro_rad_s[k].isZero(0.0) || !imu.accel_m_s2[k].isZero(0.0)) continue;
+    left_out.add_unlimited("values that are all exactly 0, so the readings are missing", where(k));
+    kept[k] = false;
+    ++lost;
+  }
+  if (lost > 0 && lost == in_order.size()) throw BadInput(where(0) + ": all values of all readings are exactly 0");
+  keep_rows(kept, imu.time_ns), keep_rows(kept, imu.gyro_rad_s), keep_rows(kept, imu.accel_m_s2);
+  keep_rows(kept, imu.clip_flags), keep_rows(kept, imu.magnetic_field_t);
+  return bursts;
+}
+
 void finish_readings(const std::string& where, AccelUnit unit, sim::ImuRecord& imu) {
   if (imu.time_ns.size() < 2)
     throw BadInput(fmt::format("{}: has {} samples; it needs at least 2", where, imu.time_ns.size()));
   require_plausible_force(where, imu, unit);
-  imu.period_ns = median_step_ns(imu.time_ns);
+  if (imu.period_ns <= 0) imu.period_ns = median_step_ns(imu.time_ns);
   require_plausible_period(where, imu);
 }
 

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "scenarios/recordings/import.hpp"
+#include "scenarios/recordings/left_out.hpp"
 
 /// Collects IMU readings from any source, reading by reading. Used only within scenarios/recordings.
 namespace tumble::scenarios {
@@ -12,12 +14,27 @@ namespace tumble::scenarios {
 sim::ImuRecord without_readings(sim::ImuRecord device);
 
 /// Appends a reading. Throws BadInput, with a message that starts with `where`, for a value that is not finite or
-/// beyond 1e6, or for a stamp that does not increase.
+/// beyond 1e6.
 void add_reading(const std::string& where, std::int64_t stamp_ns, const Eigen::Vector3d& rate_rad_s,
                  const Eigen::Vector3d& force_m_s2, sim::ImuRecord& imu);
 
-/// Sets the period to the median step. Throws BadInput, with a message that starts with `where`, for fewer than two
-/// readings or a probably wrong unit: a median specific force outside 3 to 30 m/s^2, or a period outside 20 us to 2 s.
+/// Returns a text on a reading, for messages.
+using ReadingText = std::function<std::string(std::size_t reading)>;
+
+/// Leaves out readings of which all six values are exactly 0 (lost readings), and readings with stamps that are not in
+/// order (stamps_in_order), and counts them in `left_out`. Sets the period to the median step of the stamps in order.
+/// Evens out the stamps of bursts first: readings that a driver delivers in groups are distributed over the time since
+/// the previous group.
+///
+/// @param where     Returns the place of a reading, for messages.
+/// @param disorder  Describes a stamp that is not in order; null: relative to the previous stamp.
+/// Returns a note on bursts, or "". Throws BadInput if too many readings are left out as faulty, or if all are 0.
+std::string leave_out_faulty(const ReadingText& where, const ReadingText& disorder, LeftOut& left_out,
+                             sim::ImuRecord& imu);
+
+/// Sets the period to the median step if the period is 0, and checks the readings. Throws BadInput, with a message that
+/// starts with `where`, for fewer than two readings or a probably wrong unit: a median specific force outside 3 to 30
+/// m/s^2, or a period outside 20 us to 2 s.
 void finish_readings(const std::string& where, AccelUnit unit, sim::ImuRecord& imu);
 
 /// Returns true if the specific force is in g instead of m/s^2, as from some lidar drivers: the median norm is within

@@ -2,6 +2,7 @@
 #include "scenarios/recordings/tables/logger_columns.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
@@ -9,6 +10,7 @@
 #include <utility>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/text.hpp"
 
 namespace tumble::scenarios {
 
@@ -24,10 +26,18 @@ using UnitNames = std::vector<std::pair<std::string_view, Value>>;
 
 const std::vector<std::string_view> kTimes = {"t",     "time", "timestamp", "timestamps",
                                               "stamp", "ts",   "elapsed",   "secondselapsed"};
-const std::vector<std::string_view> kRates = {
-    "g", "gyro", "gyr", "gyroscope", "angularvelocity", "angularrate", "w", "omega", "angvel", "rate", "wrss", "rot"};
+constexpr const char* kExample = "time=NAME,gyro=X,Y,Z,accel=X,Y,Z";
+
+/// Times that loggers write next to the stamp.
+const std::vector<std::string_view> kSecondTimes = {"elapsed", "secondselapsed"};
+const std::vector<std::string_view> kRates = {"g",           "gyro", "gyr",    "gyroscope", "angularvelocity",
+                                              "angularrate", "w",    "omega",  "angvel",    "rate",
+                                              "wrss",        "rot",  "gyrorad"};
 const std::vector<std::string_view> kForces = {
-    "a", "acc", "accel", "accelerometer", "acceleration", "linearacceleration", "f", "specificforce", "arss", "linacc"};
+    "a", "acc",           "accel", "accelerometer", "acceleration",    "linearacceleration",
+    "f", "specificforce", "arss",  "linacc",        "accelerometerms2"};
+/// Columns that number the IMUs of a table.
+const std::vector<std::string_view> kIds = {"i", "id", "instance", "imuid", "sensorid"};
 
 const UnitNames<int> kTimeUnits = {{"s", 9},  {"sec", 9},  {"secs", 9}, {"seconds", 9}, {"ms", 6},         {"msec", 6},
                                    {"us", 3}, {"usec", 3}, {"ns", 0},   {"nsec", 0},    {"nanoseconds", 0}};
@@ -63,29 +73,73 @@ bool is_one_of(const std::vector<std::string_view>& names, std::string_view name
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// Splits names with the unit in brackets: "gx [deg/s]", "gx (deg/s)".
+/// Splits names with the unit in brackets: "gx [deg/s]", "gx (deg/s)". An index in brackets is an axis: "gyro_rad[0]".
 Name split_brackets(std::string_view field) {
   const std::size_t open = field.find_first_of("[(");
   if (open == std::string_view::npos) return {letters(field), ""};
-  return {letters(field.substr(0, open)), letters(field.substr(open))};
+  const std::string quantity = letters(field.substr(0, open)), unit = letters(field.substr(open));
+  if (unit == "0" || unit == "1" || unit == "2") return {quantity + "xyz"[unit.front() - '0'], ""};
+  return {quantity, unit};
 }
 
-/// Splits names such as "time_ms" and "gyro_x_deg_s", with the unit after an underscore that follows the axis.
+/// Splits names such as "time_ms" and "gyro_x_deg_s", with the unit after an underscore that follows the axis, and
+/// "TimeUS", with the unit directly after the quantity.
 template <class Value, class IsQuantity>
 Name split_suffix(std::string_view field, const UnitNames<Value>& units, const IsQuantity& is_quantity) {
   for (std::size_t at = field.find('_'); at != std::string_view::npos; at = field.find('_', at + 1)) {
     Name name{letters(field.substr(0, at)), letters(field.substr(at))};
     if (is_quantity(name.quantity) && value_of(units, name.unit)) return name;
   }
-  return split_brackets(field);
+  Name name = split_brackets(field);
+  if (is_quantity(name.quantity)) return name;
+  constexpr std::size_t kUnit = 2;
+  const std::string_view whole = name.quantity;
+  if (whole.size() > kUnit && value_of(units, whole.substr(whole.size() - kUnit)) &&
+      is_quantity(whole.substr(0, whole.size() - kUnit)))
+    return {std::string(whole.substr(0, whole.size() - kUnit)), std::string(whole.substr(whole.size() - kUnit))};
+  return name;
 }
 
-/// Returns the axis (0 to 2) if the quantity is one of `names`, with or without the prefix "imu".
-std::optional<std::size_t> axis_of(const std::vector<std::string_view>& names, std::string_view quantity) {
-  if (quantity.starts_with("imu")) quantity.remove_prefix(3);
-  if (quantity.size() < 2 || !is_one_of(names, quantity.substr(0, quantity.size() - 1))) return std::nullopt;
-  const std::size_t axis = std::string_view("xyz").find(quantity.back());
-  return axis == std::string_view::npos ? std::nullopt : std::optional(axis);
+/// An axis of a triad, and the number of the IMU in the name ("" if the name has none).
+struct NamedAxis {
+  std::size_t axis = 0;
+  std::string number;
+};
+
+/// Removes digits from the beginning or the end of `text`, and returns the digits.
+std::string take_number(std::string_view& text, bool from_end) {
+  std::string digits;
+  while (!text.empty() && std::isdigit(static_cast<unsigned char>(from_end ? text.back() : text.front())) != 0) {
+    digits.insert(from_end ? digits.begin() : digits.end(), from_end ? text.back() : text.front());
+    from_end ? text.remove_suffix(1) : text.remove_prefix(1);
+  }
+  return digits;
+}
+
+/// Returns the axis if the quantity is one of `names`, with or without the prefix "imu" and the number of an IMU.
+std::optional<NamedAxis> axis_of(const std::vector<std::string_view>& names, std::string_view quantity) {
+  NamedAxis out;
+  if (quantity.starts_with("imu")) {
+    quantity.remove_prefix(3);
+    out.number = take_number(quantity, false);
+  }
+  if (quantity.size() < 2) return std::nullopt;
+  out.axis = std::string_view("xyz").find(quantity.back());
+  if (out.axis == std::string_view::npos) return std::nullopt;
+  quantity.remove_suffix(1);
+  if (is_one_of(names, quantity)) return out;
+  out.number += take_number(quantity, true);
+  return is_one_of(names, quantity) ? std::optional(out) : std::nullopt;
+}
+
+/// Returns the unit that a name states, if any, for a quantity with any name.
+template <class Value>
+std::optional<Value> unit_in(std::string_view field, const UnitNames<Value>& units) {
+  if (const std::size_t open = field.find_first_of("[("); open != std::string_view::npos)
+    return value_of(units, letters(field.substr(open)));
+  for (std::size_t at = field.find('_'); at != std::string_view::npos; at = field.find('_', at + 1))
+    if (const auto unit = value_of(units, letters(field.substr(at)))) return unit;
+  return std::nullopt;
 }
 
 /// Takes the columns of one quantity from a header.
@@ -95,18 +149,22 @@ class HeaderReader {
 
   std::optional<int> time(std::size_t& column) {
     const auto is_time = [](std::string_view quantity) { return is_one_of(kTimes, quantity); };
-    std::optional<std::size_t> found;
-    std::optional<int> decimals;
+    std::optional<std::size_t> found, second;
     for (std::size_t i = 0; i < header_.fields.size(); ++i) {
       const Name name = split_suffix(header_.fields[i], kTimeUnits, is_time);
       if (!is_time(name.quantity)) continue;
-      if (found) fail(fmt::format("two columns are time stamps: '{}' and '{}'", text(*found), text(i)));
-      decimals = unit_of(kTimeUnits, name, i);
-      found = i;
+      const bool weak = header_.fields[i] == "T" || is_one_of(kSecondTimes, name.quantity);
+      std::optional<std::size_t>& place = weak ? second : found;
+      if (place && !weak) fail(fmt::format("two columns are time stamps: '{}' and '{}'", text(*place), text(i)));
+      place = i;
     }
-    if (found) take(*found, column);
-    if (!found) missing_ += " time";
-    return decimals;
+    if (!found) found = second;
+    if (!found) {
+      missing_ += " time";
+      return std::nullopt;
+    }
+    take(*found, column);
+    return unit_of(kTimeUnits, split_suffix(header_.fields[*found], kTimeUnits, is_time), *found);
   }
 
   template <class Unit>
@@ -117,13 +175,16 @@ class HeaderReader {
     const auto is_axis = [&](std::string_view quantity) { return axis_of(names, quantity).has_value(); };
     for (std::size_t i = 0; i < header_.fields.size(); ++i) {
       const Name name = split_suffix(header_.fields[i], units, is_axis);
-      const std::optional<std::size_t> axis = axis_of(names, name.quantity);
-      if (!axis) continue;
-      if (found[*axis])
-        fail(fmt::format("two columns are the {}'s {}: '{}' and '{}'", called, "xyz"[*axis], text(*found[*axis]),
+      const std::optional<NamedAxis> named = axis_of(names, name.quantity);
+      if (!named) continue;
+      const std::size_t axis = named->axis;
+      if (!number_) number_ = named->number;
+      if (*number_ != named->number) fail_of_several(called, named->number);
+      if (found[axis])
+        fail(fmt::format("two columns are the {}'s {}: '{}' and '{}'", called, "xyz"[axis], text(*found[axis]),
                          text(i)));
-      stated[*axis] = unit_of(units, name, i);
-      found[*axis] = i;
+      stated[axis] = unit_of(units, name, i);
+      found[axis] = i;
     }
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (found[axis]) take(*found[axis], columns[axis]);
@@ -137,8 +198,15 @@ class HeaderReader {
   /// Returns false if only a time column is known; throws BadInput if a column is missing.
   bool complete(std::size_t readings) const {
     if (readings == 0) return false;
-    if (!missing_.empty()) fail("missing columns:" + missing_);
+    if (!missing_.empty())
+      fail("missing columns:" + missing_ + "; if other columns have these values, name them: --columns " + kExample);
     return true;
+  }
+  /// Finds a column that numbers the IMUs.
+  std::optional<std::size_t> id() {
+    for (std::size_t i = 0; i < header_.fields.size(); ++i)
+      if (is_one_of(kIds, letters(header_.fields[i]))) return i;
+    return std::nullopt;
   }
   std::size_t taken() const { return static_cast<std::size_t>(std::count(taken_.begin(), taken_.end(), true)); }
   std::vector<std::string> others() const {
@@ -151,6 +219,10 @@ class HeaderReader {
 
  private:
   [[noreturn]] void fail(const std::string& what) const { throw BadInput(header_.where + ": " + what); }
+  [[noreturn]] void fail_of_several(const char* called, const std::string& number) const {
+    fail(fmt::format("the {} has columns of several IMUs, '{}' and '{}'; choose the columns of one IMU: --columns {}",
+                     called, *number_, number, kExample));
+  }
   std::string text(std::size_t i) const { return std::string(header_.fields[i]); }
   void take(std::size_t from, std::size_t& column) {
     taken_[from] = true;
@@ -167,7 +239,58 @@ class HeaderReader {
   const CsvLine& header_;
   std::vector<bool> taken_;
   std::string missing_;
+  std::optional<std::string> number_;  ///< number of the IMU in the names of its columns
 };
+
+/// Splits "time=t,gyro=gx,gy,gz,accel=ax,ay,az" into the named columns of one quantity.
+std::vector<std::string> names_of(const std::string& choice, const std::string& quantity) {
+  std::vector<std::string> names;
+  std::string current;
+  for (std::string_view rest = choice; !rest.empty();) {
+    std::string_view word = rest.substr(0, rest.find(','));
+    rest.remove_prefix(std::min(word.size() + 1, rest.size()));
+    for (const std::string_view key : {"time=", "gyro=", "accel="}) {
+      if (!word.starts_with(key)) continue;
+      current = key.substr(0, key.size() - 1);
+      word.remove_prefix(key.size());
+      break;
+    }
+    if (current.empty())
+      throw BadInput(fmt::format("--columns: '{}' does not begin with time=, gyro= or accel=", word));
+    if (current == quantity) names.emplace_back(word);
+  }
+  return names;
+}
+
+/// Returns the column with this name or, if there is none, at this position.
+std::size_t column_of(const LoggedTable& table, const std::string& name) {
+  const std::vector<std::string_view>& fields = table.header().fields;
+  const auto count = table.has_header() ? std::count(fields.begin(), fields.end(), name) : 0;
+  if (count == 1) return static_cast<std::size_t>(std::find(fields.begin(), fields.end(), name) - fields.begin());
+  std::size_t position = 0;
+  if (count == 0 && read_number(name, position) && position < fields.size()) return position;
+  throw BadInput(fmt::format("{}: --columns: {} column '{}'; the table has {} columns{}{}", table.header().where,
+                             count == 0 ? "there is no" : "there are several with the name of", name, fields.size(),
+                             table.has_header() ? ": " : " without names",
+                             table.has_header() ? fmt::format("{}", fmt::join(fields, " ")) : ""));
+}
+
+void require_count(const std::string& quantity, std::size_t count, std::size_t least, std::size_t most) {
+  if (count >= least && count <= most) return;
+  throw BadInput(
+      fmt::format("--columns: {} has {} columns, must have {}; for example "
+                  "time=t,gyro=gx,gy,gz,accel=ax,ay,az",
+                  quantity, count, most == 3 ? "3" : "1, or 2 for seconds and nanoseconds"));
+}
+
+template <class Unit>
+std::optional<Unit> choose_triad(const LoggedTable& table, const std::string& choice, const char* quantity,
+                                 const UnitNames<Unit>& units, std::array<std::size_t, 3>& columns) {
+  const std::vector<std::string> names = names_of(choice, quantity);
+  require_count(quantity, names.size(), 3, 3);
+  for (std::size_t axis = 0; axis < 3; ++axis) columns[axis] = column_of(table, names[axis]);
+  return table.has_header() ? unit_in(table.header().fields[columns[0]], units) : std::nullopt;
+}
 
 }  // namespace
 
@@ -180,7 +303,29 @@ std::optional<ImuColumns> logger_columns(const CsvLine& header) {
   const std::size_t readings = reader.taken();
   columns.stamp_decimals = reader.time(columns.stamp);
   if (!reader.complete(readings)) return std::nullopt;
+  columns.id = reader.id();
   columns.left_out = reader.others();
+  return columns;
+}
+
+ImuColumns chosen_columns(const LoggedTable& table, const std::string& choice) {
+  ImuColumns columns;
+  columns.gyro_unit = choose_triad(table, choice, "gyro", kRateUnits, columns.rate);
+  columns.accel_unit = choose_triad(table, choice, "accel", kForceUnits, columns.force);
+  const std::vector<std::string> times = names_of(choice, "time");
+  require_count("time", times.size(), 1, 2);
+  columns.stamp = column_of(table, times.front());
+  if (times.size() == 2) {
+    columns.stamp_ns = column_of(table, times.back());
+    return columns;
+  }
+  columns.stamp_form = StampForm::decimal;
+  if (table.has_header()) {
+    const std::string_view name = table.header().fields[columns.stamp];
+    columns.stamp_decimals = unit_in(name, kTimeUnits);
+    const Name split = split_suffix(name, kTimeUnits, [](std::string_view each) { return is_one_of(kTimes, each); });
+    if (!columns.stamp_decimals) columns.stamp_decimals = value_of(kTimeUnits, split.unit);
+  }
   return columns;
 }
 

@@ -28,7 +28,7 @@ std::vector<std::int64_t> own_times(const ReferenceSource& source) {
 std::vector<ReferencePose> poses_of(const ReferenceSource& source, const std::vector<std::int64_t>& sweeps_ns) {
   if (source.format == "tum") return read_tum_poses(source.file, source.sorted);
   if (source.format == "kitti") return read_kitti_poses(source.file, sweeps_ns.empty() ? own_times(source) : sweeps_ns);
-  if (source.format == "odometry") return read_odometry_poses(source.file);
+  if (source.format == "odometry") return read_pose_table(source.file, source.sorted);
   throw BadInput(
       fmt::format("the pose format '{}' is not supported; supported: tum, kitti and odometry", source.format));
 }
@@ -73,9 +73,16 @@ void attach_poses(Imported& recording, std::vector<ReferencePose> poses, const E
                   const std::string& where) {
   const sim::Sensors& sensors = recording.sensors;
   for (ReferencePose& pose : poses) pose.time_ns -= recording.info.origin_ns;
+  const StampSpan span = span_of(sensors);
+  if (!poses.empty()) {
+    const auto shift_ns =
+        clock_shift_ns({poses.front().time_ns, poses.back().time_ns}, span, {0, kExportOrigin_ns, -kExportOrigin_ns});
+    for (ReferencePose& pose : poses) pose.time_ns += shift_ns.value_or(0);
+    if (shift_ns.value_or(0) != 0) recording.notes.push_back(clock_note("the stamps of the reference", *shift_ns));
+  }
   std::string remark = check_reference(poses, T_BA, sensors, where);
   move_to(poses, T_BA.inverse(Eigen::Isometry));
-  sim::Truth truth = named(where, poses, span_of(sensors).second);
+  sim::Truth truth = named(where, poses, span.second);
   for (const sim::ImuRecord& imu : sensors.imus) {
     sim::ImuTruth& own = truth.imus.emplace_back();
     own.name = imu.name;

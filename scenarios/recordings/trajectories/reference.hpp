@@ -27,14 +27,17 @@ inline constexpr double kReferenceNormTolerance = 1e-2;
 /// quaternions.
 std::string problem_of(ReferencePose& pose, const ReferencePose* before);
 
-/// Returns "tum" or "kitti" from the first line with numbers (8 or 12 numbers), or "odometry" from the header. Throws
-/// BadInput if the file has none of these formats.
+/// Sorts the poses by time if `sorted`, and then keeps the first of several poses with equal stamps. Throws BadInput
+/// with the file for fewer than two poses.
+void finish_poses(const std::filesystem::path& file, bool sorted, std::vector<ReferencePose>& poses);
+
+/// Returns "tum" or "kitti" from the first line with numbers (8 or 12 numbers), or "odometry" from the header of a
+/// table of poses. Throws BadInput if the file has none of these formats.
 std::string pose_format(const std::filesystem::path& file);
 
-/// Reads a TUM file: "t x y z qx qy qz qw" per line, seconds, '#' starts a comment. `sorted` sorts the poses by time
-/// and keeps the first of several poses with equal stamps. Throws BadInput with file and line for a line without eight
-/// finite numbers, a quaternion norm that differs from 1 by more than 1 %, a stamp that does not increase (unless
-/// sorted), or fewer than two poses.
+/// Reads a TUM file: "t x y z qx qy qz qw" per line, seconds, '#' starts a comment, blanks or commas separate.
+/// `sorted`: see finish_poses. Throws BadInput with file and line for a line without eight finite numbers, a quaternion
+/// norm that differs from 1 by more than 1 %, a stamp that does not increase (unless sorted), or fewer than two poses.
 std::vector<ReferencePose> read_tum_poses(const std::filesystem::path& file, bool sorted);
 
 /// Reads a KITTI file, in which each line has the upper three rows of a pose matrix; `times` are the times of the
@@ -43,14 +46,19 @@ std::vector<ReferencePose> read_tum_poses(const std::filesystem::path& file, boo
 std::vector<ReferencePose> read_kitti_poses(const std::filesystem::path& file,
                                             const std::vector<std::int64_t>& times_ns);
 
-/// Returns true if the first line is the header of a nav_msgs/Odometry table.
-bool is_odometry(const std::filesystem::path& file);
+/// Returns true if the file is a table of poses whose header names time, position and quaternion.
+bool is_pose_table(const std::filesystem::path& file);
 
-/// Reads a table of nav_msgs/Odometry as written by rosbag tools: one message per line, comma separated, with field
-/// names in the header. Reads header.stamp.sec, header.stamp.nanosec, pose.pose.position.x y z and
-/// pose.pose.orientation.x y z w. Throws like read_tum_poses, and also for a missing or repeated column and invalid
-/// nanoseconds.
-std::vector<ReferencePose> read_odometry_poses(const std::filesystem::path& file);
+/// Reads a table of poses, one per line, separated like the IMU tables (tables/logged_table.hpp). The names in the
+/// header identify the columns, in any order:
+/// - the ground truth of EuRoC and TUM VI ("#timestamp [ns],p_RS_R_x [m],...,q_RS_w [],...");
+/// - flattened messages nav_msgs/Odometry, PoseStamped, TransformStamped ("header.stamp.sec", "pose.pose.position.x",
+///   "field.transform.translation.x");
+/// - truth.csv of `export`, and short names ("timestamp tx ty tz qx qy qz qw").
+///
+/// A time without unit is decimal seconds, or ms, us or ns since 1970 by its number of digits. Rows without a known
+/// pose (all NaN) are ignored. Throws like read_tum_poses, and also for a missing or repeated column.
+std::vector<ReferencePose> read_pose_table(const std::filesystem::path& file, bool sorted);
 
 /// Returns the number of poses in a KITTI file; throws like read_kitti_poses, except for the times.
 std::size_t count_kitti_poses(const std::filesystem::path& file);

@@ -18,10 +18,8 @@ constexpr double kContradicts = 0.5, kReferenceAgrees = 0.3;
 /// A difference beyond kExplained is a fault of the file if another order or direction of the quaternions leaves less
 /// than the fraction kExplanationLeaves of the difference.
 constexpr double kExplained = 0.15, kExplanationLeaves = 0.4;
-constexpr double kDelaySearched_s = 5.0;
-/// In valid recordings, stamps at the end of sweeps instead of the start cause a delay of 0.1 s, and filters of the IMU
-/// cause about 0.02 s.
-constexpr double kDelayNoted_s = 0.03, kDelayMax_s = 0.15;
+/// In valid recordings, filters of the IMU cause a delay of about 0.02 s.
+constexpr double kDelayNoted_s = 0.03;
 
 /// Returns the candidate frames with the stated frame first, so that poses that fit the stated frame are never assigned
 /// to another frame.
@@ -39,14 +37,6 @@ std::string share_text(double share) {
   return fmt::format("{:.0f} %", 100.0 * share);
 }
 
-std::string delay_text(double delay_s) {
-  return fmt::format("{:.3f} s too {}", std::abs(delay_s), delay_s > 0.0 ? "late" : "early");
-}
-
-bool is_delayed(double delay_s) {
-  return std::abs(delay_s) >= kDelayMax_s;
-}
-
 /// Describes the fault of the file and the correction.
 std::string remedy(Written written, double delay_s) {
   std::string out;
@@ -54,11 +44,7 @@ std::string remedy(Written written, double delay_s) {
     out += "; its quaternions have w first, must be qx qy qz qw: move the column";
   if (written == Written::inverse || written == Written::w_first_inverse)
     out += "; its poses are of the world in the sensor, must be of the sensor in the world: invert them";
-  if (!is_delayed(delay_s)) return out;
-  const bool late = delay_s > 0.0;
-  return out + fmt::format("; its stamps are {}, at most {:.2f} s is accepted: {} {:.3f} s {} them",
-                           delay_text(delay_s), kDelayMax_s, late ? "subtract" : "add", std::abs(delay_s),
-                           late ? "from" : "to");
+  return is_delayed(delay_s) ? out + "; its " + delay_remedy(delay_s) : out;
 }
 
 std::string disagreement(const TurningCheck& check, const std::string& imu) {

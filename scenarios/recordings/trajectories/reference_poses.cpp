@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <iterator>
 #include <sstream>
 #include <string>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/recordings/number_text.hpp"
 #include "scenarios/recordings/table_file.hpp"
 #include "scenarios/recordings/trajectories/reference.hpp"
 #include "scenarios/regular_file.hpp"
@@ -71,20 +71,36 @@ std::string problem_of(ReferencePose& pose, const ReferencePose* before) {
       before->time_ns);
 }
 
+void finish_poses(const std::filesystem::path& file, bool sorted, std::vector<ReferencePose>& poses) {
+  if (sorted) {
+    const auto before = [](const ReferencePose& a, const ReferencePose& b) { return a.time_ns < b.time_ns; };
+    const auto same = [](const ReferencePose& a, const ReferencePose& b) { return a.time_ns == b.time_ns; };
+    std::stable_sort(poses.begin(), poses.end(), before);
+    poses.erase(std::unique(poses.begin(), poses.end(), same), poses.end());
+  }
+  if (poses.size() < 2)
+    throw BadInput(fmt::format("{}: has {} poses; it needs at least 2", file.string(), poses.size()));
+}
+
 std::string pose_format(const std::filesystem::path& file) {
   std::ifstream stream = open_regular_file(file);
-  if (is_odometry(file)) return "odometry";
+  if (is_pose_table(file)) return "odometry";
   std::string line;
   while (std::getline(stream, line) && (line.empty() || line.front() == '#' || line.front() == '\r')) {
   }
+  std::replace_if(
+      line.begin(), line.end(), [](char c) { return c == ',' || c == ';'; }, ' ');
   std::istringstream words(line);
-  const auto count = std::distance(std::istream_iterator<std::string>(words), std::istream_iterator<std::string>());
-  if (count == 8) return "tum";
-  if (count == 12) return "kitti";
-  throw BadInput(
-      fmt::format("{}: its first line has {} numbers; it must have 8 (TUM: t x y z qx qy qz qw) or 12 (KITTI: rows of "
-                  "a matrix). An odometry table begins with header.stamp.sec",
-                  file.string(), count));
+  std::size_t count = 0, others = 0;
+  double number = 0.0;
+  for (std::string word; words >> word; ++count) others += parse_number(word, number) ? 0 : 1;
+  if (count == 8 && others == 0) return "tum";
+  if (count == 12 && others == 0) return "kitti";
+  throw BadInput(fmt::format(
+      "{}: its first line has {} numbers{}; it must have 8 (TUM: t x y z qx qy qz qw) or 12 (KITTI: rows of "
+      "a matrix), or the header of a table of poses with the names of time, position and quaternion "
+      "(timestamp,x,y,z,qx,qy,qz,qw)",
+      file.string(), count - others, others == 0 ? "" : fmt::format(" and {} other words", others)));
 }
 
 std::vector<ReferencePose> read_tum_poses(const std::filesystem::path& file, bool sorted) {
@@ -96,14 +112,7 @@ std::vector<ReferencePose> read_tum_poses(const std::filesystem::path& file, boo
     if (!problem.empty()) fail(table, row, problem);
     poses.push_back(pose);
   }
-  if (sorted) {
-    const auto before = [](const ReferencePose& a, const ReferencePose& b) { return a.time_ns < b.time_ns; };
-    const auto same = [](const ReferencePose& a, const ReferencePose& b) { return a.time_ns == b.time_ns; };
-    std::stable_sort(poses.begin(), poses.end(), before);
-    poses.erase(std::unique(poses.begin(), poses.end(), same), poses.end());
-  }
-  if (poses.size() < 2)
-    throw BadInput(fmt::format("{}: has {} poses; it needs at least 2", file.string(), poses.size()));
+  finish_poses(file, sorted, poses);
   return poses;
 }
 

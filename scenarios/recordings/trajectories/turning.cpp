@@ -2,6 +2,7 @@
 #include "scenarios/recordings/trajectories/turning.hpp"
 
 #include <Eigen/SVD>
+#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -305,6 +306,16 @@ bool clock_shows(TurningComparison& comparison, double stated, std::size_t least
 }
 
 }  // namespace
+
+std::string delay_text(double delay_s) {
+  return fmt::format("{:.3f} s too {}", std::abs(delay_s), delay_s > 0.0 ? "late" : "early");
+}
+
+std::string delay_remedy(double delay_s) {
+  const bool late = delay_s > 0.0;
+  return fmt::format("stamps are {}, at most {:.2f} s is accepted: {} {:.3f} s {} them", delay_text(delay_s),
+                     kDelayMax_s, late ? "subtract" : "add", std::abs(delay_s), late ? "from" : "to");
+}
 
 TurningCheck check_turning(std::span<const TimedAttitude> attitudes, const std::vector<CandidateFrame>& frames,
                            const sim::ImuRecord& imu, double delay_max_s) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -65,6 +66,17 @@ struct TurningCheck {
   /// stated order does not.
   std::optional<TurningFit> upright;
 };
+
+/// Largest delay that is searched, and largest delay that is accepted: in valid files, stamps at the end of sweeps
+/// instead of the start cause a delay of 0.1 s.
+inline constexpr double kDelaySearched_s = 5.0, kDelayMax_s = 0.15;
+inline bool is_delayed(double delay_s) {
+  return std::abs(delay_s) >= kDelayMax_s;
+}
+/// Returns "0.300 s too late" or "0.300 s too early".
+std::string delay_text(double delay_s);
+/// Returns the fault and its correction: "stamps are 0.300 s too late, at most 0.15 s is accepted: subtract ...".
+std::string delay_remedy(double delay_s);
 
 /// Compares rotations between attitudes (0.05 to 1 s and 0.02 to 2.5 rad apart) with the rotations that the gyro
 /// measures. The gyro's rotation is the product of exponentials of unsaturated samples without a gap above 0.1 s. Uses

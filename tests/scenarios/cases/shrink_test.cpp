@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "scenarios/draw/fixed_number.hpp"
 #include "scenarios/draw/fixed_scenario.hpp"
 #include "scenarios/errors.hpp"
@@ -130,6 +132,26 @@ TEST(Shrink, WhatTheControlCannotDoEitherIsNotKept) {
   const Shrunk held = shrink(tree_data(), losing_samples(), kSeed, toy, options);
   EXPECT_TRUE(held.controlled);
   EXPECT_THAT(names_with(held, Fate::needed), ElementsAre("sensors.imu: rail of the gyro"));
+}
+
+/// The drawn failure comes from clipped readings. Without a rail the toy fails for another reason, which no true rate
+/// cures: such a reduction is not kept.
+TEST(Shrink, OnlyWhatTheSameInputCuresIsKept) {
+  Scenario scenario = losing_samples();
+  fix_number(scenario, "sensors.imu.gyro_range_rad_s", 1.0);
+  fix_number(scenario, "sensors.imu.gyro_rail_rad_s", 1.0);
+  Method toy = *find_methods("rate/raw").front();
+  toy.run = [run = toy.run](const sim::Sensors& sensors, const sim::Values& values, const OracleInput& oracle) {
+    const sim::ImuRecord& imu = sensors.imus.front();
+    double largest = 0.0;
+    for (const Eigen::Vector3d& rate : imu.gyro_rad_s) largest = std::max(largest, rate.lpNorm<Eigen::Infinity>());
+    if (imu.stated_gyro_range_rad_s > 50.0) throw BadInput("another cause");
+    if (largest < 1.5) throw BadInput("it clips");
+    return run(sensors, values, oracle);
+  };
+  const Shrunk shrunk = shrink(tree_data(), scenario, kSeed, toy, {});
+  EXPECT_EQ(shrunk.cure, "gyro_unclipped");
+  EXPECT_THAT(names_with(shrunk, Fate::needed), ::testing::Contains("sensors.imu: rail of the gyro"));
 }
 
 TEST(Shrink, ASpentBudgetSaysWhatWasNotTried) {

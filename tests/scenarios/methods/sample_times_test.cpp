@@ -73,7 +73,7 @@ TEST(SampleTimes, StampsOfAHostAreMendedAndRatesBearThemAgain) {
 TEST(SampleTimes, StampsThatGoBackStayForTheBridgeToRefuse) {
   sim::Recording recording = stamped_by_a_host(testing::synthetic_rig());
   std::vector<std::int64_t>& stamps_ns = recording.sensors.imus.front().time_ns;
-  std::swap(stamps_ns[500], stamps_ns[501]);
+  for (std::size_t k = 1; k < stamps_ns.size(); k += 10) std::swap(stamps_ns[k - 1], stamps_ns[k]);
   EXPECT_EQ(run("rate/tumble", recording).status.trouble, Trouble::time_order);
 }
 

@@ -83,6 +83,18 @@ TEST_P(TurningSense, WhatIsOnlyWrongIsNotComplainedOf) {
 INSTANTIATE_TEST_SUITE_P(Frames, TurningSense, ::testing::Values(Frame::imu, Frame::lidar, Frame::body),
                          [](const auto& tested) { return std::string(to_string(tested.param)); });
 
+TEST_P(TurningSense, AConstantDelayIsNamed) {
+  const auto delayed_by = [&](double late_s) {
+    Estimate late = attitudes(R_BA(GetParam()), GetParam(), as_is);
+    for (AttitudeState& each : late.attitudes) each.time_ns += std::llround(1e9 * late_s);
+    return clock_complaint(late, sensors_);
+  };
+  EXPECT_THAT(delayed_by(0.4), HasSubstr("their stamps are 0.400 s too late, at most 0.15 s is accepted: subtract"));
+  EXPECT_THAT(delayed_by(-0.4), HasSubstr("their stamps are 0.400 s too early"));
+  EXPECT_EQ(delayed_by(0.1), "") << "stamps at the end of a sweep";
+  EXPECT_EQ(delayed_by(0.0), "");
+}
+
 TEST(TurningSense, AnotherFrameIsNamed) {
   const sim::Sensors rig = sensors();
   const Estimate lidar = attitudes(rig.lidars.front().T_BL.linear(), Frame::imu, as_is);

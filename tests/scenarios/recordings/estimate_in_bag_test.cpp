@@ -164,7 +164,7 @@ TEST_F(InBag, WhatCannotBePlacedIsRefused) {
   EXPECT_NE(complaint(), "");
   estimate_ = good;
   estimate_.poses.clear();
-  EXPECT_THAT(complaint(), HasSubstr("holds no poses"));
+  EXPECT_THAT(complaint(), HasSubstr("contains no poses"));
   estimate_ = good;
   for (PoseState& pose : estimate_.poses) pose.time_ns += 1'000'000'000'000;
   EXPECT_THAT(complaint(), HasSubstr("check that both use the same clock"));

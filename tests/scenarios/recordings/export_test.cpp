@@ -9,6 +9,7 @@
 
 #include "scenarios/recordings/export_names.hpp"
 #include "scenarios/recordings/fixture_recording.hpp"
+#include "scenarios/recordings/recording_file.hpp"
 
 namespace tumble::scenarios {
 namespace {
@@ -75,7 +76,7 @@ TEST_F(Export, ATrajectoryIsOfTheFrameThatIsAskedFor) {
   ExportChoices choices;
   choices.frame = truth.imus[0].name;
   export_recording(folder_ / "a.h5", "tum", folder_ / "b.tum", choices);
-  export_tum(truth, folder_ / "a.tum", 0, choices.frame);
+  export_tum(truth, folder_ / "a.tum", export_origin_ns(fixture::info().origin_ns), choices.frame);
   EXPECT_EQ(fixture::bytes_of(folder_ / "b.tum"), fixture::bytes_of(folder_ / "a.tum"));
   EXPECT_THAT(fixture::bytes_of(folder_ / "b.tum"), HasSubstr("true pose of '" + choices.frame + "' in the world"));
   choices.frame = "wheel";

@@ -246,6 +246,54 @@ TEST_P(Frames, APoseOfAnotherFrameIsMovedToTheBody) {
   EXPECT_EQ(start("unknown", ReferenceOf::named, "which has no known pose on the body"), Eigen::Vector3d(7, 8, 9));
 }
 
+// as a motion capture system sends it
+TEST_P(Frames, ATransformIsAReference) {
+  const auto bag = GetParam().writer(path_);
+  write_imu(*bag, "/imu");
+  for (int k = 0; k < 5; ++k) {
+    const std::int64_t stamp = 1'000'000'000 + 10'000'000 * k;
+    bag->write("/vicon", stamp,
+               transform_message({7, 8, 9}, Eigen::Quaterniond(0.6, 0.8, 0, 0), "rig", header_of(stamp, "world")));
+  }
+  bag->finish();
+  BagReading reading;
+  reading.reference_topic = "/vicon";
+  const Imported found = GetParam().read(path_, reading);
+  ASSERT_TRUE(found.reference.has_value());
+  EXPECT_EQ(found.reference->p_WB_m.at(0), Eigen::Vector3d(7, 8, 9));
+  EXPECT_TRUE(found.reference->q_WB.at(0).isApprox(Eigen::Quaterniond(0.6, 0.8, 0, 0), 1e-12));
+  EXPECT_THAT(found.notes, Contains(HasSubstr("/vicon: by the messages, poses of 'rig', which has no known pose")));
+}
+
+TEST_P(Frames, AStatedZeroIsAMounting) {
+  const auto bag = GetParam().writer(path_);
+  write_imu(*bag, "/imu");
+  bag->finish();
+  BagReading reading;
+  const auto missing = Contains(HasSubstr("neither /tf_static nor --lever-arm gives its pose"));
+  EXPECT_THAT(GetParam().read(path_, reading).notes, missing);
+  reading.imu_placed = true;
+  EXPECT_THAT(GetParam().read(path_, reading).notes, testing::Not(missing));
+}
+
+// zeros of an estimate are no knowledge; those of the truth are
+TEST_P(Frames, WhatAnEstimateDoesNotKnowIsUnknown) {
+  const StoredTruth truth = fixture::stored_truth(recording_, folder_);
+  BagTrack track{"mine", {{7'000'000, {1, 2, 3}, Eigen::Quaterniond::Identity()}}};
+  track.poses[0].covariance(0, 0) = 4.0;
+  GetParam().write(recording_.sensors, {0, &truth, {track}}, path_);
+  const ros::Odometry mine = messages<ros::Odometry>("/mine").at(0), known = messages<ros::Odometry>("/truth").at(0);
+  EXPECT_EQ(mine.pose_covariance[0], 4.0);
+  for (const std::size_t row : {3u, 4u, 5u}) EXPECT_EQ(mine.pose_covariance[7 * row], -1.0);
+  for (std::size_t row = 0; row < 6; ++row) {
+    EXPECT_EQ(mine.twist_covariance[7 * row], -1.0);
+    EXPECT_EQ(known.pose_covariance[7 * row], 0.0);
+    EXPECT_EQ(known.twist_covariance[7 * row], 0.0);
+  }
+  EXPECT_EQ(mine.linear_velocity, (std::array<double, 3>{}));
+  EXPECT_NE(known.angular_velocity, (std::array<double, 3>{}));
+}
+
 TEST_P(Frames, AMessageThatIsThereTwiceIsTakenOnce) {
   const auto bag = GetParam().writer(path_);
   write_imu(*bag, "/imu", 2);

@@ -185,6 +185,21 @@ TEST_F(HostileBag, TopicsWithoutMessagesAreLeftOutUnlessNamed) {
   }
 }
 
+TEST_F(HostileBag, CloudsOfATypeThatIsNotReadAreACaution) {
+  const std::filesystem::path bag = folder_ / "bag";
+  export_ros2_bag(fixture::small_sensors(), {}, bag);
+  SQLite::Database database((bag / "bag_0.db3").string(), SQLite::OPEN_READWRITE);
+  for (const std::string type : {"point_cloud_interfaces/msg/CompressedPointCloud2", "sensor_msgs/msg/PointCloud",
+                                 "velodyne_msgs/msg/VelodyneScan"}) {
+    database.exec("UPDATE topics SET type = '" + type + "' WHERE name = '/lidar/points'");
+    const Imported imported = import_ros2_bag(bag, {});
+    EXPECT_TRUE(imported.sensors.lidars.empty());
+    EXPECT_THAT(imported.notes, testing::Contains(testing::AllOf(HasSubstr("/lidar/points: caution: "),
+                                                                 HasSubstr("not read; convert them to"))))
+        << type;
+  }
+}
+
 TEST_F(HostileBag, AMessageThatPromisesTooMuchAllocatesNothing) {
   const std::filesystem::path bag = folder_ / "bag";
   for (const bool field_count : {false, true}) {

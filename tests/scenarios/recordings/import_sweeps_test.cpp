@@ -230,7 +230,7 @@ TEST_F(ImportSweeps, HostileInputIsOneClearLine) {
   put("2.ply", sweep("float time", {"0.01", "0.05", "0.5"}));
   source_.reading.time_unit = "s";
   EXPECT_THAT(complaint_of(),
-              HasSubstr("2.ply: point 2 is 500000000 ns after the start of the sweep; this must be at most"));
+              HasSubstr("2.ply: point 2 is 449999999 ns after the middle of the sweep; this must be within"));
   put("2.ply", sweep());
   EXPECT_THAT(complaint_of(), HasSubstr("2.ply: there is no field 'time', which other sweeps have"));
   put("2.ply", sweep("float ring", {"1", "2.5", "3"}));
@@ -247,7 +247,7 @@ TEST_F(ImportSweeps, AUnitThatCannotBeToldIsAskedFor) {
   put("times.txt", "1.0\n1.1\n");
   for (const char* name : {"1.ply", "2.ply"}) put(name, sweep("float time", {"0.00001", "0.00002", "0.00005"}));
   EXPECT_THAT(complaint_of(), HasSubstr("1.ply: the field 'time' has a range of"));
-  EXPECT_THAT(complaint_of(), HasSubstr("2 to 150 % of the sweep period of 100 ms; give the unit"));
+  EXPECT_THAT(complaint_of(), HasSubstr("0.15 to 150 % of the sweep period of 100 ms; give the unit (--time-unit)"));
   source_.reading.time_unit = "s";
   EXPECT_EQ(complaint_of(), "");
   source_.reading.time_unit = "minutes";
@@ -255,6 +255,27 @@ TEST_F(ImportSweeps, AUnitThatCannotBeToldIsAskedFor) {
   source_.reading = {};
   source_.reading.time_field = "tiem";
   EXPECT_THAT(complaint_of(), HasSubstr("no field 'tiem'; did you mean 'time'?"));
+}
+
+// times that count from each packet of a sweep, as of `time_stamp` in ns
+TEST_F(ImportSweeps, TimesOverAPartOfASweepAreReadWithACaution) {
+  std::vector<std::string> ns;
+  for (int k = 0; k < 120; ++k) ns.push_back(std::to_string(11'000 * k));
+  put("times.txt", "1.0\n1.1\n");
+  for (const char* name : {"1.ply", "2.ply"}) put(name, sweep("uint time_stamp", ns));
+  EXPECT_EQ(import().point_times, sim::PointTimes::measured);
+  EXPECT_THAT(imported_.notes,
+              testing::Contains("point times: field 'time_stamp', in ns after the sweep's time stamp"));
+  EXPECT_THAT(imported_.notes, testing::Contains(HasSubstr("caution: the point times span less than 2 %")));
+}
+
+TEST_F(ImportSweeps, UnknownFieldsAreNamedWithTheOption) {
+  put("times.txt", "1.0\n1.1\n");
+  for (const char* name : {"1.ply", "2.ply"}) put(name, sweep("float firing", {"0.01", "0.05", "0.09"}));
+  import();
+  EXPECT_THAT(imported_.notes,
+              testing::Contains("the points have no time stamps, so sweeps cannot be deskewed; if one of "
+                                "these fields has the times, set '--time-field': firing"));
 }
 
 TEST_F(ImportSweeps, AUnitThatTheNumbersContradictIsRefusedWithBoth) {

@@ -141,11 +141,9 @@ TEST_F(ImportCsv, AnotherUnitOrAMissingColumnIsSaid) {
   std::string twice = kNamed;
   twice.replace(twice.find("__time"), 6, "/b/header/stamp");
   EXPECT_THAT(complaint_of(twice + rows), HasSubstr("csv:1: two columns have the name header/stamp"));
-  for (const char* stamp : {"", ".5", "-1.5", "1.5e3", "1.0123456789", "12345678901.5"}) {
+  for (const char* stamp : {"", "x", "1.5e", "12345678901.5"})
     EXPECT_THAT(complaint_of(kNamed + "1.5,0.1,0.2,0.3,7," + stamp + ",-0.5,0,9\n"),
-                HasSubstr("csv:2: column 5 must be seconds"))
-        << stamp;
-  }
+                HasSubstr("csv:2: column 5 must be a time"));
 }
 
 TEST_F(ImportCsv, ReadsTheLogOfASphere) {
@@ -355,6 +353,7 @@ TEST_P(ImportBroad, TheReferenceAgreesWithTheReadings) {
   const sim::ImuRecord& imu = imported.sensors.imus[0];
   ASSERT_EQ(truth.q_WB.size(), imu.time_ns.size());
   EXPECT_TRUE(truth.label.empty());
+  EXPECT_THAT(imported.notes, Contains(HasSubstr("the reference agrees with the gyro of 'imu'")));
   // where the rate is known it is the gyro's, and at rest gravity stands upright in the world
   std::vector<double> errors, at_rest, up;
   for (std::size_t k = 0; k < truth.q_WB.size(); ++k) {

@@ -24,6 +24,10 @@ class LoggerTable : public fixture::Folder {
     fixture::put(folder_ / "log.csv", text);
     return import_imu_csv(folder_ / "log.csv", {}, unit, gyro_unit);
   }
+  Imported import_columns(const std::string& text, const std::string& columns) {
+    fixture::put(folder_ / "log.csv", text);
+    return import_imu_csv(folder_ / "log.csv", {}, AccelUnit::m_s2, GyroUnit::rad_s, columns);
+  }
   std::string complaint_of(const std::string& text, AccelUnit unit = AccelUnit::m_s2) {
     return fixture::complaint([&] { import(text, unit); });
   }
@@ -146,13 +150,116 @@ TEST_F(LoggerTable, WhatIsMissingOrThereTwiceIsSaid) {
 }
 
 TEST_F(LoggerTable, TimesThatAreNoneHaveTheirPlace) {
-  for (const char* time : {"", "-1", "1e3", "x", ".5", "99999999999999999999", "1.2.3"}) {
+  for (const char* time : {"", "x", "1e", "e3", ".", "--1", "99999999999999999999", "1e300", "1.2.3"}) {
     EXPECT_THAT(complaint_of(table("time_s,gx,gy,gz,ax,ay,az", {"0", time}, kRow)),
                 AllOf(HasSubstr("log.csv:3: column 0"), HasSubstr("must be a time")))
         << time;
   }
   EXPECT_THAT(complaint_of(table("time_s,gx,gy,gz,ax,ay,az", {"0", "0.1", "0.05"}, kRow)),
               HasSubstr("log.csv:4: the time stamp does not increase"));
+}
+
+/// The same three samples, with other lines around them and other fields in them.
+TEST_F(LoggerTable, DialectsOfLoggersAreRead) {
+  const std::string names = "time,gx,gy,gz,ax,ay,az";
+  const std::vector<std::pair<const char*, std::string>> tables = {
+      {"comments", "# recorded 2024-05-01\n# sensor, range 2000\n" + table(names, kSeconds, kRow) + "# end\n"},
+      {"header in a comment", table("# " + names, kSeconds, kRow)},
+      {"open ends", table(names, kSeconds, kRow + ",")},
+      {"open ends and header", table(names + ",", kSeconds, kRow + ",")},
+      {"row of units", table(names + "\ns,rad/s,rad/s,rad/s,m/s^2,m/s^2,m/s^2", kSeconds, kRow)},
+      {"negative times", table(names, {"-0.995", "-0.99", "-0.985"}, kRow)},
+      {"PX4 sensor_combined",
+       table("timestamp,gyro_rad[0],gyro_rad[1],gyro_rad[2],accelerometer_timestamp_relative,accelerometer_m_s2[0],"
+             "accelerometer_m_s2[1],accelerometer_m_s2[2]",
+             {"5000", "10000", "15000"}, ",0.1,0.2,0.3,0,-0.5,0,9.8")},
+      {"ArduPilot", table("TimeUS,I,GyrX,GyrY,GyrZ,AccX,AccY,AccZ,EG,T", {"5000", "10000", "15000"},
+                          ",0,0.1,0.2,0.3,-0.5,0,9.8,0,40")},
+      {"Sensor Logger",
+       table("time,seconds_elapsed,gyroscope_x,gyroscope_y,gyroscope_z,accelerometer_x,accelerometer_y,accelerometer_z",
+             {"1700000000005000000", "1700000000010000000", "1700000000015000000"}, ",0.1" + kRow)},
+      {"phyphox",
+       table("\"Time (s)\",\"Gyroscope x (rad/s)\",\"Gyroscope y (rad/s)\",\"Gyroscope z (rad/s)\","
+             "\"Acceleration x (m/s^2)\",\"Acceleration y (m/s^2)\",\"Acceleration z (m/s^2)\"",
+             {"5.000000000E-3", "1.000000000E-2", "1.500000000E-2"}, ",1.0E-1,2.0E-1,3.0E-1,-5.0E-1,0.0,9.8E0")},
+      {"one numbered IMU",
+       table("time,imu1_gyro_x,imu1_gyro_y,imu1_gyro_z,accel1_x,accel1_y,accel1_z", kSeconds, kRow)}};
+  for (const auto& [name, text] : tables) {
+    SCOPED_TRACE(name);
+    expect_the_readings(import(text));
+  }
+}
+
+TEST_F(LoggerTable, NumbersMayBeInAnyNotation) {
+  const auto text = [](char by) {
+    std::string out =
+        "time,gx,gy,gz,ax,ay,az\n5.000000000000000104e-03,+1e-1,2E-1,+0.3,-5.0e-01,0,9.8\n"
+        "+1.000000000000000021e-02, 0.1 ,0.2,.3,-.5,0.,9.8\n1.499999999999999944e-02,0.1,0.2,0.3,-0.5,0,9.8e0\n";
+    std::replace(out.begin(), out.end(), ',', by);
+    return out;
+  };
+  for (const char by : {',', ' ', '\t'}) expect_the_readings(import(text(by)));
+  expect_the_readings(import_columns(text(' ').substr(std::string("time,gx,gy,gz,ax,ay,az\n").size()),
+                                     "time=0,gyro=1,2,3,accel=4,5,6"));
+}
+
+TEST_F(LoggerTable, RowsOfSeveralImusAreOfTheFirst) {
+  std::string text = "TimeUS,I,GyrX,GyrY,GyrZ,AccX,AccY,AccZ\n";
+  for (const char* time : {"5000", "10000", "15000"})
+    for (const char* id : {"0", "1"})
+      text += std::string(time) + "," + id + (*id == '0' ? kRow : ",1,1,1,0,0,9.8") + "\n";
+  const Imported imported = import(text);
+  expect_the_readings(imported);
+  EXPECT_THAT(imported.notes, Contains("column 'I' numbers several IMUs; the rows of 0 are read, these are left out: 1 "
+                                       "(3 rows)"));
+  // a counter of rows is no number of an IMU
+  std::string counted = "id,time,gx,gy,gz,ax,ay,az\n";
+  for (int k = 0; k < 12; ++k) counted += std::to_string(k) + "," + std::to_string(0.005 * k) + kRow + "\n";
+  EXPECT_EQ(import(counted).sensors.imus[0].time_ns.size(), 12u);
+}
+
+TEST_F(LoggerTable, TheUserNamesColumns) {
+  const std::string two = table(
+      "time,gyro1_x,gyro1_y,gyro1_z,accel1_x,accel1_y,accel1_z,gyro2_x,gyro2_y,gyro2_z,accel2_x,accel2_y,accel2_z",
+      kSeconds, ",1,1,1,0,0,9.8" + kRow);
+  EXPECT_THAT(complaint_of(two), AllOf(HasSubstr("log.csv:1: the gyro has columns of several IMUs, '1' and '2'"),
+                                       HasSubstr("--columns time=NAME")));
+  expect_the_readings(import_columns(two, "time=time,gyro=gyro2_x,gyro2_y,gyro2_z,accel=accel2_x,accel2_y,accel2_z"));
+  // units in the names count, also those of the time
+  const Imported other = import_columns(table("n,stamp_us,rate a (deg/s),rate b (deg/s),rate c (deg/s),f,g,h",
+                                              {"7,5000", "8,10000", "9,15000"}, ",57.29577951308232,0,0,-0.5,0,9.8"),
+                                        "accel=f,g,h,time=stamp_us,gyro=rate a (deg/s),rate b (deg/s),rate c (deg/s)");
+  EXPECT_THAT(other.sensors.imus[0].time_ns, ElementsAre(0, 5'000'000, 10'000'000));
+  EXPECT_NEAR(other.sensors.imus[0].gyro_rad_s[0].x(), 1.0, 1e-12);
+  const std::string split = table("a,b,c,d,e,f,g,h", {"12,500000000", "12,505000000", "12,510000000"}, kRow);
+  const Imported seconds = import_columns(split, "time=a,b,gyro=c,d,e,accel=f,g,h");
+  expect_the_readings(seconds);
+  EXPECT_EQ(seconds.info.origin_ns, 12'500'000'000);
+  const auto refused = [&](const char* choice) { return fixture::complaint([&] { import_columns(split, choice); }); };
+  EXPECT_THAT(refused("time=a,b,gyro=c,d,e,accel=f,g,z"), HasSubstr("log.csv:1: --columns: there is no column 'z'"));
+  EXPECT_THAT(refused("time=a,b,gyro=c,d,accel=f,g,h"), HasSubstr("--columns: gyro has 2 columns, must have 3"));
+  EXPECT_THAT(refused("gyro=c,d,e,accel=f,g,h"), HasSubstr("--columns: time has 0 columns"));
+  EXPECT_THAT(refused("a,b"), HasSubstr("--columns: 'a' does not begin with time=, gyro= or accel="));
+}
+
+// of a bag by bagpy and by `rostopic echo -p`: the record's time comes first
+TEST_F(LoggerTable, FlattenedMessagesHaveTheStampsOfTheirHeaders) {
+  const Imported bagpy = import(table(
+      "Time,header.seq,header.stamp.secs,header.stamp.nsecs,header.frame_id,angular_velocity.x,angular_velocity.y,"
+      "angular_velocity.z,angular_velocity_covariance_0,linear_acceleration.x,linear_acceleration.y,"
+      "linear_acceleration.z",
+      {"50.1,0,12,500000000", "50.11,1,12,505000000", "50.2,2,12,510000000"}, ",imu,0.1,0.2,0.3,0,-0.5,0,9.8"));
+  expect_the_readings(bagpy);
+  EXPECT_EQ(bagpy.info.origin_ns, 12'500'000'000);
+  const Imported echo =
+      import(table("%time,field.header.seq,field.header.stamp,field.header.frame_id,field.angular_velocity.x,"
+                   "field.angular_velocity.y,field.angular_velocity.z,field.linear_acceleration.x,"
+                   "field.linear_acceleration.y,field.linear_acceleration.z",
+                   {"1700000000100000000,0,1700000000000000000", "1700000000110000000,1,1700000000005000000",
+                    "1700000000200000000,2,1700000000010000000"},
+                   ",imu" + kRow));
+  expect_the_readings(echo);
+  EXPECT_EQ(echo.info.origin_ns, 1'700'000'000'000'000'000);
 }
 
 }  // namespace

@@ -52,5 +52,42 @@ TEST(RecordingClock, StartsWithTheFirstReadingOfEverySort) {
   }
 }
 
+TEST(RecordingClock, ExportsStartWithTheirOwnZero) {
+  EXPECT_EQ(export_origin_ns(0), kExportOrigin_ns);
+  EXPECT_EQ(export_origin_ns(-5), kExportOrigin_ns);
+  EXPECT_EQ(export_origin_ns(1'700'000'000'000'000'000), 1'700'000'000'000'000'000);
+  EXPECT_EQ(origin_of(4'000'000), 0);
+  EXPECT_EQ(origin_of(kExportOrigin_ns + 4'000'000), kExportOrigin_ns);
+  EXPECT_EQ(origin_of(kExportOrigin_ns + 2'000'000'000), kExportOrigin_ns + 2'000'000'000);
+}
+
+TEST(RecordingClock, ClocksOfExportsAreConverted) {
+  const std::int64_t second = 1'000'000'000;
+  const StampSpan recording{0, 10 * second};
+  const auto shift = [&](std::int64_t first, std::int64_t last) {
+    return clock_shift_ns({first, last}, recording, {0, -kExportOrigin_ns, kExportOrigin_ns});
+  };
+  EXPECT_EQ(shift(second, 20 * second), 0);
+  EXPECT_EQ(shift(kExportOrigin_ns + second, kExportOrigin_ns + 2 * second), -kExportOrigin_ns);
+  EXPECT_EQ(shift(-kExportOrigin_ns, -kExportOrigin_ns + second), kExportOrigin_ns);
+  EXPECT_EQ(shift(kExportOrigin_ns + 11 * second, kExportOrigin_ns + 12 * second), std::nullopt);
+}
+
+// poses that count from zero, of a recording that was exported and imported
+TEST(RecordingClock, AReferenceFromZeroFitsAnExport) {
+  sim::Recording recording = fixture::recording();
+  Imported imported;
+  imported.sensors = recording.sensors;
+  imported.info.origin_ns = kExportOrigin_ns;
+  std::vector<ReferencePose> poses;
+  for (int k = 0; k < 4; ++k)
+    poses.push_back({10'000'000 * k, Eigen::Vector3d(k, 0, 0), Eigen::Quaterniond::Identity()});
+  attach_poses(imported, poses, Eigen::Isometry3d::Identity(), "poses");
+  ASSERT_TRUE(imported.reference.has_value());
+  EXPECT_EQ(imported.reference->p_WB_m.at(1).x(), 1.0);
+  EXPECT_THAT(imported.notes, testing::Contains(testing::HasSubstr("the stamps of the reference count from zero; "
+                                                                   "1000000000 s are added to them")));
+}
+
 }  // namespace
 }  // namespace tumble::scenarios

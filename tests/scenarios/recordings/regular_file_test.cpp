@@ -91,8 +91,8 @@ TEST_F(RegularFile, ReadersRefuseAPipeAndDoNotWaitForIt) {
   EXPECT_EQ(complaint([&] { import_ros2_bag(pipe, {}); }), said);
   EXPECT_EQ(complaint([&] { import_mcap(pipe, {}); }), said);
   EXPECT_EQ(complaint([&] { pose_format(pipe); }), said);
-  EXPECT_FALSE(is_odometry(pipe));
-  EXPECT_EQ(complaint([&] { read_odometry_poses(pipe); }), said);
+  EXPECT_FALSE(is_pose_table(pipe));
+  EXPECT_EQ(complaint([&] { read_pose_table(pipe, false); }), said);
   EXPECT_EQ(complaint([&] { read_learnt_rig(pipe); }), said);
   Kind kind{};
   std::string method;

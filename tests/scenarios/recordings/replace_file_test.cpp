@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -41,6 +42,22 @@ TEST_F(ReplaceFile, FollowsTheUsersMask) {
   struct stat status {};
   ASSERT_EQ(stat((folder_ / "a").c_str(), &status), 0);
   EXPECT_EQ(status.st_mode & 0777u, 0640u);
+}
+
+// what a killed process leaves behind is removed by the next one, and what a living one writes is not
+TEST_F(ReplaceFile, FilesOfKilledProcessesAreRemoved) {
+  std::filesystem::create_directory(folder_ / "x");
+  const OutputFile own(folder_ / "x" / ".." / "own");  // the folder by another name, to look into it again later
+  const pid_t child = fork();
+  if (child == 0) {
+    const OutputFile left(folder_ / "a.h5");
+    kill(getpid(), SIGKILL);
+  }
+  ASSERT_EQ(waitpid(child, nullptr, 0), child);
+  ASSERT_EQ(files(), 3u);
+  replace_file(folder_ / "b", "x");
+  EXPECT_TRUE(std::filesystem::exists(own.unfinished()));
+  EXPECT_EQ(files(), 3u) << "x, own and b";
 }
 
 TEST_F(ReplaceFile, ImpossiblePlacesAreNamed) {

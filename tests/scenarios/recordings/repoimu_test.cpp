@@ -55,6 +55,7 @@ TEST_F(Repoimu, TakesTheFileAsItIs) {
   EXPECT_TRUE(imu.magnetic_field_t.empty());
   EXPECT_THAT(all_notes(imported), HasSubstr("units and axes agree"));
   EXPECT_THAT(all_notes(imported), HasSubstr("set --align-reference to remove it"));
+  EXPECT_THAT(all_notes(imported), HasSubstr("the gyro of 'imu'")) << "the reference is compared with the gyro";
   EXPECT_THAT(all_notes(imported), testing::Not(HasSubstr("sample and hold")));
   EXPECT_THAT(all_notes(imported), testing::Not(HasSubstr("at a rail"))) << "gravity at rest is no rail";
   // the reference as it stands in the file

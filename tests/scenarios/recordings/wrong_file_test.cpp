@@ -78,12 +78,25 @@ TEST_F(WrongFile, AbsentForeignOrFolder) {
     return fixture::complaint([&] { read_sensors(path); });
   };
   EXPECT_EQ(complaint_of(folder_ / "none.h5"), (folder_ / "none.h5").string() + ": no such file");
-  EXPECT_EQ(complaint_of(folder_), folder_.string() + ": is a folder, must be a file");
+  EXPECT_THAT(complaint_of(folder_), HasSubstr(": is a folder, must be a recording (FILE.h5); 'tumble import "));
   fixture::put(folder_ / "text.h5", "scenario: hill\n");
   EXPECT_THAT(complaint_of(folder_ / "text.h5"), HasSubstr("text.h5: truncated, damaged or not an HDF5 file"));
   const hid_t foreign = H5Fcreate((folder_ / "foreign.h5").c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
   H5Fclose(foreign);
   EXPECT_THAT(complaint_of(folder_ / "foreign.h5"), HasSubstr("foreign.h5: /format: is not a recording"));
+}
+
+TEST_F(WrongFile, WhatImportConvertsIsNamed) {
+  const auto complaint_of = [&](const char* name, const std::string& bytes) {
+    fixture::put(folder_ / name, bytes);
+    return fixture::complaint([&] { read_sensors(folder_ / name); });
+  };
+  const std::string way = ", must be a recording (FILE.h5); 'tumble import " + (folder_ / "a").string();
+  EXPECT_THAT(complaint_of("a.bag", "#ROSBAG V2.0\n"), HasSubstr("is a ROS 1 bag" + way + ".bag -o FILE.h5'"));
+  EXPECT_THAT(complaint_of("a.mcap", "\x89MCAP0\r\n"), HasSubstr("is an MCAP file" + way));
+  EXPECT_THAT(complaint_of("a.h5", "#ROSBAG V2.0\n"), HasSubstr("is a ROS 1 bag")) << "whatever its name";
+  EXPECT_THAT(complaint_of("a.db3", "SQLite format 3\0"), HasSubstr("is a ROS 2 bag or a database" + way));
+  EXPECT_THAT(complaint_of("a.csv", "time,wx\n"), HasSubstr("is a table" + way));
 }
 
 TEST_F(WrongFile, AnotherVersion) {

@@ -195,6 +195,18 @@ TEST(PositionScores, AGrowingOffsetGivesKnownErrors) {
   EXPECT_NEAR(values.at("rpe_1m_rad"), 0.0, 1e-9);
 }
 
+TEST(PositionScores, TheShareIsOfTheSamePathInEveryFrame) {
+  // an offset of 5 cm at the end, in the frame of a point that turns around the centre of mass, and of the centre
+  // itself
+  const auto share_in = [](Frame frame) {
+    Estimate estimate = perfect_estimate(rig(), frame);
+    estimate.poses.back().p_WA_m.x() += 0.05;
+    return scores(Kind::position, estimate, rig()).at("position_end_error_share");
+  };
+  EXPECT_NEAR(share_in(Frame::body), 0.05 / testing::SyntheticMotion().displacement_m.norm(), 1e-6);
+  EXPECT_NEAR(share_in(Frame::imu), share_in(Frame::body), 1e-6);
+}
+
 TEST(PositionScores, CoverageCountsErrorsWithinThreeSigmas) {
   Estimate estimate = perfect_estimate(rig(), Frame::body);
   EXPECT_FALSE(scores(Kind::position, estimate, rig()).contains("position_coverage_3sigma")) << "nothing is stated";

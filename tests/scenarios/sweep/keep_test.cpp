@@ -13,6 +13,7 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/estimate_file.hpp"
 #include "scenarios/recordings/recording_file.hpp"
+#include "scenarios/sweep/draw_files.hpp"
 #include "scenarios/sweep/merge.hpp"
 #include "scenarios/sweep/small_catalogue.hpp"
 #include "scenarios/sweep/sweep.hpp"
@@ -190,6 +191,25 @@ TEST_F(KeepTest, ADiskThatRefusesCostsTheResultsNothing) {
   EXPECT_EQ(progress.kept, 0u);
   EXPECT_EQ(progress.to_keep, 1u);
   EXPECT_THAT(progress.not_kept, HasSubstr("kept"));
+}
+
+// a draw with one estimate that could not be written, for example because the disk is full, is not kept in parts
+TEST_F(KeepTest, ADrawIsKeptWholeOrNotAtAll) {
+  const SimulatedDraw draw = simulate_draw(data(), load_scenario(data(), "roll"), 1, 1);
+  Keeping keeping;
+  keeping.when = Keeping::When::always;
+  keeping.folder = folder_ / "kept" / "roll" / "1";
+  const auto finished = [&](const std::string& missed) {
+    DrawFiles files(keeping);
+    std::filesystem::create_directories(files.estimate(find_methods("rate/raw").front()->info));
+    if (!missed.empty()) files.miss(missed);
+    files.finish(draw, false);
+    return files.trouble();
+  };
+  EXPECT_EQ(finished("no space left on device"), "no space left on device");
+  EXPECT_FALSE(std::filesystem::exists(keeping.folder));
+  EXPECT_EQ(finished(""), "");
+  EXPECT_TRUE(std::filesystem::exists(keeping.folder / "recording.h5"));
 }
 
 TEST_F(KeepTest, TwoRulesAreNotMerged) {

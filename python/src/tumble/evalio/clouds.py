@@ -17,8 +17,8 @@ from evalio._cpp import helpers  # noqa: E402
 
 Array = npt.NDArray[Any]
 
-#: Offset that is added to all times, because evalio's clock is unsigned.
-ORIGIN_NS = 1_000_000_000_000
+#: Stamp of time 0: that of the program's exports, so that results of evalio, `tumble export` and `tumble score` have one clock.
+ORIGIN_NS = 1_000_000_000_000_000_000
 
 _POINT = np.dtype([("x", "f4"), ("y", "f4"), ("z", "f4"), ("intensity", "f4"), ("t", "u4"), ("range", "u4"), ("ring", "u2")])
 _TYPES = {"f4": "FLOAT32", "u4": "UINT32", "u2": "UINT16"}

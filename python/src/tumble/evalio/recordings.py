@@ -15,7 +15,7 @@ from ..errors import TumbleError
 from ..files import optional
 from ..program import record
 from ..recordings import Recording, read
-from ..replay import RIG_BODY_L, sheet_of
+from ..processing import RIG_BODY_L, sheet_of
 from .clouds import Grid, measurement, stamp
 from .needed import needed_evalio
 from .poses import pose

@@ -12,6 +12,7 @@ from . import _tumble
 from .checks import having
 from .errors import TumbleError
 from .recordings import Imu, Recording
+from .shown import Shown
 
 #: Box in lidar axes whose returns belong to the rig: smallest and largest corner.
 RIG_BODY_L = ((-0.5, -0.4, -0.27), (0.5, 0.4, 0.23))
@@ -65,8 +66,8 @@ def _require_recording(recording: Any) -> None:
     having("recording", recording, "a Recording", "first_imu", "lidars", "robot", "gravity_m_s2")
 
 
-@dataclass
-class Tumble:
+@dataclass(repr=False)
+class Tumble(Shown):
     """Results of TumblingOdometry for one recording."""
 
     poses: _tumble.Poses  #: final (smoothed) poses of the IMU, at its samples within sweeps

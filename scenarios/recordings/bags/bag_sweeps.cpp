@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/recordings/bags/bag_sweeps.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+#include <utility>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/recordings/bags/bag_clouds.hpp"
+#include "scenarios/recordings/bags/bag_imu.hpp"
+#include "scenarios/recordings/bags/bag_stamps.hpp"
+#include "scenarios/recordings/clouds/sweep_stamps.hpp"
+#include "scenarios/recordings/upper_median.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+/// Differences between header and record stamps above this value are noted.
+constexpr double kClocksApart_s = 1e-3;
+/// Points that are later than their record by more than this value are noted; smaller differences are normal between
+/// the clocks of two computers.
+constexpr double kAhead_s = 0.01;
+
+/// Calls `take(message, origin)` for each cloud of the topic, of either type.
+template <class Take>
+void read_clouds(const OpenedBag& bag, const std::string& topic, LeftOut& left_out, Take&& take) {
+  if (is_livox_type(bag.topic(topic).type)) return bag.read<ros::LivoxCustomMsg>(topic, take, &left_out);
+  bag.read<ros::PointCloud2>(topic, take, &left_out);
+}
+
+/// Points that are later than their own record cannot have been measured yet, so their times count from another start
+/// than the stamp.
+void note_points_to_come(const std::string& topic, const BuiltSweeps& built, const std::vector<std::int64_t>& records,
+                         std::vector<std::string>& notes) {
+  std::vector<double> ahead_s;
+  for (std::size_t k = 0; k < std::min(records.size(), built.last_point_ns.size()); ++k) {
+    if (built.last_point_ns[k]) ahead_s.push_back(1e-9 * static_cast<double>(*built.last_point_ns[k] - records[k]));
+  }
+  if (ahead_s.empty()) return;
+  const double middle_s = upper_median(std::move(ahead_s));
+  if (middle_s < kAhead_s) return;
+  notes.push_back(
+      fmt::format("{}: caution: the last points of a sweep, by their times after the stamp, are {} s later than the "
+                  "record stamp; the stamp may be the end of the sweep. It is read as the start (set '--stamps record' "
+                  "to start each sweep one period before its record stamp)",
+                  topic, std::to_string(middle_s)));
+}
+
+/// Stores the starts of the sweeps whose stamps are in order. `numbers` are the positions of the stamps' messages.
+void keep_in_order(const OpenedBag& bag, const std::string& topic, const BagStamps& stamps,
+                   const std::vector<std::size_t>& numbers, CloudHeaders& out) {
+  const std::vector<bool> in_order = stamps_in_order(stamps.times_ns());
+  for (std::size_t k = 0; k < in_order.size(); ++k) {
+    if (in_order[k]) {
+      out.stamps.push_back(stamps.times_ns()[k]);
+      out.starts[numbers[k]] = out.stamps.back();
+    } else {
+      out.left_out.add("a wrong time stamp", bag.place_of(topic, numbers[k]) + ": " + stamps.disorder(k));
+    }
+  }
+  out.left_out.require_few(out.stamps.size());
+}
+
+}  // namespace
+
+CloudHeaders read_headers(const OpenedBag& bag, const std::string& topic, const BagReading& reading) {
+  CloudHeaders out;
+  BagStamps stamps(reading.stamps);
+  std::uint64_t before = 0;
+  std::size_t repeated = 0;
+  std::vector<std::size_t> numbers;
+  read_clouds(bag, topic, out.left_out, [&](const auto& message, const MessageOrigin& origin) {
+    out.frame = without_slash(message.header.frame_id);
+    if (out.left_out_as_map(reading)) return;  // a map may have constant stamps
+    out.starts.resize(origin.number + 1);
+    const std::int64_t header_ns = stamp_of(message.header);
+    const std::uint64_t now = content_of(message);
+    const bool repeats = stamps.repeats(header_ns) && now == before;
+    before = now;
+    if (repeats) {
+      ++repeated;
+      return;
+    }
+    out.left_out.guard([&] {
+      stamps.chosen(header_ns, origin.record_ns, origin.where);
+      stamps.add(header_ns, origin.record_ns);
+      numbers.push_back(origin.number);
+    });
+  });
+  if (out.left_out_as_map(reading)) return out;
+  keep_in_order(bag, topic, stamps, numbers, out);
+  const std::int64_t given_ns = reading.sweeps.device.sweep_period_ns;
+  out.period_ns = given_ns > 0 ? given_ns : median_step_ns(out.stamps);
+  out.remark = stamps.remark();
+  if (repeated > 0) out.remark += (out.remark.empty() ? "" : "; ") + repeats_text(repeated);
+  out.follow_records = !stamps.other_clock();
+  if (reading.stamps == StampSource::record) {
+    for (auto& start : out.starts) {
+      if (start) *start -= out.period_ns;
+    }
+    out.remark +=
+        fmt::format("{}assumption: each sweep starts {} s before its record stamp", out.remark.empty() ? "" : "; ",
+                    std::to_string(1e-9 * static_cast<double>(out.period_ns)));
+  }
+  return out;
+}
+
+BuiltSweeps read_lidar(const OpenedBag& bag, SensorPlaces& places, const std::string& topic,
+                       const CloudHeaders& headers, const BagReading& reading, std::vector<std::string>& notes) {
+  SweepReading sweeps = reading.sweeps;
+  sweeps.device.name = sensor_name(topic);
+  SweepBuilder builder(std::move(sweeps), headers.period_ns, headers.left_out);
+  double clocks_apart_s = 0.0;
+  std::vector<std::int64_t> records;
+  LeftOut counted_in_headers("clouds");
+  read_clouds(bag, topic, counted_in_headers, [&]<class Message>(const Message& message, const MessageOrigin& origin) {
+    if (origin.number >= headers.starts.size())
+      throw BadInput(origin.where + ": uses another frame than the previous message");
+    const std::optional<std::int64_t> start_ns = headers.starts[origin.number];
+    if (!start_ns) return;
+    if constexpr (std::is_same_v<Message, ros::LivoxCustomMsg>) {
+      const double apart_ns = static_cast<double>(message.timebase) - static_cast<double>(stamp_of(message.header));
+      clocks_apart_s = std::max(clocks_apart_s, 1e-9 * std::abs(apart_ns));
+    }
+    std::optional<Cloud> cloud;
+    builder.left_out().guard([&] { cloud = cloud_of(message, origin.where); });
+    if (!cloud) return;
+    records.push_back(origin.record_ns);
+    builder.add(start_ns, std::move(*cloud), origin.where);
+  });
+  std::vector<std::string> own;
+  BuiltSweeps built = builder.finish(bag.place + ": topic " + topic, own);
+  for (std::string& note : own) notes.push_back(topic + ": " + note);
+  if (!headers.remark.empty()) notes.push_back(topic + ": " + headers.remark);
+  if (reading.stamps == StampSource::header && headers.follow_records)
+    note_points_to_come(topic, built, records, notes);
+  if (clocks_apart_s > kClocksApart_s) {
+    notes.push_back(
+        fmt::format("{}: caution: the messages' timebase and their header stamps differ by up to {} s; point times are "
+                    "counted from the header stamps",
+                    topic, std::to_string(clocks_apart_s)));
+  }
+  places.place(topic, headers.frame, "--T-body-lidar", reading.lidar_placed, built.lidar.T_BL, notes);
+  return built;
+}
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+
+namespace tumble::scenarios {
+
+/// Throws BadInput if `path` is not a regular file, or if it is a folder, bag, table or other file that `tumble import`
+/// converts to a recording; the message contains this command. Reads the first 16 bytes and the extension.
+void require_recording_file(const std::filesystem::path& path);
+
+}  // namespace tumble::scenarios

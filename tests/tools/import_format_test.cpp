@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "scenarios/errors.hpp"
+#include "tests/temporary_folder.hpp"
+#include "tools/tumble/import_options.hpp"
+
+namespace tumble::tools {
+namespace {
+
+class ImportFormat : public scenarios::testing::TemporaryFolder {
+ protected:
+  std::string format(const std::string& name) const {
+    ImportOptions options;
+    options.path = folder_ / name;
+    try {
+      return format_of(options);
+    } catch (const scenarios::BadInput& error) {
+      return error.what();
+    }
+  }
+};
+
+TEST_F(ImportFormat, EndingsInUpperCaseAreKnown) {
+  write("a.CSV", "time,gyro_x\n1,2\n");
+  write("A.BAG", ""), write("a.Mcap", ""), write("scans/1.PCD", ""), write("bins/1.BIN", "");
+  EXPECT_EQ(format("a.CSV"), "csv");
+  EXPECT_EQ(format("A.BAG"), "rosbag1");
+  EXPECT_EQ(format("a.Mcap"), "mcap");
+  EXPECT_EQ(format("scans"), "pcd");
+  EXPECT_EQ(format("bins"), "kitti");
+}
+
+TEST_F(ImportFormat, TheContentCountsWithoutAnEndingOrAgainstIt) {
+  write("run", "#ROSBAG V2.0\n"), write("run.db3", "\x89MCAP0\r\n"), write("other", "SQLite format 3");
+  write("table", "time,gyro_x\n1,2\n");
+  EXPECT_EQ(format("run"), "rosbag1");
+  EXPECT_EQ(format("run.db3"), "mcap");
+  EXPECT_EQ(format("other"), "rosbag2");
+  EXPECT_EQ(format("table"), "csv");
+}
+
+TEST_F(ImportFormat, AFolderOfBagsIsOneBagInParts) {
+  write("parts/run_0.bag", ""), write("parts/run_1.bag", "");
+  EXPECT_EQ(format("parts"), "rosbag1");
+  write("loose/run_0.mcap", "");
+  EXPECT_THAT(format("loose"), testing::HasSubstr("import one file at a time, for example run_0.mcap"));
+}
+
+}  // namespace
+}  // namespace tumble::tools

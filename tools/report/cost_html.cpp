@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/report/cost_html.hpp"
+
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "scenarios/scoring/cost.hpp"
+#include "scenarios/statistics/statistics.hpp"
+#include "tools/html/html.hpp"
+#include "tools/tables/table.hpp"
+
+namespace tumble::tools {
+
+namespace {
+
+using Durations = std::map<std::pair<std::string, std::uint64_t>, double>;
+
+Durations durations_of(std::span<const scenarios::DrawValues> draws) {
+  Durations out;
+  for (const scenarios::DrawValues& draw : draws) {
+    for (const scenarios::Score& value : draw.values)
+      if (value.metric == "motion_duration_s") out[{draw.scenario, draw.seed}] = value.value;
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<CostRow> cost_rows(const scenarios::Summary& summary, std::span<const scenarios::DrawValues> draws) {
+  const Durations durations = durations_of(draws);
+  std::vector<CostRow> rows;
+  for (const scenarios::Section& section : summary.sections) {
+    for (const scenarios::MethodSummary& method : section.methods) {
+      const scenarios::MetricSummary* cost = method.find(scenarios::estimate_cost().name);
+      if (cost == nullptr || cost->values.empty()) continue;
+      std::vector<double> factors;
+      for (std::size_t k = 0; k < cost->values.size(); ++k) {
+        const auto duration = durations.find({section.scenario, cost->seeds[k]});
+        if (duration != durations.end() && cost->values[k] > 0.0) factors.push_back(duration->second / cost->values[k]);
+      }
+      rows.push_back({section.scenario, full_name(section.kind, method.method), scenarios::quantile(cost->values, 0.5),
+                      scenarios::quantile(factors, 0.5)});
+    }
+  }
+  return rows;
+}
+
+std::string costs_html(const std::vector<CostRow>& rows) {
+  if (rows.empty()) return "";
+  std::string out =
+      "<p>The real-time factor is the duration of a recording over the CPU time of its estimate (median over the "
+      "draws). Above 1, the method is faster than real time on one processor.</p>\n"
+      "<details><summary>Real-time factors</summary>\n" +
+      html::table_head({"scenario", "method", "CPU time [s]", "real-time factor"}, 2);
+  for (const CostRow& row : rows) {
+    out += "<tr>" + html::cell(row.scenario) + "<td><code>" + html::escaped(row.method) + "</code></td>" +
+           html::cell(number_text(row.cpu_s), "number") +
+           html::cell(std::isnan(row.real_time_factor) ? "–" : number_text(row.real_time_factor), "number") + "</tr>\n";
+  }
+  return out + "</tbody></table></div></details>\n";
+}
+
+}  // namespace tumble::tools

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <array>
+#include <fstream>
+#include <map>
+#include <string_view>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/recordings/lower_extension.hpp"
+#include "scenarios/recordings/trajectories/reference.hpp"
+#include "scenarios/regular_file.hpp"
+#include "tools/tumble/arguments.hpp"
+#include "tools/tumble/import_options.hpp"
+
+namespace tumble::tools {
+
+namespace {
+
+using scenarios::BadInput;
+
+const std::vector<std::string> kFormats = {"airbrakes", "broad",   "csv",     "kitti",   "mcap", "pcd", "odometry",
+                                           "ply",       "repoimu", "rosbag1", "rosbag2", "tum",  "vtk"};
+
+/// Detects the format from the files in a folder. Several files of a ROS 1 bag are parts of one recording.
+std::string format_of_folder(const std::filesystem::path& folder) {
+  const std::map<std::string, std::string> known = {
+      {".ply", "ply"}, {".pcd", "pcd"}, {".bin", "kitti"}, {".vtk", "vtk"}, {".bag", "rosbag1"}};
+  if (std::filesystem::exists(folder / "metadata.yaml")) return "rosbag2";
+  std::string found, ros2_file;
+  bool tables = false;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const std::string ending = scenarios::lower_extension(entry.path());
+    tables = tables || ending == ".csv";
+    if (ending == ".mcap" || ending == ".db3") ros2_file = entry.path().filename().string();
+    const auto format = known.find(ending);
+    if (format == known.end() || format->second == found) continue;
+    if (!found.empty()) {
+      throw BadInput(folder.string() + ": contains files of formats " + found + " and " + format->second +
+                     "; select one with --format");
+    }
+    found = format->second;
+  }
+  if (found.empty() && tables) return "csv";
+  if (found.empty())
+    throw BadInput(folder.string() +
+                   ": contains no .ply, .pcd, .vtk, .bin, .bag or .csv file and no metadata.yaml of a ROS 2 bag" +
+                   (ros2_file.empty() ? ""
+                                      : "; create metadata.yaml with 'ros2 bag reindex', or import one file at a time, "
+                                        "for example " +
+                                            ros2_file));
+  return found;
+}
+
+/// Detects the format from the first line.
+std::string format_of_csv(const std::filesystem::path& file) {
+  if (scenarios::is_repoimu(file)) return "repoimu";
+  if (scenarios::is_airbrakes(file)) return "airbrakes";
+  try {
+    return scenarios::pose_format(file);
+  } catch (const BadInput&) {
+    return "csv";  // no poses
+  }
+}
+
+/// Detects a binary format from the first bytes; returns "" for other files.
+std::string format_of_content(const std::filesystem::path& file) {
+  std::array<char, 16> first{};
+  std::ifstream(file, std::ios::binary).read(first.data(), first.size());
+  const std::string_view start(first.data(), first.size());
+  if (start.starts_with("#ROSBAG V")) return "rosbag1";
+  if (start.starts_with("\x89MCAP")) return "mcap";
+  if (start.starts_with("SQLite format 3")) return "rosbag2";
+  return start.starts_with("\x89HDF\r\n") ? "broad" : "";
+}
+
+/// Detects the format of a text file without extension: a table with commas, or poses.
+std::string format_of_text(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  std::string line;
+  std::getline(stream, line);
+  return line.find_first_of(",;\t") == std::string::npos ? scenarios::pose_format(file) : format_of_csv(file);
+}
+
+}  // namespace
+
+std::string format_of(const ImportOptions& options) {
+  if (!options.format.empty()) require_known("format", options.format, kFormats);
+  std::error_code error;
+  const bool folder = std::filesystem::is_directory(options.path, error);
+  // a pipe can be read only once, so a pipe is not opened here
+  if (!folder && options.format != "tum" && std::filesystem::exists(options.path, error))
+    scenarios::require_regular_file(options.path);
+  if (!options.format.empty()) return options.format;
+  if (folder) return format_of_folder(options.path);
+  const std::string ending = scenarios::lower_extension(options.path);
+  const bool exists = std::filesystem::exists(options.path, error);
+  if (const std::string content = exists ? format_of_content(options.path) : ""; !content.empty()) return content;
+  if (!options.columns.empty() && options.imu.empty()) return "csv";
+  if (ending == ".csv") return format_of_csv(options.path);
+  if (ending == ".bag") return "rosbag1";
+  if (ending == ".db3" || ending == ".zstd") return "rosbag2";
+  if (ending == ".mcap") return "mcap";
+  if (ending == ".hdf5" || ending == ".h5") return "broad";
+  if (ending == ".tum" || ending == ".txt" || ending == ".kitti") return scenarios::pose_format(options.path);
+  if (ending.empty() && exists) return format_of_text(options.path);
+  throw BadInput(options.path.string() +
+                 ": cannot detect the format from this file name; give --format (broad, csv, kitti, mcap, rosbag1, "
+                 "rosbag2 or tum)");
+}
+
+}  // namespace tumble::tools
