@@ -5,8 +5,7 @@
 
 namespace tumble::scenarios {
 
-/// Folders of the data files that are read at run time. The caller supplies the root folder: the program searches for
-/// it, and a test states it.
+/// Folders of the data files that are read at run time. The caller supplies the root folder.
 struct DataRoot {
   std::filesystem::path root;
   std::filesystem::path models() const { return root / "models"; }

@@ -7,8 +7,8 @@
 
 namespace tumble::scenarios {
 
-/// Error for wrong use or bad input: an unknown name, a missing or truncated file, a value outside its limits. The
-/// message is one line with the fault, its location and the allowed range. The program exits with status 2.
+/// Error for wrong use or bad input, for example an unknown name, a missing or truncated file, or a value outside its
+/// limits. The message is one line with the fault, its location and the allowed range. The program exits with status 2.
 class BadInput : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

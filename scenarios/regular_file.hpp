@@ -12,20 +12,20 @@
 
 namespace tumble::scenarios {
 
-/// Throws BadInput if `path` is missing or a folder. Follows symbolic links. Pipes are accepted, because the caller
-/// reads the input only once, from beginning to end.
+/// Throws BadInput if `path` is missing or a folder. Symbolic links are followed. Pipes are accepted, because the
+/// caller reads the input only once, from beginning to end.
 inline std::filesystem::file_status require_file(const std::filesystem::path& path) {
   std::error_code error;
   const std::filesystem::file_status found = std::filesystem::status(path, error);
-  // A path that leads through a file and a dangling link also count as missing.
+  // A dangling link, or a path with a file in place of a folder, also counts as missing.
   if (found.type() == std::filesystem::file_type::not_found) throw BadInput(path.string() + ": no such file");
   if (error) throw BadInput(path.string() + ": cannot be read: " + error.message());
   if (std::filesystem::is_directory(found)) throw BadInput(path.string() + ": is a folder, must be a file");
   return found;
 }
 
-/// Throws BadInput if `path` is not a regular file. Symbolic links are followed; the error message states what was
-/// found. Callers check a path before they open it, because opening a pipe without a writer blocks for ever, and
+/// Throws BadInput if `path` is not a regular file. Symbolic links are followed, and the error message states the type
+/// of the path. Callers check a path before they open it, because opening a pipe without a writer blocks for ever, and
 /// devices have no end.
 inline void require_regular_file(const std::filesystem::path& path) {
   switch (require_file(path).type()) {

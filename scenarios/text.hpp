@@ -10,14 +10,14 @@
 
 namespace tumble::scenarios {
 
-/// Parses `text` into `value`; returns false if `text` is not exactly one number.
+/// Parses `text` into `value`. Returns false if `text` is not exactly one number.
 template <typename Number>
 bool read_number(std::string_view text, Number& value) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   return error == std::errc() && end == text.data() + text.size();
 }
 
-/// Shortens a text for a message: keeps the beginning of a long text.
+/// Returns the beginning of a long text, for use in a message.
 inline std::string shortened(std::string_view text, std::size_t most = 120) {
   return text.size() <= most ? std::string(text) : std::string(text.substr(0, most)) + "...";
 }

@@ -23,7 +23,7 @@ std::string name_of(const BenchDraw& draw) {
   return draw.scenario + " " + std::to_string(draw.seed);
 }
 
-/// Returns the scenarios and seeds of the suite, without results.
+/// Returns the scenarios and seeds of the suite, with empty results.
 std::vector<BenchDraw> draws_of(const Suite& suite) {
   std::vector<BenchDraw> draws;
   for (const DrawClass& each : suite.classes)
@@ -42,7 +42,8 @@ std::optional<double> value_of(const BenchDraw& draw, const std::string& metric)
   return it->second;
 }
 
-/// Returns true if a simulated run has nothing to score: another method completed the run without a value.
+/// Returns true if a simulated run has nothing to score, because another method completed the run without a value of
+/// the metric.
 bool has_nothing(const BenchDraw& draw, const std::string& metric, std::span<const BenchResult> beside) {
   const auto says_so = [&](const BenchDraw* each) {
     return each != nullptr && each->status == OutcomeStatus::ok && !each->values.contains(metric);
@@ -136,7 +137,7 @@ void require_of_suite(const BenchResult& result, const Suite& suite) {
 std::string other_recording(const BenchResult& a, const BenchResult& b) {
   for (const BenchDraw& draw : a.draws) {
     const BenchDraw* other = b.find(draw);
-    // a run whose process died has no digest
+    // If the method's process crashed, the run has no digest.
     if (other != nullptr && !draw.recording.empty() && !other->recording.empty() && draw.recording != other->recording)
       return name_of(draw);
   }

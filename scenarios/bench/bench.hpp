@@ -9,7 +9,7 @@
 #include "scenarios/sweep/results.hpp"
 #include "scenarios/sweep/sweep.hpp"
 
-/// Compares the stored results of methods on fixed suites; each kind of method has one suite.
+/// Compares the stored results of methods on fixed suites. Each kind of method has one suite.
 namespace tumble::scenarios {
 
 /// Returns the name of the bench suite of a kind of method, for example "bench_rate_v1". The version in the name
@@ -20,7 +20,7 @@ std::string bench_suite_name(Kind kind);
 /// comparable.
 std::string bench_suite_digest(const Suite& suite);
 
-/// Collects the results of one method from a sweep of the suite; the caller fills in command and date. Throws BadInput
+/// Collects the results of one method from a sweep of the suite. The caller fills in command and date. Throws BadInput
 /// if a simulated run of the suite has no outcome.
 BenchResult collect_bench_result(const Results& results, const Suite& suite, const MethodInfo& method);
 
@@ -32,22 +32,24 @@ void add_published(std::span<const BenchResult> published, Results& results);
 void require_of_suite(const BenchResult& result, const Suite& suite);
 
 /// Returns the first simulated run whose recordings differ between the two results, or an empty text. Two results are
-/// only comparable if all recordings agree.
+/// only comparable if all recordings are equal.
 std::string other_recording(const BenchResult& a, const BenchResult& b);
 
 /// Median and rank of one metric of one method over one class of simulated runs. Simulated runs whose status is not
-/// `ok`, or that have no value, rank worst. A simulated run is skipped if another method ended with `ok` but has no
+/// `ok`, or that have no value, rank worst. A simulated run is skipped if another method ended with `ok` but without a
 /// value, for example because no reading was clipped.
 struct BenchCell {
   std::size_t draws = 0, lost = 0;
-  double median = 0.0;  ///< infinite if half of the draws failed; NaN without draws
+  double median = 0.0;  ///< infinite if half of the runs failed; NaN without runs
 };
 
-/// An empty `group` selects all classes. `beside` contains the results to compare with, which may include `result`.
+/// Computes the cell of `result`. An empty `group` selects all classes. `beside` contains the results to compare with,
+/// and may include `result`.
 BenchCell bench_cell(const BenchResult& result, const std::string& metric, const std::string& group,
                      std::span<const BenchResult> beside);
 
-/// Number of simulated runs on which `result` is better than `baseline`, among the runs that count for both methods.
+/// Number of simulated runs on which `result` is better than `baseline`. Only runs that count for both methods are
+/// included.
 struct BenchWins {
   std::size_t better = 0, draws = 0;
 };

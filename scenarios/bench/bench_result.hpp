@@ -29,7 +29,7 @@ struct BenchResult {
   std::string suite, suite_digest;  ///< see bench.hpp
   Kind kind = Kind::rate;
   std::string method;
-  std::string version;  ///< of an external method, else empty
+  std::string version;  ///< version of an external method, else empty
   std::string source;   ///< paper or "ours"
   std::string build;    ///< provenance/build_id.hpp
   std::string command, date;
@@ -40,12 +40,12 @@ struct BenchResult {
 /// Returns the result as one line of JSON without a newline.
 std::string to_line(const BenchResult& result);
 
-/// Parses one line of JSON that `to_line` wrote. Throws BadInput, with a message that starts with `place`, for text
-/// that is not JSON, another format or version, a missing key or wrong type, an unknown kind or status, or a repeated
-/// simulated run.
+/// Parses one line of JSON that `to_line` wrote. Throws BadInput, with a message that starts with `place`, if the line
+/// is not JSON, has another format or version, or repeats a simulated run. Throws BadInput also for a missing key, a
+/// wrong type, an unknown kind or an unknown status.
 BenchResult parse_bench_result(const std::string& line, const std::string& place);
 
-/// Returns the path of a suite's stored results: SUITE.jsonl.
+/// Returns the path of the file with a suite's stored results: SUITE.jsonl.
 std::filesystem::path bench_results_file(const DataRoot& data, const std::string& suite);
 
 /// Returns the results in a file, one per line; empty lines are ignored, and a missing file gives an empty list.

@@ -12,7 +12,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// A number of the scenario and its ideal value.
+/// A number of the scenario and the ideal value at which its disturbance vanishes.
 struct Ideal {
   std::string_view number;
   double value = 0.0;
@@ -20,14 +20,14 @@ struct Ideal {
 
 enum class Sort { several, size, count };
 
-/// A registered complication: its name and its numbers. Numbers that a component type lacks are skipped.
+/// A registered complication: its name and its numbers. Numbers that a component type does not have are skipped.
 struct ComplicationLine {
   std::string_view what;
   std::vector<Ideal> numbers;
   Sort sort = Sort::several;
 };
 
-/// Ideal values disable the disturbances of a world (sim/world, "0: none"); shapes are unchanged.
+/// Returns the ideal values that disable the disturbances of a world (sim/world, "0: none"). Shapes are unchanged.
 std::span<const ComplicationLine> of_world() {
   static const std::vector<ComplicationLine> kLines = {
       {"rocks", {{"rock_count"}}, Sort::count},
@@ -89,8 +89,8 @@ std::span<const ComplicationLine> of_motion() {
   return kLines;
 }
 
-// A disabled saturation level is set beyond any reading of a tumble, so that methods ignore the level, but within the
-// ranges that methods accept.
+// The ideal saturation level is beyond any reading of a tumble, so that no reading is clipped. The level is still
+// within the ranges that methods accept.
 constexpr double kBeyondRates_rad_s = 100.0, kBeyondForces_m_s2 = 1000.0;
 
 std::span<const ComplicationLine> of_imu() {
@@ -179,7 +179,7 @@ std::span<const ComplicationLine> of_mounting() {
 
 using Numbers = std::map<std::string, Distribution>;
 
-/// Adds the complications whose `numbers`, located at `place`, are not ideal.
+/// Adds the complications from `lines` if one of their `numbers` at `place` is not ideal.
 void add(const std::string& part, const std::string& place, std::span<const ComplicationLine> lines,
          const Numbers& numbers, std::vector<Complication>& out) {
   for (const ComplicationLine& line : lines) {
@@ -197,7 +197,7 @@ void add(const std::string& part, const std::string& place, std::span<const Comp
   }
 }
 
-/// Joins all errors of a sensor that few methods use to one complication.
+/// Combines all errors of a sensor that few methods use into one complication.
 Complication joined(const std::string& name, const std::vector<Complication>& parts) {
   Complication whole{name, {}, {}, false};
   for (const Complication& part : parts)

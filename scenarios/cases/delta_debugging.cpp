@@ -51,7 +51,7 @@ LeastSet least_failing_set(std::size_t count, const FailsWith& fails) {
       if (!still) return out;
       if (*still) {
         out.kept = without(out.kept, first, chunk);
-        out.needed.clear();  // it belonged to a larger set
+        out.needed.clear();  // the item belonged to a larger set
         removed = true;
         continue;
       }

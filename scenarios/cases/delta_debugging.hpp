@@ -6,25 +6,25 @@
 #include <optional>
 #include <vector>
 
-/// Searches for the smallest failing configuration. The caller runs the trials; if the caller returns an empty value,
-/// the budget is used up and the search ends with its best result.
+/// Searches for the smallest failing configuration. The caller runs the trials. If the caller returns an empty value,
+/// the budget is used up, and the search ends with its best result.
 namespace tumble::scenarios {
 
-/// Returns true if a run with only the kept items (ascending indices) still fails.
+/// Returns true if a run that keeps only the items in `kept` (ascending indices) still fails.
 using FailsWith = std::function<std::optional<bool>(const std::vector<std::size_t>& kept)>;
 
 struct LeastSet {
   std::vector<std::size_t> kept;    ///< fails
-  std::vector<std::size_t> needed;  ///< items of `kept` without which the rest does not fail
+  std::vector<std::size_t> needed;  ///< items without which a run of `kept` does not fail
   bool complete = false;            ///< all of `kept` are needed: the set is 1-minimal
 };
 
-/// Returns a 1-minimal subset of the items 0 to `count` - 1 that still fails, where all items together fail. The search
-/// is delta debugging (Zeller and Hildebrandt, IEEE TSE 28:183, 2002, algorithm ddmin) with complements only. The
-/// search first removes all items, then halves of the rest, quarters, down to single items, and repeats until no item
-/// can be removed. The caller should order the items so that related items are adjacent. If adding items can repair a
-/// failure, smaller failing sets may exist. The search needs about 2 log2(count) trials for one needed item and at most
-/// O(count^2); no trial is repeated.
+/// Returns a 1-minimal failing subset of the items 0 to `count` - 1; removing any single item of this subset removes
+/// the failure. A run with all items must fail. The search is delta debugging (Zeller and Hildebrandt, IEEE TSE 28:183,
+/// 2002, algorithm ddmin) with complements only. The search first removes all items, then halves of the remaining
+/// items, quarters, down to single items, and repeats until no item can be removed. The caller should order the items
+/// so that related items are adjacent. If adding items can repair a failure, smaller failing sets may exist. The search
+/// needs about 2 log2(count) trials for one needed item and at most O(count^2). No trial is repeated.
 LeastSet least_failing_set(std::size_t count, const FailsWith& fails);
 
 /// Returns true if a run with this value still fails.
@@ -33,11 +33,12 @@ using FailsAt = std::function<std::optional<bool>(double value)>;
 struct LeastNumber {
   double fails_at;        ///< closest value to `ideal` that failed
   double holds_at;        ///< closest value that did not fail; `ideal` if none was tried
-  bool complete = false;  ///< the two are within `resolution`
+  bool complete = false;  ///< `fails_at` and `holds_at` differ by at most `resolution`
 };
 
-/// Bisects between `failing`, which fails, and `ideal`, which is assumed to succeed. Returns the failing value closest
-/// to `ideal`, within `resolution` (above 0). If `whole` is true, the search tries integers only.
+/// Bisects between the value `failing`, at which a run fails, and the value `ideal`, at which a run is assumed to
+/// succeed. Returns the failing value closest to `ideal`, within `resolution` (above 0). If `whole` is true, the search
+/// tries integers only.
 LeastNumber least_failing_number(double failing, double ideal, double resolution, bool whole, const FailsAt& fails);
 
 }  // namespace tumble::scenarios

@@ -20,7 +20,7 @@ std::string four_digits(double value) {
   return text.str();
 }
 
-/// Returns the value of the metric if it is finite, else empty.
+/// Returns the value of the metric if it is finite.
 std::optional<double> finite_value_of(const Outcome& outcome, const std::string& metric) {
   const double value = value_of(outcome.scores, metric);
   return std::isfinite(value) ? std::optional(value) : std::nullopt;

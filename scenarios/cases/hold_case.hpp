@@ -17,7 +17,7 @@ Scenario named_case_of(const Shrunk& shrunk, const std::string& name, const std:
 /// Returns the failure criteria that an expectation states.
 Failure failure_of(const Expectation& expected);
 
-/// Allowed factor between the measured and the accepted value of a failing case's metric.
+/// Largest allowed factor between the measured and the accepted metric of a failing case.
 inline constexpr double kCaseFactor = 2.0;
 
 /// Result of the comparison of one expectation with an outcome.
@@ -27,16 +27,16 @@ struct CaseResult {
   OutcomeStatus status = OutcomeStatus::ok;
   std::optional<double> value;  ///< value of the expected metric
   bool fails = false;
-  bool better = false;  ///< no longer fails, or by less than half; the expectation should be updated
+  bool better = false;  ///< passes, or error below half; update the expectation
   std::string fault;    ///< description of the fault; empty if none
 };
 
 /// Checks that an outcome is neither worse nor better than expected. A case that is expected to pass must not fail. A
 /// case that is expected to fail must have the accepted status and a metric within `kCaseFactor` of the accepted value.
-/// An improvement also fails the check, so that the developer updates the accepted value.
+/// An improvement also fails this check, so that the developer updates the accepted value.
 CaseResult hold_case(const std::string& name, const Expectation& expected, const Outcome& outcome);
 
-/// Returns the expectation with the status and value of this outcome as the accepted result.
+/// Returns the expectation with the status and value of this outcome as the accepted values.
 Expectation accepted(const Expectation& expected, const Outcome& outcome);
 
 /// Throws BadInput if a case names an unknown method, metric or status.

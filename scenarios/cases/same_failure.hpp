@@ -7,12 +7,12 @@
 
 namespace tumble::scenarios {
 
-/// Describes how an outcome failed: by status, else by the requested metric, else by a verdict (`map_failed`). The
-/// description excludes simpler runs that fail for another reason. Unlike with Failure, a run without the metric counts
-/// as passed: a run without clipping has no error at clipped samples.
+/// Describes how an outcome failed: by its status, by the requested metric, or by a verdict (`map_failed`). The search
+/// thus rejects simpler runs that fail for another reason. A run without the metric counts as passed, because a run
+/// without clipping has no error at clipped samples. Failure counts a run without the metric as failed.
 class SameFailure {
  public:
-  /// Throws BadInput if `outcome` does not fail, or was `killed`.
+  /// Throws BadInput if `outcome` does not fail, or if its status is `killed`.
   SameFailure(const Failure& failure, const Outcome& outcome);
 
   bool holds(const Outcome& outcome) const;

@@ -68,7 +68,7 @@ Scenario with_only(const std::vector<Complication>& all, const Indices& kept, Sc
   return scenario;
 }
 
-/// Describes which complications `kept` lacks: the name of a single complication, or a count.
+/// Describes which complications were removed: the name of a single complication, or a count.
 std::string difference(const std::vector<Complication>& all, const Indices& left, const Indices& kept) {
   Indices gone;
   std::set_difference(left.begin(), left.end(), kept.begin(), kept.end(), std::back_inserter(gone));
@@ -139,7 +139,7 @@ class Shrinking {
         fails = false;
         outcome.message = one_line(other);
       }
-    } catch (const std::exception& error) {  // the draw is invalid and does not show the failure
+    } catch (const std::exception& error) {  // the run is invalid and does not show the failure
       outcome.status = OutcomeStatus::rejected;
       outcome.message = one_line(error.what());
     }
@@ -164,11 +164,11 @@ class Shrinking {
       return try_out(shorter, text_of(length_s) + " s");
     };
     const double now_s = shrunk_.scenario.duration_s.numbers.front();
-    // The search starts again from the current duration, because other complications are removed by now.
+    // The search starts again from the current duration, because complications were removed since the first search.
     return least_failing_number(now_s, 0.0, kLengthResolution * drawn_s, false, fails).complete;
   }
 
-  /// Removes complications; complications that cannot be removed are stored in `needed_`.
+  /// Removes complications. Complications that cannot be removed are stored in `needed_`.
   bool simplify() {
     const std::vector<Complication> all = complications(shrunk_.scenario);
     const Scenario whole = shrunk_.scenario;

@@ -13,24 +13,24 @@ namespace tumble::scenarios {
 
 /// One trial of the search: a simpler scenario, simulated and estimated.
 struct ShrinkTrial {
-  int run = 0;        ///< from 1, the original draw
+  int run = 0;        ///< from 1, the original run
   std::string what;   ///< "4.5 s", "without world: rocks", "without 12 of 26"
-  bool kept = false;  ///< still fails; the search continues from it
+  bool kept = false;  ///< the run still fails, and the search continues from it
   Outcome outcome;    ///< `rejected` if simulation was impossible
 };
 
 struct ShrinkOptions {
   Failure failure;
-  /// Method of the same kind that must not fail where the tested method fails. A failure of this control excludes
-  /// scenarios that no method can solve. Null disables the control. The control is not used if it fails on the original
-  /// run.
+  /// Control: a method of the same kind that must not fail where the tested method fails. A failure of the control
+  /// excludes scenarios that no method can solve. Null disables the control. The control is not used if it fails on the
+  /// original run.
   MethodPointer control;
-  int budget = 60;           ///< number of simulated draws, at least 1
+  int budget = 60;           ///< number of simulated runs, at least 1
   double timeout_s = 300.0;  ///< limit of one method run
   std::function<void(const ShrinkTrial&)> on_trial;
 };
 
-/// Result for one removable item.
+/// Result of the search for one complication.
 enum class Fate { removed, smaller, needed, not_tried };
 const char* to_string(Fate fate);
 
@@ -48,21 +48,21 @@ struct Shrunk {
   std::vector<ShrinkLine> lines;
   int runs = 0;
   bool complete = false;    ///< the budget was sufficient: no single item can be removed
-  bool controlled = false;  ///< the control method failed on none of the kept draws
-  /// True input (sweep/triage.hpp) with which the method does not fail, on the original draw and on every kept draw;
-  /// empty if no single input does this on the original draw.
+  bool controlled = false;  ///< the control failed on no accepted run
+  /// True input (sweep/triage.hpp) that removes the failure on the original run and on every accepted run. Empty if no
+  /// single input removes the failure on the original run.
   std::string cure;
 };
 
-/// Simplifies a simulated run on which `method` fails, as far as the method still fails. The search first reduces the
+/// Simplifies a simulated run on which `method` fails, while the method still fails. The search first reduces the
 /// duration, which makes further trials cheap. Then the search removes complications (complication.hpp) by delta
 /// debugging (delta_debugging.hpp), reduces the remaining sizes and counts, and reduces the duration again. Each trial
-/// is simulated and estimated, and is accepted if it fails like the original run (same_failure.hpp) and if the true
-/// input that cures the original run cures it, too. Otherwise the search could end at another cause. The search is
-/// deterministic; all trials use the seed of the original run. The search misses simpler runs that can only be reached
-/// through a passing run.
+/// is simulated and estimated, and is accepted if it fails like the original run (same_failure.hpp). The true input
+/// that removes the original failure must also remove the failure of the trial; otherwise the search could end at
+/// another cause. The search is deterministic. All trials use the seed of the original run. The search misses simpler
+/// runs that can only be reached through a passing run.
 ///
-/// Throws the exceptions of simulate_draw for the original run; throws BadInput if the original run does not fail, or
+/// Throws the exceptions of simulate_draw for the original run. Throws BadInput if the original run does not fail, or
 /// if method or control do not apply.
 Shrunk shrink(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, const Method& method,
               const ShrinkOptions& options);

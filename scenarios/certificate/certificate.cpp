@@ -16,7 +16,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Registers a measurement with the certificate's default setup.
+/// Registers a measurement with the certificate's default settings.
 template <auto kMeasure>
 std::vector<CertificateEntry> as_certified(const CertificateInput& input) {
   return kMeasure(input, {});

@@ -12,7 +12,7 @@
 
 namespace tumble::scenarios {
 
-/// One measured number of the certificate with its accepted range.
+/// One measured quantity of the certificate and the accepted range of its value.
 struct CertificateEntry {
   std::string row;      ///< quantity: "free_flight_energy"
   std::string subject;  ///< object: "rig", "hill", "mti30 gyro"
@@ -21,7 +21,7 @@ struct CertificateEntry {
   double value = 0.0;
   double low = 0.0;
   double high = 0.0;                                             ///< both bounds are inclusive
-  std::string note;                                              ///< why there is no value; else empty
+  std::string note;                                              ///< reason for a missing value; else empty
   bool passes() const { return value >= low && value <= high; }  ///< false for NaN
   bool operator==(const CertificateEntry&) const = default;
 };
@@ -34,14 +34,14 @@ struct Certificate {
   bool operator==(const Certificate&) const = default;
 };
 
-/// Inputs of the measurements.
+/// Data and program that the measurements need.
 struct CertificateInput {
   DataRoot data;
   std::filesystem::path program;  ///< the program `tumble`, started to check the digest in a new process
 };
 
-/// Registered measurement of the certificate; each has a file and a line of registration. `measure` uses the default
-/// setup; rows.hpp declares versions with a custom setup.
+/// A registered measurement of the certificate. Each measurement has its own file and one registration line. `measure`
+/// uses the default settings; rows.hpp declares versions with custom settings.
 struct CertificateRow {
   std::string name;
   std::string doc;
@@ -53,13 +53,13 @@ std::span<const CertificateRow> certificate_rows();
 
 struct CertifyOptions {
   std::vector<std::string> rows;            ///< names; empty: all
-  const std::atomic<bool>* stop = nullptr;  ///< set to stop after the current row; returns the entries so far
+  const std::atomic<bool>* stop = nullptr;  ///< set by the caller to stop after the current row
   std::function<void(const CertificateRow&, double elapsed_s)> on_row;  ///< called before each row
 };
 
-/// Runs all measurements in this process, in about a minute on one core. A failed measurement gives an entry with value
-/// NaN, which does not pass, and the reason. Throws BadInput for an unknown name (suggests the nearest name) or missing
-/// models, and sim::InvalidSituation.
+/// Runs all measurements in this process, in about a minute on one core. A failed measurement gives an entry with the
+/// reason and the value NaN, which does not pass. Throws BadInput for missing models or an unknown name; the message
+/// suggests the nearest name. Throws sim::InvalidSituation.
 Certificate measure_certificate(const CertificateInput& input, const CertifyOptions& options);
 
 }  // namespace tumble::scenarios

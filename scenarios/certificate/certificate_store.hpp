@@ -8,8 +8,8 @@
 
 namespace tumble::scenarios {
 
-/// Caches certificates in a folder, one file per build, data and machine (processor model). File system errors disable
-/// the cache without a message.
+/// Caches certificates in a folder, one file per combination of build, data and machine (processor model). File system
+/// errors disable the cache without a message.
 class CertificateStore {
  public:
   /// An empty path disables the cache.

@@ -8,11 +8,11 @@
 namespace tumble::scenarios {
 
 /// Returns the certificate as JSON: {"build", "verdict": "pass" | "fail", "entries": [{row, subject, law, unit, value,
-/// low, high, verdict, note}]}; non-finite numbers are null.
+/// low, high, verdict, note}]}. Non-finite numbers are null.
 std::string to_json(const Certificate& certificate);
 
-/// Parses the JSON bit-exactly; null becomes NaN, and verdicts are recomputed. Throws BadInput with a message that
-/// starts with `place`.
+/// Parses the JSON of a certificate bit-exactly. Null becomes NaN, and verdicts are recomputed. Throws BadInput with a
+/// message that starts with `place`.
 Certificate certificate_from_json(const std::string& text, const std::string& place);
 
 }  // namespace tumble::scenarios

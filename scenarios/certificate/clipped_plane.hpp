@@ -6,14 +6,14 @@
 
 #include "sim/recording.hpp"
 
-/// Computes the plane that limits the readings of a saturated sensing element, by a fit and in closed form. With M and
-/// o of sim/imu/elements.hpp and saturation level r, the plane is y_j = +-rho + b + sum over k != j of c_k y_k, where
-/// c_k = -M_jk / M_jj, rho = r / M_jj and b = -o_j / M_jj.
+/// Computes the plane that limits the readings of a saturated sensing element, by a fit and in closed form. The plane
+/// is y_j = +-rho + b + sum over k != j of c_k y_k, where c_k = -M_jk / M_jj, rho = r / M_jj and b = -o_j / M_jj. The
+/// matrix M and the offset o are defined in sim/imu/elements.hpp; r is the saturation level.
 namespace tumble::scenarios {
 
 /// Returns a motion that saturates every sensing element. The body rotates about x, y and z in turn beyond the gyro's
-/// saturation level [rad/s], with some rotation about the other axes. During this rotation, a constant push saturates
-/// the three accelerometer elements [m/s^2] one after another.
+/// saturation level [rad/s], with some rotation about the other axes. During this rotation, a constant acceleration
+/// saturates the three accelerometer elements [m/s^2] one after another.
 sim::Truth beyond_every_rail(double gyro_rail_rad_s, double accel_rail_m_s2);
 
 /// Readings of one sensor triad and the parameters of its sensing elements.
@@ -26,7 +26,7 @@ struct SensedTriad {
 SensedTriad sensed_rates(const sim::ImuRecord& record, const sim::ImuTruth& truth, double rail_rad_s);
 SensedTriad sensed_forces(const sim::ImuRecord& record, const sim::ImuTruth& truth, double rail_m_s2);
 
-/// Saturation plane of sensing element j; the cross-axis sensitivities refer to axes j + 1 and j + 2, cyclically.
+/// Saturation plane of sensing element j. The cross-axis sensitivities refer to axes j + 1 and j + 2, cyclically.
 struct ClippedPlane {
   double first_slope, second_slope;  // [1]
   double distance, offset;           // rho and b [unit of the readings]
@@ -34,7 +34,8 @@ struct ClippedPlane {
 ClippedPlane plane_of(const Eigen::Matrix3d& axes, const Eigen::Vector3d& offset, double rail, int j);
 
 /// Fits the plane by least squares to samples during which only sensing element j was saturated. `samples` receives the
-/// smaller of the sample counts at the positive and the negative limit; below kFewestClipped the plane is NaN.
+/// smaller of the sample counts at the positive and the negative limit. If `samples` is below kFewestClipped, the plane
+/// is NaN.
 inline constexpr int kFewestClipped = 10;
 ClippedPlane fit_clipped_plane(const SensedTriad& triad, int j, int& samples);
 

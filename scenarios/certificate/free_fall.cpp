@@ -18,8 +18,8 @@ std::vector<CertificateEntry> certify_free_fall(const CertificateInput& input, c
     trial.step();
     if (!trial.contacts().empty()) touched_s = trial.state().time_s;
   }
-  // The first step that ends in contact ends at most one step after the touch; because of rounding, the step may end
-  // exactly at the touch.
+  // The first step that ends in contact ends at most one step after the sphere touches the floor. Because of rounding,
+  // the step may end exactly at the touch.
   return {{"free_fall_time", "sphere",
            "a drop from height h takes sqrt(2 h / g): time of first contact minus this, in steps of the engine", "1",
            (touched_s - expected_s) / trial.step_s(), -0.01, 1.01, ""}};

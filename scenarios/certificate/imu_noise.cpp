@@ -21,8 +21,7 @@ struct RestReadings {
   std::vector<Eigen::Vector3d> gyro, accel;
 };
 
-/// Returns the device with noise and bias only, because filters need a higher rate and other errors are constant at
-/// rest.
+/// Returns the device with noise and bias only. Filters need a higher rate, and other errors are constant at rest.
 sim::SensorSpec resting(const DataSheet& sheet) {
   sim::SensorSpec sensor = imu_of_sheet(sheet);
   for (const char* off :
@@ -82,8 +81,8 @@ struct Stated {
   }
 };
 
-/// Returns the ratio of measured to stated deviation at an averaging time; the accepted range is the statistical
-/// interval of three axes.
+/// Returns the ratio of the measured to the stated deviation at one averaging time. The accepted range is the
+/// statistical interval for three axes.
 CertificateEntry entry(const std::string& row, const std::string& subject, const std::string& law,
                        const sim::AllanPoint& measured, double stated, sim::AllanNoise noise) {
   constexpr double kSigmas = 4.0;  // none of about twenty entries fails by chance
@@ -102,7 +101,7 @@ std::vector<CertificateEntry> entries_of(const std::string& subject, const State
                                          const std::vector<sim::AllanPoint>& curve,
                                          const std::vector<sim::AllanPoint>& walk) {
   const sim::AllanPoint& white = sim::nearest_point(curve, 0.1);
-  // the bias instability is flat up to half of its longest correlation time
+  // The bias instability is constant for averaging times up to half of its longest correlation time.
   const sim::AllanPoint& floor = sim::nearest_point(curve, stated.bias.in_run_s / 10.0);
   std::vector<CertificateEntry> entries = {
       entry("imu_white_noise", subject, "Allan deviation at rest at 0.1 s: ratio to the data sheet", white,

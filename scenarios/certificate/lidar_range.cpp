@@ -35,7 +35,8 @@ sim::Situation moving_lidar(const CertificateInput& input, const std::string& ro
   return situation;
 }
 
-/// Returns the distance of a point from the plane of its surface; negative if the surface is not a plane of the room.
+/// Returns the distance of a point from the plane of the surface that it hit. Negative if the surface is not a plane of
+/// the room.
 double off_plane_m(const std::string& surface, const Eigen::Vector3d& p_W_m) {
   if (surface == "floor") return std::abs(p_W_m.z());
   if (surface == "wall_front") return std::abs(p_W_m.x() - kRoomHalf_m);
@@ -50,7 +51,8 @@ struct RangeErrors {
   std::int64_t points = 0;
 };
 
-/// Transforms the lidar's points to the world by the true pose at each firing.
+/// Returns the distances of the lidar's points from the room's planes, after the transformation by the true pose at
+/// each firing.
 RangeErrors against_planes(const sim::Recording& recording, double added_range_m) {
   const sim::LidarRecord& record = recording.sensors.lidars.at(0);
   const sim::LidarTruth& truth = recording.truth.lidars.at(0);

@@ -10,7 +10,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns a scenario for each type of world: the scenario named like the world, or the first scenario with this world.
+/// Returns one scenario for each type of world: the scenario with the world's name, else the first scenario in this
+/// world.
 std::map<std::string, std::string> scenario_of_each_world(const DataRoot& data) {
   std::map<std::string, std::string> chosen;
   for (const std::string& name : scenario_names(data)) {
@@ -24,7 +25,7 @@ std::map<std::string, std::string> scenario_of_each_world(const DataRoot& data) 
 }  // namespace
 
 std::vector<CertificateEntry> certify_lidar_rays(const CertificateInput& input, const LidarRaysSetup& setup) {
-  // a ray that grazes an edge may hit either side
+  // A ray that grazes an edge may hit either of the adjacent surfaces.
   constexpr double kOtherSurface = 1e-3;
   std::vector<CertificateEntry> entries;
   for (const auto& [world, name] : scenario_of_each_world(input.data)) {

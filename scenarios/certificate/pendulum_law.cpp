@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 constexpr double kSegment_m = 0.25, kMass_kg = 0.3;
 
 /// Computes the motion of three equal slim bars in a plane without friction, in closed form (Lagrange's equations of
-/// the multiple pendulum). Angles are measured from the vertical, about +y.
+/// the multiple pendulum). Each angle is measured from the vertical, about +y.
 class Chain {
  public:
   Chain(double segment_m, double gravity_m_s2) : length_m_(segment_m) {
@@ -27,8 +27,8 @@ class Chain {
       const double below = 2.0 - i;  // number of bars below
       weight_nm_[i] = kMass_kg * gravity_m_s2 * segment_m * (0.5 + below);
       for (int j = 0; j <= i; ++j) {
-        // off the diagonal: the upper bar's end and the lower bar's middle; on the diagonal: a bar about its end, with
-        // the bars below
+        // An off-diagonal entry couples the upper bar's end to the lower bar's middle. A diagonal entry is the inertia
+        // of a bar about its end, with the bars below as point masses.
         coupling_(i, j) = kMass_kg * segment_m * segment_m * (i == j ? 1.0 / 3.0 + below : 0.5 + below);
         coupling_(j, i) = coupling_(i, j);
       }
@@ -43,7 +43,7 @@ class Chain {
     return out;
   }
 
-  /// Returns the energy relative to rest.
+  /// Returns the energy relative to the energy at rest.
   double energy_j(const Vector3d& angle, const Vector3d& rate) const {
     return 0.5 * rate.dot(mass(angle) * rate) + weight_nm_.dot((1.0 - angle.array().cos()).matrix());
   }
@@ -75,7 +75,7 @@ class Chain {
   }
 
  private:
-  /// Returns the acceleration of an arm's end relative to the arm's start.
+  /// Returns the acceleration of the end of an arm relative to its start.
   static Vector3d turned(const Vector3d& arm_W_m, double rate, double acceleration) {
     const Vector3d w(0.0, rate, 0.0);
     return Vector3d(0.0, acceleration, 0.0).cross(arm_W_m) + w.cross(w.cross(arm_W_m));
@@ -147,7 +147,7 @@ CertificateEntry energy(const CertificateInput& input, const PendulumSetup& setu
           ""};
 }
 
-/// Returns the mean of ten periods of the lowest bar's angle.
+/// Returns the mean over ten periods of the lowest bar's angle.
 double measured_period_s(Pendulum& pendulum, double expected_s) {
   constexpr int kPeriods = 10;
   double before = pendulum.angle()[2], first_s = 0.0;
@@ -178,8 +178,8 @@ CertificateEntry periods(const CertificateInput& input, const PendulumSetup& set
     pendulum.set(kSmall_rad / shape.cwiseAbs().maxCoeff() * shape, Vector3d::Zero());
     worst = larger(worst, std::abs(measured_period_s(pendulum, expected_s) / expected_s - 1.0));
   }
-  // The accepted range includes the effect of the amplitude 0.001 rad: 6e-8 for a simple pendulum, and about fifty
-  // times as much for the higher modes.
+  // The accepted range includes the effect of the amplitude of 0.001 rad on the period. The effect is 6e-8 for a simple
+  // pendulum, and about fifty times larger for the higher modes.
   return {"pendulum_period",
           "pendulum",
           "periods of the three small oscillations equal their closed form: largest relative difference",
@@ -195,8 +195,8 @@ struct Joints {
   Vector3d angle, rate;
 };
 
-/// Returns the mean specific force over a step, in axes midway between the attitudes at the step's ends. Uses Simpson's
-/// rule; a cubic Hermite polynomial gives the middle.
+/// Returns the mean specific force over a step by Simpson's rule, in axes midway between the attitudes at the step's
+/// ends. A cubic Hermite polynomial gives the joint angles in the middle of the step.
 Vector3d mean_force(const Chain& chain, const Joints& before, const Joints& after, double step_s,
                     const Vector3d& lever_m, double gravity_m_s2) {
   const Joints middle{0.5 * (before.angle + after.angle) + 0.125 * step_s * (before.rate - after.rate),
@@ -213,7 +213,7 @@ CertificateEntry force(const CertificateInput& input, const PendulumSetup& setup
   const double gravity_m_s2 = pendulum.trial().gravity_m_s2();
   const Chain chain(kSegment_m, gravity_m_s2);
 
-  // The closed form uses the joint angles; the reading uses the body's state.
+  // The closed form uses the joint angles, while the simulated reading uses the state of the body.
   pendulum.set(kWildAngle, kWildRate);
   std::vector<Vector3d> expected;
   Joints before{pendulum.angle(), pendulum.rate()};
@@ -243,8 +243,8 @@ CertificateEntry force(const CertificateInput& input, const PendulumSetup& setup
   for (std::size_t k = 0; k < expected.size(); ++k) {
     largest_m_s2 = larger(largest_m_s2, (record.accel_m_s2.at(k) - expected[k]).norm());
   }
-  // The measured error is 1e-6. Simpson and RK4 follow fast changes at the segments' turning points to some parts in
-  // 1e8.
+  // The measured error is 1e-6. During fast changes at the bars' turning points, Simpson's rule and RK4 have errors of
+  // a few parts in 1e8.
   return {"pendulum_specific_force",
           "pendulum",
           "an ideal accelerometer on the lowest segment agrees with Lagrange's equations: largest difference",

@@ -1,22 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Saturation planes of two real gyros as references (equation: clipped_plane.hpp). A simulated device with the sensing
-// elements of a measured plane must reproduce the plane in its readings. The simulated distribution of devices must
-// include the measured planes.
+// Saturation planes of two real gyros serve as references for the simulation (equation: clipped_plane.hpp). A simulated
+// device with the sensing elements of a measured plane must reproduce the plane in its readings. The simulated
+// distribution of devices must include the measured planes.
 //
-// The planes were measured on RepoIMU (Szczesna et al., ICCVG 2016) by the least squares of clipped_plane.hpp, from
-// readings inside saturated intervals, without repeated readings. Command: tests/bench/rail_measures x 7.3, y 7.2 or
-// z 10.29 FILE.csv, for Test05 and Test10 trial 1, Test06, and the pendulum's Test02a and Test07 trial 3. The
-// interval of a plane includes the values of all recordings and their errors. Residuals are in rad/s; a residual in
-// brackets is that of a plane without cross-axis sensitivity:
-//   wand, x      Test05 trials 1 to 3, Test10 trials 1 to 3: 100 to 1700 readings each, residual 0.003 to 0.009 (0.005
-//                to 0.010). The offset changes with the bias from day to day.
-//   wand, y      Test06 trial 1: 39 and 42 readings, residual 0.004 (0.014). One recording exists, so the
-//                interval is three standard errors, and includes planes from more readings at the ends of the
-//                saturated intervals.
-//   pendulum, z  Third segment; Test02a, 02b, 07 trials 1 to 3 and 08. Test02a (37 readings) and Test07 trial 3 (10):
-//                residual 0.0003 (0.07 and 0.09), below the quantum of 0.0005. The offsets of the two planes are 0.0001
-//                and 0.0003. Fits with repeated readings and partly saturated windows have residuals of 0.02 to 0.07
-//                and scattered cross-axis sensitivities: 0.045 to 0.054 and -0.027 to 0.009.
+// The planes were fitted to recordings of RepoIMU (Szczesna et al., ICCVG 2016) by the least squares of
+// clipped_plane.hpp. The fit uses readings inside saturated intervals, without repeated readings. The command is
+// tests/bench/rail_measures x 7.3, y 7.2 or z 10.29 FILE.csv. The files are Test05 and Test10 trial 1, Test06, and the
+// pendulum's Test02a and Test07 trial 3.
+//
+// The accepted interval of a plane includes the planes of all recordings and their errors. Residuals below are in
+// rad/s; a residual in brackets belongs to a plane without cross-axis sensitivity.
+//
+// Wand, x: Test05 trials 1 to 3 and Test10 trials 1 to 3 have 100 to 1700 readings each. The residual is 0.003 to 0.009
+// (0.005 to 0.010). The offset changes with the bias from day to day.
+//
+// Wand, y: Test06 trial 1 has 39 and 42 readings at the two limits, and the residual is 0.004 (0.014). Only one
+// recording exists, so the interval is three standard errors. The interval includes planes from more readings at the
+// ends of the saturated intervals.
+//
+// Pendulum, z: the third segment saturates in Test02a, 02b, 07 trials 1 to 3 and 08. Test02a (37 readings) and Test07
+// trial 3 (10 readings) have a residual of 0.0003 (0.07 and 0.09), below the quantum of 0.0005. The offsets of the
+// planes in Test02a and Test07 are 0.0001 and 0.0003. Fits with repeated readings and partly saturated windows have
+// residuals of 0.02 to 0.07. The cross-axis sensitivities of those fits scatter: 0.045 to 0.054 and -0.027 to 0.009.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -33,7 +38,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Range of the saturation planes over the recordings of a device.
+/// Range of one parameter of the saturation plane over the recordings of a device.
 struct MeasuredRange {
   double low, high;
   double middle() const { return 0.5 * (low + high); }
@@ -43,7 +48,7 @@ struct MeasuredRange {
 struct MeasuredPlane {
   const char* name;
   int element;
-  MeasuredRange first_slope, second_slope;  // against the next axes, cyclically [1]
+  MeasuredRange first_slope, second_slope;  // cross-axis sensitivity to the next axes, cyclically [1]
   MeasuredRange distance_rad_s, offset_rad_s;
 };
 
@@ -57,8 +62,8 @@ const char* axis_name(int axis) {
   return kNames[static_cast<std::size_t>(axis % 3)];
 }
 
-/// Returns sensing elements with the mean of the measured planes. A plane does not determine the other elements and the
-/// element's own scale, so these are ideal.
+/// Returns sensing elements with the mean of the measured planes. A plane does not determine the scale of its own
+/// element or the other elements, so these parameters are ideal.
 sim::Elements elements_of(const MeasuredPlane& plane, const RealRailsSetup& setup) {
   const int j = plane.element;
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
@@ -102,7 +107,7 @@ void show_plane(const DataSheet& sheet, const MeasuredPlane& plane, const RealRa
       "rad/s", fitted.offset, plane.offset_rad_s);
 }
 
-/// Standard deviations of the saturation planes that follow from the distribution of elements in a data sheet.
+/// Standard deviations of the saturation planes of devices drawn from a data sheet.
 struct DrawnPlanes {
   double slope = 0.0, offset_rad_s = 0.0;
 };

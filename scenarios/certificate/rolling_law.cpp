@@ -12,13 +12,13 @@ namespace {
 
 constexpr double kMoving_m_s = 0.05;
 
-/// Path length of the centre during rolling contact, and the error of r w x n.
+/// Path length of the sphere's centre during rolling contact, and the path error of the law r w x n.
 struct Lengths {
   double path_length_m = 0.0, missed_m = 0.0;
 };
 
-/// `n` is the normal of the contact with the largest load; samples without contact, which occur during short
-/// interruptions of contact, are skipped.
+/// Compares the centre's velocity with r w x n. `n` is the normal of the contact with the largest load. Samples during
+/// short interruptions of contact are skipped.
 Lengths compare(const sim::Truth& truth, double radius_m) {
   Lengths lengths;
   const double dt_s = static_cast<double>(truth.period_ns) * 1e-9;
@@ -68,8 +68,8 @@ std::vector<CertificateEntry> certify_rolling(const CertificateInput& input, con
   plane.robot.values.set("inner_z_m", -0.01);
   std::vector<CertificateEntry> entries = {entry(input, setup, sim::resolve(plane), "plane", 1e-3)};
   if (!setup.terrains) return entries;
-  // Edges of patches or obstacles are crossed within the 10 ms window of a contact label, and a label allows 0.02 m/s
-  // of slip: 2e-4 to 5.1e-4 on the catalogue's terrains.
+  // A sphere crosses edges of patches or obstacles within the 10 ms window of a contact label, and a label allows 0.02
+  // m/s of slip. These two effects cause errors of 2e-4 to 5.1e-4 on the catalogue's terrains.
   constexpr double kTerrainHigh = 1e-3;
   for (const std::string& name : scenario_names(input.data)) {
     const Scenario scenario = load_scenario(input.data, name);

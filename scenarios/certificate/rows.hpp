@@ -8,7 +8,7 @@
 #include "scenarios/certificate/certificate.hpp"
 #include "sim/trial/trial.hpp"
 
-/// Declares the certificate's measurements with their setups. The default values are those of the certificate; tests
+/// Declares the certificate's measurements with their settings. The default values are those of the certificate. Tests
 /// modify one number and check that the measurement fails. Members named `stated_*` change the value that the closed
 /// form assumes.
 namespace tumble::scenarios {
@@ -37,11 +37,11 @@ struct FreeFallSetup {
 };
 std::vector<CertificateEntry> certify_free_fall(const CertificateInput& input, const FreeFallSetup& setup = {});
 
-/// The velocity of the rolling sphere's centre must equal r w x n, on a plane and on the ground of each sphere
-/// scenario.
+/// The velocity of the rolling sphere's centre must equal r w x n. This law is tested on a plane and on the ground of
+/// each sphere scenario.
 struct RollingSetup {
   double stated_radius_m = 0.0;  ///< 0: the sphere's true radius
-  bool terrains = true;          ///< also tests the scenarios
+  bool terrains = true;          ///< also tests the sphere scenarios
 };
 std::vector<CertificateEntry> certify_rolling(const CertificateInput& input, const RollingSetup& setup = {});
 
@@ -53,9 +53,9 @@ struct SlipToGripSetup {
 };
 std::vector<CertificateEntry> certify_slip_to_grip(const CertificateInput& input, const SlipToGripSetup& setup = {});
 
-/// First peak of the rig's specific force, averaged over 2 ms, when the rig drops on its corners. The measurement
-/// reports the change of the peak with the engine's step (compared with a quarter step) and with the contact time
-/// constant, as an exponent; an ideal spring has exponent -1.
+/// The measurement drops the rig on its corners and records the first peak of the specific force, averaged over 2 ms.
+/// It reports the relative change of the peak when the engine's step is reduced to a quarter. It also reports the
+/// exponent of the peak as a function of the contact time constant; an ideal spring has exponent -1.
 struct ImpactSetup {
   double height_m = 1.0;
   double step_s = 0.0;                  ///< 0: the simulation's step
@@ -63,14 +63,14 @@ struct ImpactSetup {
 };
 std::vector<CertificateEntry> certify_impact(const CertificateInput& input, const ImpactSetup& setup = {});
 
-/// The points of a moving lidar without range error, transformed by the true pose at each firing, are compared with the
-/// walls of an empty room. `added_range_m` is added to every range.
+/// The measurement compares the points of a moving lidar without range error with the walls of an empty room. The true
+/// pose at each firing transforms the points. `added_range_m` is added to every range.
 struct LidarRangeSetup {
   double added_range_m = 0.0;
 };
 std::vector<CertificateEntry> certify_lidar_range(const CertificateInput& input, const LidarRangeSetup& setup = {});
 
-/// Rays in the lidar's copy of each world are compared with the engine's own rays.
+/// The measurement compares rays in the lidar's copy of each world with the engine's own rays.
 struct LidarRaysSetup {
   int rays = 2000;              ///< per world
   double mirror_shift_m = 0.0;  ///< shifts the copy's rays upward
@@ -78,8 +78,8 @@ struct LidarRaysSetup {
 };
 std::vector<CertificateEntry> certify_lidar_rays(const CertificateInput& input, const LidarRaysSetup& setup = {});
 
-/// An hour of each IMU at rest is compared with noise and bias of the data sheet. The factors multiply the noise and
-/// bias of the simulated IMU.
+/// The measurement compares an hour of each IMU at rest with the noise and bias of the data sheet. The factors multiply
+/// the noise and bias of the simulated IMU.
 struct ImuNoiseSetup {
   double duration_s = 3600.0;
   std::uint64_t seed = 1;
@@ -88,8 +88,8 @@ struct ImuNoiseSetup {
 };
 std::vector<CertificateEntry> certify_imu_noise(const CertificateInput& input, const ImuNoiseSetup& setup = {});
 
-/// Planes fitted to the clipped readings of IMUs with tilted sensing elements are compared with the simulated planes.
-/// `assumed_tilt` is added to one entry of the misalignment matrix in the closed form.
+/// The measurement fits planes to the clipped readings of IMUs with tilted sensing elements, and compares them with the
+/// simulated planes. `assumed_tilt` is added to one entry of the misalignment matrix in the closed form.
 struct TiltedRailSetup {
   double misalignment = 0.02;  ///< distribution of the elements; scales use half of it, offsets 0.5 % of the limit
   double assumed_tilt = 0.0;
@@ -97,20 +97,21 @@ struct TiltedRailSetup {
 };
 std::vector<CertificateEntry> certify_tilted_rail(const CertificateInput& input, const TiltedRailSetup& setup = {});
 
-/// Saturation planes measured on real gyros (a hand-held device, a pendulum) are compared with the simulation. The
-/// simulation uses a device with the measured sensing elements, and devices drawn from the distribution in the data
-/// sheets.
+/// The measurement compares saturation planes of real gyros (a hand-held device, a pendulum) with the simulation. One
+/// simulated device has the measured sensing elements. Other simulated devices are drawn from the distribution in the
+/// data sheets.
 struct RealRailsSetup {
   double tilt_factor = 1.0;         ///< factor on the elements' slopes; 0: aligned elements
   double added_tilt = 0.0;          ///< added to each slope
   double rail_factor = 1.0;         ///< factor on the device's limit
-  double added_offset_rad_s = 0.0;  ///< added to the middle between the limits of both signs
+  double added_offset_rad_s = 0.0;  ///< added to the midpoint of the two limits
   double spread_factor = 1.0;       ///< factor on the data sheets' values
   int devices = 500;                ///< number drawn from each data sheet
 };
 std::vector<CertificateEntry> certify_real_rails(const CertificateInput& input, const RealRailsSetup& setup = {});
 
-/// A frictionless pendulum with large and small swings is compared with Lagrange's equations of three bars.
+/// The measurement compares a frictionless pendulum, with large and small swings, with Lagrange's equations of three
+/// bars.
 struct PendulumSetup {
   double duration_s = 5.0;
   sim::Integrator integrator = sim::Integrator::runge_kutta_4;
@@ -125,8 +126,8 @@ struct DigestSetup {
   std::string other_scenario = "slip";
   std::uint64_t seed = 1;
   std::uint64_t restart_seed = 1;  ///< seed for the new process
-  double duration_s = 3.5;         ///< duration of the draws in this process
-  double disturbance = 0.0;        ///< error: added to the duration of every second draw
+  double duration_s = 3.5;         ///< duration of the runs in this process
+  double disturbance = 0.0;        ///< error: added to the duration of every second run
 };
 std::vector<CertificateEntry> certify_digests(const CertificateInput& input, const DigestSetup& setup = {});
 

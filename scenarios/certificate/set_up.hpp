@@ -16,17 +16,17 @@ sim::Situation bare_room(const std::string& robot);
 /// Resolves the situation and builds it with the models of `input`.
 sim::BuiltSituation build(const CertificateInput& input, const sim::Situation& situation);
 
-/// Returns a state high above the floor for seconds of free flight, rotating at `rate_rad_s` near the axis of the rig's
-/// intermediate moment of inertia.
+/// Returns a state high above the floor for several seconds of free flight. The rig rotates at `rate_rad_s` near the
+/// axis of its intermediate moment of inertia.
 sim::BodyState thrown(double rate_rad_s);
 
 /// Simulates a free flight and returns the true motion of the body, without contacts.
 sim::Truth fly(sim::Trial& trial, double duration_s);
 
-/// Returns a sensor specification for the IMU that the data sheet describes, with the sheet's name.
+/// Returns a sensor specification for the IMU of the data sheet, with the sheet's name.
 sim::SensorSpec imu_of_sheet(const DataSheet& sheet);
 
-/// Returns the larger value; a NaN counts as largest, so that a failed measurement is not hidden.
+/// Returns the larger value. NaN counts as largest, so that a failed measurement is not hidden.
 double larger(double a, double b);
 
 }  // namespace tumble::scenarios

@@ -25,13 +25,14 @@ std::vector<CertificateEntry> certify_slip_to_grip(const CertificateInput& input
   sim::BodyState state;
   state.p_WB_m.z() = radius_m;
   trial.set_state(state);
-  for (int k = 0; k < 1000; ++k) trial.step();  // settles into its contact
+  for (int k = 0; k < 1000; ++k) trial.step();  // lets the contact settle
   state = trial.state();
   state.time_s = 0.0;
   state.v_WB_m_s = {setup.speed_m_s, 0.0, 0.0};
   trial.set_state(state);
 
-  // With soft contact, the last 0.5 % of slip decays slowly, so the law is applied until this fraction remains.
+  // With soft contact, the last 0.5 % of slip decays slowly. The measurement therefore stops when this fraction
+  // remains.
   constexpr double kLeftOver = 0.005;
   const double mass_kg = trial.mass_kg(), inertia_kg_m2 = trial.inertia_B_kg_m2()(1, 1);
   const double expected_s =

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sensing elements saturate along their own axes, so a saturated element keeps the readings on a plane for each element
-// and sign (clipped_plane.hpp). The measurement simulates devices with random elements and saturates one element at a
-// time. Then it fits a plane to the readings and compares the fitted plane with the simulated plane. real_rails.cpp
-// contains planes of real devices.
+// Sensing elements saturate along their own axes, so the readings of a saturated element lie on one plane for each
+// element and sign (clipped_plane.hpp). The measurement simulates devices with random elements and saturates one
+// element at a time. Then it fits a plane to the readings and compares the fitted plane with the simulated plane.
+// real_rails.cpp contains planes of real devices.
 #include <algorithm>
 #include <cmath>
 
@@ -33,7 +33,7 @@ sim::SensorSpec tilted(const DataSheet& sheet, const TiltedRailSetup& setup) {
 /// Difference between fitted and simulated saturation planes.
 struct PlaneErrors {
   double slope = 0.0, distance_share = 0.0;
-  int samples = 0;  ///< for the element and sign with the fewest
+  int samples = 0;  ///< smallest number over elements and signs
 };
 
 void compare_planes(const SensedTriad& triad, int j, double assumed_tilt, PlaneErrors& errors) {
@@ -75,7 +75,7 @@ std::vector<CertificateEntry> certify_tilted_rail(const CertificateInput& input,
     const bool enough = errors.samples >= kFewestClipped && errors.samples < kMany;
     const std::string note = enough ? "" : "an element has fewer than 10 fully clipped samples of one sign";
     const double none = std::nan("");
-    // exact law; measured 1e-15: rounding
+    // The law is exact; rounding causes the measured error of 1e-15.
     entries.push_back({"tilted_rail_slope", subject,
                        "clipped readings of drawn devices lie on the planes of their elements: largest slope error",
                        "1", enough ? errors.slope : none, 0.0, 1e-9, note});

@@ -8,8 +8,9 @@
 
 namespace tumble::scenarios {
 
-/// Convert the value of the YAML key `case` to and from NamedCase, without loss. Reading rejects, with file and line,
-/// an unknown key, a repeated method, a missing `fails` or `holds`, and a `worse_than` without a metric.
+/// These functions convert the value of the YAML key `case` to and from NamedCase, without loss. Reading rejects an
+/// unknown key, a repeated method, a missing `fails` or `holds`, and a `worse_than` without a metric. The error message
+/// states file and line.
 NamedCase case_from_yaml(const YamlNode& node);
 std::string to_yaml(const NamedCase& named);
 

@@ -9,7 +9,7 @@
 
 namespace tumble::scenarios {
 
-/// Data sheet of a sensor, models/sensors/DEVICE.yaml: each number has a value, a unit and a source.
+/// Data sheet of a sensor, models/sensors/DEVICE.yaml. Each number has a value, a unit and a source.
 struct DataSheet {
   struct Entry {
     std::string name;
@@ -25,8 +25,8 @@ struct DataSheet {
 };
 
 std::vector<std::string> device_names(const DataRoot& data);
-/// Loads the data sheet of `device`. Throws BadInput for an unknown device (suggests the nearest name), an unknown key,
-/// a wrong unit, a missing number, or a number without a source.
+/// Loads the data sheet of `device`. Throws BadInput for an unknown device; the message suggests the nearest name.
+/// Throws BadInput also for an unknown key, a wrong unit, a missing number, or a number without a source.
 DataSheet load_data_sheet(const DataRoot& data, const std::string& device);
 
 }  // namespace tumble::scenarios

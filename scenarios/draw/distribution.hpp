@@ -8,13 +8,12 @@
 
 namespace tumble::scenarios {
 
-/// A number of a scenario, either constant or random. Each number is drawn from its own named random stream, so an
-/// added number does not change the others.
+/// A number of a scenario, either constant or random. Each random number has its own named random stream, so an added
+/// number does not change the others.
 struct Distribution {
   enum class Shape { constant, uniform, normal, log_uniform, choice };
   Shape shape = Shape::constant;
-  std::vector<double> numbers;  ///< constant: value; uniform, log_uniform: low, high; normal: mean, sigma[, low, high];
-                                ///< choice: the values
+  std::vector<double> numbers;  ///< by shape: (value), (low, high), (mean, sigma[, low, high]) or choices
   int line = 0;                 ///< line in the file, for messages
   bool operator==(const Distribution&) const = default;
 };
@@ -22,11 +21,11 @@ struct Distribution {
 /// Returns the name of the shape in scenario files, for example "log_uniform".
 const char* to_string(Distribution::Shape shape);
 
-/// Returns why the distribution is invalid (for example "low 3 is above high 2"), or an empty text if it is valid.
-/// Rejects a truncated normal distribution if the limits keep less than 1 % of the probability.
+/// Returns why the distribution is invalid (for example "low 3 is above high 2"), or an empty text if it is valid. A
+/// truncated normal distribution is invalid if its limits keep less than 1 % of the probability.
 std::string find_problem(const Distribution& distribution);
 
-/// Returns extreme values that a draw can have: the ends of the interval, the choices, or the constant. For a normal
+/// Returns the extreme values of a distribution: the ends of the interval, the choices, or the constant. For a normal
 /// distribution without truncation, returns only the mean.
 std::vector<double> support_points(const Distribution& distribution);
 

@@ -9,7 +9,7 @@
 
 namespace tumble::scenarios {
 
-/// Number of a scenario that depends on the seed.
+/// A number of the scenario that depends on the seed.
 struct DrawnNumber {
   std::string place;  ///< stream name: "world.slope_rad", "sensors.imu.mount_error.x_m"
   Distribution distribution;

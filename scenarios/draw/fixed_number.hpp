@@ -7,12 +7,12 @@
 
 namespace tumble::scenarios {
 
-/// Replaces one number of a scenario by a constant. All other numbers are drawn as before, because each number has its
+/// Replaces one number of a scenario by a constant. All other numbers keep their values, because each number has its
 /// own random stream. `key` names the number, for example "duration_s", "world.slope_rad", "robot.mass_kg",
 /// "motion.rest_s", "sensors.imu.output_rate_hz" or "sensors.lidar.mount_error.yaw_rad".
 ///
-/// Throws BadInput, without file and line, for an unknown number (suggests the nearest name) or a value outside its
-/// limits.
+/// Throws BadInput, without file and line, for a value outside its limits or an unknown number. The message for an
+/// unknown number suggests the nearest name.
 void fix_number(Scenario& scenario, const std::string& key, double value);
 
 }  // namespace tumble::scenarios

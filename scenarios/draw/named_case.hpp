@@ -13,18 +13,18 @@ struct Expectation {
   std::string method;                ///< "slam/tumble"
   bool fails = false;                ///< whether the method is expected to fail
   std::string metric;                ///< metric to check in addition to status and verdicts; empty: none
-  std::optional<double> worse_than;  ///< bound of the metric for a failure; none: only status and verdicts count
+  std::optional<double> worse_than;  ///< bound of the metric for a failure; empty: only status and verdicts count
   std::string status;                ///< status of the accepted run
-  std::optional<double> drawn;       ///< metric of the draw before shrinking
+  std::optional<double> drawn;       ///< metric of the run before shrinking
   std::optional<double> value;       ///< metric of the accepted run, if it has one
   bool operator==(const Expectation&) const = default;
 };
 
 /// Value of the key `case` in a file of scenarios/regressions: the origin and the expected results of one simulated
-/// run. Methods, metrics and statuses are plain texts here; scenarios/cases checks that they exist.
+/// run. Methods, metrics and statuses are plain texts in this struct; scenarios/cases checks that they exist.
 struct NamedCase {
   std::string scenario;    ///< scenario from which the case was drawn
-  std::uint64_t seed = 0;  ///< seeds everything random beyond the listed numbers
+  std::uint64_t seed = 0;  ///< seed of all random values that the listed numbers do not fix
   std::string version;     ///< version of the program that shrank the case
   std::string command;     ///< command that shrank the case
   std::vector<Expectation> expected;

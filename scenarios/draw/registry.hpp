@@ -21,9 +21,9 @@ struct Registry {
   static Registry of_simulation();
 };
 
-/// Returns the component type with this name, or null.
+/// Returns the component type with the given name, or null.
 const sim::ComponentType* find_type(std::span<const sim::ComponentType> types, const std::string& name);
-/// Returns the parameter with this name, or null.
+/// Returns the parameter with the given name, or null.
 const sim::Parameter* find_parameter(std::span<const sim::Parameter> parameters, const std::string& name);
 std::vector<std::string> names_of(std::span<const sim::ComponentType> types);
 std::vector<std::string> names_of(std::span<const sim::Parameter> parameters);

@@ -15,7 +15,7 @@
 
 namespace tumble::scenarios {
 
-/// A parsed scenario file: numbers of a situation, each constant or random.
+/// A parsed scenario file. Each number of the situation is constant or random.
 struct Scenario {
   struct Part {
     std::string type;
@@ -40,23 +40,22 @@ struct Scenario {
 /// Returns the names of the catalogue's scenarios, sorted.
 std::vector<std::string> scenario_names(const DataRoot& data);
 
-/// Returns the names of the named cases (scenarios/regressions/NAME.yaml), sorted. A case name can be used wherever a
-/// scenario name can; no name is both a scenario and a case.
+/// Returns the names of the named cases (scenarios/regressions/NAME.yaml), sorted. A case name can replace a scenario
+/// name in every function. No name is both a scenario and a case.
 std::vector<std::string> case_names(const DataRoot& data);
 
 /// Loads scenarios/catalogue/NAME.yaml, the named case scenarios/regressions/NAME.yaml, or a file if `name` ends in
-/// ".yaml". Throws BadInput with file and line; for an unknown name or key, the message suggests the nearest known
-/// name.
+/// ".yaml". Throws BadInput with file and line. The message for an unknown name or key suggests the nearest known name.
 Scenario load_scenario(const DataRoot& data, const std::string& name);
 
 /// Fixes every number: applies the data sheets of the devices, then the values of the scenario, then draws the random
-/// numbers. Each number is drawn from the random stream that its place names ("world.slope_rad",
-/// "sensors.imu.mount_error.x_m"). Throws BadInput for a scenario that does not fit the data sheets or this build.
+/// numbers. The random stream of a number is named after its place ("world.slope_rad", "sensors.imu.mount_error.x_m").
+/// Throws BadInput for a scenario that does not fit the data sheets or this build.
 sim::ResolvedSituation draw(const DataRoot& data, const Scenario& scenario, std::uint64_t seed);
 
-/// Convert a resolved situation to and from YAML without loss (doubles round-trip). Reading rejects unknown keys;
-/// sim::resolve checks that this build has the named types and numbers. The two functions throw BadInput with a message
-/// that starts with `place`.
+/// These functions convert a resolved situation to and from YAML without loss; doubles are restored bit-exactly.
+/// Reading rejects unknown keys. sim::resolve checks that this build has the named types and numbers. Both functions
+/// throw BadInput with a message that starts with `place`.
 std::string to_yaml(const sim::Situation& situation);
 sim::Situation situation_from_yaml(const std::string& text, const std::string& place);
 

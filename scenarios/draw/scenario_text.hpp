@@ -9,18 +9,18 @@
 
 namespace tumble::scenarios {
 
-/// Parses a scenario and checks types, numbers and the range of each distribution against the limits of the parameters
-/// in `registry`. Error messages start with `file`. Throws BadInput with the file, the line and the place of the fault.
+/// Parses a scenario. Checks its types, its numbers, and the range of each distribution against the limits of the
+/// parameters in `registry`. Throws BadInput with `file`, the line and the place of the fault.
 Scenario parse_scenario(const std::string& text, const std::string& file, const Registry& registry);
 
-/// Returns the limits of a scenario's duration, which belongs to no component.
+/// Returns the limits of a scenario's duration. The duration belongs to no component.
 const sim::Parameter& duration_parameter();
 
 /// Parses a data sheet and checks names, units and limits against the parameters of the sheet's kind of sensor.
 DataSheet parse_data_sheet(const std::string& text, const std::string& file, const Registry& registry);
 
-/// Draws every number that the scenario and the data sheets state, without filling in defaults. `sheets` contains one
-/// data sheet for each sensor of the scenario.
+/// Draws every number that the scenario and the data sheets state, without adding defaults. `sheets` contains one data
+/// sheet for each sensor of the scenario.
 sim::Situation draw_given(const Scenario& scenario, std::span<const DataSheet> sheets, std::uint64_t seed);
 
 }  // namespace tumble::scenarios

@@ -24,12 +24,12 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr std::uintmax_t kLargestFile = 4u << 20;
-/// Identifiers become file names, so their length is limited. A file name has at most 255 bytes, including a seed and
-/// an extension.
+/// The length of identifiers is limited, because identifiers become file names. A file name has at most 255 bytes,
+/// including a seed and an extension.
 constexpr std::size_t kIdentifierMax = 100;
 
-/// Counts parser events. Each event consumes at least one byte of text, therefore more events than bytes indicate an
-/// endless loop. The parser enters endless loops on some invalid texts.
+/// Counts parser events to detect endless loops, which the parser enters on some invalid texts. Each event consumes at
+/// least one byte of text, so more events than bytes indicate an endless loop.
 class Counter : public YAML::EventHandler {
  public:
   Counter(const std::string& text, const std::string& file) : most_(4 * text.size() + 64), file_(file) {}
@@ -189,7 +189,7 @@ std::vector<std::pair<std::string, YamlNode>> YamlNode::entries() const {
     const std::string name = key.text();
     if (!seen.insert(name).second) key.fail(fmt::format("key '{}' is given twice", name));
     YamlNode value(entry.second, file_, join(place_, name));
-    // Blocks, aliases and empty values report no usable line, so the line of their key is used.
+    // Blocks, aliases and empty values have no usable line number, so errors refer to the line of their key.
     value.line_ = key.line_;
     out.emplace_back(name, std::move(value));
   }

@@ -17,10 +17,10 @@ namespace tumble::scenarios {
 std::string read_text_file(const std::filesystem::path& path);
 
 /// A YAML node with its location in the file. Every error is a BadInput with a one-line message: "FILE:LINE: PLACE:
-/// what". The parser is stricter than YAML: it rejects repeated keys, keys that are not text, and a second document.
+/// what". The parser is stricter than YAML: it rejects repeated keys, non-text keys, and a second document.
 class YamlNode {
  public:
-  /// Parses a text with one document and returns the root node; error messages start with `file`.
+  /// Parses a text with one document and returns the root node. Error messages start with `file`.
   static YamlNode parse(const std::string& text, const std::string& file);
 
   int line() const { return line_; }  ///< starts at 1
@@ -34,7 +34,8 @@ class YamlNode {
   std::string text() const;
   /// Returns a scalar as text, possibly empty.
   std::string any_text() const;
-  /// Returns a lower-case identifier: a letter, then letters, digits and underscores, at most 100 characters.
+  /// Returns a lower-case identifier of at most 100 characters. An identifier is a letter, followed by letters, digits
+  /// and underscores.
   std::string identifier() const;
   /// Returns a finite number; rejects quoted text.
   double number() const;
@@ -59,7 +60,7 @@ class YamlNode {
   int line_ = 0;
 };
 
-/// Returns "; did you mean 'slope_rad'?", or the list of known names if none is similar.
+/// Returns "; did you mean 'slope_rad'?" for a similar known name, else the list of known names.
 std::string suggestion(const std::string& name, std::span<const std::string> known);
 
 }  // namespace tumble::scenarios

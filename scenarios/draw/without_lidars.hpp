@@ -9,8 +9,8 @@ namespace tumble::scenarios {
 /// Returns true if the scenario has a lidar.
 bool has_lidar(const Scenario& scenario);
 
-/// Returns the situation without its lidars, which need most of the memory and much of the time of a simulation. Motion
-/// and IMU readings stay bit-identical without lidars, because each sensor has its own random streams.
+/// Returns the situation without its lidars, which need most of a simulation's memory and much of its time. Motion and
+/// IMU readings stay bit-identical without lidars, because each sensor has its own random streams.
 sim::ResolvedSituation without_lidars(const sim::ResolvedSituation& situation);
 
 }  // namespace tumble::scenarios

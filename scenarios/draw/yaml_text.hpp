@@ -6,7 +6,7 @@
 /// Writes scalars as YAML text.
 namespace tumble::scenarios {
 
-/// Returns the shortest text that parses to the same double; infinite values are `.inf` and `-.inf`. Throws BadInput
+/// Returns the shortest text that parses to the same double. Infinite values are `.inf` and `-.inf`. Throws BadInput
 /// with `place` if the value is NaN.
 std::string yaml_number(double value, const std::string& place);
 

@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::int64_t kHole_ns = 200000000;
 
-/// Returns the mounting of the estimate's frame on the body.
+/// Returns the pose of the estimate's frame relative to the body.
 Eigen::Isometry3d mounting_of(const Estimate& estimate, const sim::Sensors& sensors, const StoredTruth* truth) {
   Eigen::Isometry3d T_BA = Eigen::Isometry3d::Identity();
   switch (estimate.frame) {
@@ -43,13 +43,13 @@ Eigen::Isometry3d mounting_of(const Estimate& estimate, const sim::Sensors& sens
   return T_BA;
 }
 
-/// Returns the alignment of an estimate with the truth, as in the scores.
+/// Returns the alignment of an estimate with the truth that the scores also use.
 Alignment alignment_of(const Estimate& estimate, const StoredTruth* truth) {
   if (truth == nullptr) return {};
   for (const PoseState& pose : estimate.poses) {
     const std::size_t before = static_cast<std::size_t>(std::max<std::int64_t>(pose.time_ns, 0) / truth->period_ns);
     if (pose.time_ns < 0 || before >= truth->size()) continue;
-    // the two neighbouring states are sufficient
+    // The two states next to the time are sufficient for interpolation.
     const sim::Truth around = truth->states(before, std::min(before + 2, truth->size()));
     const TruthTrack track(around, estimate.frame);
     const std::int64_t after_ns = pose.time_ns % truth->period_ns;
@@ -64,7 +64,7 @@ Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
   return out;
 }
 
-/// Applies the alignment to the pose and its covariance.
+/// Returns the pose and its covariance after the alignment with the truth.
 PoseState moved_by(const Alignment& alignment, const PoseState& pose) {
   PoseState out = alignment.apply(pose);
   Eigen::Matrix<double, 6, 6> turn = Eigen::Matrix<double, 6, 6>::Zero();
@@ -73,8 +73,8 @@ PoseState moved_by(const Alignment& alignment, const PoseState& pose) {
   return out;
 }
 
-/// Converts a pose of frame A to a pose of the body. An attitude error phi moves the body's position by phi x (lever
-/// arm in W).
+/// Converts a pose of frame A to a pose of the body. An attitude error phi displaces the body's position by phi x
+/// (lever arm in W).
 BagTrack::Pose body_pose(const PoseState& moved, const Eigen::Isometry3d& T_AB) {
   const Eigen::Quaterniond q_WA = moved.q_WA.normalized();
   BagTrack::Pose out;
@@ -91,7 +91,7 @@ BagTrack::Pose body_pose(const PoseState& moved, const Eigen::Isometry3d& T_AB) 
 class BodyAt {
  public:
   explicit BodyAt(const std::vector<BagTrack::Pose>& poses) : poses_(poses) {}
-  /// Returns false if there is no pose before or no pose after `time_ns`.
+  /// Returns false unless there are poses both before and after `time_ns`.
   bool operator()(std::int64_t time_ns, Eigen::Isometry3d& T_WB) const {
     const auto after = std::lower_bound(poses_.begin(), poses_.end(), time_ns,
                                         [](const BagTrack::Pose& pose, std::int64_t t) { return pose.time_ns < t; });
@@ -111,8 +111,8 @@ class BodyAt {
   const std::vector<BagTrack::Pose>& poses_;
 };
 
-/// Returns the points of one sweep, transformed to W with the poses of the track. `hit_W_m` contains the true hits of
-/// the points, or is empty.
+/// Returns the points of one sweep, transformed to W with the poses of the track. `hit_W_m` contains the true hit of
+/// each point, or is empty.
 BagCloud cloud_of(const BagTrack& track, const sim::LidarRecord& sweep, const std::vector<Eigen::Vector3f>& hit_W_m) {
   const BodyAt body_at(track.poses);
   BagCloud cloud;
@@ -127,7 +127,7 @@ BagCloud cloud_of(const BagTrack& track, const sim::LidarRecord& sweep, const st
   return cloud;
 }
 
-/// Adds clouds of the first lidar, one per sweep; each cloud is created on demand from `sensors`, `points` and `truth`.
+/// Adds clouds of the first lidar, one per sweep. Each cloud is created on demand from `sensors`, `points` and `truth`.
 void add_clouds(const sim::Sensors& sensors, const std::vector<PointStore>* points, const StoredTruth* truth,
                 BagTrack& track) {
   if (sensors.lidars.empty()) return;
@@ -145,7 +145,7 @@ void add_clouds(const sim::Sensors& sensors, const std::vector<PointStore>* poin
   };
 }
 
-/// Throws BadInput unless the estimate was computed from these sensor data.
+/// Throws BadInput unless the estimate in `path` was computed from the sensor data with digest `own`.
 void require_own(const std::filesystem::path& path, const std::string& own) {
   const std::string made_from = estimated_sensors(path);
   if (made_from.empty() || made_from == own) return;
@@ -154,7 +154,7 @@ void require_own(const std::filesystem::path& path, const std::string& own) {
       made_from, own));
 }
 
-/// Converts a method name such as "slam/tumble" to a topic and frame name.
+/// Converts a method name such as "slam/tumble" to a name that ROS accepts for topics and frames.
 std::string plain_name(const std::string& method) {
   std::string stem;
   for (const char c : method) stem += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';

@@ -31,7 +31,7 @@ std::string labels_text(const AxisLabels& labels) {
 
 std::string imu_note(const sim::ImuRecord& imu, double gravity_m_s2) {
   std::vector<ImuSample> samples;
-  // The reader reports errors of single readings.
+  // The reader of recordings already reports errors of single readings.
   if (!bridge::imu_samples(imu, samples).ok()) return "";
   ImuPlausibility::Params params;
   params.gravity_m_s2 = gravity_m_s2;

@@ -21,16 +21,17 @@ namespace {
 constexpr std::size_t kSpans = 10, kSweepsOfSpan = 12;
 constexpr double kSlowest_rad_s = 0.1, kFastest_rad_s = 2.0;
 constexpr std::size_t kLeastPairs = 12;
-/// Largest error relative to the median rotation; above this limit, lidar and gyro do not measure the same motion. The
-/// lidar's rotation alone has an error of about a tenth.
+/// Largest accepted error relative to the median rotation. Above this limit, lidar and gyro do not measure the same
+/// motion. The error of the lidar's rotation is about 0.1.
 constexpr double kAgrees = 0.3;
-/// A better interpretation must reduce the error at least by these factors.
+/// Largest ratio of the errors with and without a correction of the gyro that is reported. kConclusive applies to units
+/// and axes, kDelayConclusive to a delay.
 constexpr double kConclusive = 0.5, kDelayConclusive = 0.6;
 constexpr double kDegreesPerRadian = 57.29577951308232;
 constexpr double kDelayMost_s = 0.5, kDelayStep_s = 0.01, kDelaySaid_s = 0.03;
 constexpr std::int64_t kGap_ns = 100'000'000;
 
-/// Returns the sweeps `first` to `last` - 1 as a recording with this lidar only.
+/// Returns the sweeps `first` to `last` - 1 as a recording with only this lidar.
 sim::Sensors span_alone(const sim::LidarRecord& lidar, const PointStore* aside, std::size_t first, std::size_t last) {
   sim::LidarRecord out = sweep_alone(lidar, aside, first);
   const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
@@ -63,7 +64,8 @@ void add_rotations(const Estimate& estimate, std::vector<SeenRotation>& out) {
   }
 }
 
-/// Integrates the gyro per axis, which is accurate for the few hundredths of a radian between two sweeps.
+/// Integrates the gyro per axis. Between two sweeps the rotation is a few hundredths of a radian, so this integral is
+/// accurate.
 class Integral {
  public:
   explicit Integral(const sim::ImuRecord& imu) : imu_(imu) {
@@ -74,7 +76,7 @@ class Integral {
     }
   }
 
-  /// Returns empty outside the readings or across a gap.
+  /// Returns the integral from `from_ns` to `to_ns`, or empty if the interval leaves the readings or contains a gap.
   std::optional<Eigen::Vector3d> between(std::int64_t from_ns, std::int64_t to_ns) const {
     const auto first = sample_at(from_ns), last = sample_at(to_ns);
     if (!first || !last) return std::nullopt;
@@ -86,7 +88,7 @@ class Integral {
 
  private:
   std::int64_t start(std::size_t k) const { return k == 0 ? imu_.time_ns[0] - imu_.period_ns : imu_.time_ns[k - 1]; }
-  /// Returns the sample whose averaging window contains the instant.
+  /// Returns the index of the sample whose averaging window contains the instant.
   std::optional<std::size_t> sample_at(std::int64_t time_ns) const {
     const auto at = std::lower_bound(imu_.time_ns.begin(), imu_.time_ns.end(), time_ns);
     if (at == imu_.time_ns.end() || time_ns < start(0)) return std::nullopt;
@@ -103,9 +105,9 @@ class Integral {
 /// Rotations from lidar and gyro over equal time intervals, both in IMU axes.
 struct Pairs {
   std::vector<Eigen::Vector3d> seen, said;
-  double rotation_rad = 0.0;  // median of `seen`
+  double rotation_rad = 0.0;  // median of the lidar's rotations
 
-  /// Returns the median of error(k) divided by the median rotation.
+  /// Returns the median of error(k), divided by the median rotation.
   template <class Error>
   double share(Error&& error) const {
     std::vector<double> errors;
@@ -132,7 +134,7 @@ Pairs pairs_at(const Integral& integral, const Eigen::Matrix3d& R_IL, std::span<
   return out;
 }
 
-/// Returns the orthogonal matrix with the stated determinant, 1 or -1, that best maps gyro rotations to lidar rotations
+/// Returns the orthogonal matrix with the given determinant, 1 or -1, that best maps gyro rotations to lidar rotations
 /// (Wahba 1965, by singular values).
 Eigen::Matrix3d best_orthogonal(const Pairs& pairs, double determinant) {
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
@@ -143,7 +145,7 @@ Eigen::Matrix3d best_orthogonal(const Pairs& pairs, double determinant) {
   return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
 }
 
-/// Searches for a better unit and delay, independent of mounting and axes.
+/// Searches for the unit and delay with the smallest error of rotation angles, independent of mounting and axes.
 void fit_unit(const Pairs& pairs, double delay_s, RotationAgreement& best, double& best_error) {
   RotationAgreement at;
   at.pairs = pairs.seen.size();
@@ -188,7 +190,7 @@ std::string pairs_text(const RotationAgreement& found) {
   return fmt::format(" over {} pairs of sweeps", found.pairs);
 }
 
-/// Throws BadInput if another unit of the gyro would remove the disagreement.
+/// Throws BadInput if gyro and lidar agree only after a conversion of the gyro's unit.
 std::string unit_text(const std::string& where, const RotationAgreement& found, GyroUnit unit) {
   const bool degrees = unit == GyroUnit::deg_s;
   const std::string read = fmt::format(
@@ -273,7 +275,7 @@ std::optional<RotationAgreement> rotation_agreement(const sim::ImuRecord& imu, c
     fit_unit(pairs, delay_s, delayed, delayed_error);
     if (step == 0) fit_unit(pairs, delay_s, at_once, at_once_error);
   }
-  // among a hundred candidate delays, one fits slightly better by chance
+  // Among a hundred candidate delays, one delay may fit slightly better by chance.
   RotationAgreement out = delayed_error < kDelayConclusive * at_once_error ? delayed : at_once;
   if (out.unit_error > kAgrees) return std::nullopt;
   fit_axes(pairs_at(integral, R_IL, seen, std::llround(1e9 * out.delay_s)), out);

@@ -13,8 +13,8 @@
 #include "scenarios/recordings/import.hpp"
 #include "sim/recording.hpp"
 
-/// Checks unit, signs, axes, mounting and clock of a gyro against the lidar's rotation between sweeps. The check is
-/// useful for hand-held or driven bodies with little tilt, where gravity does not reveal wrong axes or units.
+/// Checks unit, signs, axes, mounting and clock of a gyro against the lidar's rotation between sweeps. For hand-held or
+/// driven bodies with little tilt, gravity does not reveal wrong axes or units, but this check does.
 namespace tumble::scenarios {
 
 /// Rotation of a lidar between two instants.
@@ -24,13 +24,13 @@ struct SeenRotation {
 };
 
 /// Returns the rotations between the ends of consecutive sweeps, as `slam/constant_velocity` estimates them from the
-/// lidar alone. Processes at most ten parts of a dozen sweeps, spread over the recording, each with its own map. Keeps
-/// pairs of registered sweeps with rates of 0.1 to 2 rad/s, because slower rotations are noise and faster rotations
-/// distort the sweeps. The points are in `lidar`, or in `aside` if `aside` is not null. The cost is about 10 ms per
-/// sweep.
+/// lidar alone. The function processes at most ten parts of a dozen sweeps, spread over the recording, each with its
+/// own map. Only pairs of registered sweeps with rates of 0.1 to 2 rad/s are kept. Slower rotations are noise, and
+/// faster rotations distort the sweeps. The points are in `lidar`, or in `aside` if `aside` is not null. The cost is
+/// about 10 ms per sweep.
 std::vector<SeenRotation> seen_rotations(const sim::LidarRecord& lidar, const PointStore* aside);
 
-/// A signed permutation: true axis i is `sign[i]` times axis `axis[i]` as read.
+/// A signed permutation of axes: true axis i is `sign[i]` times axis `axis[i]` of the readings.
 struct SignedAxes {
   std::array<int, 3> axis{0, 1, 2};
   std::array<int, 3> sign{1, 1, 1};
@@ -48,25 +48,23 @@ struct RotationAgreement {
   double error_as_read = 1.0;
   SignedAxes axes;  ///< best fitting axes
   double axes_error = 1.0;
-  double next_error = 1.0;  ///< error of the second-best axes; near `axes_error` if the motion does not determine the
-                            ///< axes
-  Eigen::Quaterniond turned = Eigen::Quaterniond::Identity();  ///< best rotation: lidar rotation = `turned` times gyro
-                                                               ///< rotation
+  double next_error = 1.0;  ///< error of the second-best axes; close to `axes_error` if undetermined
+  Eigen::Quaterniond turned = Eigen::Quaterniond::Identity();  ///< lidar rotation = `turned` times gyro rotation
   double turned_error = 1.0;
 };
 
-/// Compares the rotation that the gyro measures with the rotation that the lidar shows. Returns empty for fewer than a
-/// dozen sweep pairs within the time of the gyro's readings. Also returns empty if no unit, axes or mounting rotation
-/// make gyro and lidar agree within 30 %. Uses the mountings of `imu` and `lidar`. O(pairs).
+/// Compares the gyro's rotations with the lidar's rotations `seen`. Returns empty for fewer than a dozen sweep pairs
+/// within the time of the gyro's readings. Returns empty also if no unit, axes or mounting rotation make gyro and lidar
+/// agree within 30 %. Uses the mountings of `imu` and `lidar`. O(pairs).
 std::optional<RotationAgreement> rotation_agreement(const sim::ImuRecord& imu, const sim::LidarRecord& lidar,
                                                     std::span<const SeenRotation> seen);
 
 /// Returns a note that gyro and lidar agree, a warning with a better interpretation of the gyro, or "" if undetermined.
-/// Throws BadInput, with a message that starts with `where`, if the rates are in deg/s instead of rad/s or vice versa.
+/// Throws BadInput if the rates are in deg/s instead of rad/s or vice versa. The message starts with `where`.
 std::string agreement_text(const std::string& where, const RotationAgreement& agreement, GyroUnit unit);
 
-/// Returns notes on each IMU of a recording; the list is empty unless the recording has a lidar and an IMU. Throws
-/// BadInput if the rates are in a wrong unit; `where` is the recording's path.
+/// Returns notes on each IMU of a recording. The list is empty unless the recording has a lidar and an IMU. Throws
+/// BadInput if the rates are in a wrong unit; the message starts with `where`, the recording's path.
 std::vector<std::string> lidar_rotation_notes(const std::string& where, const Imported& recording, GyroUnit unit);
 
 }  // namespace tumble::scenarios

@@ -27,11 +27,11 @@ constexpr double kRateMax_rad_s = 1e6;
 constexpr double kAnswerNormTolerance = 1e-2;
 constexpr double kCorrelationTolerance = 1e-3;  // tolerance for covariances written with few digits
 
-constexpr std::size_t kStampsToJudge = 10;  // fewer stamps could span a short time by chance
+constexpr std::size_t kStampsToJudge = 10;  // minimum; fewer stamps could span a short time by chance
 constexpr double kUnitsApart = 100.0;       // a span of a hundredth indicates another unit or a broken answer
 
-/// Returns ", and looks like UNIT" for stamps that should be in `unit` and span `times` the duration of the recording;
-/// empty if no unit fits.
+/// Returns ", and looks like UNIT" if the stamps seem to be in another unit than `unit`; empty if no unit fits. The
+/// stamps span `times` the duration of the recording.
 std::string unit_like(std::string_view unit, double times) {
   constexpr std::array<std::pair<const char*, double>, 4> kUnits = {
       {{"nanoseconds", 1e-9}, {"microseconds", 1e-6}, {"milliseconds", 1e-3}, {"seconds", 1.0}}};
@@ -96,7 +96,7 @@ AnswerBounds::AnswerBounds(const sim::Sensors& sensors) : rows_(kBase), points_(
     points_ += kPerReading * lidar.position_L_m.size();
   }
   if (first_ns < last_ns_) length_s_ = 1e-9 * static_cast<double>(last_ns_ - first_ns);
-  first_ns_ = std::min<std::int64_t>(first_ns, 0);  // a recording starts at 0, its first sample may be later
+  first_ns_ = std::min<std::int64_t>(first_ns, 0);  // the recording starts at 0; its first sample may be later
 }
 
 std::uintmax_t AnswerBounds::table_bytes() const {
@@ -138,7 +138,7 @@ void AnswerBounds::require_unit(std::span<const double> stamps_s, const char* un
   const bool far = outside != stamps_s.end() && times > kUnitsApart, near = times < 1.0 / kUnitsApart;
   if (!far && !near) return;
   const std::string like = unit_like(unit, times);
-  if (far && like.empty()) return;  // probably single wrong stamps
+  if (far && like.empty()) return;  // probably a few wrong stamps
   const std::size_t row = far ? static_cast<std::size_t>(outside - stamps_s.begin()) : stamps_s.size() - 1;
   throw BadInput(fmt::format(
       "{}: stamp {:.9g} s: {} stamps span {:.3g} s, but the recording lasts {:.3g} s; stamps must be in {}{}",

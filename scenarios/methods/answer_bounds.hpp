@@ -12,7 +12,7 @@
 namespace tumble::scenarios {
 
 /// Limits on the result of an external method for one recording. The size of a file is checked before reading, because
-/// reading is outside the method's time limit.
+/// the method's time limit does not include reading.
 class AnswerBounds {
  public:
   /// Returns the location of row `row` for an error message, for example "poses.tum:3".
@@ -20,10 +20,11 @@ class AnswerBounds {
 
   explicit AnswerBounds(const sim::Sensors& sensors);
 
-  /// Returns the size limit of a table, text or trajectory: 1 KiB per row, for 10 000 rows plus 4 per IMU sample and
-  /// per lidar sweep.
+  /// Returns the size limit of a table, text or trajectory: 1 KiB per row. The number of rows is limited to 10 000,
+  /// plus 4 per IMU sample and per lidar sweep.
   std::uintmax_t table_bytes() const;
-  /// Returns the size limit of a float32 map: 32 bytes per point, for 10 000 points plus 4 per lidar point.
+  /// Returns the size limit of a float32 map: 32 bytes per point. The number of points is limited to 10 000, plus 4 per
+  /// lidar point.
   std::uintmax_t map_bytes() const;
 
   /// Throws BadInput unless `file` is a regular file of at most `bytes`. Does not read the file.
@@ -36,11 +37,12 @@ class AnswerBounds {
   void require_rates(const std::vector<RateState>& rates, const Place& place) const;
   void require_poses(const std::vector<PoseState>& poses, const Place& place) const;
   void require_attitudes(const std::vector<AttitudeState>& attitudes, const Place& place) const;
-  /// Throws BadInput if ten or more stamps are probably not in `unit`. The unit is wrong if the time span of the stamps
-  /// is below a hundredth of the recording, or is above a hundred times the recording and matches another unit.
+  /// Throws BadInput if ten or more stamps are probably not in `unit`. The unit is wrong if the stamps span less than a
+  /// hundredth of the recording. The unit is also wrong if the stamps span more than a hundred times the recording and
+  /// fit another unit.
   void require_unit(std::span<const double> stamps_s, const char* unit, const Place& place) const;
   void require_unit(const Estimate& estimate, const char* unit, const Place& place) const;
-  /// Checks the pose and trajectory of each sweep, and the points of the map, with the limits for positions and
+  /// Checks the pose and trajectory of each sweep, and the points of the map. The limits are those for positions and
   /// quaternions.
   void require_slam(const Estimate& estimate) const;
 
@@ -50,7 +52,7 @@ class AnswerBounds {
 
   std::uintmax_t rows_ = 0, points_ = 0;
   std::int64_t first_ns_ = 0, last_ns_ = 0;
-  double length_s_ = 0.0;  ///< length of the readings
+  double length_s_ = 0.0;  ///< duration of the readings
 };
 
 }  // namespace tumble::scenarios

@@ -16,7 +16,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns the sensors with unclipped gyros; accelerometers stay clipped.
+/// Returns the sensor data with unclipped gyro readings. Accelerometer readings stay clipped.
 sim::Sensors unclipped_gyros(const sim::Sensors& sensors, const sim::Truth& truth) {
   if (truth.imus.size() < sensors.imus.size()) throw BadInput("the truth lacks an IMU of the recording");
   sim::Sensors out;

@@ -21,7 +21,7 @@ TumbleAttitude::Params stated(const sim::Sensors& sensors) {
   return params;
 }
 
-/// Merges all IMUs of the sphere in body axes; the rolling motion supplies the velocity.
+/// Merges all IMUs of the sphere in body axes. The rolling motion determines the velocity.
 Estimate run_sphere(const sim::Sensors& sensors, const sim::Values& parameters) {
   Estimate estimate;
   estimate.frame = Frame::body;
@@ -48,7 +48,7 @@ Estimate run_sphere(const sim::Sensors& sensors, const sim::Values& parameters) 
   return estimate;
 }
 
-/// Uses the primary IMU in the axes of this IMU.
+/// Estimates the attitude from the primary IMU, in the axes of this IMU.
 Estimate run_rig(const sim::Sensors& sensors, const sim::Values& parameters) {
   Estimate estimate;
   std::vector<ImuSample> samples;

@@ -16,11 +16,11 @@ namespace tumble::scenarios {
 namespace {
 
 /// Above this probability of hand-held motion in clipped segments, the hand-held smoother processes the clipped
-/// readings. In this case, the motion limits of the hand-held smoother give better results than the recovered rates.
+/// readings. The motion limits of the hand-held smoother then give better results than the recovered rates.
 constexpr double kCarried = 0.5;
 
-/// Smooths the attitude of a body that was not hand-held while its gyro clipped, with the recovered rates as readings.
-/// `rates` are the output of the rate smoother.
+/// Smooths the attitude with the recovered rates as readings, for a body that was not hand-held while its gyro clipped.
+/// `rates` is the output of the rate smoother.
 Status run_thrown(const sim::Sensors& sensors, const sim::Values& parameters, const std::vector<ImuSample>& samples,
                   const std::vector<ImuSample>& recovered, const std::vector<Eigen::Matrix3d>& covariances,
                   std::vector<RateState>& rates, Estimate& estimate) {
@@ -37,7 +37,7 @@ Status run_thrown(const sim::Sensors& sensors, const sim::Values& parameters, co
   return status;
 }
 
-/// Checks the rates that the smoother receives against gravity at the rests. The output of the smoother cannot be
+/// Checks the rates that the attitude smoother receives against gravity at the rests. The smoother's output cannot be
 /// checked, because the smoother itself aligns gravity at the rests.
 void check_readings(const sim::Sensors& sensors, const std::vector<ImuSample>& samples,
                     const std::vector<ImuSample>& recovered, const RecoveredRates& recovery, Estimate& estimate) {

@@ -17,7 +17,7 @@ namespace tumble::scenarios::bridge {
 
 namespace {
 
-// Maps the clip bits of sim to the estimator's flags explicitly, so that a change on one side causes an error.
+// Maps the clip bits of sim to the estimator's flags explicitly, so that a change in either library causes an error.
 constexpr std::array<std::pair<int, ClipFlag>, 6> kClipBits = {
     {{0, kClipGyroX}, {1, kClipGyroY}, {2, kClipGyroZ}, {3, kClipAccelX}, {4, kClipAccelY}, {5, kClipAccelZ}}};
 
@@ -29,8 +29,8 @@ std::uint8_t clip_flags(std::uint8_t sim_bits) {
   return flags;
 }
 
-// Stamps in a wrong unit differ at least 1000-fold from the stated period; slow reading of a device stays below this
-// factor.
+// Largest accepted ratio between the median step and the stated period. Stamps in a wrong unit differ at least
+// 1000-fold. A device that is read slowly stays below this ratio.
 constexpr double kPeriodsMax = 20.0;
 
 Status check_period(const sim::ImuRecord& record, std::span<const ImuSample> samples) {
@@ -56,8 +56,8 @@ bool in_range(const sim::ImuRecord& record, const ImuSample& sample) {
   return check_range(record, sample.angular_velocity_rad_s, sample.specific_force_m_s2).ok();
 }
 
-// Marks readings that are finite, within the values of any sensor, and whose stamps are in order. Marks all readings if
-// too many are faulty, so that the recording is refused.
+// Marks readings that are finite, within the values of any sensor, and whose stamps are in order. If too many readings
+// are faulty, all readings are marked, so that the recording is refused.
 std::vector<bool> find_usable(std::span<const ImuSample> samples) {
   std::vector<bool> usable(samples.size(), true);
   std::vector<TimeNs> stamps_ns;
@@ -78,8 +78,8 @@ std::vector<bool> find_usable(std::span<const ImuSample> samples) {
   return usable;
 }
 
-// Removes faulty readings, and single readings beyond the values that the device can measure. Lasting or frequent
-// readings beyond the limit are kept, so that the recording is refused.
+// Removes faulty readings, and single readings beyond the values that the device can measure. If readings beyond the
+// limit are frequent or lasting, they are kept, so that the recording is refused.
 void leave_out_faulty(const sim::ImuRecord& record, std::vector<ImuSample>& samples) {
   std::vector<bool> kept = find_usable(samples);
   std::size_t beyond = 0;
@@ -91,8 +91,8 @@ void leave_out_faulty(const sim::ImuRecord& record, std::vector<ImuSample>& samp
   keep_rows(kept, samples);
 }
 
-// Checks the assumptions of every method: finite readings within the device's range, increasing stamps at the stated
-// period, no gaps.
+// Checks the assumptions of every method: readings are finite and within the device's range, stamps increase at the
+// stated period, and there are no gaps.
 Status check_stream(const sim::ImuRecord& record, std::span<const ImuSample> samples) {
   if (samples.empty()) return {Trouble::empty, "time_ns", 0.0, 1.0};
   if (const Status status = check_samples(samples, kGapMaxS); !status.ok()) return status;

@@ -15,51 +15,50 @@
 #include "tumble/mapping/lidar.hpp"
 #include "tumble/odometry/imu_sheet.hpp"
 
-/// Converts the records of `sim` to the messages of the estimator. Every conversion between the two libraries is in
-/// this file. Each library states its conventions separately; the table compares the conventions:
+/// Converts the records of `sim` to the messages of the estimator. This file contains every conversion between the two
+/// libraries. Each library states its conventions separately. The libraries compare as follows:
 ///
-/// | quantity       | sim                                        | estimator                                      |
-/// | -------------- | ------------------------------------------ | ---------------------------------------------- |
-/// | time           | ns, end of the sample's window             | ns, the window ends there                      |
-/// | rate           | rad/s, of I in W, I axes                   | w_WI_I, rad/s                                  |
-/// | specific force | m/s^2, I axes, +g up at rest               | f_I, equal sign                                |
-/// | clip flags     | bits 0..5: gyro x y z, accel x y z         | ClipFlag                                       |
-/// | mounting       | T_BI, T_BL: sensor to body, B at the centre of mass | lever arm from B to I, in I axes; T_IL |
-/// | lidar point    | m in L, offset ns after the sweep's start  | m in L, offset ns; one struct per point        |
+/// - Time: both libraries use the end of a sample's averaging window [ns].
+/// - Rate: both libraries use the rate of I relative to W in the axes of I [rad/s].
+/// - Specific force: both libraries use the axes of I [m/s^2], with +g upward at rest.
+/// - Clip flags: sim has bits 0 to 5 for gyro x y z and accelerometer x y z; the estimator has ClipFlag.
+/// - IMU mounting: sim has T_BI with B at the centre of mass; the estimator has the lever arm from B to I in axes of I.
+/// - Lidar mounting: sim has T_BL; the estimator has T_IL.
+/// - Lidar point: both libraries use metres in L and the offset from the sweep's start [ns].
 namespace tumble::scenarios::bridge {
 
 /// Longest accepted time between two IMU samples [s].
 inline constexpr double kGapMaxS = 1.0;
 
 /// Readings up to this multiple of the stated range are accepted as measurements. Real saturation levels exceed the
-/// stated range (MTi-30: 1.4 times); tilted saturation planes exceed the range further. Larger readings cannot be
-/// measurements.
+/// stated range (MTi-30: 1.4 times the range). A tilted saturation plane allows even larger readings. Readings above
+/// the multiple cannot be measurements.
 inline constexpr double kStatedRangesMax = OutlierFilter::kRangesMax;
 
-/// A recording is refused if a larger fraction of its readings exceeds the limit, because the unit or the device must
-/// be wrong.
+/// A recording is refused if a larger fraction of its readings is out of range, because then the unit or the device
+/// must be wrong.
 inline constexpr double kWildShareMax = 0.01;
 
-/// Returns the data sheet of an IMU, with the library's defaults for what the record does not state.
+/// Returns the data sheet of an IMU. The library's defaults replace values that the record does not state.
 ImuSheet imu_sheet(const sim::ImuRecord& record);
 
 /// Returns `out_of_range`, with value and limit, for the first axis whose reading exceeds kStatedRangesMax times the
 /// range in the record. A stated range of 0 disables the check.
 Status check_range(const sim::ImuRecord& record, const Eigen::Vector3d& gyro_rad_s, const Eigen::Vector3d& accel_m_s2);
 
-/// Tests the samples of an IMU. Element k is false if sample k is not finite, larger than any sensor reads, or has a
-/// stamp that is not in order, or if the library's OutlierFilter rejects the sample. Samples with the first faults are
-/// only rejected if few have them (may_leave_out). All samples pass if the record's arrays differ in length. O(N log
-/// N).
+/// Tests the samples of an IMU. Element k is false if sample k is not finite, exceeds the values of any sensor, or has
+/// a stamp that is not in order. These three faults only count if few samples have them (may_leave_out). Element k is
+/// also false if the library's OutlierFilter rejects the sample. All samples pass if the record's arrays differ in
+/// length. O(N log N).
 std::vector<bool> find_inliers(const sim::ImuRecord& record);
 
-/// Converts the samples of an IMU, in order, and drops single faulty readings (find_inliers). Errors: `empty`,
-/// `non_finite`, `time_order`, `gap` (more than kGapMaxS), `out_of_range` (check_range, or a median step that differs
-/// 20-fold from the stated period). On error, `out` is empty. Throws BadInput if the record's arrays differ in length.
-/// O(N).
+/// Converts the samples of an IMU, in order, and drops the single faulty readings that find_inliers rejects. Returns
+/// `empty`, `non_finite`, `time_order`, `gap` (more than kGapMaxS) or `out_of_range`. The reason for `out_of_range` is
+/// check_range, or a median step that differs 20-fold from the stated period. On error, `out` is empty. Throws BadInput
+/// if the record's arrays differ in length. O(N).
 Status imu_samples(const sim::ImuRecord& record, std::vector<ImuSample>& out);
 
-/// Converts the primary IMU's samples; returns `empty` if the recording has no IMU.
+/// Converts the primary IMU's samples. Returns `empty` if the recording has no IMU.
 Status primary_imu_samples(const sim::Sensors& sensors, std::vector<ImuSample>& out);
 
 /// Converts the samples of the IMU with the true, unsaturated readings of `truth`. Throws BadInput if `truth` does not
@@ -69,7 +68,7 @@ Status unclipped_samples(const sim::ImuRecord& record, const sim::ImuTruth& trut
 /// Returns the vector from the centre of mass to the IMU, in IMU axes [m]: R_BI^T p_BI of the calibration.
 Eigen::Vector3d lever_arm_I_m(const sim::ImuRecord& record);
 
-/// Returns the transform from lidar to IMU coordinates, from the two calibrations.
+/// Returns the transform from lidar to IMU coordinates, computed from the mountings of both sensors.
 Eigen::Isometry3d T_IL(const sim::ImuRecord& imu, const sim::LidarRecord& lidar);
 
 /// Returns the variance of one gyro reading per axis [(rad/s)^2], from the noise density of the data sheet and the
@@ -90,10 +89,10 @@ std::size_t sweep_count(const sim::LidarRecord& record);
 /// quarter of this tolerance.
 inline constexpr std::int64_t kRounding_ns = 1000;
 
-/// Converts the sweep with number `index`, which must be less than sweep_count(record). The sweep lasts one period, or
-/// until the next sweep starts if the next sweep starts earlier. Points that are later than the sweep's end by more
-/// than kRounding_ns are dropped; points within the tolerance are moved to the end. Without a time per point, the sweep
-/// has zero length and is not deskewed. The cost is proportional to the number of points of the sweep.
+/// Converts the sweep with number `index`, which must be less than sweep_count(record). The sweep ends after one
+/// period, or at the start of the next sweep if that is earlier. Points up to kRounding_ns after the sweep's end are
+/// moved to the end. Later points are dropped. Without a time per point, the sweep has zero length and is not deskewed.
+/// The cost is proportional to the number of points of the sweep.
 Sweep sweep(const sim::LidarRecord& record, std::size_t index);
 
 }  // namespace tumble::scenarios::bridge

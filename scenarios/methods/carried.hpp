@@ -13,22 +13,22 @@
 #include "tumble/attitude/carried_elements.hpp"
 #include "tumble/attitude/carried_smoother.hpp"
 
-/// Runs the hand-held smoother on the primary IMU after saturation detection; all hand-held methods use this function.
+/// Runs the hand-held smoother on the primary IMU after saturation detection. All hand-held methods use this function.
 namespace tumble::scenarios {
 
 /// Returns the parameters of a hand-held method with the library's defaults.
 const Settings<CarriedSmoother::Params>& carried_settings();
 
-/// Returns which sensing elements are saturated at each sample, from the stated ranges and from the readings. Adds the
-/// detected saturation limits to `health` (report_rails.hpp).
+/// Returns which sensing elements are saturated at each sample, according to the stated ranges and the readings. Adds
+/// the detected saturation limits to `health` (report_rails.hpp).
 CarriedElements find_clipped(const sim::ImuRecord& record, std::span<const ImuSample> samples,
                              std::map<std::string, double>& health);
 
-/// Returns the smoother's parameters: the values of the recording, overridden by `parameters`.
+/// Returns the smoother's parameters. `parameters` override the values of the recording.
 CarriedSmoother::Params carried_params(const sim::Sensors& sensors, const sim::Values& parameters);
 
-/// Runs the smoother over the primary IMU. Errors are those of the record and of the smoother; on error, the outputs
-/// are empty.
+/// Runs the smoother over the primary IMU. Returns an error of the record or of the smoother; the outputs are then
+/// empty.
 Status run_carried(const sim::Sensors& sensors, const sim::Values& parameters, std::vector<RateState>& rates,
                    std::vector<AttitudeState>& attitudes, std::map<std::string, double>& health);
 

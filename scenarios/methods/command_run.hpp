@@ -13,11 +13,11 @@ namespace tumble::scenarios {
 
 std::string less_folder(std::string text, const std::filesystem::path& folder);
 
-/// Appends the end of the program's output to the message `what`.
+/// Returns the message `what` with the end of the program's output.
 std::string with_last_words(const std::string& what, const CommandEnd& end);
 
 /// Calls `work` and removes the path of the scratch folder from messages of BadInput and NoAnswer. The scratch path
-/// differs in each run; without the path, messages name files relative to the scratch folder.
+/// differs in each run. After the removal, messages name files relative to the scratch folder.
 template <class Work>
 auto without_folder(const std::filesystem::path& scratch, Work&& work) {
   try {

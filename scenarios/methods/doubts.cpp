@@ -12,7 +12,7 @@ static_assert(kAllDoubts.size() == static_cast<std::size_t>(Doubt::About::unit_s
 
 namespace {
 
-/// Returns the health key of a check, or the suffix of the key for a check of an IMU.
+/// Returns the health key of a check. For a check of an IMU, returns the suffix of the key.
 const char* row_name(Doubt::About about) {
   switch (about) {
     case Doubt::About::readings:
@@ -49,7 +49,7 @@ const char* row_name(Doubt::About about) {
   return "_silent_since_s";
 }
 
-/// Returns true if a health entry with this value reports a failed check; other values report a passed check. For a
+/// Returns true if a health entry with this value reports a failed check; another value reports a passed check. For a
 /// check of an IMU, 0 is a valid start time.
 bool is_said(Doubt::About about, double value) {
   if (row_name(about)[0] == '_') return true;

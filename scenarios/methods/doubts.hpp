@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-/// Results of an estimate's health checks: possible faults of the estimate or of the sensor readings.
+/// Stores results of an estimate's health checks: possible faults of the estimate or of the sensor readings.
 namespace tumble::scenarios {
 
 struct Estimate;
@@ -27,9 +27,9 @@ struct Doubt {
     beyond_range,    ///< readings that exceed what the device can measure; value: their number
     digest,          ///< the recording has no digest
     learnt_rig,      ///< the stored calibration belongs to another rig; value: distance in standard deviations
-    unit_frozen,     ///< `unit` repeats one reading; value: start time [s], also for the next two
-    unit_disagrees,  ///< `unit` differs from the other units
-    unit_silent,     ///< `unit` has no readings
+    unit_frozen,     ///< `unit` repeats one reading; value: start time [s]
+    unit_disagrees,  ///< `unit` differs from the other IMUs; value: start time [s]
+    unit_silent,     ///< `unit` has no readings; value: start time [s]
   };
   About about = About::readings;
   double value = 1.0;
@@ -44,21 +44,21 @@ inline constexpr std::array kAllDoubts = {
     Doubt::About::lidar_scale, Doubt::About::beyond_range,   Doubt::About::digest,     Doubt::About::learnt_rig,
     Doubt::About::unit_frozen, Doubt::About::unit_disagrees, Doubt::About::unit_silent};
 
-/// Returns the key of a failed check in the health, for example `imu_implausible` or `imu_2_frozen_since_s`. The
-/// function is the only place that defines the keys of failed checks.
+/// Returns the key of a failed check in the health, for example `imu_implausible` or `imu_2_frozen_since_s`. No other
+/// function defines keys of failed checks.
 std::string row_of(const Doubt& doubt);
 
 /// Adds a failed check to the estimate, sorted by key, and adds the check's entry to the health. A failed check with an
 /// equal key is replaced.
 void add_doubt(const Doubt& doubt, Estimate& estimate);
 
-/// Returns true if the estimate already has a failed check with the key of `doubt`.
+/// Returns true if the estimate already has a failed check with the same key as `doubt`.
 bool has_doubt(const Doubt& doubt, const Estimate& estimate);
 
-/// Records in the health that the check `about` passed.
+/// Adds an entry to the health which states that the check `about` passed.
 void report_no_doubt(Doubt::About about, Estimate& estimate);
 
-/// Restores the failed checks of an estimate from the health values, for estimates that were read from a file.
+/// Restores the failed checks of an estimate from its health values, for estimates that were read from a file.
 std::vector<Doubt> doubts_in(const std::map<std::string, double>& health);
 
 }  // namespace tumble::scenarios

@@ -29,8 +29,7 @@ const std::string kRatesHeader = "time_ns,wx_rad_s,wy_rad_s,wz_rad_s,cxx,cxy,cxz
 const std::string kPoseColumns = "px_m,py_m,pz_m,qx,qy,qz,qw,vx_m_s,vy_m_s,vz_m_s";
 const std::string kContactsHeader = "time_ns,label";
 const std::string kFlaggedContactsHeader = kContactsHeader + ",uncertain";
-constexpr std::size_t kCovarianceColumn = 16;  // first column of a sweep pose's covariance: upper triangle by rows,
-                                               // position before attitude
+constexpr std::size_t kCovarianceColumn = 16;  // first column of a sweep pose's covariance
 const std::string kSweepsHeader =
     "end_ns,verdict,iterations,inlier_share,conditioning,pose_time_ns," + kPoseColumns +
     ",c00,c01,c02,c03,c04,c05,c11,c12,c13,c14,c15,c22,c23,c24,c25,c33,c34,c35,c44,c45,c55";
@@ -48,8 +47,8 @@ Eigen::Vector3d read_vector(const Table& table, const Table::Row& row, std::size
   return {table.number(row, first), table.number(row, first + 1), table.number(row, first + 2)};
 }
 
-// Reads a quaternion x y z w. Throws BadInput if the norm differs from 1. Accepts NaN, because a diverged method writes
-// NaN.
+// Reads a quaternion x y z w. Throws BadInput if the norm differs from 1. NaN is accepted, because a diverged method
+// writes NaN.
 Eigen::Quaterniond read_quaternion(const Table& table, const Table::Row& row, std::size_t first, bool normalise) {
   Eigen::Quaterniond q(table.number(row, first + 3), table.number(row, first), table.number(row, first + 1),
                        table.number(row, first + 2));
@@ -111,7 +110,7 @@ void read_rates(const std::filesystem::path& path, std::vector<RateState>& rates
   }
 }
 
-// The numbers are 0 air, 1 grip, 2 slip, 3 slide, as in a recording's truth.
+// The numbers of contact modes are 0 air, 1 grip, 2 slip, 3 slide, as in a recording's truth.
 void write_contacts(const std::filesystem::path& path, const Estimate& estimate) {
   const bool flagged = !estimate.uncertain.empty();
   TableWriter table(path, ',', flagged ? kFlaggedContactsHeader : kContactsHeader);
@@ -233,7 +232,7 @@ void read_sweeps(const std::filesystem::path& folder, Estimate& estimate) {
   }
 }
 
-/// Reads a TUM file. `all_finite` rejects numbers that are not finite, as `import` does.
+/// Reads a TUM file. `all_finite` rejects numbers that are not finite, like the command `import`.
 void read_tum(const std::filesystem::path& path, std::vector<PoseState>& poses, bool all_finite = false) {
   const Table table = Table::read(path, ' ', "", 8);
   for (const Table::Row& row : table.rows) {
@@ -303,7 +302,7 @@ void read_header(const std::filesystem::path& path, Kind& kind, std::string& met
   estimate.frame = reader.named("frame", Frame::centre);
   const json& status = reader.object("status");
   estimate.status.trouble = JsonMembers(path, status).named("trouble", Trouble::diverged);
-  // A Status contains a static string, so only the message in the file names the actual field.
+  // A Status refers to a static string, so the name of the actual field is only in the file.
   if (!estimate.status.ok()) estimate.status.field = "estimate.json";
   for (const auto& [name, value] : reader.object("health").items())
     estimate.health[name] = value.is_number() ? value.get<double>() : std::nan("");

@@ -14,8 +14,7 @@ inline constexpr const char* kEstimateFiles[] = {"estimate.json",           "rat
                                                  "sweep_poses.csv",         "map.ply",       "position_covariance.csv",
                                                  "attitude_covariance.csv", "transcript.txt"};
 
-/// Writes an estimate to a folder. Files without content are not written; estimate.json is written last. ESTIMATE.md
-/// describes the columns.
+/// Writes an estimate to a folder. Files without content are not written. ESTIMATE.md describes the columns.
 ///
 /// - estimate.json: method, kind, frame, status, health, digest of the input sensors
 /// - rates.csv, attitude.tum, attitude_covariance.csv
@@ -23,17 +22,17 @@ inline constexpr const char* kEstimateFiles[] = {"estimate.json",           "rat
 /// - sweeps.csv, sweep_poses.csv, map.ply
 /// - transcript.txt: output of an external program
 ///
-/// Reading restores all scored values bit-exactly. The only exception is the last bit of quaternions in TUM files,
-/// because reading normalises quaternions. Velocities of `poses`, and covariances of `poses` other than position, are
-/// not written.
+/// The file estimate.json is written last. Reading restores all scored values bit-exactly, except the last bit of
+/// quaternions in TUM files, because reading normalises quaternions. For `poses`, only the position covariance is
+/// written; velocities and other covariances are lost.
 ///
 /// Throws BadInput if writing fails. Throws std::invalid_argument if the length of `contacts` differs from `poses`, or
 /// if `uncertain` is neither empty nor as long as `poses`.
 void write_estimate(const std::filesystem::path& folder, const std::string& method, Kind kind, const Estimate& estimate,
                     const std::string& sensors_digest = "");
 
-/// Returns the digest of the sensor data from which the estimate was computed, or an empty text if the folder states no
-/// digest.
+/// Returns the digest of the sensor data from which the estimate was computed. Returns an empty text if the folder
+/// states no digest.
 std::string estimated_sensors(const std::filesystem::path& path);
 
 /// Reads the folder of an estimate, or a single file of another program: TUM, or a table of poses (read_pose_table).

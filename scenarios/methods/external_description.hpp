@@ -38,8 +38,8 @@ struct ExternalDescription {
 /// Returns the names of the placeholders that a command may use in braces: "recording", "csv", "output".
 std::vector<std::string> external_placeholders();
 
-/// Returns the placeholders in one argument of a command, in order. Throws BadInput for an unknown placeholder and
-/// suggests the nearest name.
+/// Returns the placeholders in one argument of a command, in order. Throws BadInput for an unknown placeholder; the
+/// message suggests the nearest name.
 std::vector<std::string> placeholders_in(const std::string& word);
 
 /// Returns the argument with every placeholder replaced by its value.
@@ -47,8 +47,8 @@ std::string filled(const std::string& word, const std::map<std::string, std::str
 
 /// Reads NAME.yaml, or NAME.py with exactly one function called `rate`, `attitude`, `position` or `slam`. The
 /// function's name sets the kind of the method. Throws BadInput with file, line and reason for an unknown or missing
-/// key, an unknown kind, frame or placeholder, a command that never names its output, a limit out of range, or a Python
-/// file without exactly one such function.
+/// key, or for an unknown kind, frame or placeholder. Throws BadInput also for a command that never names its output, a
+/// limit out of range, or a Python file without exactly one method function.
 ExternalDescription read_external(const std::filesystem::path& file);
 
 }  // namespace tumble::scenarios

@@ -26,7 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Sensor data in one format; written only if the command names the format.
+/// Sensor data in one format. The data are only written if the command names the format.
 struct Provision {
   const char* placeholder;
   const char* name;  ///< file or folder in the scratch folder
@@ -65,7 +65,7 @@ std::set<std::string> named_in(const std::vector<std::string>& words) {
   return out;
 }
 
-/// Returns the path in the scratch folder for each placeholder.
+/// Returns the path in the scratch folder that replaces each placeholder.
 std::map<std::string, std::string> places(const ExternalDescription& description, const fs::path& scratch) {
   const bool folder = description.output == ExternalDescription::Output::estimate;
   const bool rates = description.output == ExternalDescription::Output::rates;
@@ -128,7 +128,7 @@ Estimate run(const ExternalDescription& description, const sim::Sensors& sensors
   }
 }
 
-/// Returns the version: output of the version command, file of the function, and digest of the description.
+/// Returns the version: the output of the version command, the file of the function, and the digest of the description.
 std::string version_of(const ExternalDescription& description) {
   const std::string own = "description " + description.digest;
   if (!description.python.empty()) return python_version(description) + "; " + own;
@@ -155,7 +155,7 @@ Method external_method(const std::filesystem::path& file, double time_limit_s) {
             sim::resolve("method " + description.name, given, {});
             try {
               return run(description, sensors);
-            } catch (const std::system_error& error) {  // the folder or process could not be created
+            } catch (const std::system_error& error) {  // cannot create the folder or process
               throw NoAnswer(NoAnswer::Why::machine, error.what());
             }
           }};

@@ -14,7 +14,7 @@
 
 namespace tumble::scenarios {
 
-/// Error if an external program gave no result: the program crashed, could not be started, timed out, or the machine
+/// Error if an external program gave no result. The program crashed, could not be started or timed out, or the machine
 /// lacked memory or disk space. The message contains the program's output so far.
 class NoAnswer : public std::runtime_error {
  public:
@@ -40,9 +40,9 @@ class RefusedAnswer : public BadInput {
 };
 
 /// Returns the method described by NAME.yaml or NAME.py (EXTERNAL.md). A command receives the sensor data in a separate
-/// folder in the requested formats, runs in its own process with its limits, and leaves a result that is read
-/// afterwards. A Python function exchanges the sensor data and the result through shared memory. The external program
-/// never receives the truth.
+/// folder in the requested formats. It runs in its own process with its limits and writes its result to a file. A
+/// Python function exchanges the sensor data and the result through shared memory. The external program never receives
+/// the truth.
 ///
 /// The time limit is the limit in the description, but at most `time_limit_s`. Throws BadInput if the description is
 /// invalid or if the version command fails. Running the method throws NoAnswer, or RefusedAnswer if the result is
@@ -53,7 +53,7 @@ Method external_method(const std::filesystem::path& file,
 /// Returns true if `name` has the form NAME.yaml or NAME.py, which describes an external method.
 bool is_method_file(const std::string& name);
 
-/// Calls find_methods (method.hpp) for a list; the time limit of external methods is at most `time_limit_s`.
+/// Calls find_methods (method.hpp) for a list. The time limit of external methods is at most `time_limit_s`.
 std::vector<MethodPointer> find_methods_within(std::span<const std::string> names, double time_limit_s);
 
 }  // namespace tumble::scenarios

@@ -10,9 +10,9 @@
 namespace tumble::scenarios {
 
 /// Reads the result of a command at `output` as an estimate of the description's kind, and the map at `map` if the file
-/// exists. Throws BadInput with location and reason for a missing or empty file, values outside AnswerBounds, a cell
-/// that is not a number, or decreasing time. Also throws BadInput if the rates do not match the samples of the first
-/// IMU. The stamps of poses may be those of the bag, which starts at kExportOrigin_ns, or of the recording.
+/// exists. The stamps of poses are either bag stamps, which start at kExportOrigin_ns, or the recording's times. Throws
+/// BadInput with location and reason for a missing or empty file, a cell that is not a number, values outside
+/// AnswerBounds, or decreasing time. Throws BadInput also if the rates do not match the samples of the first IMU.
 Estimate read_external_result(const ExternalDescription& description, const std::filesystem::path& output,
                               const std::filesystem::path& map, const sim::Sensors& sensors);
 

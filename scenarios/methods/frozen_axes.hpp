@@ -10,10 +10,10 @@
 
 namespace tumble::scenarios {
 
-/// Returns the axis name for a health key, for example "gyro_z".
+/// Returns the sensor and axis for a health key, for example "gyro_z".
 std::string to_string(const FrozenAxis& frozen);
 
-/// Returns the frozen axes of an IMU with their intervals. `samples` must be the converted samples of `record`.
+/// Returns the frozen axes of an IMU with their time intervals. `samples` must be the converted samples of `record`.
 std::vector<FrozenAxis> find_frozen_axes(const sim::ImuRecord& record, std::span<const ImuSample> samples);
 
 }  // namespace tumble::scenarios

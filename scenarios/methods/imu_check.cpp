@@ -19,16 +19,16 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr double kArmShareMin = 0.5;  // 1: matches the mountings; 0: no relation; -1: flipped sign
-// A larger deviation from 1 indicates a scale error that all units have in common. Centripetal force grows with the
-// squared rate, so the limit corresponds to 3 % of gyro scale, three times the data sheet's scale error. Runs of `slip`
-// without faults give 0.999 to 1.002.
+// Largest deviation of ImuMerge::arm_share() from 1. A larger deviation indicates a scale error of all IMUs.
+// Centripetal force grows with the squared rate, so the limit corresponds to 3 % of gyro scale, three times the data
+// sheet's scale error. In runs of `slip` without faults, arm_share() was 0.999 to 1.002.
 constexpr double kArmShareOff = 0.06;
-// Within these limits, the rotation of gravity confirms the gyro scale; the cause is then a mounting or an
-// accelerometer.
+// Within these limits, the rotation of gravity confirms the gyro scale. The cause of a contradiction is then a mounting
+// or an accelerometer.
 constexpr double kSlopeRight = 0.02, kSlopeAgreed = 0.99;
 // Fraction of hand-held samples above which a recording counts as hand-held. Measured fractions are at least 0.91 for
-// hand-held motion, and at most 0.25 for thrown bodies, mostly below 0.6 with wrong axes (hill, throw, twirl, swing,
-// seeds 99101 and 99102).
+// hand-held motion. For thrown bodies they are at most 0.25, and mostly below 0.6 with wrong axes (hill, throw, twirl,
+// swing, seeds 99101 and 99102).
 constexpr double kHeldShare = 0.8;
 
 Status reported(Status status, Estimate& estimate) {
@@ -71,7 +71,7 @@ Status check_rest_force(const sim::Sensors& sensors, std::span<const ImuSample> 
   return reported(gravity.size_verdict(state), estimate);
 }
 
-/// Runs check_imu() and returns whether the rotation of gravity confirms the gyro scale.
+/// Calls check_imu(). Sets `gyro_right` to true if the rotation of gravity confirms the gyro scale.
 Status check_turning(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate,
                      bool& gyro_right) {
   const Status of_rest = check_rest_force(sensors, samples, estimate);
@@ -79,7 +79,7 @@ Status check_turning(const sim::Sensors& sensors, std::span<const ImuSample> sam
   if (are_rounded(sensors.imus.front().time_ns)) add_doubt({Doubt::About::stamps, 1e-3}, estimate);
   ImuPlausibility::Params params;
   params.gravity_m_s2 = sensors.gravity_m_s2;
-  // The merged units of a sphere report rates beyond the range.
+  // The merged IMUs of a sphere report rates beyond the range of one IMU.
   const double range_rad_s = sensors.imus.front().stated_gyro_range_rad_s;
   if (sensors.sphere_radius_m <= 0.0 && range_rad_s > 0.0) params.gyro_range_rad_s = unsaturated_range(range_rad_s);
   const ImuPlausibility plausibility(params);

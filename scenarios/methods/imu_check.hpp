@@ -13,7 +13,7 @@
 /// Checks the physical plausibility of IMU readings: units, axes, signs, frozen sensors.
 namespace tumble::scenarios {
 
-/// Checks the readings and adds the results to the health and the failed checks of the estimate. The health keys are
+/// Checks the readings and adds the results to the estimate's health and failed checks. The health keys are
 /// `imu_force_share`, `imu_rest_force_share`, `imu_rotation_unexplained`, `imu_rotation_slope`,
 /// `imu_rotation_agreement`, `imu_frozen_s`, `imu_stamps_rounded_s`, `imu_implausible` and `rate_unit_suspect`. Returns
 /// `out_of_range`, with the reason, if readings contradict each other or gravity. O(N).
@@ -40,19 +40,18 @@ void inflate_rates(Estimate& estimate);
 Status check_rotation_between_rests(const sim::Sensors& sensors, std::span<const ImuSample> samples,
                                     std::span<const RateState> rates, Estimate& estimate);
 
-/// Checks that a body rotating about a pivot turns as `rates` state (PivotCheck). `rates` has one entry per sample; the
-/// check only uses rates whose source is `measured`. Reports the log-likelihood ratio of another interpretation of the
-/// gyro (`pivot_evidence`) with the number of segments, the best-fitting scale (`pivot_scale`) with its standard
-/// deviation, and `imu_implausible`. The cost is proportional to the number of samples, about 1 ms per second of data
-/// at 100 Hz.
+/// Checks that a body rotating about a pivot turns as `rates` state (PivotCheck). `rates` has one entry per sample. The
+/// check only uses rates whose source is `measured`. It reports the log-likelihood ratio of another interpretation of
+/// the gyro (`pivot_evidence`) with the number of segments. It also reports the best-fitting scale (`pivot_scale`) with
+/// its standard deviation, and `imu_implausible`. The cost is proportional to the number of samples, about 1 ms per
+/// second of data at 100 Hz.
 Status check_rotation_about_pivots(const sim::Sensors& sensors, std::span<const ImuSample> samples,
                                    std::span<const RateState> rates, Estimate& estimate);
 
 /// Checks whether specific forces in a rig's flights contradict the lever arm, axes or signs of the sensor
 /// (FlightSense). Reports `imu_implausible` and the affected duration `imu_flight_against_s`. `carried_share` is the
 /// fraction of hand-held samples. If `carried_share` shows that the body was never hand-held, the check also reports
-/// flipped and swapped axes of both sensors. In a recording without hand-held motion, flights with a clipped axis also
-/// count. O(N).
+/// flipped and swapped axes of gyro and accelerometer, and also uses flights with a clipped axis. O(N).
 Status check_flights(const sim::Sensors& sensors, std::span<const ImuSample> samples,
                      std::optional<double> carried_share, Estimate& estimate);
 

@@ -29,40 +29,41 @@ std::string full_name(Kind kind, const std::string& method);
 enum class Frame { imu, lidar, body, centre };
 const char* to_string(Frame frame);
 
-/// Result of a method. Each kind of method fills the members of its kind and leaves the other members empty.
+/// Result of a method. Each kind of method fills the members for its kind and leaves the other members empty.
 struct Estimate {
   Status status;                         ///< error of the whole run, or `ok`
   Frame frame = Frame::imu;              ///< frame of `attitudes` and `poses`
   std::vector<RateState> rates;          ///< kind rate, and the rates used by a slam method for deskewing
   std::vector<AttitudeState> attitudes;  ///< kind attitude
   std::vector<PoseState> poses;          ///< kinds position and slam, at IMU times
-  /// Estimated contact mode at each pose, parallel to `poses`; empty if not estimated. `air` means no contact, or a
-  /// contact with unknown motion (a bump).
+  /// Estimated contact mode at each pose, parallel to `poses`; empty if not estimated. `air` means that there is no
+  /// contact, or a contact with unknown motion (a bump).
   std::vector<sim::ContactLabel> contacts;
-  /// True for poses in a slip event whose displacement is uncertain, parallel to `contacts`; empty if not estimated.
+  /// True for a pose in a slip event whose displacement is uncertain. The list is parallel to `poses`, and empty if not
+  /// estimated.
   std::vector<bool> uncertain;
-  /// Estimated position of the sphere's centre relative to the centre of mass, body axes [m].
+  /// Estimated position of the sphere's centre relative to the centre of mass, in body axes [m].
   Eigen::Vector3d centre_B_m = Eigen::Vector3d::Zero();
   std::vector<LidarInertialOdometry::SweepReport> sweeps;  ///< kind slam, one per sweep
   std::vector<std::int64_t> sweep_end_ns;                  ///< parallel to `sweeps`
   std::vector<MapPoint> map;                               ///< kind slam
   std::vector<Doubt> doubts;                               ///< failed health checks (add_doubt)
-  /// Covariance added to each of `rates` by failed health checks; empty if none (imu_check.hpp).
+  /// Covariance that failed health checks add to each of `rates`; empty if no check failed (imu_check.hpp).
   std::vector<Eigen::Matrix3d> suspect_rad2_s2;
   std::map<std::string, double> health;      ///< named counters: "rejected_samples", "sweeps_rejected"
   std::map<std::string, double> parameters;  ///< parameters that the user set by name
   std::string transcript;                    ///< output of an external program; not scored
 };
 
-/// Extra input of an oracle method: unclipped readings and the true state. The harness creates this input from the
-/// truth, only for methods that declare `needs_truth`.
+/// Extra input of an oracle method: unclipped readings and the true state. The program creates this input from the
+/// truth, and only for methods that declare `needs_truth`.
 struct OracleInput {
   const sim::Truth* truth = nullptr;
 };
 
 class SettingsTable;
 
-/// Properties of a recording that decide which methods can run on it.
+/// Properties of a recording that determine which methods can run on it.
 struct Subject {
   std::string robot;  ///< "" if unknown
   bool has_lidar = true;
@@ -75,19 +76,18 @@ struct MethodInfo {
   std::string doc;                             ///< one sentence
   bool ours = false;                           ///< developed in this project
   std::string source;                          ///< paper; "ours" for methods of this project
-  std::vector<const SettingsTable*> settings;  ///< settings of its stages, with distinct names; they define
-                                               ///< `parameters`
+  std::vector<const SettingsTable*> settings;  ///< settings of its stages; they define `parameters`
   std::span<const sim::Parameter> parameters;
   std::size_t parameters_first = 0;  ///< number of leading parameters that users set most often
   bool needs_truth = false;
   std::vector<std::string> robots;  ///< "rig", "sphere"; empty: all
-  /// Returns why the method does not apply (for example "needs a lidar, and there is none"), or an empty text if the
-  /// method applies. All slam methods need a lidar.
+  /// Returns why the method does not apply, for example "needs a lidar, and there is none". Returns an empty text if
+  /// the method applies. All slam methods need a lidar.
   std::string why_not(const Subject& subject) const;
   bool applies_to(const Subject& subject) const { return why_not(subject).empty(); }
-  /// True for the reference without a treatment of saturation or slip; the other methods of a kind are compared with
-  /// the kind's baseline in pairs. The baseline of rate methods is the clipped gyro; the baseline of slam methods is
-  /// the chain with the clipped gyro. A kind of method may have no baseline.
+  /// True for the baseline of a kind: the method without a treatment of saturation or slip. All other methods of the
+  /// kind are compared with the baseline in pairs. The baseline of rate methods is the clipped gyro; the baseline of
+  /// slam methods is the chain with the clipped gyro. A kind of method may have no baseline.
   bool baseline = false;
   /// True if the method can start from a saved calibration of the device and saves the calibration that it estimates
   /// (rate_tumble.hpp).
@@ -105,18 +105,19 @@ struct Method {
   RunMethod run;
 };
 
-/// Points to a method of this build (static), or to a shared method that was read from a file.
+/// Points to a static method of this build, or to a shared method that was read from a file.
 using MethodPointer = std::shared_ptr<const Method>;
 
-/// Returns all methods of this build, sorted by kind, then in order of registration.
+/// Returns all methods of this build, sorted by kind. Methods of one kind are in order of registration.
 std::span<const Method> methods();
 
 /// Returns every method called `name` ("saave"), the method of one kind ("rate/oracle"), or the method described by a
-/// file NAME.yaml (external_method.hpp). Throws BadInput for an unknown name (suggests the nearest name), and for an
-/// external method with the name of a built-in method.
+/// file NAME.yaml (external_method.hpp). Throws BadInput for an unknown name; the message suggests the nearest name.
+/// Throws BadInput also for an external method with the name of a built-in method.
 std::vector<MethodPointer> find_methods(const std::string& name);
 
-/// Returns the methods that a list names, each once. Also throws BadInput if two methods have equal kind and name.
+/// Returns the methods in a list of names, each method once. Throws BadInput also if two methods have equal kind and
+/// name.
 std::vector<MethodPointer> find_methods(std::span<const std::string> names);
 
 /// Returns a non-owning pointer to a method of this build.

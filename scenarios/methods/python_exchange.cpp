@@ -31,7 +31,7 @@ std::size_t aligned(std::size_t size) {
   return (size + kAlignment - 1) / kAlignment * kAlignment;
 }
 
-/// Collects arrays to be written consecutively. Added arrays must outlive this object.
+/// Collects arrays that are written one after the other. The arrays must outlive this object.
 class Arrays {
  public:
   template <typename Value>
@@ -146,7 +146,7 @@ json of_series(const sim::SeriesRecord& series, Arrays& arrays) {
 class Answer {
  public:
   Answer(const SharedMemory& memory, const AnswerBounds& bounds) {
-    // The function can make the memory larger than the size that the function received.
+    // The function can enlarge the memory that it received.
     const std::uintmax_t most = bounds.table_bytes() + bounds.map_bytes();
     if (memory.size() > most)
       throw BadInput(
@@ -167,7 +167,7 @@ class Answer {
   }
   bool has(const char* name) const { return text_.contains("arrays") && text_["arrays"].contains(name); }
 
-  /// Returns rows of `columns` values; `rows` is the required number of rows, or any number.
+  /// Returns an array with `columns` values per row. `rows` is the required number of rows; empty accepts any number.
   template <typename Value>
   std::vector<Value> array(const char* name, const char* dtype, std::size_t columns,
                            std::optional<std::size_t> rows) const {
@@ -221,7 +221,7 @@ void read_rates(const Answer& answer, const sim::Sensors& sensors, Estimate& est
   }
 }
 
-/// Reads the poses of the kinds position, slam and attitude; attitude has no positions.
+/// Reads the poses of the kinds position, slam and attitude. Poses of kind attitude have no positions.
 std::vector<PoseState> read_poses(const Answer& answer) {
   const auto times_ns = answer.array<std::int64_t>("time_ns", "<i8", 1, {});
   const auto quaternions = answer.array<double>("quaternion", "<f8", 4, times_ns.size());

@@ -4,16 +4,16 @@
 #include "scenarios/methods/method.hpp"
 #include "scenarios/processes/shared_memory.hpp"
 
-/// Exchanges sensors and results with a Python function through shared memory. In both directions, the memory contains
-/// the length of a JSON text (uint64, little endian), the text, and arrays from the next multiple of 64 bytes on. The
-/// text describes each array as {"dtype": "<f8", "shape": [N, 3], "offset": bytes after the start of the first array}.
-/// python_runner.py implements the Python side.
+/// Exchanges sensor data and results with a Python function through shared memory. In both directions, the memory
+/// contains the length of a JSON text (uint64, little endian), the text, and arrays. The arrays start at the next
+/// multiple of 64 bytes. The text describes each array as {"dtype": "<f8", "shape": [N, 3], "offset": bytes after the
+/// start of the first array}. python_runner.py implements the Python side.
 namespace tumble::scenarios {
 
-/// Writes all sensor data with the names of the Python package (python/src/tumble/recordings.py).
+/// Writes all sensor data. The names are those of the Python package (python/src/tumble/recordings.py).
 void write_sensors(const sim::Sensors& sensors, SharedMemory& memory);
 
-/// Reads the function's result as an estimate of `kind`; rates belong to the samples of the first IMU. Throws NoAnswer
+/// Reads the function's result as an estimate of `kind`. Rates belong to the samples of the first IMU. Throws NoAnswer
 /// with the traceback if the function raised an exception. Throws BadInput with the reason for an invalid result: wrong
 /// shape, non-finite number, times that do not increase, corrupted memory, or values outside AnswerBounds.
 Estimate read_answer(const SharedMemory& memory, Kind kind, Frame frame, const sim::Sensors& sensors);

@@ -5,16 +5,16 @@
 
 #include "scenarios/methods/external_description.hpp"
 
-/// Runs a method that is one function of a Python file (EXTERNAL.md). The function is called with the sensor data in
-/// shared memory, in a separate interpreter that only needs numpy.
+/// Runs a method that is one function of a Python file (EXTERNAL.md). The function receives the sensor data in shared
+/// memory, in a separate interpreter that only needs numpy.
 namespace tumble::scenarios {
 
-/// Calls the function. `transcript` receives the printed output of the function, also if the function throws. Throws
-/// the exceptions that external_method.hpp states.
+/// Calls the Python function. `transcript` receives the printed output of the function, even if the function throws.
+/// Throws the exceptions that external_method.hpp states.
 Estimate call_python(const ExternalDescription& description, const sim::Sensors& sensors, std::string& transcript);
 
-/// Returns the versions of the interpreter and of numpy, and a digest of the file; the digest does not include imported
-/// modules. Throws BadInput if there is no interpreter with numpy.
+/// Returns the versions of the interpreter and of numpy, and a digest of the Python file. The digest does not include
+/// imported modules. Throws BadInput if there is no interpreter with numpy.
 std::string python_version(const ExternalDescription& description);
 
 }  // namespace tumble::scenarios

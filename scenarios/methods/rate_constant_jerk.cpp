@@ -6,7 +6,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-// parameters of the other kinds of model are fixed
+// The parameters of the other baseline models are fixed.
 const Settings<baselines::ClippedBaseline::Params>& rate_constant_jerk_settings() {
   static const Settings<baselines::ClippedBaseline::Params> all(
       {.kind = baselines::ClippedBaseline::Kind::constant_jerk},

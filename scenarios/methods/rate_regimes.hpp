@@ -13,17 +13,16 @@
 
 namespace tumble::scenarios {
 
-/// Probability that the body was hand-held, estimated from the kinds of motion (flight, contact, hand-held) in a
-/// recording.
+/// Probability that the body was hand-held. A recording has three types of motion: flight, contact, hand-held.
 struct CarriedBody {
   double clipped_max = 0.0;     ///< largest probability over segments of clipped samples
-  std::optional<double> share;  ///< share of the samples, weighted by probability; empty if not estimated
+  std::optional<double> share;  ///< mean probability over the samples; empty if not estimated
 };
 
 /// Merges rates of hand-held motion into `rates`, which come from a smoother that assumes flight and contact. Where the
-/// readings indicate hand-held motion (RegimeEvidence), the merged rates are those of the hand-held smoother. The
-/// hand-held smoother only runs if a clipped sample is not clearly in flight or contact. Adds the fraction of each kind
-/// of motion and `regime_carried_asked` to `health`.
+/// readings indicate hand-held motion (RegimeEvidence), the merged rates come from the hand-held smoother. The
+/// hand-held smoother runs only if some clipped sample is not clearly in flight or contact. The function adds the
+/// fraction of each motion type and `regime_carried_asked` to `health`.
 CarriedBody join_regimes(const sim::Sensors& sensors, std::span<const ImuSample> samples, const RateReport& report,
                          std::vector<RateState>& rates, std::map<std::string, double>& health);
 

@@ -11,15 +11,15 @@
 #include "tumble/common/imu.hpp"
 #include "tumble/common/status.hpp"
 
-/// Estimates rates by the published method of Saave; the rate method and the slam chains of Saave use these functions.
+/// Estimates rates by the published method of Saave. The rate method and the slam chains of Saave use these functions.
 namespace tumble::scenarios {
 
 const Settings<Saave::Params>& saave_settings();
-/// Returns the settings of Saave's method for use next to another stage: a parameter whose name the other stage also
-/// has gets the prefix `rate_`.
+/// Returns the settings of Saave's method for use next to another stage. If the other stage has a parameter with an
+/// equal name, the name gets the prefix `rate_`.
 Settings<Saave::Params> saave_settings_beside(std::span<const sim::Parameter> others);
 
-/// Computes one RateState per sample; on error, `out` is empty.
+/// Computes one RateState per sample. On error, `out` is empty.
 Status saave_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples,
                    const Settings<Saave::Params>& settings, const sim::Values& parameters, std::vector<RateState>& out);
 

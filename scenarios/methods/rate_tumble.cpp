@@ -20,8 +20,8 @@
 
 namespace tumble::scenarios {
 
-// A range or density of 0 means that the data sheet states none; in this case no range and the library's default
-// density are used.
+// A range or density of 0 means that the data sheet states no value. The smoother then assumes no range, or the
+// library's default density.
 RateSmoother::Params stated_params(const sim::ImuRecord& record, RateSmoother::Params params) {
   RateModelParams& model = params.model;
   model.nominal.lever_arm_m = bridge::lever_arm_I_m(record);
@@ -44,7 +44,7 @@ Status auxiliary_readings(const sim::Sensors& sensors, std::span<const ImuSample
   const sim::ImuRecord& primary = sensors.imus.front();
   for (std::size_t i = 1; i < sensors.imus.size() && out.size() < kAuxiliaryImusMax; ++i) {
     const sim::ImuRecord& record = sensors.imus[i];
-    if (record.name == "imu_reference") continue;  // reference for comparisons only
+    if (record.name == "imu_reference") continue;  // reference IMU, for comparisons only
     std::vector<ImuSample> readings;
     if (Status status = bridge::imu_samples(record, readings); !status.ok()) return status;
     AuxiliaryImu auxiliary_imu;
@@ -67,7 +67,7 @@ Status auxiliary_readings(const sim::Sensors& sensors, std::span<const ImuSample
 
 namespace {
 
-/// Reports the smoother's check of a unit, failed or passed.
+/// Reports whether the smoother's unit check failed or passed.
 void report_unit(Doubt::About unit, bool suspect, Estimate& result) {
   suspect ? add_doubt({unit}, result) : report_no_doubt(unit, result);
 }
@@ -104,8 +104,8 @@ void report_health(const RateReport& report, Estimate& result) {
 }
 
 constexpr double kTrust = 4.0;
-// Change of the cross-axis sensitivities of the gyro elements between runs. In six runs of a hand-held device, the
-// cross-axis sensitivity was 0.017 to 0.021.
+// Standard deviation of the change of a gyro's cross-axis sensitivity between runs. In six runs of a hand-held device,
+// the cross-axis sensitivity was 0.017 to 0.021.
 constexpr double kElementDrift = 2e-3;
 
 }  // namespace
@@ -123,7 +123,7 @@ const Settings<RateSmoother::Params>& rate_tumble_settings() {
 void start_from_learnt(const LearntRig& rig, RateSmoother::Params& params) {
   const RigConstants::Matrix prior = RateModel(params.model, 0.01).prior_covariance();
   start_from(rig, kTrust, params);
-  // Biases change at every switch-on, so the default prior is used.
+  // Biases change at every switch-on, so the default prior replaces their covariance.
   constexpr int kBias = 3, kBiases = 6;
   RigConstants& constants = params.model.calibration->constants;
   constants.gyro_bias_rad_s = params.model.nominal.gyro_bias_rad_s;
@@ -222,8 +222,8 @@ Status tumble_rates(const sim::Sensors& sensors, std::span<const ImuSample> samp
   if (status.ok()) status = RateSmoother(params).estimate(samples, auxiliary_imus, out.rates, out.report);
   if (status.ok()) {
     report_health(out.report, result);
-    // Auxiliary IMUs determine the rate even if the body is hand-held; the hand-held smoother does not use auxiliary
-    // IMUs.
+    // Auxiliary IMUs determine the rate even if the body is hand-held, but the hand-held smoother does not use
+    // auxiliary IMUs.
     if (auxiliary_imus.empty()) out.carried = join_regimes(sensors, samples, out.report, out.rates, result.health);
   }
   return status;

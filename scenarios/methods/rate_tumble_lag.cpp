@@ -23,7 +23,7 @@ const Settings<RegimeStream::Params>& rate_tumble_lag_settings() {
   static const Settings<RegimeStream::Params> all = [] {
     std::vector<std::string> stated = stated_densities();
     stated.insert(stated.end(), {"period_s", "evidence_gravity_m_s2", "carried_gravity_m_s2", "carried_min"});
-    // RegimeStream takes these parameters from its RateStream; the hand-held stream iterates continuously.
+    // RegimeStream takes these parameters from its RateStream. The hand-held stream iterates continuously.
     const std::vector<std::string> fixed = {"carried_period_s", "carried_lag_s", "carried_gap_max_s",
                                             "carried_iterations_max"};
     return Settings<RegimeStream::Params>(RegimeStream::Params{}, {.stated = stated, .fixed = fixed});
@@ -75,7 +75,7 @@ LearntRig rig_of(const RateStream& stream, const RateStream::Params& params, con
   return rig;
 }
 
-/// Returns the calibration of a stream. `at_prior` is true if the rig's constants were not estimated. A delay is the
+/// Returns the calibration of a stream. `at_prior` is true if the rig's constants were not estimated. The delay is the
 /// only device error that the stream estimates.
 std::optional<LearntRig> learnt_by(const RateStream& stream, const RateStream::Params& params, const LearntRig* given,
                                    bool at_prior, const RateStream::State& state) {
@@ -110,7 +110,7 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
   std::vector<std::vector<AuxiliaryReading>> auxiliary_imus;
   estimate.status = auxiliary_readings(sensors, samples, params.rate.model, auxiliary_imus);
   if (!estimate.status.ok()) return estimate;
-  // Auxiliary IMUs determine the rate even if the body is hand-held; the hand-held smoother does not use auxiliary
+  // Auxiliary IMUs determine the rate even if the body is hand-held, but the hand-held smoother does not use auxiliary
   // IMUs.
   if (!auxiliary_imus.empty() && !parameters.has("carried_min")) params.carried_min = 1.0;
   const RegimeStream joined(params);
@@ -127,7 +127,7 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
   }
   joined.flush(all, estimate.rates);
   const RateStream::State& state = all.rate;
-  // If the constants were reset, they may not have been estimated since the reset.
+  // If the constants were reset, they may not have been estimated since then.
   const RigConstants::Matrix before = stream.start().rig_covariance;
   const bool at_prior = !(state.rig_covariance.topLeftCorner<3, 3>().trace() < before.topLeftCorner<3, 3>().trace());
   estimate.health["calibration_at_prior"] = at_prior ? 1.0 : 0.0;

@@ -23,13 +23,13 @@ bool does_not_clip(const RateState& rate) {
   return rate.clipped_axes == 0;
 }
 
-/// The comparison also requires that the reading is not suspect. Plateaus without a clear saturation limit are suspect.
+/// Returns true if a gyro reading neither clips nor is suspect. A plateau without a clear saturation limit is suspect.
 bool is_read(const RateState& rate) {
   return does_not_clip(rate) && rate.source == RateSource::measured;
 }
 
-/// Returns the gyro bias: the mean difference between readings and the smoother's bias-free rates, over comparable
-/// samples.
+/// Returns the gyro bias: the mean difference between readings and the smoother's bias-free rates, over samples that
+/// satisfy `stands`.
 Eigen::Vector3d bias_rad_s(const std::vector<ImuSample>& samples, const std::vector<RateState>& rates, Stands stands) {
   double free = 0.0;
   Eigen::Vector3d bias = Eigen::Vector3d::Zero();
@@ -41,7 +41,7 @@ Eigen::Vector3d bias_rad_s(const std::vector<ImuSample>& samples, const std::vec
   return bias;
 }
 
-/// Rates of rate/tumble that replace readings; empty if nothing clips or the smoother failed.
+/// Rates of rate/tumble that replace readings. The rates are empty if nothing clips or the smoother failed.
 struct Recovery {
   std::vector<RateState> rates;
   Eigen::Vector3d bias_rad_s = Eigen::Vector3d::Zero();

@@ -16,21 +16,21 @@ namespace tumble::scenarios {
 
 struct RecoveredRates {
   std::vector<Eigen::Matrix3d> covariances_rad2_s2;  ///< one per sample, sensor axes; zero for unmodified readings
-  std::vector<RateSource> sources;                   ///< one per sample, from rate/tumble; all `measured` if it did not
-                                                     ///< run
+  std::vector<RateSource> sources;                   ///< one per sample; all `measured` if rate/tumble did not run
   bool answered = false;                             ///< a reading clips, and rate/tumble succeeded
   CarriedBody carried;                               ///< from rate/tumble
 };
 
 /// Replaces all three axes of clipped samples by the rates of rate/tumble, because a tilted saturation plane also
-/// corrupts the other axes. Adds the gyro bias, estimated as the mean difference of unclipped samples. The samples are
-/// unchanged if no reading clips or if the smoother fails. `samples` are the samples of the primary IMU.
+/// corrupts the unclipped axes. The function adds the gyro bias to these rates, estimated as the mean difference of
+/// unclipped samples. The samples are unchanged if no reading clips or if the smoother fails. `samples` are the samples
+/// of the primary IMU.
 RecoveredRates recover_clipped(const sim::Sensors& sensors, std::vector<ImuSample>& samples,
                                std::map<std::string, double>& health);
 
-/// In addition to clipped readings, replaces readings that rate/tumble marks as suspect. If the gyro is slower than its
-/// output rate, replaces all readings, because rate/tumble removes the gyro's delay. Smoothers with their own motion
-/// limits should not use this function, because they perform better with the original suspect readings.
+/// Replaces clipped readings, and readings that rate/tumble marks as suspect. If the gyro's response is slower than its
+/// output rate, all readings are replaced, because rate/tumble removes the gyro's delay. Smoothers with their own
+/// motion limits should not use this function, because they perform better with the original suspect readings.
 RecoveredRates recover_in_time(const sim::Sensors& sensors, std::vector<ImuSample>& samples,
                                std::map<std::string, double>& health);
 

@@ -13,11 +13,11 @@
 #include "tumble/common/imu.hpp"
 #include "tumble/mapping/detail/odometer_reading.hpp"
 
-/// Registers the methods. A new method needs a file KIND_NAME.cpp that defines `Method KIND_NAME()`, a declaration
-/// here, a line in registry.cpp, and the file's name in CMakeLists.txt.
+/// Registers the methods. A new method needs a file KIND_NAME.cpp that defines `Method KIND_NAME()`, a declaration in
+/// this file, a line in registry.cpp, and the file's name in CMakeLists.txt.
 namespace tumble::scenarios {
 
-/// Computes an estimate. `parameters` is complete and within limits; `oracle.truth` is set if the method needs the
+/// Computes an estimate. `parameters` is complete and within limits. `oracle.truth` is set if the method needs the
 /// truth.
 using RunCore = Estimate (*)(const sim::Sensors&, const sim::Values& parameters, const OracleInput& oracle);
 
@@ -65,12 +65,12 @@ Method slam_poses_autogain_fusion();
 Method slam_poses_tumble();
 Method slam_rolling_prior();
 
-/// Rate stages that the rate methods and the slam chains share. Each stage returns one RateState per sample; on error,
-/// `out` is empty.
+/// These rate stages are shared by the rate methods and the slam chains. Each stage returns one RateState per sample.
+/// On error, `out` is empty.
 Status raw_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, std::vector<RateState>& out);
 Status unclipped_rates(const sim::Sensors& sensors, const sim::Truth& truth, std::vector<RateState>& out);
 
-/// Counts the rates by their source (for example measured or estimated) in `health`.
+/// Counts the rates in `health` by their source, for example measured or estimated.
 void count_sources(std::span<const RateState> rates, std::map<std::string, double>& health);
 
 /// Motion that an odometer measures beside the IMU.
@@ -83,8 +83,8 @@ struct KnownMotion {
 
 /// Options of the lidar-inertial chain.
 struct SlamChain {
-  /// Estimates lidar mounting, lidar clock offset and gravity. The recording is processed twice; the second pass starts
-  /// from the calibration of the first pass.
+  /// If true, the chain estimates lidar mounting, lidar clock offset and gravity. The recording is then processed
+  /// twice. The second pass starts from the calibration of the first pass.
   bool calibration = false;
   const KnownMotion* along = nullptr;  ///< odometer
 };
@@ -92,8 +92,7 @@ struct SlamChain {
 struct SlamStage;
 
 /// Runs the lidar-inertial chain of all registration methods: deskewing with the rates in the estimate, registration,
-/// mapping. slam_settings.hpp describes the parameters. Returns true if the run ends with a pose that is known in its
-/// map.
+/// mapping. slam_settings.hpp describes the parameters. Returns true if the run ends with a known pose in its map.
 bool run_slam_chain(const sim::Sensors& sensors, std::span<const ImuSample> samples, const SlamStage& stage,
                     const SlamChain& chain, Estimate& estimate);
 

@@ -9,9 +9,9 @@
 
 namespace tumble::scenarios {
 
-/// Reports the known saturation limits of the primary gyro in `health` (ESTIMATE.md, "Rails"): the level of each axis
-/// with an observed limit, and the plane parameters of a tilted limit. Levels that were copied from another axis or
-/// from a data sheet are omitted.
+/// Reports the known saturation limits of the primary gyro in `health` (ESTIMATE.md, "Rails"). The report contains the
+/// level of each axis with an observed limit, and the plane parameters of a tilted limit. Levels that were copied from
+/// another axis or from a data sheet are omitted.
 void report_rails(const KnownRails& rails, std::map<std::string, double>& health);
 
 /// Reports the saturation levels that the smoother found in a run.

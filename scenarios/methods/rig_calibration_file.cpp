@@ -24,20 +24,20 @@ using nlohmann::json;
 constexpr double kMost = 1e6;
 constexpr const char* kKeys[] = {"lever_arm_m", "gyro_bias_rad_s", "accel_bias_m_s2", "inertia",
                                  "covariance",  "gyro_rail_rad_s", "accel_rail_m_s2"};
-// Early calibration files lack the key and have fewer covariance rows.
+// Early calibration files lack the key of the gyro elements and have fewer covariance rows.
 constexpr const char* kElementsKey = "gyro_elements";
-// Early calibration files lack this key.
+// Early calibration files lack the key of the gyro planes.
 constexpr const char* kPlanesKey = "gyro_planes_rad_s";
-// Early calibration files lack this key.
+// Early calibration files lack the keys of the accelerometer planes and elements.
 constexpr const char* kAccelPlanesKey = "accelerometer_planes_m_s2";
 constexpr const char* kAccelElementsKey = "accelerometer_elements";
-// Early calibration files lack these keys.
+// Early calibration files lack the keys of the device errors.
 constexpr const char *kErrorsKey = "device_errors", *kErrorsCovarianceKey = "device_errors_covariance";
-// Change of the cross-axis sensitivities of the accelerometer elements between runs, as for the gyro.
+// Standard deviation of the change of an accelerometer's cross-axis sensitivity between runs, equal to the gyro's.
 constexpr double kSlopeDrift = 2e-3;
-// Planes with lower log-odds are not saved, because motion peaks can resemble a saturation plane.
+// Planes with lower log-odds are not saved, because a peak of the motion can resemble a saturation plane.
 constexpr double kSureLogOdds = 10.0;
-// Lower bound of the cross-axis sensitivity's standard deviation: rails.md (R59).
+// Lower bound of the standard deviation of a cross-axis sensitivity, equation (R59) of rails.md.
 constexpr double kSlopeSigmaMin = 3e-4;
 constexpr int kWithoutElements = RigConstants::kElements;
 
@@ -60,7 +60,7 @@ json rails(const LearntRig& rig, std::size_t first) {
   return out;
 }
 
-// Reads arrays; error messages state the fault and its location.
+// Reads arrays of a calibration file. Error messages state the fault and its location.
 class CalibrationReader {
  public:
   CalibrationReader(const std::filesystem::path& path, const json& object) : path_(path), object_(object) {}
@@ -128,13 +128,13 @@ std::optional<double> lowest(const LearntRig& rig, std::size_t first) {
   return out;
 }
 
-// Saturation levels are stable to 0.05 %, and their offset drifts with the bias. Readings within this fraction of the
-// level count as saturated.
+// Readings within this fraction of the saturation level count as saturated. Saturation levels are stable to 0.05 %, but
+// their offset drifts with the bias.
 constexpr double kToleranceShare = 2e-3;
 
 // Returns true if the intercept of a plane is known: two standard deviations are within the tolerance of the next run.
-// If two elements only clip together, the cross-axis sensitivity between the two is unknown, and so is the level at
-// other readings.
+// If two elements only clip together, the cross-axis sensitivity between the two elements is unknown. The intercept is
+// then unknown too.
 bool reported_level(const RailPlane& plane, int sign) {
   const Eigen::Vector4d cut(0.0, 0.0, sign, 1.0);
   const double variance = cut.dot(plane.covariance * cut), most = 0.5 * kToleranceShare * plane.distance_rad_s;
@@ -156,7 +156,7 @@ void LearntRig::keep(const RailPlanes& planes, Triad triad) {
   for (std::size_t j = 0; j < 3; ++j) {
     const std::optional<RailPlane>& plane = planes.element[j];
     if (plane && plane->log_odds < kSureLogOdds) {
-      // The covariance of the plane's cross-axis sensitivities is also widened.
+      // The covariance of the plane's cross-axis sensitivities is also increased.
       const double sigma = RateModelParams{}.element_sigma;
       const Eigen::Index at = RigConstants::kElements + 2 * static_cast<Eigen::Index>(j);
       if (triad == Triad::gyro) calibration.covariance.diagonal().segment<2>(at).array() += sigma * sigma;
@@ -177,7 +177,7 @@ void LearntRig::keep(const RailPlanes& planes, Triad triad) {
 
 namespace {
 
-// Stores cross-axis sensitivities and intercept of an element with a certain plane.
+// Stores cross-axis sensitivities and intercepts of an element whose plane is certain.
 void take_element(const RailPlane& plane, Triad triad, std::size_t j, LearntRig& rig) {
   const auto first = static_cast<Eigen::Index>(2 * j), at = RigConstants::kElements + first;
   const Eigen::Vector2d slopes(plane.row[static_cast<Eigen::Index>((j + 1) % 3)],

@@ -14,24 +14,24 @@
 /// within a sweep, and RigidOdometry registers the sweep. The file of each method defines its trajectory model.
 namespace tumble::scenarios {
 
-/// Predicts the motion of each sweep and updates itself with the registration result.
+/// Predicts the motion of each sweep. The registration result updates the model.
 class TrajectoryModel {
  public:
   virtual ~TrajectoryModel() = default;
-  /// Predicts the motion from the end of the last sweep to `to_ns`; for the first sweep, the prediction starts at the
+  /// Predicts the motion from the end of the last sweep to `to_ns`. For the first sweep, the prediction starts at the
   /// sweep's start.
   virtual baselines::RigidOdometry::Motion expect(TimeNs from_ns, TimeNs to_ns) = 0;
-  /// Updates the model after each sweep; `report.verdict` states whether the registration succeeded.
+  /// Updates the model after each sweep. `report.verdict` states whether the registration succeeded.
   virtual void learn(const baselines::RigidOdometry& odometry, const LidarInertialOdometry::SweepReport& report) = 0;
 };
 
-/// Initial values from the rest at the start: attitude from the specific force with yaw 0, and the gyro bias.
+/// Initial values from the rest at the start: the attitude from the specific force with yaw 0, and the gyro bias.
 struct StartAtRest {
   Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
   Eigen::Vector3d gyro_bias_rad_s = Eigen::Vector3d::Zero();
 };
-/// Averages the readings of at most the first second, as long as the gyro stays below 0.05 rad/s, and at least one
-/// sample. Returns `too_few` or `degenerate` if the readings do not determine an attitude.
+/// Averages the readings at the start while the gyro stays below 0.05 rad/s: at least one sample and at most one
+/// second. Returns `too_few` or `degenerate` if the readings do not determine an attitude.
 Status start_at_rest(std::span<const ImuSample> samples, StartAtRest& out);
 
 /// Returns the IMU averaging windows that overlap the interval, with constant body rate and acceleration (body axes,
@@ -47,8 +47,8 @@ Eigen::Matrix<double, 9, 9> loose_covariance(double sigma_m, double sigma_rad);
 void run_rigid_chain(const sim::Sensors& sensors, std::span<const ImuSample> samples,
                      const baselines::RigidOdometry::Params& params, TrajectoryModel& model, Estimate& estimate);
 
-/// Returns the parameters of the rigid methods and their mapping to the library; the mounting T_IL comes from the
-/// calibration.
+/// These functions return the parameters of the rigid methods and convert them to the library's parameters. The
+/// mounting T_IL comes from the calibration.
 const Settings<baselines::RigidOdometry::Params>& rigid_settings();
 baselines::RigidOdometry::Params rigid_params(const sim::Sensors& sensors, const sim::Values& parameters);
 

@@ -3,18 +3,18 @@
 
 #include <Eigen/Geometry>
 
-/// Default parameters without a default in the library: numbers of the robots in `models/`. The values in a recording
-/// override these defaults.
+/// Defines parameters that have no default in the library: numbers of the robots in `models/`. The values in a
+/// recording override these defaults.
 namespace tumble::scenarios::presets {
 
 /// Returns the vector from the rig's centre of mass to the MTi-30, in IMU axes, from `models/rig.xml`.
 Eigen::Vector3d rig_lever_arm_m();
 
-/// Returns a box around the rig's cage in lidar axes, with a margin of some centimetres; returns inside the box come
-/// from the rig.
+/// Returns a box around the rig's cage in lidar axes, with a margin of some centimetres. Returns inside the box are
+/// hits on the rig.
 Eigen::AlignedBox3d rig_body_L();
 
-/// Threshold slightly below the saturation level of the gyro in `models/sensors/mti30.yaml`; the method of Saave treats
+/// Threshold slightly below the saturation level of the gyro in `models/sensors/mti30.yaml`. The method of Saave treats
 /// larger readings as saturated.
 inline constexpr double kRigSaturationPoint_rad_s = 10.45;
 

@@ -15,8 +15,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Sample times of a record, and the jitter removed from the stamps [s]. Decreasing stamps are kept, so that the bridge
-/// rejects them.
+/// Sample times of a record, and the jitter removed from the stamps [s]. Decreasing stamps are unchanged, so that the
+/// bridge rejects them.
 struct SampleTimes {
   std::vector<std::int64_t> times_ns;
   double corrected_jitter_s = 0.0;

@@ -7,7 +7,7 @@
 
 namespace tumble::scenarios {
 
-/// Writes the sensors' metadata as JSON. Each IMU has its rate, stated ranges, noise densities and mounting T_BI. Each
+/// Returns the sensors' metadata as JSON. Each IMU has its rate, stated ranges, noise densities and mounting T_BI. Each
 /// lidar has its period and mounting T_BL. The text also contains gravity and the sphere's radius. Mountings have
 /// "translation_m" [x, y, z] and "quaternion_xyzw", and include calibration errors.
 std::string sensors_text(const sim::Sensors& sensors);

@@ -26,7 +26,7 @@ namespace detail {
 /// Returns the names of a vector's coordinates, with the axis in front of the unit: "lever_arm_x_m".
 std::array<std::string, 3> coordinate_names(const std::string& name, const Field& field);
 
-/// Calls `each(name, value, field, whole)` for each number in a `Params`; a vector has three numbers.
+/// Calls `each(name, value, field, whole)` for each number in a `Params` struct. A vector has three numbers.
 template <class Params, class Each>
 void visit_numbers(Params& params, Each each) {
   visit_by_name(params, [&each](const std::string& name, auto& value, const Field& field) {
@@ -44,32 +44,32 @@ void visit_numbers(Params& params, Each each) {
 
 /// Fields of a `Params` that a method treats specially.
 struct SettingsOptions {
-  /// Fields whose values the recording states; a user's value takes precedence. A name may end in `*`.
+  /// Names of fields whose values the recording states, unless the user sets them. A name may end in `*`.
   std::vector<std::string> stated = {};
-  /// Fields that follow from other parameters and cannot be set. A name may end in `*`.
+  /// Names of fields that follow from other parameters and cannot be set. A name may end in `*`.
   std::vector<std::string> fixed = {};
-  /// Fields that are listed first for users of this method.
+  /// Names of fields that are listed first for users of this method.
   std::vector<std::string> first = {};
-  /// Parameters of another stage; a field with an equal name gets `prefix`.
+  /// Parameters of another stage. If a field has the name of one of these parameters, the name gets `prefix`.
   std::span<const sim::Parameter> beside = {};
   std::string prefix = {};
 };
 
-/// Names, table rows and values of parameters; the type-independent base of all Settings.
+/// Names, table rows and values of parameters. This base class of all Settings does not depend on the `Params` type.
 class SettingsTable {
  public:
   virtual ~SettingsTable() = default;
   SettingsTable(const SettingsTable&) = delete;
   SettingsTable& operator=(const SettingsTable&) = delete;
 
-  /// Returns the parameter rows; frequently used parameters come first.
+  /// Returns the table rows of the parameters, frequently used parameters first.
   std::span<const sim::Parameter> rows() const { return rows_; }
   std::size_t first_rows() const { return first_rows_; }
-  /// Returns true for integer parameters: counts, switches, choices.
+  /// Returns true for integer parameters: counts, switches and choices.
   bool is_whole(std::string_view name) const { return whole_.contains(name); }
-  /// Returns true if the recording states the parameter's value, so that only a user's value overrides the recording.
+  /// Returns true if the recording states the parameter's value. Only a user's value overrides the recording.
   bool is_stated(std::string_view name) const { return stated_.contains(name); }
-  /// Returns every number of the `Params` by the library's names, taken from `values`.
+  /// Returns every number of the `Params` struct, taken from `values`, by the library's names.
   virtual std::map<std::string, double> numbers(const sim::Values& values) const = 0;
 
  protected:
@@ -89,20 +89,21 @@ class SettingsTable {
   std::deque<std::string> texts_;  ///< owns the texts that the other members refer to
 };
 
-/// Resolves values for all `rows` of the stages, like sim::resolve; omits parameters that the recording states and the
-/// user did not set. Throws InvalidSituation like sim::resolve, and for a fraction where an integer is required.
+/// Resolves values for all parameters of the stages, like sim::resolve. Parameters that the recording states and the
+/// user did not set are omitted. Throws InvalidSituation like sim::resolve, and also for a fraction where an integer is
+/// required.
 sim::Values resolve_settings(const std::string& place, const sim::Values& given,
                              std::span<const SettingsTable* const> stages);
 
-/// Returns the rows of several stages with distinct names, frequently used rows first; `first` is the number of
-/// frequently used rows.
+/// Returns the parameter rows of several stages with distinct names, frequently used rows first. `first` receives the
+/// number of frequently used rows.
 std::vector<sim::Parameter> joined_rows(std::span<const SettingsTable* const> stages, std::size_t& first);
 
 /// Parameters of one stage of a method. The object must be static, because methods keep references to its rows.
 template <class Params>
 class Settings : public SettingsTable {
  public:
-  /// `defaults` are the library's default values, except where the method states its own.
+  /// `defaults` are the library's default values, or values that the method states instead.
   explicit Settings(const Params& defaults, SettingsOptions options = {})
       : SettingsTable(std::move(options)), defaults_(defaults) {
     detail::visit_numbers(defaults_, [this](const std::string& name, const auto& value, const Field& field,
@@ -111,7 +112,7 @@ class Settings : public SettingsTable {
   }
   const Params& defaults() const { return defaults_; }
 
-  /// Copies the values to `params`; a field that the recording states and the user did not set is unchanged.
+  /// Copies the values to `params`. A field that the recording states and the user did not set is unchanged.
   void apply(const sim::Values& values, Params& params) const {
     detail::visit_numbers(params, [&](const std::string& field_name, auto& value, const Field&, bool) {
       using Value = std::remove_cvref_t<decltype(value)>;

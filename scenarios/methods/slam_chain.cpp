@@ -23,7 +23,7 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr double kMaxDeviations = StatedCalibration::kMaxDeviations;
-constexpr int kSearches = 3;  // additional runs for a calibration that moves further
+constexpr int kSearches = 3;  // additional passes for a calibration that has not converged
 
 LidarInertialOdometry::Params odometry_params(const sim::Sensors& sensors, const SlamStage& stage,
                                               const SlamChain& chain) {
@@ -42,8 +42,8 @@ LidarInertialOdometry::Params odometry_params(const sim::Sensors& sensors, const
   return odometry;
 }
 
-/// Cuts a sweep at the end of the IMU data if most of the sweep remains. If sweeps were not cut, a clock offset would
-/// drop the last sweep.
+/// Cuts a sweep at the end of the IMU data if most of the sweep remains. Without the cut, a clock offset would drop the
+/// last sweep.
 bool shorten(std::int64_t end_ns, bridge::Sweep& sweep) {
   if (end_ns >= sweep.end_ns) return true;
   const std::int64_t left_ns = end_ns - sweep.start_ns;
@@ -73,7 +73,7 @@ class SweepFeed {
     return add_motion(sweep.end_ns + offset_ns_) && add_points(sweep);
   }
 
-  /// Processes the end of the recording.
+  /// Processes the sweeps that are pending at the end of the recording.
   void finish() {
     for (std::vector<PoseState>& open : odometry_.window_trajectories()) apply_next(std::move(open));
   }
@@ -127,7 +127,7 @@ class SweepFeed {
   std::size_t smoothed_ = 0;  ///< number of smoothed sweeps
 };
 
-/// Processes the whole recording; `estimate` receives the sweeps.
+/// Processes the whole recording and adds the sweeps to `estimate`.
 void run_sweeps(const sim::LidarRecord& lidar, std::span<const ImuSample> samples, LidarInertialOdometry& odometry,
                 double time_offset_s, const KnownMotion* along, Estimate& estimate) {
   const auto offset_ns = static_cast<TimeNs>(std::llround(time_offset_s * 1e9));
@@ -162,16 +162,16 @@ StatedCalibration stated_calibration(const LidarInertialOdometry::Params& starte
   return out;
 }
 
-/// Returns true if few enough sweeps were rejected to use the run's calibration.
+/// Returns true if few enough sweeps were rejected to use the calibration of the run.
 bool determines_calibration(const Estimate& run) {
   const auto rejected = std::count_if(run.sweeps.begin(), run.sweeps.end(),
                                       [](const auto& sweep) { return sweep.verdict == SweepVerdict::rejected; });
   return 5 * static_cast<std::size_t>(rejected) <= run.sweeps.size();
 }
 
-/// The first pass estimates the calibration; the last pass starts from this calibration and builds a consistent map. If
+/// The first pass estimates the calibration. The last pass starts from this calibration and builds a consistent map. If
 /// the calibration moves further than its stated uncertainty allows, another pass starts from the new value with the
-/// initial uncertainty, until the calibration converges.
+/// initial uncertainty. Passes repeat until the calibration converges.
 Estimate run_passes(const sim::LidarRecord& lidar, std::span<const ImuSample> samples,
                     const LidarInertialOdometry::Params& given, const SlamChain& chain, const Estimate& before,
                     LidarInertialOdometry& odometry, CalibrationVerdict& verdict) {
@@ -213,7 +213,7 @@ Estimate run_passes(const sim::LidarRecord& lidar, std::span<const ImuSample> sa
   return run;
 }
 
-/// Flags saturated accelerometer readings that the device should have flagged.
+/// Sets the clip flags of saturated accelerometer readings that the device did not flag.
 void flag_railed_forces(const sim::ImuRecord& record, std::vector<ImuSample>& samples) {
   ClippingFinder::Params params;
   params.upright_rails = stated_rails(record);
@@ -254,7 +254,7 @@ Estimate begin_with_rates(const sim::Sensors& sensors, std::vector<ImuSample>& s
 LidarInertialOdometry::Params SlamParams::on_the_rig() {
   LidarInertialOdometry::Params params;
   params.own_body_L = presets::rig_body_L();
-  params.expert.matching.agreeing_least = RegistrationParams().expert.agreeing_min;  // none: with_few_matches
+  params.expert.matching.agreeing_least = RegistrationParams().expert.agreeing_min;  // disables with_few_matches
   return params;
 }
 

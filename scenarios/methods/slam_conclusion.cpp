@@ -11,9 +11,9 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr double kRests_m = 0.01, kRests_rad = 0.01;  // motion over one sweep
+constexpr double kRests_m = 0.01, kRests_rad = 0.01;  // largest motion over one sweep at rest
 
-/// Reports the Mahalanobis distance between predicted and registered poses: median and 90th percentile.
+/// Reports the median and the 90th percentile of the Mahalanobis distance between predicted and registered poses.
 void report_innovations(Estimate& estimate) {
   std::vector<double> all;
   for (const auto& sweep : estimate.sweeps) {
@@ -25,8 +25,8 @@ void report_innovations(Estimate& estimate) {
   estimate.health["innovation_90"] = all[all.size() * 9 / 10];
 }
 
-/// Returns true if the rig is stationary during the sweep. At rest, the lidar only sees rings, whose degeneracy does no
-/// harm.
+/// Returns true if the rig is stationary during the sweep. At rest the lidar only sees rings; their degeneracy is
+/// harmless.
 bool rests(const SweepReport& sweep) {
   if (sweep.trajectory.size() < 2) return false;
   const PoseState &first = sweep.trajectory.front(), &last = sweep.trajectory.back();
@@ -44,7 +44,7 @@ double well_constrained_share(std::span<const SweepReport> sweeps) {
   return moving > 0 ? static_cast<double>(constrained) / static_cast<double>(moving) : 1.0;
 }
 
-/// Reports the confidence of the final pose, which reveals poorly constraining surroundings.
+/// Reports the uncertainty of the final pose, which reveals surroundings that constrain the pose poorly.
 void report_end(const Localisation& localisation, Estimate& estimate) {
   const Eigen::Matrix<double, 6, 6>& P = estimate.sweeps.back().pose.covariance;
   estimate.health["end_sigma_m"] = std::sqrt(P.topLeftCorner<3, 3>().trace());
@@ -62,7 +62,7 @@ void report_scale(const SweepScale& scale, Estimate& estimate) {
   if (scale.is_off()) add_doubt({Doubt::About::lidar_scale}, estimate);
 }
 
-/// Returns true if the run is localised on its map: tracking never failed, the calibration stayed within its
+/// Returns true if the run is localised in its map: tracking never failed, the calibration stayed within its
 /// uncertainty, and lidar ranges and motion have one scale. A wrong scale gives a map of the wrong size even if all
 /// sweeps agree.
 bool is_localised(const CalibrationVerdict& calibration, const Localisation& localisation, const SweepScale* scale) {

@@ -11,7 +11,7 @@
 /// Computes the final results of a run over sweeps.
 namespace tumble::scenarios {
 
-/// Replaces the trajectory of a sweep by the smoothed trajectory, if `smoothed` is not empty.
+/// Replaces the trajectory of a sweep by the smoothed trajectory, unless `smoothed` is empty.
 void apply_smoothed(std::vector<PoseState> smoothed, LidarInertialOdometry::SweepReport& sweep);
 
 /// Result of the calibration check over all passes of a recording.
@@ -20,15 +20,15 @@ struct CalibrationVerdict {
   bool converged = true;
 };
 
-/// Writes the final poses, map and status of a run; the estimate already holds the sweeps. All callers use this
-/// function to decide whether the run is localised. Returns `too_few` status if no sweep was registered. `localisation`
+/// Writes the final poses, map and status of a run; the estimate already contains the sweeps. All slam chains use this
+/// function to decide whether the run is localised. The status is `too_few` if no sweep was registered. `localisation`
 /// comes from the mapper's first report of each sweep. `scale` is null if the scale was not checked. Returns true if
 /// the run is localised and completed.
 bool conclude(const LidarInertialOdometry& odometry, const CalibrationVerdict& calibration,
               const Localisation& localisation, const SweepScale* scale, Estimate& estimate);
 
-/// Concludes a run with a single pass. A calibration that moved by more than five of its stated standard deviations is
-/// reported as wrong (health `lidar_calibration_mahalanobis`).
+/// Completes a run that has a single pass. If the calibration moved by more than five of its stated standard
+/// deviations, it is reported as wrong (health `lidar_calibration_mahalanobis`).
 void conclude_sweeps(const LidarInertialOdometry& odometry, const StatedCalibration& given, const SweepScale& scale,
                      const Localisation& localisation, Estimate& estimate);
 

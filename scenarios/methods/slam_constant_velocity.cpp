@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kPosesPerSweep = 10;  // poses per sweep for recordings without IMU
 
-// A very weak prior, so that the registration alone determines the pose, as in published methods with constant
+// The prior is very weak, so that the registration alone determines the pose, as in published methods with constant
 // velocity.
 constexpr double kVelocityPriorM = 1.0;
 constexpr double kVelocityPriorRad = 0.5;

@@ -24,7 +24,8 @@ class TrueMotion : public TrajectoryModel {
   baselines::RigidOdometry::Motion expect(TimeNs from_ns, TimeNs to_ns) override {
     baselines::RigidOdometry::Motion motion;
     const auto first = static_cast<std::size_t>(std::max<TimeNs>(from_ns / truth_.period_ns, 0));
-    // Aligns the true attitude at the start with the estimate, so that only the relative motion comes from the truth.
+    // Aligns the true attitude at the start with the estimated attitude, so that only the relative motion comes from
+    // the truth.
     const Eigen::Quaterniond to_estimate = last_.q_WI * attitude(first).conjugate();
     motion.start = last_;
     motion.start.time_ns = from_ns;

@@ -5,7 +5,7 @@
 #include "scenarios/methods/sweep_log.hpp"
 #include "tumble/mapping/voxel_map.hpp"
 
-/// Builds maps of the rolling sphere from the poses of a position method, as published, without registration.
+/// Builds maps of the rolling sphere from the poses of a position method, without registration, as published.
 namespace tumble::scenarios {
 
 namespace {
@@ -41,7 +41,7 @@ const Method& tumble() {
   return method;
 }
 
-/// Interpolates poses of the body; query times must increase.
+/// Interpolates poses of the body at query times that must increase.
 class Track {
  public:
   Track(const std::vector<PoseState>& poses, const Eigen::Vector3d& centre_B_m)
@@ -65,8 +65,8 @@ class Track {
   std::size_t next_ = 1;
 };
 
-// The lidar's mounting refers to the centre of mass, a few millimetres from the sphere's centre. For methods that do
-// not estimate the offset between the two centres, the offset is zero.
+// The lidar's mounting refers to the centre of mass, which is a few millimetres from the sphere's centre. For methods
+// that do not estimate the offset between the two centres, the offset is zero.
 Estimate map_from_poses(const Method& position, const sim::Sensors& sensors, const sim::Values& parameters) {
   Estimate estimate = position.run(sensors, values_of(position, parameters), {});
   estimate.contacts.clear();

@@ -72,7 +72,7 @@ const Settings<AlongParams>& along_settings() {
   return all;
 }
 
-/// Position method whose poses the registration follows.
+/// Position method whose poses are the prior of the registration.
 const Method& followed() {
   static const Method method = position_tumble();
   return method;
@@ -97,9 +97,7 @@ std::optional<Radius> radius_by_lidar(const Estimate& rolled, const Estimate& re
     for (; k + 1 < rolled.poses.size() && rolled.poses[k].time_ns < sweep.pose.time_ns; ++k) {
       if (rolled.contacts[k] != sim::ContactLabel::grip) open = false;
     }
-    if (sweep.verdict != SweepVerdict::registered)
-      continue;  // a predicted pose is rolling itself, hence no
-                 // independent measurement
+    if (sweep.verdict != SweepVerdict::registered) continue;  // a predicted pose is no independent measurement
     const Eigen::Vector3d p_rolled = rolled.poses[k].p_WA_m;
     const Eigen::Vector3d p_registered =
         (Eigen::Translation3d(sweep.pose.p_WA_m) * sweep.pose.q_WA * T_IG).translation();
@@ -226,7 +224,7 @@ Estimate register_along(const Estimate& rolled, const sim::Sensors& sensors, std
   return estimate;
 }
 
-/// Runs twice: with a weak prior to estimate the radius, then with a tight prior and the estimated radius.
+/// Runs the method twice: with a weak prior to estimate the radius, then with a tight prior and the estimated radius.
 Estimate run_rolling_prior(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   Estimate estimate;
   estimate.frame = Frame::imu;

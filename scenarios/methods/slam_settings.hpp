@@ -7,10 +7,10 @@
 #include "scenarios/methods/settings.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 
-/// Parameters of the lidar-inertial chain (run_slam_chain).
+/// Declares the parameters of the lidar-inertial chain (run_slam_chain).
 namespace tumble::scenarios {
 
-/// Parameters of the library for the rig, and the chain's use of the calibration.
+/// Parameters of the library for the rig, and options that select how the chain uses the calibration.
 struct SlamParams {
   LidarInertialOdometry::Params odometry = on_the_rig();
   bool flight_arc = false;  ///< odometry.body is taken from the robot's calibration
@@ -27,19 +27,20 @@ struct SlamParams {
   }
 };
 
-/// Adds the calibration uncertainties of a hand-assembled rig.
+/// Returns `params` with the calibration uncertainties of a hand-assembled rig.
 SlamParams with_calibration(SlamParams params);
-/// Accepts registrations with few matches if the registered pose agrees with the prior. Baselines do not accept few
-/// matches, because a clipped gyro makes the prior wrong (`hill` seed 8: 272 m of error).
+/// Returns `params` so that registrations with few matches are accepted if the registered pose agrees with the prior.
+/// Baselines do not accept few matches, because a clipped gyro makes the prior wrong (`hill` seed 8: 272 m of error).
 SlamParams with_few_matches(SlamParams params);
-/// Estimates, in the registration, the part of the rate that saturation hides on clipped axes.
+/// Returns `params` so that the registration estimates the saturation deficit, the part of the rate that a clipped axis
+/// hides.
 SlamParams with_saturation_deficit(SlamParams params);
 
 /// Returns the parameters of a method that uses the chain. Users cannot set the values that the recording states or the
 /// parameters in `fixed`.
 Settings<SlamParams> slam_settings(const SlamParams& defaults, std::vector<std::string> fixed = {});
 
-/// Parameters of the chain within the parameters of a method. The referenced objects must outlive the run.
+/// Parameters of the chain as part of the parameters of a method. The referenced objects must outlive the run.
 struct SlamStage {
   const Settings<SlamParams>& settings;
   const sim::Values& parameters;

@@ -21,7 +21,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-// The recording states the lever arm; until then, zero is a placeholder.
+// The lever arm of zero is a placeholder; the recording states the lever arm.
 TumblingOdometry::Params lag_defaults() {
   TumblingOdometry::Params out;
   out.lever_arm_I_m.setZero();
@@ -33,7 +33,7 @@ const Settings<TumblingOdometry::Params>& slam_tumble_lag_settings() {
       lag_defaults(),
       {.stated = {"imu_*", "lever_arm_x_m", "lever_arm_y_m", "lever_arm_z_m", "gravity_m_s2",
                   "mapping_accel_rail_m_s2"},
-       // replaced by parameters of TumblingOdometry
+       // Parameters of TumblingOdometry replace these parameters.
        .fixed = {"rate_lever_arm_sigma_m", "rate_gyro_noise_density", "rate_accel_noise_density", "rate_rails_stated_*",
                  "rate_period_s", "rate_lag_s", "rate_evidence_gravity_m_s2", "rate_carried_gravity_m_s2",
                  "rate_carried_gap_max_s", "rate_carried_period_s", "rate_carried_lag_s", "rate_carried_iterations_max",
@@ -69,11 +69,11 @@ class Listener {
         localisation_(params.expert.mapping.expert.matching.distance_m),
         estimate_(estimate) {}
 
-  /// Called after each processed sample.
+  /// Stores the live pose after each processed sample.
   void observe(const TumblingOdometry& odometry) {
     PoseState pose;
     if (word_ != Word::live || !odometry.newest(pose).ok()) return;
-    // while TumblingOdometry delays a sample, the newest pose belongs to the sample before
+    // While TumblingOdometry delays a sample, its newest pose belongs to the previous sample.
     if (live_.empty() || pose.time_ns > live_.back().time_ns) live_.push_back(pose);
   }
   void take(TumblingOdometry& odometry) {
@@ -89,7 +89,7 @@ class Listener {
       apply_next(std::move(smoothed));
     }
   }
-  /// Called at the end of the run.
+  /// Stores the remaining trajectories at the end of the run.
   void conclude(const TumblingOdometry& odometry) {
     for (std::vector<PoseState>& open : odometry.mapper().window_trajectories()) apply_next(std::move(open));
     if (word_ == Word::live) speak_live();

@@ -19,7 +19,7 @@ struct SphereAttitude {
   std::vector<Eigen::Quaterniond> q_WI;  ///< parallel to `samples`; yaw starts at 0
 };
 
-/// Duration of the rest at the start.
+/// Assumed duration of the rest at the start.
 struct RestParams {
   double rest_s = 1.0;
 
@@ -31,16 +31,16 @@ struct RestParams {
 };
 const Settings<RestParams>& rest_settings();
 
-/// Averages bias and tilt over the first `rest_s`, then integrates the gyro. Errors are those of the samples and of the
+/// Averages bias and tilt over the first `rest_s`, then integrates the gyro. Returns an error of the samples or of the
 /// initial levelling. Throws BadInput, naming `method`, if the recording is not from a sphere. O(N).
 Status sphere_attitude(const char* method, const sim::Sensors& sensors, double rest_s, SphereAttitude& out);
 
-/// Returns the pose of the sphere's centre in body axes, from the attitude of the IMU.
+/// Returns the pose of the sphere's centre in body axes, computed from the attitude of the IMU.
 PoseState centre_pose(const sim::Sensors& sensors, TimeNs time_ns, const Eigen::Quaterniond& q_WI,
                       const Eigen::Vector3d& p_WG_m, const Eigen::Vector3d& v_WG_m_s);
 
-/// Labels a moving contact point: `slide` if the centre travels faster than the sphere rotates, `slip` if the sphere
-/// rotates faster.
+/// Returns the label of a moving contact point: `slide` if the centre moves faster than the rotation, `slip` if the
+/// rotation is faster.
 sim::ContactLabel slip_or_slide(double radius_m, const Eigen::Quaterniond& q_WI, const Eigen::Vector3d& w_WI_I_rad_s,
                                 const Eigen::Vector3d& v_WG_m_s);
 

@@ -7,16 +7,16 @@
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/method.hpp"
 
-/// Counts, reports and results per sweep, shared by all slam chains.
+/// Counts, reports and results per sweep, which all slam chains share.
 namespace tumble::scenarios {
 
 using SweepReport = LidarInertialOdometry::SweepReport;
 
-/// Counts the error of a sweep, if any, as `sweeps_NAME` in the estimate's health.
+/// Counts the error of a sweep, if there is an error, as `sweeps_NAME` in the estimate's health.
 void count_trouble(const Status& status, Estimate& estimate);
 
 /// Counts the error and verdict of the sweep that ends at `end_ns`, and appends the sweep to the estimate. Returns
-/// false, with the error as the estimate's status, only if the sweep has no pose. A sweep without returns is not an
+/// false only if the sweep has no pose; the estimate's status is then the error. A sweep without returns is not an
 /// error.
 bool append_sweep(const Status& status, TimeNs end_ns, SweepReport report, Estimate& estimate);
 
@@ -24,21 +24,22 @@ bool append_sweep(const Status& status, TimeNs end_ns, SweepReport report, Estim
 /// boundary; the earlier sweep supplies the pose of this sample.
 void append_poses(std::span<const PoseState> trajectory, Estimate& estimate);
 
-/// Counts and drops a sweep that extends beyond the IMU readings.
+/// Counts a sweep that extends beyond the IMU readings and is dropped.
 void leave_out_unfinished(Estimate& estimate);
 
-/// Counts the error of a sweep that has no pose because the sweep came before the IMU readings or had too few points to
-/// start the map. Returns false for any other sweep.
+/// Counts the error of a sweep without a pose, which came before the IMU readings or had too few points to start the
+/// map. Returns false for any other sweep.
 bool leave_out_before_map(const Status& status, const SweepReport& report, Estimate& estimate);
 
 /// Interface of a mapper for the loop over sweeps.
 struct SweepMapper {
-  /// Returns true if the IMU covers the sweep. Adds the sweep; an error becomes the estimate's status and ends the run.
+  /// `covers` returns true if the IMU covers the sweep. `add` adds the sweep; an error becomes the estimate's status
+  /// and ends the run.
   std::function<bool(const bridge::Sweep&)> covers;
   std::function<Status(const bridge::Sweep&, SweepReport&)> add;
 };
 
-/// Processes all sweeps in order and collects their poses; the status is `too_few` if no sweep was registered. Returns
+/// Processes all sweeps in order and collects their poses. The status is `too_few` if no sweep was registered. Returns
 /// false if an error ended the run early.
 bool run_over_sweeps(const sim::LidarRecord& lidar, const SweepMapper& mapper, Estimate& estimate);
 

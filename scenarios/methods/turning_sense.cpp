@@ -25,8 +25,8 @@ std::vector<TimedAttitude> attitudes_of(const Estimate& estimate) {
   return out;
 }
 
-/// Returns the rotation from IMU coordinates to the coordinates of the frame, or empty if the recording has no such
-/// sensor.
+/// Returns the rotation from IMU coordinates to the coordinates of the frame. Returns empty if the recording has no
+/// sensor of this frame.
 std::optional<Eigen::Quaterniond> q_AI(Frame frame, const sim::Sensors& sensors) {
   const Eigen::Quaterniond q_BI(sensors.imus.front().T_BI.linear());
   if (frame == Frame::imu) return Eigen::Quaterniond::Identity();
@@ -48,8 +48,8 @@ std::string text_of(const TurningFit& fit, const std::string& frame) {
   return out + (out.empty() ? "the poses" : " and the poses") + " belonged to the frame " + frame;
 }
 
-/// Returns the frames that the attitudes may describe; empty without an IMU, or without the stated sensor. The stated
-/// frame comes first, so that the stated frame is chosen if two frames have equal mountings.
+/// Returns the frames that the attitudes may describe. Empty without an IMU or without the stated sensor. The stated
+/// frame comes first, so that it is chosen if two frames have equal mountings.
 std::vector<CandidateFrame> candidates(const Estimate& estimate, const sim::Sensors& sensors) {
   std::vector<CandidateFrame> frames;
   if (sensors.imus.empty()) return frames;

@@ -26,7 +26,7 @@ void limit(int resource, double value) {
   setrlimit(static_cast<__rlimit_resource>(resource), &both);
 }
 
-/// Executes the command in the child process. Returns only if the program cannot be started, with the reason in
+/// Executes the command in the child process. Returns only if the program cannot be started, and stores the reason in
 /// `problem`.
 void become(const Command& command, std::string& problem) {
   signal(SIGINT, SIG_DFL);
@@ -47,13 +47,14 @@ void become(const Command& command, std::string& problem) {
   std::vector<char*> words;
   for (const std::string& word : command.words) words.push_back(const_cast<char*>(word.c_str()));
   words.push_back(nullptr);
-  // The limit is set last, because this copy of the program may exceed the limit, and allocations would then fail.
+  // The memory limit is set last. The child, a copy of this program, may already exceed the limit, and its allocations
+  // would then fail.
   limit(RLIMIT_DATA, command.memory_limit_mib * kMib);
   execvp(words.front(), words.data());
   problem = command.words.front() + ": " + strerror(errno);
 }
 
-/// Returns the first and last `most` bytes of a file, or the whole content of a shorter file.
+/// Returns the first and last `most` bytes of a long file, or the whole content of a short file.
 std::string ends_of(const std::filesystem::path& path, std::size_t most) {
   std::ifstream file(path, std::ios::binary | std::ios::ate);
   if (!file) return {};
@@ -69,7 +70,7 @@ std::string ends_of(const std::filesystem::path& path, std::size_t most) {
   return text;
 }
 
-/// Returns the start of a long transcript, which usually contains the cause of an error, and the end.
+/// Returns the start and the end of a long transcript. The start usually contains the cause of an error.
 std::string words_of(const std::string& transcript) {
   std::string text = transcript;
   if (text.size() > 2 * kWords) text = text.substr(0, kWords) + " ... " + text.substr(text.size() - kWords);

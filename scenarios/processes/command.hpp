@@ -19,7 +19,7 @@ struct Command {
   double memory_limit_mib = 8192.0;                ///< data of each of its processes (RLIMIT_DATA)
 };
 
-/// How a command ended.
+/// Describes how a command ended.
 struct CommandEnd {
   enum class How { done, failed, out_of_time, not_started };
   How how = How::done;
@@ -29,8 +29,8 @@ struct CommandEnd {
   double cpu_s = 0.0;      ///< of the command without its children
 };
 
-/// Runs the command in a separate process group. At the time limit, the whole process group is killed; the group also
-/// ends when this process ends. Throws std::system_error if no process can be started.
+/// Runs the command in a separate process group. At the time limit, the whole process group is killed. The group is
+/// also killed when this process ends. Throws std::system_error if no process can be started.
 CommandEnd run_command(const Command& command);
 
 }  // namespace tumble::scenarios

@@ -27,7 +27,8 @@ namespace {
   if (getppid() != parent) _exit(1);
   const rlimit no_core{0, 0};
   setrlimit(RLIMIT_CORE, &no_core);
-  // The parent handles Ctrl-C and hang-up. A closed reader becomes an error of write() instead of a signal.
+  // The parent handles Ctrl-C and hang-up. If the reader is closed, write() returns an error instead of raising a
+  // signal.
   signal(SIGINT, SIG_IGN);
   signal(SIGHUP, SIG_IGN);
   signal(SIGTERM, SIG_DFL);
@@ -64,7 +65,7 @@ Process::Process(const std::function<void(int)>& work, bool own_group) : own_gro
 }
 
 Process::Process(const std::function<void(int, int)>& work, bool own_group) : own_group_(own_group) {
-  // a socket is used, because writing to a closed socket can avoid a signal
+  // The channel is a socket, because a write to a closed socket can avoid a signal.
   int ends[2];
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
     throw std::system_error(errno, std::generic_category(), "socketpair");
@@ -97,7 +98,7 @@ void Process::start(const std::function<void(int)>& work) {
     close(ends[0]);
     run_child(work, ends[1], parent, own_group_);
   }
-  // set in both processes, so that the group exists whichever process runs first
+  // Parent and child both set the process group, so that the group exists regardless of which process runs first.
   if (own_group_) setpgid(pid_, pid_);
   close(ends[1]);
   fd_ = ends[0];
@@ -172,7 +173,7 @@ Process::End Process::wait() {
   pid_t collected;
   do collected = wait4(pid_, &status, 0, &usage);
   while (collected < 0 && errno == EINTR);
-  // also kills descendants that outlive the process of the run
+  // The signal also kills descendants of the child.
   if (own_group_) ::kill(-pid_, SIGKILL);
   pid_ = -1;
   end.cpu_s = static_cast<double>(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +

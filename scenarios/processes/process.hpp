@@ -24,10 +24,10 @@ class Process {
     bool killed() const;
   };
 
-  /// Forks and runs `work(write_end)` in the child, in a separate process group if `own_group`. An exception in `work`
-  /// ends the child with exit status 1. Throws std::system_error if no process can be started.
+  /// Forks and runs `work(write_end)` in the child, in a separate process group if `own_group`. If `work` throws, the
+  /// child ends with exit status 1. Throws std::system_error if no process can be started.
   explicit Process(const std::function<void(int)>& work, bool own_group);
-  /// Forks and runs `work(read_end, write_end)`, which can read the text that `write_text` writes.
+  /// Forks and runs `work(read_end, write_end)` in the child. The child can read the text that `write_text` writes.
   explicit Process(const std::function<void(int, int)>& work, bool own_group);
   /// Kills the process (or its process group) and waits for its end.
   ~Process();
@@ -35,11 +35,11 @@ class Process {
   Process& operator=(Process&&) = delete;
 
   int read_end() const { return fd_; }
-  /// Writes all of `text` to the child's input; returns false if the child has closed its input.
+  /// Writes all of `text` to the child's input. Returns false if the child has closed its input.
   bool write_text(const std::string& text);
-  /// Appends the available content of the pipe; returns false at the end of the pipe.
+  /// Appends the available content of the pipe to `buffer`. Returns false at the end of the pipe.
   bool read_available(std::string& buffer);
-  /// Waits until the child has ended; returns false at the deadline, which is a time of now_s(). The caller collects
+  /// Waits until the child has ended. Returns false at the deadline, which is a time of now_s(). The caller collects
   /// the result with wait().
   bool ends_before(double deadline_s);
   void kill();
@@ -57,10 +57,10 @@ class Process {
 inline constexpr double kMib = 1024.0 * 1024.0;  ///< bytes
 
 /// Limits the data memory (RLIMIT_DATA) of this process and of each future child, within the inherited limit. Beyond
-/// the limit, allocations fail with std::bad_alloc and new processes cannot be started.
+/// the limit, allocations fail with std::bad_alloc, and new processes cannot be started.
 void limit_memory(double mib);
 
-/// Writes all of `text`; returns false if the reader is closed.
+/// Writes all of `text`. Returns false if the reader is closed.
 bool write_all(int fd, const std::string& text);
 
 /// Returns monotonic time [s].

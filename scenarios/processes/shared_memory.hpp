@@ -7,8 +7,9 @@
 
 namespace tumble::scenarios {
 
-/// Anonymous shared memory that a program inherits as a file descriptor (Command::descriptors); the last user frees the
-/// memory. The class works on Linux only. The constructor throws std::system_error if there is not enough memory.
+/// Anonymous shared memory that a program inherits as a file descriptor (Command::descriptors). The memory is freed
+/// when its last user ends. The class works on Linux only. The constructor throws std::system_error if there is not
+/// enough memory.
 class SharedMemory {
  public:
   /// Creates empty memory. `name` is visible in /proc.

@@ -5,8 +5,9 @@
 
 namespace tumble::scenarios {
 
-/// Returns the identity of the code: version, compiler, build type and digest of the sources of estimator, sim and
-/// scenarios at build time. Equal sources with an equal compiler and build type have equal identities on any machine.
+/// Returns the identity of the code: version, compiler, build type, and a digest of the sources at build time. The
+/// digest covers estimator, sim and scenarios. Equal sources with an equal compiler and build type have equal
+/// identities on any machine.
 const std::string& build_id();
 
 }  // namespace tumble::scenarios

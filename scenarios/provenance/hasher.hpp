@@ -12,7 +12,7 @@
 
 namespace tumble::scenarios {
 
-// numbers are hashed in memory order
+// The hash covers the bytes of numbers in memory order, so the machine must be little-endian.
 static_assert(std::endian::native == std::endian::little);
 
 /// Streaming XXH3 hash (128 bit).

@@ -28,8 +28,7 @@ const ClippingTruth& clipping_truth(const ScoredEstimate& scored);
 struct PairedRate {
   const RateState* estimate = nullptr;         ///< points into the estimate
   std::optional<ClippingTruth::Sample> truth;  ///< empty if unknown
-  std::size_t sample = 0;  ///< index of the primary IMU's sample whose window contains the instant; valid if the truth
-                           ///< is known
+  std::size_t sample = 0;                      ///< index of the primary IMU's sample at this instant, if known
 
   /// Returns the clipped axes (bit j: axis j), or 0 if the truth is unknown.
   std::uint8_t clipped_axes() const { return truth ? truth->clipped_axes : std::uint8_t{0}; }

@@ -16,7 +16,7 @@ struct BinnedMetric {
   std::string name() const;
 };
 
-/// Parses a name; returns empty if `metric` is not the name of a binned metric.
+/// Parses the name of a binned metric. Returns empty for any other text.
 std::optional<BinnedMetric> parse_binned(const std::string& metric);
 
 }  // namespace tumble::scenarios

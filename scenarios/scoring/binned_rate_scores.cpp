@@ -12,7 +12,7 @@
 #include "scenarios/scoring/families.hpp"
 #include "scenarios/statistics/statistics.hpp"
 
-/// Computes rate errors over clipped samples of similar clipping depth, clipping duration or number of clipped axes.
+/// Computes rate errors over clipped samples with similar clipping depth, clipping duration or number of clipped axes.
 namespace tumble::scenarios {
 
 namespace {
@@ -31,8 +31,8 @@ constexpr const auto& edges() {
   if constexpr (kAxis == BinAxis::count) return kCountEdges;
 }
 
-/// Returns, for each sample, the duration of the segment of clipped samples to which it belongs; 0 if the sample is not
-/// clipped.
+/// Returns, for each sample, the duration of the segment of clipped samples that contains the sample. The duration is 0
+/// if the sample is not clipped.
 std::vector<double> segment_lengths_s(const ScoredEstimate& scored) {
   const ClippingTruth& truth = clipping_truth(scored);
   const double period_s = 1e-9 * static_cast<double>(scored.sensors().imus.front().period_ns);
@@ -48,7 +48,7 @@ std::vector<double> segment_lengths_s(const ScoredEstimate& scored) {
   return lengths;
 }
 
-/// Returns the measure by which a clipped sample is binned.
+/// Returns the measure that assigns a clipped sample to a bin.
 template <BinAxis kAxis>
 double measure(const ScoredEstimate& scored, const PairedRate& pair) {
   if constexpr (kAxis == BinAxis::depth) return clipping_truth(scored).depth_rad_s(pair.sample);

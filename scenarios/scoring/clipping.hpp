@@ -41,21 +41,22 @@ class ClippingTruth {
   ClippingTruth(const sim::Sensors& sensors, const sim::Truth& truth);
 
   /// Returns the true rate and the clipped axes at an instant. Between two samples the rate is interpolated, and the
-  /// clipped axes are those of the sample whose averaging window contains the instant. Returns empty outside the
-  /// recording and where the rate is unknown. O(log N).
+  /// clipped axes belong to the sample whose averaging window contains the instant. Returns empty outside the recording
+  /// and where the rate is unknown. O(log N).
   std::optional<Sample> at(std::int64_t time_ns) const;
 
-  /// Returns the sample whose averaging window contains the instant; empty outside the recording. O(log N).
+  /// Returns the index of the sample whose averaging window contains the instant. Empty outside the recording. O(log
+  /// N).
   std::optional<std::size_t> index_at(std::int64_t time_ns) const;
 
   std::size_t size() const { return record_->time_ns.size(); }
   /// Returns true if the truth comes from a reference instrument.
   bool is_reference() const { return !reference_axes_.empty(); }
-  /// Returns true if the true rate of a sample is known; only the rates of a reference can be unknown.
+  /// Returns true if the true rate of a sample is known. Only the rates of a reference can be unknown.
   bool known(std::size_t index) const { return !is_reference() || truth_->rate_rad_s[index].allFinite(); }
   /// Returns the number of samples with a known true rate.
   std::size_t known_samples() const;
-  /// Returns the clipped axes of a sample, or 0 where the rate is unknown.
+  /// Returns the clipped axes of a sample, or 0 if its rate is unknown.
   std::uint8_t clipped_axes(std::size_t index) const;
   /// Returns the axes of a sample with a cross-axis error; no axis is in both sets.
   std::uint8_t cross_axes(std::size_t index) const;

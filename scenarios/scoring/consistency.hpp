@@ -3,19 +3,19 @@
 
 #include <vector>
 
-/// Computes the consistency of errors with reported covariances: squared errors divided by variances, one value per
-/// degree of freedom.
+/// Compares errors with reported covariances. Each value is a squared error divided by its variance, for one degree of
+/// freedom.
 namespace tumble::scenarios {
 
 /// Returns the squared error divided by its reported variance. For variance 0, the result is infinite unless the error
 /// is 0. For a NaN error, the result is NaN.
 double squared_over(double error, double variance);
 
-/// Returns the fraction of squares within three standard deviations; NaN counts as outside. Returns false if there are
+/// Computes the fraction of squares within three standard deviations; NaN counts as outside. Returns false if there are
 /// no squares.
 bool share_within_3sigma(const std::vector<double>& squares, double& value);
 
-/// Returns the median of the squares divided by the median for a normal variable. The median is used because the axis
+/// Computes the median of the squares, divided by the median for a normal variable. The median is used because the axis
 /// with the smallest variance would dominate a mean. Returns false if there are no squares.
 bool normalised_median(const std::vector<double>& squares, double& value);
 

@@ -7,10 +7,10 @@
 
 namespace tumble::scenarios {
 
-/// Returns the description of an estimate's CPU time, as sweeps store this metric.
+/// Returns the description of an estimate's CPU time. Sweeps store this time like a metric.
 const MetricInfo& estimate_cost();
 
-/// Returns true if a score is a computing cost, which varies between identical runs.
+/// Returns true if a score is a computing cost. Computing costs vary between identical runs.
 bool is_cost(std::string_view name);
 
 }  // namespace tumble::scenarios

@@ -41,7 +41,7 @@ const LidarInertialOdometry::SweepReport* last_covered(const ScoredEstimate& sco
   return last == estimate.sweeps.rend() ? nullptr : &*last;
 }
 
-// Returns the start and end pose of the end error; false if there is no such motion.
+// Computes the start and end poses of the end error. Returns false if there are no such poses.
 bool ends_of(const ScoredEstimate& scored, PoseState& first, PoseState& last) {
   const Estimate& estimate = scored.estimate();
   if (estimate.sweeps.empty()) {  // external trajectory
@@ -69,7 +69,7 @@ struct EndError {
   Eigen::Quaterniond rotation;
 };
 
-// Compares the estimated with the true motion from the sixth registered sweep to the last sweep.
+// Compares the estimated motion from the sixth registered sweep to the last sweep with the true motion.
 std::optional<EndError> end_pose_error(const ScoredEstimate& scored) {
   const TruthTrack& truth = truth_track(scored);
   PoseState first, last;
@@ -98,7 +98,7 @@ bool rotation_error_end(const ScoredEstimate& scored, double& value) {
 }
 
 // Computes the normalised squared error of the last sweep's pose after alignment at the first pose. The mean of this
-// error is 1 for a consistent covariance.
+// normalised error is 1 for a consistent covariance.
 bool pose_nees(const ScoredEstimate& scored, double& value) {
   if (scored.estimate().sweeps.empty() || scored.estimate().poses.empty()) return false;
   const auto* last_sweep = last_covered(scored);
@@ -110,7 +110,7 @@ bool pose_nees(const ScoredEstimate& scored, double& value) {
   const PoseState true_pose = truth_track(scored).pose(last.time_ns);
   Eigen::Matrix<double, 6, 1> error;
   error << true_pose.p_WA_m - aligned.p_WA_m, so3::log((true_pose.q_WA * aligned.q_WA.conjugate()).normalized());
-  // The covariance refers to the estimator's world, so the error is rotated to this world.
+  // The covariance refers to the estimator's world, so the error is rotated to the axes of that world.
   const Eigen::Matrix3d back = alignment.transform().linear().transpose();
   error << Eigen::Vector3d(back * error.head<3>()), Eigen::Vector3d(back * error.tail<3>());
   const Eigen::LLT<Eigen::Matrix<double, 6, 6>> factor(last.covariance);

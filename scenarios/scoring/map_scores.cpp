@@ -17,12 +17,12 @@ constexpr double kCoverageMin = 0.5;     // a map of less than half of what was 
 constexpr float kSurfaceCellM = 0.1f;    // each cell of the seen surface counts once, however often it was hit
 constexpr float kErrorLimitM = 0.5f;     // the distance of outliers is limited to this
 constexpr float kSamePointM = 1e-3f;     // points in one cell of this size are duplicates
-constexpr double kSeenRangeM = 100.0;    // farther hits from the start are not expected in maps
+constexpr double kSeenRangeM = 100.0;    // hits farther from the start are not expected in maps
 
 static_assert(kErrorLimitM > kToleranceM && kErrorLimitM > kFineToleranceM,
               "an error at the limit must be outside both tolerances");
 
-// Returns the map points in W, aligned by position and yaw at the start.
+// Returns the map points in W after alignment of position and yaw at the start.
 std::vector<Eigen::Vector3f> map_in_world(const ScoredEstimate& scored) {
   const Estimate& estimate = scored.estimate();
   const Eigen::Isometry3d to_world = paired_track(scored).alignment.transform();
@@ -34,7 +34,7 @@ std::vector<Eigen::Vector3f> map_in_world(const ScoredEstimate& scored) {
   return points;
 }
 
-// Returns the true hits of all sweeps on the static world; the robot's own cage has no surface id.
+// Returns the true hits of all sweeps on the static world. The robot's own cage has no surface id.
 std::vector<Eigen::Vector3f> seen_surface(const sim::Truth& truth) {
   std::vector<Eigen::Vector3f> hits;
   const sim::LidarTruth& lidar = truth.lidars.front();
@@ -107,8 +107,8 @@ bool map_coverage(const ScoredEstimate& scored, double& value) {
   return share.has_value();
 }
 
-// A method without a map counts as failed. A trajectory without sweeps comes from an external program that does not
-// build a map.
+// Computes 1 for a failed map, else 0. A method without a map counts as failed. A trajectory without sweeps comes from
+// an external program that builds no map.
 bool failed(const ScoredEstimate& scored, double& value) {
   const Estimate& estimate = scored.estimate();
   if (scored.surface() == nullptr || (estimate.sweeps.empty() && estimate.map.empty())) return false;

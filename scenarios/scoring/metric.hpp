@@ -7,20 +7,17 @@
 
 #include "scenarios/methods/method.hpp"
 
-/// Describes a metric; the description is stated once, where the metric is registered. Tables, reports, gates and
-/// triage use only this description.
+/// Describes a metric once, where the metric is registered. Tables, reports, gates and triage use only this
+/// description.
 namespace tumble::scenarios {
 
-/// States which values of a metric are better:
-/// - lower: errors;
-/// - higher: overlap;
-/// - two_sided: a target is best (coverage of an interval, normalised errors);
-/// - none: values are not ranked (costs, counts, properties of the reference).
+/// States which values of a metric are better. Lower values are better for errors; higher values are better for
+/// overlap. A two-sided metric has a best target (coverage of an interval, normalised errors). With `none`, values are
+/// not ranked (costs, counts, properties of the reference).
 enum class Sense { lower, higher, two_sided, none };
 
 /// Unit of the stored values of a metric. A `share` is in [0, 1]. A `verdict` is 0, or 1 for a failure; only the
-/// fraction of failures over many runs is meaningful, not the median. A `time_offset` is signed, in seconds, and shown
-/// in milliseconds.
+/// fraction of failures over many runs is meaningful. A `time_offset` is signed, in seconds, and shown in milliseconds.
 enum class Unit { number, share, verdict, rad, rad_s, m, m_s, m_s2, s, time_offset, mib };
 /// Returns the unit at the end of metric names: "1", "rad", "rad/s", …
 const char* symbol(Unit unit);
@@ -46,8 +43,8 @@ struct MetricInfo {
   Compared compared = Compared::by_ratio;
 };
 
-/// Returns the description of a metric, cost or motion value; for a binned metric, the description of the unbinned
-/// metric. Unknown names, from databases of other versions, get a description with Sense::none.
+/// Returns the description of a metric, cost or motion value. For a binned metric, returns the description of the
+/// unbinned metric. An unknown name, from a database of another version, gets a description with Sense::none.
 const MetricInfo& metric_info(const std::string& name);
 
 /// Display style of a metric: SI values are multiplied by `factor` and shown in `unit`. Degrees and percent are used
@@ -62,19 +59,20 @@ MetricStyle style_of(Unit unit);
 std::string sense_text(const MetricInfo& metric);
 
 /// Returns true if `a` is better than `b`; always false for unranked metrics and NaN. For a metric with a target, the
-/// value closer to the target is better; closeness is measured by ratio if both values are positive.
+/// value closer to the target is better. If both values are positive, closeness is measured by ratio.
 bool is_better(const MetricInfo& metric, double a, double b);
 
-/// Returns a badness for paired differences: the value where lower is better, the negative value where higher is
-/// better, and the distance from the target for a target (of logarithms if value and target are positive); else NaN.
+/// Returns a badness for paired differences: the value if lower is better, and the negative value if higher is better.
+/// For a metric with a target, the badness is the distance from the target. The distance is between logarithms if value
+/// and target are positive. For unranked metrics, returns NaN.
 double how_bad(const MetricInfo& metric, double value);
 
-/// Returns the value assigned to failed runs: infinity, or minus infinity where higher is better. For two-sided and
+/// Returns the value assigned to failed runs: infinity, or minus infinity if higher is better. For two-sided and
 /// unranked metrics, returns NaN, which statistics ignore.
 double worst_value(const MetricInfo& metric);
 
-/// Return the headline metrics of a kind, and all gate metrics including the headline metrics, in order of
-/// registration.
+/// The first function returns the headline metrics of a kind. The second function returns all gate metrics, including
+/// the headline metrics. Both lists are in order of registration.
 std::vector<std::string> headline_metrics(Kind kind);
 std::vector<std::string> held_metrics(Kind kind);
 

@@ -8,16 +8,16 @@
 
 namespace tumble::scenarios {
 
-/// Statistics of a simulated motion, to compare a scenario with a published campaign. The statistics are computed from
-/// the truth only.
+/// Statistics of a simulated motion, for comparing a scenario with a published campaign. The statistics are computed
+/// from the truth only.
 struct MotionSummary {
   double moving_s = 0.0;            ///< from the first to the last instant above 0.1 m/s or 0.3 rad/s
-  double rest_at_end_s = 0.0;       ///< from the last such instant to the end of the recording
+  double rest_at_end_s = 0.0;       ///< from the last moving instant to the end of the recording
   double path_m = 0.0;              ///< path length of the centre of mass
   double peak_rate_rad_s = 0.0;     ///< largest norm of the true mean rate over a sample of the primary IMU
   double peak_accel_m_s2 = 0.0;     ///< largest norm of an unclipped, band-limited accelerometer reading, over all IMUs
   double flight_share = 0.0;        ///< share of moving_s without contact
-  std::size_t impacts = 0;          ///< times when the centre of mass exceeds 20 m/s^2 after 20 ms below
+  std::size_t impacts = 0;          ///< rises of the centre's acceleration above 20 m/s^2 after 20 ms below
   std::size_t samples = 0;          ///< samples of the primary IMU while moving
   std::size_t clipped_samples = 0;  ///< samples with at least one clipped gyro axis (ClippingTruth)
   std::array<std::size_t, 3> axis_clipped_samples = {};  ///< per axis x, y, z

@@ -11,8 +11,8 @@
 
 namespace tumble::scenarios {
 
-/// Tests whether any point of a set is within a fixed distance. The test is exact; it uses a hash of cells as wide as
-/// the distance and checks 27 cells. Ignores points that are not finite.
+/// Tests whether any point of a set is within a fixed distance of a query point. The test is exact. It uses a hash of
+/// cells as wide as the distance and checks 27 cells. Points that are not finite are ignored.
 class Nearness {
  public:
   Nearness(std::span<const Eigen::Vector3f> points_m, float distance_m);
@@ -25,7 +25,8 @@ class Nearness {
   SpatialHash cells_;                                            ///< key -> index in ranges_
 };
 
-/// Returns the first point in each cell of size `cell_m`, in the original order. Drops points that are not finite.
+/// Returns the first point in each cell of size `cell_m`, in the original order. Points that are not finite are
+/// dropped.
 std::vector<Eigen::Vector3f> one_per_cell(std::span<const Eigen::Vector3f> points_m, float cell_m);
 
 }  // namespace tumble::scenarios

@@ -10,7 +10,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-// minimum path for relative errors
+// shortest path that has a relative error
 constexpr double kPathMinM = 0.05;
 constexpr double kUnmovedM = 0.02;  // errors before this motion are not scored
 
@@ -39,7 +39,7 @@ bool height_error_max(const ScoredEstimate& scored, double& value) {
   value = 0.0;
   for (const PairedPose& pose : poses) {
     const double error = std::abs(pose.estimate.p_WA_m.z() - pose.truth.p_WA_m.z());
-    // unlike std::max, this comparison propagates NaN
+    // Unlike std::max, this comparison propagates NaN.
     if (!(error <= value)) value = error;
     if (std::isnan(value)) break;
   }
@@ -66,8 +66,8 @@ bool rest_drift(const ScoredEstimate& scored, double& value) {
   return any;
 }
 
-/// Returns squared errors divided by their reported variances, once the body moves. Errors are in the axes of the
-/// covariance, which are the axes of the estimate's world.
+/// Returns squared errors divided by their reported variances, from the start of the motion on. Errors are in the axes
+/// of the covariance, which are the axes of the estimate's world.
 std::vector<double> normalised_position_errors(const ScoredEstimate& scored) {
   const Estimate& estimate = scored.estimate();
   const PairedTrack& track = paired_track(scored);

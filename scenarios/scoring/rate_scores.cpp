@@ -43,8 +43,8 @@ bool clipped_max(const ScoredEstimate& scored, double& value) {
   return quantile_of(scored.once(error_norms).clipped_rad_s, 1.0, value);
 }
 
-// A segment consists of consecutive samples with a clipped axis. The error of a segment is the norm of the mean error
-// vector, thus an offset.
+// Computes the largest error of a segment of consecutive samples with a clipped axis. The error of a segment is the
+// norm of the mean error vector, and thus an offset.
 bool segment_max(const ScoredEstimate& scored, double& value) {
   std::vector<double> offsets;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();

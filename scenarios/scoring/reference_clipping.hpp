@@ -7,8 +7,7 @@
 #include <span>
 #include <vector>
 
-/// Detects clipped readings of a real gyro with a reference of the rate. The detection is independent of the
-/// estimator's detection.
+/// Detects clipped readings of a real gyro from a reference of the rate. The estimator's own detection is not used.
 namespace tumble::scenarios {
 
 /// Saturation limit of axis j with sign s, a tilted plane in the readings: s y_j = rail + slopes * (the other two axes,
@@ -20,7 +19,7 @@ struct ReferenceRail {
   Eigen::Vector2d slopes = Eigen::Vector2d::Zero();
 };
 
-/// Returns the saturation planes, defined as follows.
+/// Returns the saturation planes of the three axes with both signs, as follows.
 ///
 /// Candidates are samples within 5 % of the extreme reading of the axis and sign, with a known reference rate. A
 /// candidate is confirmed if the reference exceeds the reading by more than 2 %. The excess must also be larger than
@@ -32,7 +31,7 @@ struct ReferenceRail {
 /// Axis j of a sample is clipped if reading and reference both reach 0.98 of the plane. If the reference is NaN, the
 /// sample is unknown and no axis is flagged.
 ///
-/// `reading` and `reference` are parallel, in IMU axes [rad/s]. O(N).
+/// `reading` and `reference` are parallel lists, in IMU axes [rad/s]. O(N).
 std::array<ReferenceRail, 6> reference_rails(std::span<const Eigen::Vector3d> reading,
                                              std::span<const Eigen::Vector3d> reference);
 

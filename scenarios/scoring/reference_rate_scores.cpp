@@ -12,15 +12,15 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// A sample is certainly unclipped if every axis is below this fraction of the axis's extreme reading. The body rotates
-/// if the rate exceeds kRotating_rad_s.
+/// A sample is certainly unclipped if every axis is below the fraction kFarShare of its extreme reading. The body
+/// rotates if the rate exceeds kRotating_rad_s.
 constexpr double kFarShare = 0.9, kRotating_rad_s = 0.5;
 
 double error_norm(const Eigen::Vector3d& estimate, const Eigen::Vector3d& reference) {
   return (estimate - reference).norm();
 }
 
-/// Returns the error of the norm, which does not depend on a frame rotation.
+/// Returns the error of the rate's norm, which does not depend on a frame rotation.
 double error_speed(const Eigen::Vector3d& estimate, const Eigen::Vector3d& reference) {
   return std::abs(estimate.norm() - reference.norm());
 }
@@ -32,8 +32,8 @@ double error_axis(const Eigen::Vector3d& estimate, const Eigen::Vector3d& refere
 
 using ErrorOf = double (*)(const Eigen::Vector3d&, const Eigen::Vector3d&);
 
-/// Returns a percentile of the estimate's error at clipped samples; for a single axis, at the samples where this axis
-/// clips.
+/// Computes a percentile of the estimate's error at clipped samples. For a single axis, only samples with this axis
+/// clipped count.
 template <ErrorOf kError, int kPercent, unsigned kAxes>
 bool clipped_error(const ScoredEstimate& scored, double& value) {
   if (!clipping_truth(scored).is_reference()) return false;
@@ -45,7 +45,7 @@ bool clipped_error(const ScoredEstimate& scored, double& value) {
   return quantile_of(errors, 0.01 * kPercent, value);
 }
 
-/// Returns a percentile of the difference between reference and gyro where no axis clips and the body rotates.
+/// Computes a percentile of the difference between reference and gyro where no axis clips and the body rotates.
 template <ErrorOf kError, int kPercent>
 bool reference_error(const ScoredEstimate& scored, double& value) {
   const ClippingTruth& truth = clipping_truth(scored);
@@ -62,8 +62,8 @@ bool reference_error(const ScoredEstimate& scored, double& value) {
   return quantile_of(errors, 0.01 * kPercent, value);
 }
 
-/// Returns the variances of the reference's axes, from the interquartile range of the difference between reference and
-/// unclipped gyro (assumed normal).
+/// Returns the variances of the reference's axes. They follow from the interquartile range of the difference between
+/// reference and unclipped gyro, which is assumed normal.
 Eigen::Vector3d reference_variance(const ScoredEstimate& scored, const ClippingTruth& truth) {
   const auto& reading = scored.sensors().imus.front().gyro_rad_s;
   Eigen::Vector3d variance = Eigen::Vector3d::Zero();
@@ -79,7 +79,7 @@ Eigen::Vector3d reference_variance(const ScoredEstimate& scored, const ClippingT
   return variance;
 }
 
-/// Unlike rate_coverage_3sigma, this metric includes the error of the reference.
+/// Computes the coverage with the error of the reference included, unlike rate_coverage_3sigma.
 bool reference_coverage(const ScoredEstimate& scored, double& value) {
   const ClippingTruth& truth = clipping_truth(scored);
   if (!truth.is_reference()) return false;
@@ -105,7 +105,7 @@ bool called_measured(const ScoredEstimate& scored, double& value) {
     for (unsigned j = 0; j < 3; ++j) {
       if ((pair.clipped_axes() & (1u << j)) == 0) continue;
       axes += 1.0;
-      // a method may mark a whole sample as suspect without a detected clipped axis
+      // A method may mark a whole sample as suspect without detecting a clipped axis.
       const bool doubted = rate.clipped_axes == 0 && rate.source != RateSource::measured;
       missed += (rate.clipped_axes & (1u << j)) == 0 && !doubted ? 1.0 : 0.0;
     }
@@ -139,7 +139,7 @@ void add_pair(const std::string& name, const std::string& doc, std::vector<Metri
                  clipped_error<kError, 90, kAxes>});
 }
 
-/// These metrics are properties of the reference, not of a method, and are not ranked.
+/// These metrics are properties of the reference instead of a method, and are not ranked.
 template <ErrorOf kError>
 void add_reference(const std::string& name, const std::string& doc, std::vector<Metric>& all) {
   all.push_back({{"rate_" + name + "_median_rad_s", Unit::rad_s, "median " + doc, Sense::none},

@@ -8,8 +8,8 @@
 
 namespace tumble::scenarios {
 
-/// The end error starts at the sixth registered sweep (Deschenes et al.), counted from 1. The count includes the first
-/// sweep, which starts the map.
+/// Number of the registered sweep, counted from 1, at which the end error starts (Deschenes et al.). The count includes
+/// the first sweep, which starts the map.
 inline constexpr std::size_t kStartSweep = 6;
 
 /// Returns the indices of the sweeps that were not rejected.

@@ -18,36 +18,36 @@ struct Score {
   double value;
 };
 
-/// Returns the score with the metric's name, or null.
+/// Returns the score of the metric with this name, or null.
 const Score* find_score(std::span<const Score> scores, const std::string& metric);
 /// Returns the value of the metric's score, or NaN.
 double value_of(std::span<const Score> scores, const std::string& metric);
 
-/// A metric with its description, registered in one line of the source file of its group.
+/// A metric with its description. Each metric is registered by one line in the source file of its group.
 struct Metric {
   MetricInfo info;
   Kind kind;
-  /// Returns false if there is nothing to score (no clipped sample, no map).
+  /// Computes `value`. Returns false if there is nothing to score (no clipped sample, no map).
   bool (*compute)(const ScoredEstimate& scored, double& value);
 };
 
 std::span<const Metric> metrics();
 
-/// Returns the scores of all metrics that apply to a kind, in order of registration. Callers that also need the verdict
-/// should pass one ScoredEstimate to both functions.
+/// Returns the scores of all metrics that apply to a kind, in order of registration. A caller that also needs the
+/// verdict should pass the ScoredEstimate of the scores to `verdict`.
 std::vector<Score> score(Kind kind, const ScoredEstimate& scored);
 std::vector<Score> score(Kind kind, const Estimate& estimate, const ScoringInput& input);
 
-/// Returns `ok` or `diverged`. An estimate diverged in any of these cases:
-/// - the estimate is not finite;
-/// - the estimate has a gap longer than a fifth of the recording (rates: more than a tenth of the samples are missing);
-/// - the end error exceeds the path length (at least 1 m);
-/// - the estimate reports sweeps but registered fewer than six.
+/// Returns `ok` or `diverged`. An estimate diverged in any of the following cases.
+/// - The estimate is not finite.
+/// - The estimate has a gap longer than a fifth of the recording, or rates for less than nine tenths of the samples.
+/// - The end error exceeds the path length (at least 1 m).
+/// - The estimate reports sweeps but registered fewer than six sweeps.
 OutcomeStatus verdict(Kind kind, const ScoredEstimate& scored);
 OutcomeStatus verdict(Kind kind, const Estimate& estimate, const ScoringInput& input);
 
-/// Returns true if a trajectory is finite and its end error is below the path length that the trajectory covers.
-/// Compared with `verdict`, this function does not test for gaps.
+/// Returns true if a trajectory is finite and its end error is below the length of its path. Unlike `verdict`, this
+/// function does not test for gaps.
 bool trajectory_holds(const ScoredEstimate& scored);
 
 }  // namespace tumble::scenarios

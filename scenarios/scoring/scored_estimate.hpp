@@ -10,7 +10,7 @@
 
 namespace tumble::scenarios {
 
-/// The parts of a recording that scoring needs. `surface` may be null, which omits map scores.
+/// The parts of a recording that scoring needs. `surface` may be null; map scores are then omitted.
 struct ScoringInput {
   const sim::Sensors* sensors = nullptr;
   const sim::Truth* truth = nullptr;
@@ -18,7 +18,7 @@ struct ScoringInput {
 };
 
 /// An estimate paired with its recording, with a cache of results that several metrics share, such as paired poses and
-/// map distances. Keeps references to its inputs. The class is not thread-safe.
+/// map distances. The class keeps references to its inputs. It is not thread-safe.
 class ScoredEstimate {
  public:
   /// Throws BadInput if sensors or truth are missing.
@@ -29,8 +29,8 @@ class ScoredEstimate {
   const sim::Truth& truth() const { return *input_.truth; }
   const sim::Surface* surface() const { return input_.surface; }
 
-  /// Returns `make(*this)`, which is computed at the first call and then cached. `make` must depend on this object only
-  /// and may itself call once(). If `make` throws, nothing is cached.
+  /// Returns `make(*this)`, which is computed at the first call and then cached. `make` must depend only on this object
+  /// and may call once(). If `make` throws, nothing is cached.
   template <typename Made>
   const Made& once(Made (*make)(const ScoredEstimate&)) const {
     const auto key = reinterpret_cast<void (*)()>(make);  // used as a key, never called

@@ -10,17 +10,21 @@
 #include "scenarios/scoring/beside_truth.hpp"
 #include "scenarios/scoring/families.hpp"
 
-/// Compares the slip and slide events of a position method's contact modes with those of the truth's contact labels.
+/// Compares the slip and slide events of a position method's contact modes with the events in the truth's contact
+/// labels.
 ///
 /// An event is an interval of the labels slip and slide. An event includes gaps of up to kBridge_ns of grip, and up to
 /// kHop_ns of air in total, because an unbalanced spinning sphere hops. A true event counts if the event lasts
 /// kShortest_ns and the contact speed reaches kLeastSpeed_m_s. Weaker events cannot be distinguished from grip and
-/// cause no position error. An estimated event is correct if at least half of the event overlaps true events, including
-/// weak and short events, each widened by kMargin_ns. A true event is detected if correct estimated events cover at
-/// least half of the true event. Slip and slide are not distinguished. The position is lost in a true event if the
-/// horizontal error grows by more than kLost_m from the start to the end of the event. The event is flagged if the
-/// reported horizontal sigma grows by more than kFlagged_m. The two criteria for position loss use kMargin_ns on either
-/// side of the event.
+/// cause no position error. Slip and slide are not distinguished.
+///
+/// An estimated event is correct if at least half of the event overlaps true events. For this test, weak and short true
+/// events count too, and each true event is widened by kMargin_ns. A true event is detected if correct estimated events
+/// cover at least half of the true event.
+///
+/// The position is lost in a true event if the horizontal error grows by more than kLost_m from the start to the end of
+/// the event. The event is flagged if the reported horizontal sigma grows by more than kFlagged_m. For these two
+/// criteria, the event is widened by kMargin_ns on either side.
 namespace tumble::scenarios {
 
 namespace {
@@ -41,7 +45,7 @@ bool moves(sim::ContactLabel label) {
   return label == sim::ContactLabel::slip || label == sim::ContactLabel::slide;
 }
 
-/// Joins intervals of slip and slide to events, from labels in time order.
+/// Joins intervals of slip and slide to events. The labels must be in time order.
 class Events {
  public:
   void add(sim::ContactLabel label, std::int64_t begin_ns, std::int64_t end_ns) {
@@ -81,7 +85,7 @@ bool counts(const SlipSpan& span, const sim::Truth& truth) {
   return false;
 }
 
-/// A label applies from its own instant to the instant of the next label.
+/// Returns the slip intervals of the estimate. A label applies from its own instant to the instant of the next label.
 std::vector<SlipSpan> claimed_spans(const Estimate& estimate) {
   if (estimate.contacts.size() != estimate.poses.size()) {
     throw BadInput(
@@ -119,7 +123,7 @@ struct MatchedEvents {
 
 std::optional<MatchedEvents> match_events(const ScoredEstimate& scored) {
   const sim::Truth& truth = scored.truth();
-  // the truth of a reference has poses only
+  // The truth of a reference has poses only, without contact labels.
   if (scored.estimate().contacts.empty() || truth.label.empty()) return std::nullopt;
   const std::vector<SlipSpan> all = true_spans(truth);
   MatchedEvents out;
@@ -166,12 +170,13 @@ bool delay(const ScoredEstimate& scored, double& value) {
   return true;
 }
 
-/// A true event and the position error during the event.
+/// Position loss and flag of one true event.
 struct Passed {
   bool lost = false, flagged = false;
 };
 
-/// Returns the true events that count and for which the estimate has poses; returns none without a covariance.
+/// Returns the true events that count and for which the estimate has poses. Returns no events if the estimate has no
+/// covariance.
 std::vector<Passed> passed_events(const ScoredEstimate& scored) {
   const sim::Truth& truth = scored.truth();
   std::vector<Passed> out;

@@ -9,17 +9,18 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Least-squares fit of `behind = offset * change`, from errors of the estimate and rates of change of the truth.
+/// Least-squares fit of `behind = offset * change`. The inputs are errors of the estimate and rates of change of the
+/// truth.
 class OffsetFit {
  public:
-  /// Adds a pair of values; ignores unknown values.
+  /// Adds a pair of values. Unknown values are ignored.
   void add(const Eigen::Vector3d& behind, const Eigen::Vector3d& change_per_s) {
     if (!change_per_s.allFinite()) return;
     product_ += change_per_s.dot(behind);
     square_ += change_per_s.squaredNorm();
   }
 
-  /// Returns false if the truth did not change.
+  /// Computes the offset. Returns false if the truth did not change.
   bool offset_s(double& value) const {
     if (!(square_ > std::numeric_limits<double>::min())) return false;
     value = product_ / square_;
@@ -30,7 +31,8 @@ class OffsetFit {
   double product_ = 0.0, square_ = 0.0;
 };
 
-// Uses unclipped samples only, because the gyro measures the rate there and the remaining error is a time offset.
+// Computes the offset from unclipped samples only. The gyro measures the rate there, so the remaining error is a time
+// offset.
 bool rate_offset(const ScoredEstimate& scored, double& value) {
   const ClippingTruth& truth = clipping_truth(scored);
   const std::int64_t period_ns = scored.sensors().imus.front().period_ns;
@@ -46,7 +48,7 @@ bool rate_offset(const ScoredEstimate& scored, double& value) {
   return fit.offset_s(value);
 }
 
-/// Returns the rotation from the estimate to the truth, in axes of the estimate's frame.
+/// Returns the rotation vector from the estimated to the true attitude, in axes of the estimate's frame.
 Eigen::Vector3d lacking_rad(const Eigen::Quaterniond& q_estimate, const Eigen::Quaterniond& q_true) {
   return so3::log(q_estimate.conjugate() * q_true);
 }

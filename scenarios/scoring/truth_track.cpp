@@ -29,7 +29,7 @@ Eigen::Isometry3d mounting(const sim::Truth& truth, Frame frame) {
   return Eigen::Isometry3d::Identity();
 }
 
-// A sample is at rest if the body is slow at every sample within the window around the sample.
+// Returns which samples are at rest: the body is slow at every sample within the window around the sample.
 std::vector<bool> rest_mask(const sim::Truth& truth) {
   const std::size_t count = truth.p_WB_m.size();
   const bool no_position =
@@ -96,7 +96,7 @@ Eigen::Vector3d TruthTrack::position(std::size_t index) const {
 TruthTrack::Between TruthTrack::between(std::int64_t time_ns) const {
   const auto index = static_cast<std::size_t>(time_ns / truth_->period_ns);
   const double share = static_cast<double>(time_ns % truth_->period_ns) / static_cast<double>(truth_->period_ns);
-  // Exactly at a sample, the next sample is not used, because the next sample may be unknown.
+  // If the time equals a sample's time, the next sample is not used, because it may be unknown.
   return {index, share > 0.0 ? std::min(index + 1, truth_->p_WB_m.size() - 1) : index, share};
 }
 

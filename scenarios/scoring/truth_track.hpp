@@ -28,9 +28,9 @@ class TruthTrack {
   TruthTrack(const sim::Truth& truth, Frame frame);
 
   std::int64_t last_ns() const { return last_ns_; }
-  /// Returns true if the pose is known at this time; the poses of a reference can have gaps.
+  /// Returns true if the pose is known at this time. The poses of a reference can have gaps.
   bool covers(std::int64_t time_ns) const;
-  /// Returns true if the attitude is known, even if the position is not.
+  /// Returns true if the attitude is known at this time. The position may be unknown.
   bool covers_attitude(std::int64_t time_ns) const;
 
   /// Returns the pose of the frame in W and the velocity of its origin, with NaN where the position is unknown. The
@@ -39,13 +39,13 @@ class TruthTrack {
   /// Returns the angular rate of the frame in its own axes [rad/s], with NaN where the rate is unknown. `time_ns` must
   /// be covered. O(1).
   Eigen::Vector3d rate_rad_s(std::int64_t time_ns) const;
-  /// Returns the path length of the frame's origin since time 0 [m]; `time_ns` must be covered.
+  /// Returns the path length of the frame's origin since time 0 [m]. `time_ns` must be covered.
   double path_m(std::int64_t time_ns) const;
-  /// Returns true if the body is stationary around the instant; `time_ns` must be covered.
+  /// Returns true if the body is stationary around the instant. `time_ns` must be covered.
   bool at_rest(std::int64_t time_ns) const;
 
  private:
-  /// Samples before and after an instant, with the interpolation fraction.
+  /// The samples before and after an instant, with the interpolation fraction.
   struct Between {
     std::size_t index = 0, next = 0;
     double share = 0.0;
@@ -63,7 +63,7 @@ class TruthTrack {
   std::vector<bool> rest_;
 };
 
-/// Estimated and true pose at one instant, both in W after alignment of the estimate.
+/// Estimated and true pose at one instant. Both poses are in W, after alignment of the estimate.
 struct PairedPose {
   std::int64_t time_ns = 0;
   PoseState estimate;
@@ -72,13 +72,13 @@ struct PairedPose {
   bool rest = false;
 };
 
-/// Alignment of the estimator's world with W in four degrees of freedom, because gravity fixes roll and pitch. Initial
-/// tilt errors therefore count as errors.
+/// Alignment of the estimator's world with W in four degrees of freedom. Gravity fixes roll and pitch, so initial tilt
+/// errors count as errors.
 struct Alignment {
   double yaw_rad = 0;
   Eigen::Vector3d translation_m = Eigen::Vector3d::Zero();
 
-  /// Returns the alignment that moves `estimate` to the position and heading of `truth`.
+  /// Returns the alignment that moves the pose `estimate` to the position and heading of `truth`.
   static Alignment at(const PoseState& estimate, const PoseState& truth);
   Eigen::Isometry3d transform() const;
   PoseState apply(const PoseState& pose) const;
@@ -90,12 +90,12 @@ double twist_about_z_rad(const Eigen::Quaterniond& q);
 /// Returns the angle of a rotation in [0, pi], accurate for small angles and near pi.
 double rotation_angle_rad(const Eigen::Quaterniond& q);
 
-/// Returns the horizontal part of the attitude error phi in the estimate's world, where q_true = Exp(phi) q up to
-/// heading.
+/// Returns the horizontal part of the attitude error phi in the estimate's world. The error is defined by q_true =
+/// Exp(phi) q, up to heading.
 Eigen::Vector2d tilt_error_rad(const Eigen::Quaterniond& q_estimate, const Eigen::Quaterniond& q_true);
 
 /// Poses of an estimate paired with the truth, aligned at the first pose for which the truth is known. The list is
-/// empty if there is no such pose.
+/// empty if the truth is unknown at all poses.
 struct PairedTrack {
   Alignment alignment;
   std::vector<PairedPose> poses;

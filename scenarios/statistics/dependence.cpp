@@ -61,7 +61,7 @@ std::vector<std::size_t> class_ends(const CompletePairs& sorted, std::size_t wan
   return ends;
 }
 
-/// statistics.md (S23)
+/// Returns the mean with its interval, equation (S23) of statistics.md.
 Interval mean_interval(std::span<const double> values) {
   const auto n = static_cast<double>(values.size());
   const double middle = mean(values);
@@ -110,7 +110,7 @@ Correlation rank_correlation(std::span<const double> x, std::span<const double> 
   Correlation out;
   if (pairs.size() < kIntervalMin) return out;
   const std::vector<double> a = mean_ranks(column(pairs, &Pair::first)), b = mean_ranks(column(pairs, &Pair::second));
-  const double middle = mean(a);  // same for both: the mean of all ranks
+  const double middle = mean(a);  // mean of all ranks, equal for both variables
   double ab = 0.0, aa = 0.0, bb = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i) {
     ab += (a[i] - middle) * (b[i] - middle);
@@ -120,12 +120,12 @@ Correlation rank_correlation(std::span<const double> x, std::span<const double> 
   if (aa == 0.0 || bb == 0.0) return out;
   const auto n = static_cast<double>(a.size());
   out.rho = std::clamp(ab / std::sqrt(aa * bb), -1.0, 1.0);
-  // statistics.md (S16)
+  // Interval of the rank correlation, equation (S16) of statistics.md.
   const double half = kTwoSided95 * std::sqrt((1.0 + 0.5 * out.rho * out.rho) / (n - 3.0));
   out.low = std::tanh(std::atanh(out.rho) - half);
   out.high = std::tanh(std::atanh(out.rho) + half);
   if (a.size() < kStudentMin) return out;
-  // statistics.md (S17)
+  // P-value of the rank correlation, equation (S17) of statistics.md.
   const double t = std::abs(out.rho) * std::sqrt((n - 2.0) / (1.0 - out.rho * out.rho));
   out.chance = std::isinf(t) ? 0.0 : 2.0 * cdf(complement(boost::math::students_t(n - 2.0), t));
   return out;
@@ -144,7 +144,7 @@ FirstOrder first_order_index(std::span<const double> x, std::span<const double> 
   const auto wanted = static_cast<std::size_t>(1.5 * std::cbrt(static_cast<double>(pairs.size())));
   const std::vector<std::size_t> ends = class_ends(pairs, wanted);
   if (!(whole > 0.0) || ends.size() < 2) return out;
-  // statistics.md (S18)
+  // Variance of the class means, equation (S18) of statistics.md.
   double between = 0.0;
   std::size_t begin = 0;
   for (const std::size_t end : ends) {
@@ -156,7 +156,7 @@ FirstOrder first_order_index(std::span<const double> x, std::span<const double> 
   const auto n = static_cast<double>(sorted.size()), classes = static_cast<double>(ends.size());
   out.classes = ends.size();
   if (n <= classes) return {};
-  // statistics.md (S19), (S20)
+  // First-order index and its p-value, equations (S19) and (S20) of statistics.md.
   out.index = std::clamp(1.0 - (1.0 - explained) * (n - 1.0) / (n - classes), 0.0, 1.0);
   out.chance = cdf(complement(boost::math::chi_squared(classes - 1.0), (n - 1.0) * explained));
   return out;

@@ -10,7 +10,7 @@
 /// Computes the statistical dependence between two numbers over a set of simulated runs.
 namespace tumble::scenarios {
 
-/// Returns ranks from 1; equal values get their mean rank. Infinite values are ranked like finite values; the rank of
+/// Returns ranks from 1. Equal values get their mean rank. Infinite values are ranked like finite values. The rank of
 /// NaN is NaN.
 std::vector<double> mean_ranks(std::span<const double> values);
 
@@ -20,9 +20,10 @@ struct Correlation {
   double chance = 1.0;            ///< p-value of the hypothesis rho = 0; 1 below ten pairs
 };
 
-/// Returns Spearman's rank correlation with the interval of Bonett and Wright (Psychometrika 65:23, 2000),
-/// statistics.md (S16), and the p-value of Student's distribution, (S17). Pairs with NaN are ignored. For fewer than
-/// four pairs or a constant variable, the interval is [-1, 1]. Throws BadInput if the lengths differ.
+/// Returns Spearman's rank correlation with interval and p-value. The interval is that of Bonett and Wright
+/// (Psychometrika 65:23, 2000), equation (S16) of statistics.md. The p-value follows from Student's distribution,
+/// equation (S17). Pairs with NaN are ignored. For fewer than four pairs or a constant variable, the interval is [-1,
+/// 1]. Throws BadInput if the lengths differ.
 Correlation rank_correlation(std::span<const double> x, std::span<const double> y);
 
 struct FirstOrder {
@@ -32,19 +33,21 @@ struct FirstOrder {
 };
 
 /// Estimates the first-order (Sobol') index of y by x from existing data; y may depend on other numbers. The index is
-/// the variance of class means over equally large classes of x, statistics.md (S18), minus the expected value of this
-/// variance without dependence, (S19). Source: Plischke, Borgonovo, Smith, EJOR 226:536, 2013. If x takes few values,
-/// each value is a class. If y contains ranks, the p-value, (S20), is that of the Kruskal-Wallis test.
+/// the variance of class means over equally large classes of x, equation (S18) of statistics.md, minus a correction.
+/// The correction is the expected value of this variance without dependence, equation (S19). Source: Plischke,
+/// Borgonovo, Smith, EJOR 226:536, 2013. If x takes few values, each value is a class. If y contains ranks, the p-value
+/// of equation (S20) is that of the Kruskal-Wallis test.
 ///
-/// y must be finite; pairs with NaN are ignored. The estimate needs at least 24 pairs. Throws BadInput if the lengths
-/// differ.
+/// All values of y must be finite; pairs with NaN are ignored. The estimate needs at least 24 pairs. Throws BadInput if
+/// the lengths differ.
 FirstOrder first_order_index(std::span<const double> x, std::span<const double> y);
 
-/// Statistic of a class with its 95 % interval: mean (Student, finite values), median (order statistics, which also
-/// rank infinite values), or fraction of ones (Clopper and Pearson).
+/// Statistic of a class, with a 95 % interval. The interval of the mean is Student's, for finite values. The interval
+/// of the median follows from order statistics, which also rank infinite values. The interval of the fraction of ones
+/// is that of Clopper and Pearson.
 enum class Centre { mean, median, share };
 
-/// The simulated runs with x from `low` to `high`, both included.
+/// The simulated runs whose x is from `low` to `high`, both included.
 struct DependenceClass {
   double low = 0.0, high = 0.0;
   std::size_t draws = 0;
@@ -53,13 +56,13 @@ struct DependenceClass {
 
 inline constexpr std::size_t kDependenceClassesMax = 8, kDependenceDrawsMin = 12;
 
-/// Returns the partial dependence of y on x from existing data, statistics.md (S22), (S23), for simulated runs with
-/// independent random numbers. Uses at most `kDependenceClassesMax` equally large classes of x, with at least
-/// `kDependenceDrawsMin` simulated runs each. Equal values of x are in one class; if x takes few values, each value is
-/// a class.
+/// Returns the partial dependence of y on x, equations (S22) and (S23) of statistics.md. The data come from simulated
+/// runs with independent random numbers. The function uses at most `kDependenceClassesMax` equally large classes of x,
+/// with at least `kDependenceDrawsMin` simulated runs each. Equal values of x are in one class. If x takes few values,
+/// each value is a class.
 ///
-/// Ignores pairs with NaN; returns an empty list below `kDependenceDrawsMin` pairs. Throws BadInput if the lengths
-/// differ, or if Centre::share is requested for values other than 0 and 1.
+/// Pairs with NaN are ignored. For fewer than `kDependenceDrawsMin` pairs, the list is empty. Throws BadInput if the
+/// lengths differ, or if Centre::share is requested for values other than 0 and 1.
 std::vector<DependenceClass> partial_dependence(std::span<const double> x, std::span<const double> y, Centre centre);
 
 }  // namespace tumble::scenarios

@@ -46,7 +46,7 @@ SignedRanks signed_ranks(std::span<const double> differences) {
   return out;
 }
 
-/// Returns the probability that the rank sum with random signs reaches `sum`, from the exact distribution.
+/// Returns the probability that the rank sum with random signs is at least `sum`, from the exact distribution.
 double exact_chance(const SignedRanks& ranks, std::size_t sum) {
   std::vector<double> chance(ranks.total + 1, 0.0);  // probability of each sum of the positive ranks
   chance[0] = 1.0;
@@ -62,7 +62,8 @@ double exact_chance(const SignedRanks& ranks, std::size_t sum) {
   return std::min(1.0, tail);
 }
 
-/// statistics.md (S6)
+/// Returns the probability that the rank sum is at least `sum`, by the normal approximation, equation (S6) of
+/// statistics.md.
 double normal_chance(const SignedRanks& ranks, std::size_t sum) {
   const auto n = static_cast<double>(ranks.doubled.size());
   const double middle = n * (n + 1.0) / 4.0;
@@ -84,7 +85,7 @@ double signed_rank_chance(std::span<const double> differences) {
 
 double signed_rank_test(std::span<const double> differences) {
   const SignedRanks ranks = signed_ranks(differences);
-  // the distribution of the sum is symmetric
+  // The distribution of the rank sum is symmetric.
   const std::size_t farther = std::max(ranks.positive, ranks.total - ranks.positive);
   return std::min(1.0, 2.0 * chance_of(ranks, farther));
 }

@@ -28,17 +28,18 @@ double normal_quantile(double share) {
   return quantile(boost::math::normal(), share);
 }
 
-/// Returns the smallest number of differences that can reach the risk with equal signs: 2 / 2^n <= risk.
+/// Returns the smallest number of differences for which equal signs can be significant: 2 / 2^n <= risk.
 double fewest(double risk) {
   return std::ceil(1.0 - std::log2(risk));
 }
 
-/// Returns the fraction of pairs of differences with a positive sum, where zero sums count half: statistics.md (S10).
+/// Returns the fraction of pairs of differences with a positive sum, equation (S10) of statistics.md. Zero sums count
+/// half.
 double positive_sums(std::vector<double> differences) {
   std::sort(differences.begin(), differences.end());
   double count = 0.0;
   for (auto i = differences.begin(); i != differences.end(); ++i) {
-    // only later differences, so that each pair counts once
+    // Only later differences are paired, so that each pair counts once.
     const auto [first, last] = std::equal_range(i + 1, differences.end(), -*i);
     count += static_cast<double>(differences.end() - last) + 0.5 * static_cast<double>(last - first);
   }
@@ -60,7 +61,7 @@ double pairs_for_signed_rank(std::span<const double> differences, const Plan& pl
   const double share = static_cast<double>(counted.size()) / static_cast<double>(pairs);
   const double effect = positive_sums(std::move(counted)) - 0.5;
   if (effect == 0.0) return kInfinity;
-  // statistics.md (S11)
+  // Number of pairs for the signed-rank test, equation (S11) of statistics.md.
   const double z = normal_quantile(1.0 - 0.5 * plan.risk) + normal_quantile(plan.power);
   return std::ceil(std::max(z * z / (3.0 * effect * effect), fewest(plan.risk)) / share);
 }
@@ -75,7 +76,7 @@ double pairs_for_failures(std::int64_t only_first, std::int64_t only_second, std
   const auto n = static_cast<double>(pairs);
   const double either = static_cast<double>(only_first + only_second) / n;
   const double difference = static_cast<double>(only_first - only_second) / n;
-  // statistics.md (S12)
+  // Number of pairs for the test of failures, equation (S12) of statistics.md.
   const double root = normal_quantile(1.0 - 0.5 * plan.risk) * std::sqrt(either) +
                       normal_quantile(plan.power) * std::sqrt(either - difference * difference);
   return std::ceil(std::max(root * root / (difference * difference), fewest(plan.risk) / either));

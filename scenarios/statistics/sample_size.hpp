@@ -5,7 +5,7 @@
 #include <span>
 
 /// Computes how many pairs a test needs in total if the true effect equals the observed effect. The observed effect is
-/// itself uncertain; if the difference is due to chance, the computed number is too small.
+/// uncertain. If the difference is due to chance, the computed number is too small.
 namespace tumble::scenarios {
 
 struct Plan {
@@ -13,15 +13,15 @@ struct Plan {
   double power = 0.8;  ///< probability of detecting the observed difference; (0, 1)
 };
 
-/// Returns the number of pairs for the two-sided signed-rank test (Noether, JASA 82:645, 1987), statistics.md (S10),
-/// (S11). Assumes that the fraction of zero differences stays as observed. The result is infinite if the differences
-/// have no tendency, and at least the minimum number of pairs that can reach the risk. O(n log n). Throws BadInput for
-/// an invalid plan.
+/// Returns the number of pairs for the two-sided signed-rank test (Noether, JASA 82:645, 1987), equations (S10) and
+/// (S11) of statistics.md. The formula assumes that the fraction of zero differences stays as observed. The result is
+/// at least the minimum number of pairs that can be significant. It is infinite if the differences have no tendency.
+/// O(n log n). Throws BadInput for an invalid plan.
 double pairs_for_signed_rank(std::span<const double> differences, const Plan& plan);
 
-/// Returns the number of pairs for the paired test of failures (Connor, Biometrics 43:207, 1987), statistics.md (S12).
-/// Of `pairs` simulated runs, only the first method failed on `only_first`, and only the second method failed on
-/// `only_second`.
+/// Returns the number of pairs for the paired test of failures (Connor, Biometrics 43:207, 1987), equation (S12) of
+/// statistics.md. Of `pairs` simulated runs, only the first method failed on `only_first`, and only the second method
+/// failed on `only_second`.
 double pairs_for_failures(std::int64_t only_first, std::int64_t only_second, std::int64_t pairs, const Plan& plan);
 
 }  // namespace tumble::scenarios

@@ -14,7 +14,7 @@ namespace tumble::scenarios {
 double spent_by(double risk, double share) {
   if (!(share > 0.0)) return 0.0;
   const boost::math::normal normal;
-  // statistics.md (S13)
+  // Spent part of the risk, equation (S13) of statistics.md.
   return 2.0 * cdf(complement(normal, quantile(complement(normal, 0.25 * risk)) / std::sqrt(share)));
 }
 
@@ -41,7 +41,8 @@ SequentialSignTest::Verdict SequentialSignTest::look(double share, std::int64_t 
   return verdict_;
 }
 
-/// statistics.md (S14): each pair adds one positive sign or no sign.
+/// Updates the distribution of the sign count, equation (S14) of statistics.md. Each pair adds one positive sign or no
+/// sign.
 void SequentialSignTest::toss(std::int64_t pairs) {
   for (std::int64_t k = 0; k < pairs; ++k) {
     going_on_.push_back(0.0);
@@ -51,10 +52,11 @@ void SequentialSignTest::toss(std::int64_t pairs) {
   pairs_ += pairs;
 }
 
-/// statistics.md (S15). The distribution is symmetric, so both sides stop equally.
+/// Removes the outcomes beyond the thresholds, equation (S15) of statistics.md. The distribution is symmetric, so both
+/// sides have equal thresholds.
 void SequentialSignTest::stop_beyond(double allowed) {
   std::size_t stopped = 0;
-  // never stop both sides at one number
+  // At least one number stays between the two thresholds.
   while (2 * stopped + 1 < going_on_.size()) {
     const double more = going_on_[going_on_.size() - 1 - stopped];
     if (spent_a_side_ + more > allowed) break;

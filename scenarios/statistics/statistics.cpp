@@ -48,7 +48,7 @@ double quantile(std::span<const double> values, double share) {
     throw BadInput(fmt::format("quantile: share is {}, must be within [0, 1]", std::to_string(share)));
   std::vector<double> numbers = numbers_of(values);
   if (numbers.empty()) return kNaN;
-  // Two ranks are sufficient; a full sort is avoided, because reports compute quantiles of millions of values.
+  // The function sorts only two ranks, because reports compute quantiles of millions of values.
   const RankPlace place(share, numbers.size());
   const auto below = numbers.begin() + static_cast<std::ptrdiff_t>(place.below);
   std::nth_element(numbers.begin(), below, numbers.end());
@@ -70,8 +70,8 @@ bool quantile_of(std::span<const double> values, double share, double& value) {
 
 namespace {
 
-/// Returns the largest rank r (from 1) with P(fewer than r of n values are below the median) <= kTail; 0 if there is no
-/// such rank.
+/// Returns the largest rank r, counted from 1, for which P(fewer than r of n values are below the median) <= kTail.
+/// Returns 0 if there is no such rank.
 std::size_t tail_rank(std::size_t values) {
   const auto n = static_cast<double>(values);
   const auto exponent = [&](std::size_t k) {
@@ -104,7 +104,7 @@ Interval median_interval(std::span<const double> values) {
   std::vector<double> numbers = numbers_of(values);
   Interval interval{kNaN, -kInfinity, kInfinity};
   if (numbers.empty()) return interval;
-  // four ranks are sufficient, so a full sort is avoided
+  // The function sorts only four ranks to avoid a full sort.
   const RankPlace middle(0.5, numbers.size());
   const auto begin = numbers.begin(), below = begin + static_cast<std::ptrdiff_t>(middle.below);
   std::nth_element(begin, below, numbers.end());
@@ -133,7 +133,7 @@ Interval share_interval(std::int64_t count, std::int64_t total) {
   }
   const auto k = static_cast<double>(count);
   const auto n = static_cast<double>(total);
-  // statistics.md (S24)
+  // Clopper-Pearson interval, equation (S24) of statistics.md.
   return {k / n, count == 0 ? 0.0 : boost::math::ibeta_inv(k, n - k + 1.0, kTail),
           count == total ? 1.0 : boost::math::ibetac_inv(k + 1.0, n - k, kTail)};
 }

@@ -8,21 +8,21 @@
 
 namespace tumble::scenarios {
 
-/// An estimate with its 95 % interval.
+/// A statistic and its 95 % interval.
 struct Interval {
   double value, low, high;
 };
 
-/// Returns the sample quantile (Hyndman and Fan type 7) of the values that are not NaN, or NaN if there are no such
-/// values. Infinite values are ranked like finite values, so that failures count as worst and a quantile may be
-/// infinite. `share` is the probability of the quantile, in [0, 1].
+/// Returns the sample quantile (Hyndman and Fan type 7) of the values that are not NaN, or NaN if all values are NaN.
+/// Infinite values are ranked like finite values, so that failures count as worst and a quantile may be infinite.
+/// `share` is the probability of the quantile, in [0, 1].
 double quantile(std::span<const double> values, double share);
-/// Returns the quantile of all values; any value that is not finite gives NaN. Returns empty if there are no values.
+/// Returns the quantile of all values. Any value that is not finite gives NaN. Returns empty if there are no values.
 std::optional<double> quantile_of_all(std::span<const double> values, double share);
-/// Writes the quantile to `value`. Returns false, with `value` unchanged, if there are no values.
+/// Writes the quantile to `value`. If there are no values, returns false and leaves `value` unchanged.
 bool quantile_of(std::span<const double> values, double share, double& value);
 
-/// Returns the median of one number of each row, as `quantile` computes it.
+/// Returns the median of one member over all rows, as `quantile` computes it.
 template <class Row>
 double median_of(const std::vector<Row>& rows, double Row::*member) {
   std::vector<double> values;
@@ -30,15 +30,15 @@ double median_of(const std::vector<Row>& rows, double Row::*member) {
   return quantile(values, 0.5);
 }
 
-/// Returns the median with its distribution-free interval from order statistics (binomial); the ends are infinite if
+/// Returns the median with its distribution-free interval from order statistics (binomial). The ends are infinite if
 /// there are too few values.
 Interval median_interval(std::span<const double> values);
 
 /// Returns the fraction of successes with its exact interval (Clopper and Pearson).
 Interval share_interval(std::int64_t count, std::int64_t total);
 
-/// Returns the values plus one `worst` for each failed run; all statistics of a metric use the extended list. Adds
-/// nothing if `worst` is NaN (scenarios/scoring/metric.hpp, `worst_value`).
+/// Returns the values plus one `worst` for each failed run. All statistics of a metric use the extended list. If
+/// `worst` is NaN, nothing is added (scenarios/scoring/metric.hpp, `worst_value`).
 std::vector<double> with_failures(std::vector<double> values, std::size_t failed, double worst);
 
 }  // namespace tumble::scenarios

@@ -41,7 +41,7 @@ void require_sound(const Summary& summary, const ComparisonOptions& options) {
   require_held(summary, methods, options.metrics);
 }
 
-/// Returns the simulated runs on which both methods have a value or failed. If there is no worst value, failed runs are
+/// Returns the simulated runs on which each method has a value or failed. If there is no worst value, failed runs are
 /// omitted.
 std::vector<ValuePair> pairs_of(const MetricSummary& own, const MetricSummary& other, double worst) {
   const std::vector<RankedValue> first = ranked_values(own, worst), second = ranked_values(other, worst);
@@ -59,7 +59,7 @@ double less(double own, double other) {
   return own == other ? 0.0 : own - other;
 }
 
-/// Returns how much worse each pair is than the margin allows.
+/// Returns, for each pair, how much worse the method is than the margin allows.
 std::vector<double> beyond(const Margin& margin, const MetricInfo& info, const std::vector<ValuePair>& pairs) {
   std::vector<double> out;
   for (const ValuePair& pair : pairs) out.push_back(worse_by(info, pair.own, pair.other, margin));
@@ -131,14 +131,14 @@ class Comparing {
       for (double& each : relieved) each = -each;
       row.not_inferior_chance = signed_rank_chance(relieved);
     }
-    // side of the rank sum, as in the test
+    // The side of the rank sum is that of the signed-rank test.
     tends_.push_back(!contested ? 0.0 : signed_rank_chance(worse_by) < 0.5 ? 1.0 : -1.0);
     differences_.push_back(std::move(contested ? worse_by : raw));
     out_.metrics.push_back(std::move(row));
   }
 
-  /// Compares failures on the simulated runs of both methods. `seeds` contains all seeds, `failed` the seeds of failed
-  /// runs, both ascending.
+  /// Compares failures on the simulated runs of both methods. `seeds` contains all seeds, and `failed` the seeds of
+  /// failed runs. Both lists are ascending.
   void add_failures(const Contest& contest, const std::string& what, const std::vector<std::uint64_t>& seeds,
                     const std::vector<std::uint64_t>& failed, const std::vector<std::uint64_t>& other_seeds,
                     const std::vector<std::uint64_t>& other_failed) {
@@ -184,8 +184,8 @@ class Comparing {
     return found->second;
   }
 
-  /// Returns the plan of one test in a table, with the risk divided by the number of tests (Holm's bound for the
-  /// smallest p-value).
+  /// Returns the plan of one test in a table. The risk is divided by the number of tests (Holm's bound for the smallest
+  /// p-value).
   Plan plan(std::size_t tests) const {
     return {options_.risk / static_cast<double>(std::max<std::size_t>(tests, 1)), options_.power};
   }

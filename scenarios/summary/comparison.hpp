@@ -12,15 +12,16 @@
 /// Compares two methods on the same simulated runs: size and significance of the difference (docs/maths/statistics.md).
 namespace tumble::scenarios {
 
-/// Non-inferiority margin, in the metric's unit or as a fraction of the other method's value on the same simulated run.
+/// Largest accepted deficit of a method (non-inferiority margin). The margin is in the metric's unit, or a fraction of
+/// the reference method's value on the same simulated run.
 struct Margin {
   double value = 0.0;
   bool relative = false;
 };
 
-/// Returns how much worse `own` is than `other` on a simulated run, minus the margin; the result is negative if `own`
-/// is not worse by more than the margin. A negative margin requires an improvement. The result is infinite if only
-/// `own` belongs to a failed run, and 0 if both runs failed.
+/// Returns how much worse `own` is than `other` on a simulated run, minus the margin. The result is negative if `own`
+/// is worse by less than the margin. A negative margin requires an improvement. The result is infinite if only `own`
+/// belongs to a failed run, and 0 if both runs failed.
 double worse_by(const MetricInfo& info, double own, double other, const Margin& allowed);
 
 struct ComparisonOptions {
@@ -35,41 +36,38 @@ struct ComparisonOptions {
 enum class Finding { undecided, better, worse };
 const char* to_string(Finding finding);
 
-/// The two methods to compare.
+/// The scenario, the kind and the two methods of a comparison.
 struct Contest {
   std::string scenario;
   Kind kind = Kind::rate;
   std::string method, against;
 };
 
-/// Returns true if both contests compare within one section with one reference method.
+/// Returns true if both comparisons have one scenario, one kind and one reference method.
 inline bool one_section(const Contest& a, const Contest& b) {
   return a.scenario == b.scenario && a.kind == b.kind && a.against == b.against;
 }
 
 /// Comparison of one metric over the simulated runs on which both methods have a value. Failed runs get the worst value
-/// (`worst_value`); if both runs failed or are equal, neither method is better.
+/// (`worst_value`). If both runs failed or are equal, neither method is better.
 struct MetricComparison {
   Contest contest;
   std::string metric;
   std::int64_t pairs = 0, better = 0, worse = 0;
   double median = 0.0, against_median = 0.0;
-  /// Median of the paired differences, method minus reference, with its BCa interval. For a metric with a target,
-  /// differences are those of the distances from the target (`how_bad`).
+  /// Median of the paired differences, method minus reference, with its BCa interval. For a metric with a target, the
+  /// differences are between distances from the target (`how_bad`).
   Interval difference{};
   double sign_chance = 1.0, rank_chance = 1.0;  ///< two-sided p-values
   double corrected = 1.0;                       ///< `rank_chance` corrected by Holm over all metrics of the comparison
   Finding finding = Finding::undecided;         ///< from `corrected`
-  double not_inferior_chance = 1.0;             ///< one-sided p-value for being worse than the margin; NaN without a
-                                                ///< margin
+  double not_inferior_chance = 1.0;             ///< one-sided p-value for being worse than the margin
   double not_inferior_corrected = 1.0;          ///< corrected by Holm
-  bool not_inferior = false;                    ///< `not_inferior_corrected` is below the risk: not worse than the
-                                                ///< margin
-  double pairs_needed = 0.0;  ///< total number of pairs for the risk divided by the number of tests; infinite:
-                              ///< impossible
+  bool not_inferior = false;                    ///< `not_inferior_corrected` is below the risk
+  double pairs_needed = 0.0;  ///< number of pairs for the risk divided by the number of tests; may be infinite
 };
 
-/// Comparison of failures: simulated runs on which the status is not ok or a verdict fails. A failed run counts as a
+/// Comparison of failures. A simulated run fails if its status is not ok or a verdict fails. A failed run counts as a
 /// failed verdict.
 struct FailureComparison {
   Contest contest;
@@ -87,8 +85,8 @@ struct Comparison {
 };
 
 /// Compares the methods in the order of the summary's sections. Costs and other unranked metrics are compared only if
-/// the caller names them, and give no finding. Throws BadInput for methods or metrics that the results lack (suggests
-/// the nearest name), and for a risk, power or margin out of range.
+/// the caller names them, and give no finding. Throws BadInput for methods or metrics that the results do not contain;
+/// the message suggests the nearest name. Throws BadInput also for a risk, power or margin out of range.
 Comparison compare(const Summary& summary, const ComparisonOptions& options);
 
 }  // namespace tumble::scenarios

@@ -21,11 +21,11 @@ namespace {
 
 constexpr std::size_t kDrawsPerBin = 8;
 constexpr std::size_t kBinsMax = 6, kBinsMin = 3;
-/// Measures by which whole simulated runs are binned (scenarios/sweep/motion_values.hpp).
+/// Measures by which whole simulated runs are sorted into bins (scenarios/sweep/motion_values.hpp).
 constexpr std::array kDrawMeasures = {"motion_clipped_share", "motion_clip_depth_max_rad_s",
                                       "motion_clip_length_max_s"};
 
-/// One outcome with its scores for curves, and whether the run failed.
+/// One outcome with its scores for curves and a flag for failure.
 struct Run {
   std::uint64_t seed = 0;
   bool ok = false, failed = false;
@@ -35,7 +35,7 @@ struct Run {
     std::size_t place = 0;
     return find(metric, place);
   }
-  /// Finds a score; tries index `place` first, which other runs of the method used, and updates `place`.
+  /// Finds a score. Tries index `place` first, at which the method's previous run had this score, and updates `place`.
   const double* find(const std::string* metric, std::size_t& place) const {
     if (place < scores.size() && scores[place].metric == metric) return &scores[place].value;
     const auto found = std::find_if(scores.begin(), scores.end(), [&](const auto& s) { return s.metric == metric; });
@@ -110,8 +110,8 @@ PickedRuns all_of(const Runs& runs) {
   return all;
 }
 
-/// Returns true if any method has a value of the metric on that simulated run. If no method has a value, failures on
-/// the run are ignored.
+/// Returns true if any method has a value of the metric on the simulated run `seed`. If no method has a value, failures
+/// on the run are ignored.
 bool is_scored(const PickedRuns& runs, const std::string* metric, std::uint64_t seed) {
   return std::any_of(runs.begin(), runs.end(), [&](const auto& entry) {
     const auto& own = entry.second;
@@ -121,7 +121,7 @@ bool is_scored(const PickedRuns& runs, const std::string* metric, std::uint64_t 
   });
 }
 
-/// Returns false if no run has a value of the metric.
+/// Computes one point of a curve. Returns false if no run has a value of the metric.
 bool point_of(const std::vector<const Run*>& own, const PickedRuns& runs, const std::string* metric,
               CurvePoint& point) {
   const MetricInfo& info = metric_info(*metric);
@@ -164,7 +164,7 @@ void keep(Curve curve, std::vector<Curve>& all) {
   if (!curve.lines.empty()) all.push_back(std::move(curve));
 }
 
-/// Returns the name as stored by the reader; adds the name if no score has it.
+/// Returns the stored copy of a metric name. Adds the name if no score has it.
 const std::string* name_of(const std::string& metric, Names& names) {
   return &*names.insert(metric).first;
 }
@@ -192,7 +192,7 @@ std::string bin_label(const BinnedMetric& bin, double factor) {
   return fmt::format("{:g} – {:g}", bin.low * factor, bin.high * factor);
 }
 
-/// Bins by axis and metric, ascending, each with its full metric name.
+/// Bins by axis and metric, ascending. Each bin has its full metric name.
 using Bins =
     std::map<std::pair<std::string, std::string>, std::map<double, std::pair<BinnedMetric, const std::string*>>>;
 
@@ -236,7 +236,7 @@ void add_sample_curves(const RunsBySetting& plain, Names& names, std::vector<Cur
   }
 }
 
-/// Sorts simulated runs into bins of equal counts by a measure; each bin has the median of the measure and ascending
+/// Sorts simulated runs into bins of equal counts by a measure. Each bin has the median of the measure and ascending
 /// seeds.
 std::vector<std::pair<double, std::vector<std::uint64_t>>> bins_of_draws(std::span<const DrawValues> draws,
                                                                          const std::string& scenario,
@@ -245,7 +245,7 @@ std::vector<std::pair<double, std::vector<std::uint64_t>>> bins_of_draws(std::sp
   for (const DrawValues& draw : draws) {
     if (draw.scenario != scenario) continue;
     for (const Score& score : draw.values) {
-      // runs without clipping have no position on a clipping axis
+      // Runs without clipping have no position on a clipping axis.
       if (score.metric == measure && score.value > 0.0) ranked.emplace_back(score.value, draw.seed);
     }
   }

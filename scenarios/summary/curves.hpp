@@ -14,14 +14,14 @@
 namespace tumble::scenarios {
 
 /// One method at one x value of a curve, summarised over the simulated runs. Failed outcomes rank worst, so quantiles
-/// may be infinite; quantiles are NaN if no run has a value.
+/// may be infinite. Quantiles are NaN if no run has a value.
 struct CurvePoint {
   double x = 0.0;
   std::string label;  ///< label of a bin: "0.5 – 1"; empty for a set number
   std::int64_t draws = 0, failed = 0;
   Interval failed_share{};  ///< Clopper and Pearson, 95 %
   double quantile_25 = 0.0, median = 0.0, quantile_75 = 0.0;
-  double worst_5 = 0.0;  ///< 95 % quantile; 5 % quantile where higher is better
+  double worst_5 = 0.0;  ///< 95 % quantile; 5 % quantile if higher is better
 };
 
 struct CurveLine {
@@ -42,13 +42,13 @@ struct Curve {
   std::vector<std::string> bins = {};
 };
 
-/// Returns every curve in the results. There is a curve for each varied number per scenario and headline metric, for
-/// each measure with binned metrics (scenarios/scoring/binned_metric.hpp), and for each clipping measure of the
-/// simulated runs, in at least three bins of equal counts. A run counts as failed if its status is not `ok` or its map
-/// failed. O(number of scores * log).
+/// Returns every curve in the results. Each scenario and headline metric has a curve for each varied number. Each
+/// measure with binned metrics (scenarios/scoring/binned_metric.hpp) has a curve. Each clipping measure of the
+/// simulated runs has a curve with at least three bins of equal counts. A run counts as failed if its status is not
+/// `ok` or its map failed. O(number of scores * log).
 std::vector<Curve> find_curves(const Results& results);
-/// Returns every curve, with the properties of the simulated runs supplied by the caller. Also computes `summary` in a
-/// single pass over the results.
+/// Returns every curve from the results and the motion values `draws`. Also computes `summary`, in a single pass over
+/// the results.
 std::vector<Curve> find_curves(const Results& results, std::span<const DrawValues> draws, Summary& summary);
 
 }  // namespace tumble::scenarios

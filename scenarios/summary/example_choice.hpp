@@ -9,7 +9,7 @@
 
 #include "scenarios/summary/summary.hpp"
 
-/// Chooses which simulated runs of a sweep to show as examples, from the results only.
+/// Chooses which simulated runs of a sweep are shown as examples, from the results only.
 namespace tumble::scenarios {
 
 /// A scenario of the sweep, in the suite's order.
@@ -24,12 +24,12 @@ struct ExampleDraw {
   auto operator<=>(const ExampleDraw&) const = default;
 };
 
-/// Finds the simulated run with the median headline score of the baseline in its scenario. Uses the first kind of
-/// method except attitude, and the first headline metric with a value. Returns false if there is no headline score.
+/// Finds the simulated run with the median headline score of the scenario's baseline. Uses the first kind of method
+/// except attitude, and the first headline metric with a value. Returns false if there is no headline score.
 bool typical_seed(const Summary& summary, const std::string& scenario, std::uint64_t& seed);
 
-/// Returns at most `count` typical simulated runs, in the order of the candidates: the first scenario of each robot,
-/// then the second scenario of each robot, and so on.
+/// Returns at most `count` typical simulated runs, in the order of the candidates. The first scenario of each robot
+/// comes first, then the second scenario of each robot, and so on.
 std::vector<ExampleDraw> choose_examples(const Summary& summary, std::span<const ExampleCandidate> candidates,
                                          std::size_t count);
 
@@ -39,7 +39,8 @@ struct FailedOn {
   std::size_t methods = 0;  ///< failed methods that need no truth
 };
 
-/// Returns every simulated run with a failed method, sorted by number of failures (descending), scenario and seed.
+/// Returns every simulated run with a failed method. The runs are sorted by number of failures (descending), scenario
+/// and seed.
 std::vector<FailedOn> rank_failures(const Summary& summary);
 
 /// Returns the first `count` failed runs among the scenarios of the candidates. Runs on which only oracles failed are
@@ -50,7 +51,8 @@ std::vector<ExampleDraw> choose_failures(const Summary& summary, std::span<const
 /// Returns the scored rows of a simulated run, without points of curves.
 std::vector<Outcome> rows_to_show(const Results& results, const ExampleDraw& draw);
 
-/// Returns a digest of the shown rows and their build. An example with another digest belongs to other results.
+/// Returns a digest of the shown rows and their build. If an example has a different digest, it belongs to other
+/// results.
 std::string digest_of_rows(const Results& results, const ExampleDraw& draw);
 
 }  // namespace tumble::scenarios

@@ -12,7 +12,8 @@
 /// Finds which true input improves a method most, over many simulated runs (docs/maths/statistics.md).
 namespace tumble::scenarios {
 
-/// Effect of replacing one input by its truth, over the simulated runs where the replacement changed the input.
+/// Effect of replacing one input by its truth. Only simulated runs are counted in which the replacement changed the
+/// input.
 struct InputWorth {
   std::string scenario;  ///< empty: all scenarios together
   std::string input, doc;
@@ -20,7 +21,7 @@ struct InputWorth {
   std::int64_t failed = 0;             ///< failures with the original input
   std::int64_t cured = 0;              ///< failures that the true input removes
   std::int64_t broken = 0;             ///< failures only with the true input
-  Interval cured_share{};              ///< share of `failed` (Clopper and Pearson, 95 %); NaN without any
+  Interval cured_share{};              ///< fraction of `failed` (Clopper and Pearson, 95 %); NaN if `failed` is 0
   std::int64_t better = 0, worse = 0;  ///< draws, by the metric
   /// Median decrease of the metric's badness (`how_bad`) with its BCa interval. Runs that are not ok rank worst. The
   /// interval is NaN if no run has the metric.
@@ -29,8 +30,8 @@ struct InputWorth {
   double corrected = 1.0;  ///< corrected by Holm, over all rows
 };
 
-/// Evaluates each scenario, and all scenarios together if there are several. Sorted by the fraction of removed
-/// failures, then by p-value. Simulated runs without triage rows are omitted.
+/// Evaluates the inputs for each scenario, and for all scenarios together if there are several. The result is sorted by
+/// the fraction of removed failures, then by p-value. Simulated runs without triage rows are omitted.
 std::vector<InputWorth> worth_of_inputs(std::span<const DrawTriage> draws, const std::string& metric);
 
 }  // namespace tumble::scenarios

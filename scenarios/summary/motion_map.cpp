@@ -11,14 +11,14 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr std::size_t kCells = MotionMap::kCells;
-/// Margin of the grid around the simulated runs, in decades.
+/// Margin of the grid around the points of the simulated runs, in decades.
 constexpr double kMargin = 0.25;
 
 struct Decades {
   double rate, force;
 };
 
-/// One axis of the grid, in decades.
+/// One axis of the grid. Its numbers are in decades.
 struct GridAxis {
   double low = 0.0, step = 1.0;
   double width = 0.0;  ///< kernel width in cells
@@ -46,7 +46,8 @@ GridAxis axis_over(const std::vector<Decades>& points, double Decades::*member) 
   return axis;
 }
 
-/// Returns the distribution of a cell's runs over its grid row; the part beyond the ends is redistributed.
+/// Returns the weights that distribute the runs of one cell over its grid row. Weight beyond the ends of the row is
+/// redistributed.
 std::vector<double> kernel(std::size_t from, double width) {
   std::vector<double> weights(kCells);
   double sum = 0.0;
@@ -77,7 +78,7 @@ std::vector<double> smoothed(const std::vector<double>& counts, const GridAxis& 
   return out;
 }
 
-/// Keeps every n-th point, so that at most `kPointsMax` points remain.
+/// Returns every n-th point, so that at most `kPointsMax` points remain.
 std::vector<MotionPoint> thinned(const std::vector<MotionPoint>& points) {
   const std::size_t stride = (points.size() + MotionMap::kPointsMax - 1) / MotionMap::kPointsMax;
   std::vector<MotionPoint> out;
@@ -85,8 +86,8 @@ std::vector<MotionPoint> thinned(const std::vector<MotionPoint>& points) {
   return out;
 }
 
-/// The two publications of the rig are by Deschênes and others; the earlier publication reports rates and forces. The
-/// later publication reports forces in its abstract; the other reported number is an angular acceleration.
+/// Returns the maxima from the two publications on the rig by Deschênes and others. The earlier publication reports
+/// rates and forces. The later publication reports forces in its abstract, and an angular acceleration.
 std::vector<PublishedExtreme> published() {
   return {{"rig down a hill, 32 tumbles", "Deschênes and others, ICRA 2024: 18.6 rad/s, 157.8 m/s² (a device of 16 g)",
            18.6, 157.8},

@@ -8,7 +8,7 @@
 
 #include "scenarios/sweep/outcome.hpp"
 
-/// Distribution of a sweep's simulated runs over maximum rate and maximum specific force.
+/// Computes the distribution of a sweep's simulated runs over maximum rate and maximum specific force.
 namespace tumble::scenarios {
 
 /// Maximum true rate of the body, and maximum unclipped specific force of the primary IMU, in one simulated run.
@@ -19,11 +19,11 @@ struct MotionPoint {
 /// The simulated runs of one scenario.
 struct MotionCloud {
   std::string scenario;
-  std::size_t draws = 0;            ///< draws with both numbers above 0
+  std::size_t draws = 0;            ///< runs with both numbers above 0
   std::vector<MotionPoint> points;  ///< at most `kPointsMax` of them, evenly spaced in draw order
 };
 
-/// Maxima reported by a published campaign; NaN: not reported.
+/// Maxima reported by a published campaign. NaN means not reported.
 struct PublishedExtreme {
   std::string campaign, source;
   double rate_rad_s, force_m_s2;
@@ -36,13 +36,14 @@ struct MotionMap {
   std::vector<MotionCloud> clouds;         ///< scenarios in the order of the draws
   std::vector<double> rate_rad_s;          ///< centres of the columns, ascending; empty without draws
   std::vector<double> force_m_s2;          ///< centres of the rows, ascending
-  std::vector<double> share;               ///< share of the draws per cell, row by row; their sum is 1
+  std::vector<double> share;               ///< fraction of the runs per cell, row by row; their sum is 1
   std::vector<PublishedExtreme> extremes;  ///< published values for the plot
 };
 
-/// Counts simulated runs in cells, then smooths along both axes by a Gaussian of Scott's width in logarithms
-/// (Multivariate Density Estimation, 1992, section 6.3: sigma n^(-1/6)), at least half a cell. The part of a kernel
-/// beyond the grid is redistributed. The two maxima of a run need not occur at the same time. O(draws + cells^(3/2)).
+/// Counts simulated runs in cells, then smooths the counts along both axes by a Gaussian of Scott's width in
+/// logarithms, but at least half a cell. Scott's width is sigma n^(-1/6) (Multivariate Density Estimation, 1992,
+/// section 6.3). The part of a kernel beyond the grid is redistributed. The two maxima of a run need not occur at the
+/// same time. O(draws + cells^(3/2)).
 MotionMap motion_map(std::span<const DrawValues> draws);
 
 }  // namespace tumble::scenarios

@@ -14,12 +14,12 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Distribution that a quantity shows: values of the runs, the fraction of runs with a property, or all clipped samples
-/// pooled.
+/// States which values a quantity is computed from: one value per run, the fraction of runs with a property, or all
+/// clipped samples of all runs.
 enum class Over { draws, share_of_draws, clipped_samples };
 
-/// A quantity with published values: those of the campaign of the tumbling rig (32 tumbles down a hill, ICRA 2024) and
-/// the project's target. The plot shades `low` to `high`; equal values give a line.
+/// A quantity with published values: the campaign of the tumbling rig (32 tumbles down a hill, ICRA 2024) and the
+/// project's target. The plot shades the range from `low` to `high`; equal values give a line.
 struct Quantity {
   const char* metric;
   const char* name;
@@ -54,7 +54,7 @@ constexpr std::array kQuantities = {
 /// ratio estimator of a cluster sample (Cochran, Sampling Techniques, 1977, section 9A.2), because samples within a run
 /// are correlated.
 Interval pooled(std::span<const DrawValues* const> draws, const std::string& metric) {
-  std::vector<std::pair<double, double>> weighted;  // number of samples, share of them
+  std::vector<std::pair<double, double>> weighted;  // number of samples, and fraction with the property
   double samples = 0.0, hits = 0.0, square = 0.0;
   for (const DrawValues* draw : draws) {
     const double weight = value_of(draw->values, "motion_clipped_samples"), share = value_of(draw->values, metric);

@@ -11,30 +11,30 @@
 /// Compares simulated motions with the published campaign of the tumbling rig.
 namespace tumble::scenarios {
 
-/// One quantity of one scenario over its simulated runs; runs without a value are omitted.
+/// One quantity of one scenario over its simulated runs. Runs without a value are omitted.
 struct Spread {
   std::string scenario;
   std::string metric;    ///< "motion_peak_rate_rad_s"
   std::string quantity;  ///< "largest rate"
   std::string unit;
   std::string published;  ///< text about the published value; empty if none
-  /// Published range in `unit`; equal limits mean one number, NaN means no published value.
+  /// Limits of the published range in `unit`. Equal limits mean one number; NaN means no published value.
   double published_low = std::numeric_limits<double>::quiet_NaN();
   double published_high = std::numeric_limits<double>::quiet_NaN();
   double factor = 1.0;         ///< from SI to `unit`
-  bool of_draws = true;        ///< values per draw, not a share of draws or samples
+  bool of_draws = true;        ///< one value per run, not a fraction of runs or samples
   std::vector<double> values;  ///< SI
   double median = 0, quantile_05 = 0, quantile_95 = 0;
 };
 
-/// Source of the `published` values; follows the word "beside" in the text.
+/// Source of the `published` values. In the report, this text follows the word "beside".
 inline constexpr const char* kPublishedMotion =
     "the published campaign of the rig (32 tumbles down a hill) and the target of the scenario hill";
 
 /// Returns one spread per quantity and scenario, with scenarios in the order of the simulated runs. For a fraction of
 /// runs ("draws that clip the gyro"), the value of each run is 0 or 1. The median is then the fraction of runs, and the
-/// quantiles are the limits of its 95 % interval. A fraction of all clipped samples is computed alike, with each run
-/// weighted by its number of clipped samples.
+/// quantiles are the limits of its 95 % interval. For a fraction of all clipped samples, each run is weighted by its
+/// number of clipped samples.
 std::vector<Spread> motion_spreads(std::span<const DrawValues> draws);
 
 }  // namespace tumble::scenarios

@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kLooksMax = 1000;
 
-/// Returns the kind in a name, "rate" for "rate/tumble"; empty for a name without a kind.
+/// Returns the kind in a method's name, for example "rate" for "rate/tumble". Empty for a name without a kind.
 std::string kind_of(const std::string& name) {
   const std::size_t slash = name.find('/');
   return slash == std::string::npos ? std::string() : name.substr(0, slash);
@@ -37,11 +37,11 @@ void require_contest(const std::string& metric, const std::string& kind) {
                                to_string(own->kind), kind));
 }
 
-/// Values of both methods on one simulated run; a failed run has the worst value.
+/// Values of the two methods on one simulated run. A failed run has the worst value.
 struct AnswerPair {
   std::optional<double> own, other;
 };
-/// by scenario, then by seed
+/// Pairs of values by scenario, then by seed.
 using AnswerPairs = std::map<std::string, std::map<std::uint64_t, AnswerPair>, std::less<>>;
 
 std::optional<double> value_of(const OutcomeView& row, const Question& question) {
@@ -66,7 +66,7 @@ AnswerPairs pairs_of(const Results& results, const Question& question, std::uint
   return pairs;
 }
 
-/// Evaluates the analyses in order until one analysis gives an answer.
+/// Evaluates the interim analyses in order until one of them gives an answer.
 Answer answer_of(const std::string& scenario, const std::map<std::uint64_t, AnswerPair>& pairs,
                  const Question& question, std::uint64_t last_seed) {
   SequentialSignTest test(question.risk / static_cast<double>(question.scenarios.size()));

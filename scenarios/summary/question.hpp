@@ -9,53 +9,53 @@
 #include "scenarios/summary/comparison.hpp"
 #include "scenarios/sweep/results.hpp"
 
-/// Stops a sweep early: tests whether one method is better than another while simulated runs complete
+/// Stops a sweep early. While simulated runs complete, the functions test whether one method is better than another
 /// (docs/maths/statistics.md, "Stopping when the question is answered").
 namespace tumble::scenarios {
 
-/// Key of the note that stores the question, as `describe` writes it.
+/// Key of the note that stores the question as text, written by `describe`.
 inline constexpr const char* kQuestionNote = "until";
 
-/// Asks whether `method` is better than `against` in `metric` by more than the margin.
+/// The question whether `method` is better than `against` in `metric` by more than the margin.
 struct Question {
   std::string method, against;  ///< "rate/tumble"; both methods are of one kind
   std::string metric;
   Margin margin;       ///< 0: any improvement
-  double risk = 0.05;  ///< probability of a wrong answer over all scenarios and looks
-  int looks = 20;      ///< number of looks, after equal parts of the seeds
+  double risk = 0.05;  ///< probability of a wrong answer over all scenarios and analyses
+  int looks = 20;      ///< number of interim analyses, after equal parts of the seeds
   std::uint64_t first_seed = 1, last_seed = 1;
   std::vector<std::string> scenarios;
 
-  /// Returns the seeds after which the results are analysed, ascending; the last seed is that of the sweep.
+  /// Returns the seeds after which the results are analysed, ascending. The last of them is the sweep's last seed.
   std::vector<std::uint64_t> look_seeds() const;
-  /// Returns the question as one line; equal questions give equal lines.
+  /// Returns the question as one line of text. Equal questions give equal lines.
   std::string describe() const;
 };
 
-/// Answer for one scenario.
+/// Answer to the question for one scenario.
 struct Answer {
   std::string scenario;
-  Finding finding = Finding::undecided;  ///< better by more than the margin; with a margin, `worse` means not better by
-                                         ///< it
-  std::uint64_t seeds = 0;               ///< seeds at the look that answered, or at the last look
-  std::int64_t better = 0, worse = 0;    ///< pairs at that look; ties count in neither
+  Finding finding = Finding::undecided;  ///< with a margin, `worse` means not better by the margin
+  std::uint64_t seeds = 0;               ///< seeds at the analysis that answered, or at the last analysis
+  std::int64_t better = 0, worse = 0;    ///< pairs at that analysis; ties count in neither
   std::int64_t needed = 0;               ///< pairs of one sign that were needed for an answer
 };
 
-/// Throws BadInput for equal methods, methods of two kinds or without a full name, an unranked metric, a margin or risk
-/// out of range, or no analysis.
+/// Throws BadInput for equal methods, methods of two kinds, methods without a full name, or an unranked metric. Throws
+/// BadInput also for a margin or risk out of range, or if there is no interim analysis.
 void require_sound(const Question& question);
 
-/// Stores the question in the results. Throws BadInput if the results contain another question or any simulated runs,
-/// because the risk is valid only for a question asked in advance.
+/// Stores the question in the results. Throws BadInput if the results contain a different question or any simulated
+/// runs, because the risk is valid only for a question asked in advance.
 void claim(Results& results, const Question& question, const std::filesystem::path& database);
 
-/// Returns the answers of the analyses until `last_seed`; all simulated runs up to `last_seed` must be complete. The
-/// answers depend only on the results up to `last_seed`. The answers are in the order of the question's scenarios;
-/// failed runs rank worst.
+/// Returns the answers of the interim analyses up to `last_seed`, in the order of the question's scenarios. All
+/// simulated runs up to `last_seed` must be complete. The answers depend only on the results up to `last_seed`. Failed
+/// runs rank worst.
 std::vector<Answer> answers(const Results& results, const Question& question, std::uint64_t last_seed);
 
-/// Returns the finding in words, for example "not by the margin" if the method is not better by more than the margin.
+/// Returns the finding in words. For example, "not by the margin" means that the method is not better by more than the
+/// margin.
 const char* finding_text(const Answer& answer, const Question& question);
 
 bool all_answered(const std::vector<Answer>& answers);

@@ -51,7 +51,7 @@ Seeds of_kept(const Seeds& kept, const Seeds& seeds) {
   return out;
 }
 
-/// Copies only the values and failures of kept seeds, usually a small part.
+/// Copies only the values and failures of kept seeds, which are usually a small part.
 MethodSummary of_kept(const Seeds& kept, const MethodSummary& method) {
   MethodSummary out{method.method,
                     method.needs_truth,

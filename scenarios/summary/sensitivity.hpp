@@ -16,22 +16,22 @@
 /// Computes how a method's scores depend on each random number of its simulated runs (docs/maths/statistics.md).
 namespace tumble::scenarios {
 
-/// An influence with a larger corrected p-value is not significant.
+/// Largest corrected p-value of a significant influence.
 inline constexpr double kInfluenceRisk = 0.05;
 
-/// Random numbers of a scenario's simulated runs by name, each list sorted by seed.
+/// Random numbers of a scenario's simulated runs by name. Each list is sorted by seed.
 using NumbersOfDraws = std::map<std::string, std::vector<RankedValue>>;
 
 /// Returns the scenario's random numbers for the summary's seeds.
 NumbersOfDraws numbers_of_draws(const Summary& summary, const Scenario& scenario);
 /// Returns the motion values of the simulated runs of one scenario. Motion values are effects like the scores, and may
-/// have the same causes.
+/// share their causes.
 NumbersOfDraws numbers_of_motion(std::span<const DrawValues> draws, const std::string& scenario);
 
 /// Influence of one number on one score.
 struct Influence {
   std::string number;
-  Correlation correlation;  ///< with the badness: positive if larger numbers are worse
+  Correlation correlation;  ///< correlation with the badness; positive if larger numbers are worse
   FirstOrder first_order;   ///< of the ranks of the score
   double corrected = 1.0;   ///< p-value of both statistics, corrected by Holm over all numbers of the row
   /// Median of the score over the quarter of the runs with the lowest numbers, and over the quarter with the highest
@@ -39,11 +39,12 @@ struct Influence {
   double median_low = 0.0, median_high = 0.0;
   /// Partial dependence: median of the score, or fraction of failures, over classes of the number.
   std::vector<DependenceClass> dependence = {};
-  /// Returns the larger of the first-order index and the square of the rank correlation, for ranking.
+  /// Returns the larger of the first-order index and the square of the rank correlation. The influences are sorted by
+  /// this value.
   double strength() const;
 };
 
-/// Sensitivity of one metric of one method on one scenario; `metric` is "not ok" for failures.
+/// Sensitivity of one metric of one method on one scenario. For failures, `metric` is "not ok".
 struct Sensitivity {
   std::string scenario;
   Kind kind = Kind::rate;
@@ -57,12 +58,13 @@ struct SensitivityOptions {
   std::vector<std::string> metrics;  ///< empty: the headline metrics of each kind
 };
 
-/// Minimum number of simulated runs for a row of the table; the next constant is the minimum number of failures and of
-/// successes for "not ok". Below 24 simulated runs, only the rank correlation is used.
+/// The first constant is the minimum number of simulated runs for a row of the table. The second constant is the
+/// minimum number of failures, and of successes, for "not ok". Below 24 simulated runs, only the rank correlation is
+/// used.
 inline constexpr std::size_t kSensitivityDrawsMin = 12, kSensitivityFailuresMin = 5;
 
-/// Analyses the sections whose scenarios are in `numbers`, in the order of the sections; omits rows with too few
-/// simulated runs. Failed runs rank worst. Throws BadInput for a method or metric that the results lack.
+/// Analyses the sections whose scenarios are in `numbers`, in the order of the sections. Rows with too few simulated
+/// runs are omitted. Failed runs rank worst. Throws BadInput for a method or metric that the results do not contain.
 std::vector<Sensitivity> sensitivities(const Summary& summary, const std::map<std::string, NumbersOfDraws>& numbers,
                                        const SensitivityOptions& options);
 

@@ -17,7 +17,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns the position in the registry; unknown names come last.
+/// Returns the position of a metric in the registry. Unknown names come last.
 std::size_t metric_rank(const std::string& name) {
   const auto all = metrics();
   return static_cast<std::size_t>(
@@ -29,7 +29,8 @@ const MethodInfo* registered(Kind kind, const std::string& name) {
   return rank < methods().size() ? &methods()[rank].info : nullptr;
 }
 
-/// Returns the registered baseline if it is present, else the first registered method that does not need the truth.
+/// Returns the registered baseline if the results contain it, else the first registered method that does not need the
+/// truth.
 std::string choose_baseline(Kind kind, const std::vector<MethodSummary>& methods) {
   for (const MethodSummary& method : methods) {
     const MethodInfo* info = registered(kind, method.method);
@@ -41,7 +42,7 @@ std::string choose_baseline(Kind kind, const std::vector<MethodSummary>& methods
   return methods.front().method;
 }
 
-/// Compares run by run; if both methods failed, neither is better.
+/// Counts on how many runs one method is better than the baseline. If both methods failed, neither is better.
 Wins paired_wins(const MetricSummary& own, const MetricSummary& base, const MetricInfo& info) {
   Wins wins;
   if (info.sense == Sense::none) return wins;
@@ -68,7 +69,7 @@ void finish(const std::string& name, MetricSummary& metric) {
   metric.quantile_95 = quantile(ranked, info.sense == Sense::higher ? 0.05 : 0.95);
 }
 
-/// Adds each failed outcome to every metric for which another method has a value on the run.
+/// Adds each failed run to every metric for which another method has a value on this run.
 void place_failures(Section& section) {
   std::set<std::string> names;
   for (const MethodSummary& method : section.methods) {
@@ -103,7 +104,7 @@ void sort_by_seed(MetricSummary& metric) {
   }
 }
 
-/// Data of one method on one scenario, with the index of each metric by its name in the reader.
+/// Data of one method on one scenario. The index of each metric is found by the pointer to its name.
 struct Gathered {
   MethodSummary summary;
   std::unordered_map<const std::string*, MetricSummary*> places;
@@ -127,7 +128,7 @@ struct Gathered {
 
   MethodSummary sorted() {
     for (std::vector<std::uint64_t>* seeds : {&summary.seeds, &summary.not_ok_seeds}) {
-      // usually sorted already, and checking is much cheaper
+      // The seeds are usually already sorted, and a check is much cheaper than sorting.
       if (!std::is_sorted(seeds->begin(), seeds->end())) std::sort(seeds->begin(), seeds->end());
     }
     for (auto& [name, metric] : summary.metrics) sort_by_seed(metric);
@@ -135,7 +136,7 @@ struct Gathered {
   }
 };
 
-/// by scenario and kind, then by method
+/// Sections by scenario and kind, then by method.
 using GatheredSections = std::map<std::pair<std::string, Kind>, std::map<std::string, Gathered, std::less<>>>;
 
 GatheredSections gather(const Results& results, Names& names, const std::function<void(const OutcomeView&)>& beside) {

@@ -19,17 +19,17 @@ inline MetricStyle metric_style(const std::string& metric) {
   return style_of(metric_info(metric).unit);
 }
 
-/// Returns the position of a method in the registry; unknown names come last.
+/// Returns the position of a method in the registry. Unknown names come last.
 std::size_t method_rank(Kind kind, const std::string& name);
 
-/// Simulated runs on which one method was better than the baseline, among the runs on which both have values.
+/// Number of simulated runs on which one method was better than the baseline, among the runs on which both have values.
 struct Wins {
   std::int64_t count = 0, pairs = 0;
 };
 
 /// One metric of one method over all simulated runs of a scenario. Only `ok` outcomes have values. Failed outcomes rank
-/// worst in median, quantile and pairs, so the median is infinite once half of the runs fail. Simulated runs for which
-/// no method has a value do not count.
+/// worst in median, quantile and pairs, so the median is infinite if half of the runs fail. Simulated runs for which no
+/// method has a value do not count.
 struct MetricSummary {
   Interval centre{};  ///< median, or share for a verdict; with the 95 % interval
   double quantile_95 = 0.0;
@@ -54,7 +54,7 @@ struct MethodSummary {
 struct Section {
   std::string scenario;
   Kind kind = Kind::rate;
-  std::string baseline;  ///< reference for the paired comparisons: the method without a treatment of the problem
+  std::string baseline;                ///< reference for the paired comparisons: the method without a treatment
   std::vector<MethodSummary> methods;  ///< in the order of the registry
   std::vector<std::string> metrics;    ///< in the order of the registry, then by name
   const MethodSummary* find(const std::string& method) const;
@@ -66,7 +66,7 @@ struct Summary {
   std::map<std::string, std::int64_t> draws, rejected;  ///< per scenario
 };
 
-/// The value of one simulated run, or the worst value for a failure.
+/// The value of one simulated run. A failed run has the worst value.
 struct RankedValue {
   std::uint64_t seed;
   double value;
@@ -77,7 +77,8 @@ std::vector<RankedValue> ranked_values(const MetricSummary& metric, double worst
 
 /// Summarises the results in O(number of scores * log).
 Summary summarize(const Results& results);
-/// Summarises the results; also passes each unmodified outcome to `beside` while reading, to avoid a second pass.
+/// Summarises the results. Also passes each unmodified outcome to `beside` while reading, which avoids a second pass
+/// over the results.
 Summary summarize(const Results& results, Names& names, const std::function<void(const OutcomeView&)>& beside);
 
 }  // namespace tumble::scenarios

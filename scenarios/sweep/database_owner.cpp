@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
   throw BadInput(path.string() + ": cannot be locked: " + std::generic_category().message(error));
 }
 
-/// Resolves symbolic links, so that each file has exactly one lock.
+/// Returns the path of the lock file. Symbolic links are resolved, so that each database has exactly one lock.
 fs::path lock_of(const fs::path& database) {
   std::error_code error;
   fs::path place = fs::weakly_canonical(database, error);
@@ -85,7 +85,7 @@ DatabaseOwner::DatabaseOwner(const fs::path& database) : database_(database), lo
   if (fd_ < 0) fail_to_lock(lock_, EAGAIN);
   on_signal_.emplace(lock_, Unfinished::Kind::file);
   const std::string text = who_we_are() + "\n";
-  // the lock is valid even if the text of the lock file cannot be written
+  // The lock is valid even if writing the text of the lock file fails.
   if (ftruncate(fd_, 0) == 0 && pwrite(fd_, text.data(), text.size(), 0) < 0) return;
 }
 

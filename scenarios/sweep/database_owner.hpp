@@ -8,15 +8,15 @@
 
 namespace tumble::scenarios {
 
-/// Exclusive write access to a results database; a second sweep or merge reports the conflict and exits. The lock
-/// (flock) is on the file FILE.lock next to the database; the file names the owner. The system releases the lock when
-/// the process ends. A signal that ends the program removes the lock file (unfinished.hpp); the lock file of a killed
-/// program is reused. Readers need no lock. On a shared file system, the lock works between machines if the file system
-/// supports locks.
+/// Exclusive write access to a results database. A second sweep or merge reports the conflict and exits. The lock
+/// (flock) is on the file FILE.lock next to the database. The lock file names the owner. The system releases the lock
+/// when the process ends. A signal that ends the program removes the lock file (unfinished.hpp); the lock file of a
+/// killed program is reused. Readers need no lock. On a shared file system, the lock works between machines if the file
+/// system supports locks.
 class DatabaseOwner {
  public:
-  /// Throws BadInput if another process owns the database (states process, machine and time), or if the lock file
-  /// cannot be created.
+  /// Throws BadInput if another process owns the database, or if the lock file cannot be created. The message states
+  /// the owner's process, machine and start time.
   explicit DatabaseOwner(const std::filesystem::path& database);
   /// Releases the lock and removes the file.
   ~DatabaseOwner();

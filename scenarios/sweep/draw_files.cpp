@@ -24,7 +24,7 @@ std::filesystem::path DrawFiles::estimate(const MethodInfo& method) {
   return place;
 }
 
-/// Keeps the estimates that earlier sweeps with other methods stored, when the folder is replaced.
+/// When the folder is replaced, moves the estimates that earlier sweeps with other methods stored into the new folder.
 void DrawFiles::take_over(const sim::Sensors& sensors) const {
   const std::filesystem::path theirs = keeping_.folder / "estimates", own = folder_->path() / "estimates";
   if (!std::filesystem::exists(theirs)) return;

@@ -11,10 +11,10 @@
 #include "scenarios/sweep/keep.hpp"
 #include "scenarios/sweep/unfinished_folder.hpp"
 
-/// Files that the process of a simulated run stores on disk.
+/// Writes the files that the process of a simulated run stores on disk.
 namespace tumble::scenarios {
 
-/// File with the command that reproduces a kept run.
+/// Name of the file with the command that reproduces a kept run.
 inline constexpr const char* kDrawCommand = "command";
 
 /// States whether and where the files of a simulated run are kept.
@@ -22,10 +22,9 @@ struct Keeping {
   enum class When { never, if_failed, always };
   When when = When::never;
   std::filesystem::path folder;  ///< FOLDER/SCENARIO/SEED
-  std::string command;           ///< command that reproduces the draw
+  std::string command;           ///< command that reproduces the run
   RecordingInfo versions;        ///< versions of the program and the engine, for the recording's metadata
-  bool lidars = false;           ///< whether any method of the draw reads lidars, including methods not run in this
-                                 ///< task
+  bool lidars = false;           ///< any method of the run reads lidars, in this or another task
 };
 
 /// Writes the files of a simulated run that is kept. A write error does not change the outcomes of the run.
@@ -33,11 +32,10 @@ class DrawFiles {
  public:
   explicit DrawFiles(const Keeping& keeping);
 
-  /// Returns where a method must write its estimate, or an empty path if the estimate is not needed.
+  /// Returns the folder in which a method must write its estimate, or an empty path if the estimate is not needed.
   std::filesystem::path estimate(const MethodInfo& method);
-  /// Writes the recording and moves everything to its final folder, or removes everything: after `miss`, or if a file
-  /// cannot be written. Existing estimates of other
-  /// methods from equal sensor data remain.
+  /// Writes the recording and moves all files to their final folder. After `miss`, or if a file cannot be written,
+  /// removes all files instead. Existing estimates of other methods from equal sensor data remain.
   void finish(const SimulatedDraw& draw, bool failed);
   /// Records that an estimate could not be written.
   void miss(const std::string& why) { trouble_ = why; }

@@ -46,7 +46,7 @@ double peak_mib() {
 }
 
 /// Writes an estimate. A write failure does not change the outcome; KeptDraws::holds detects the missing file. Returns
-/// the error in one line, or an empty text.
+/// the error in one line, or an empty text if there is no error.
 std::string leave_estimate(const Method& method, const SimulatedDraw& draw, const Estimate& estimate,
                            const std::filesystem::path& folder) {
   if (folder.empty()) return {};
@@ -66,7 +66,7 @@ void run_method_child(const Method& method, const SimulatedDraw& draw, const Sim
   const double before_mib = resident_mib();
   Outcome outcome;
   const Estimate estimate = run_method(method, draw, outcome);
-  // for an external command, the system counts memory from the fork on
+  // For an external command, the system counts memory from the fork on.
   const bool own = method.info.version.empty();
   if (own) outcome.scores.push_back({"estimate_peak_mib", std::max(0.0, peak_mib() - before_mib)});
   assess(method, scored, surface, estimate, outcome);
@@ -75,7 +75,7 @@ void run_method_child(const Method& method, const SimulatedDraw& draw, const Sim
   write_all(fd, to_line({outcome, {}}));
 }
 
-// Reads until the process closes its pipe; returns false at the deadline.
+// Reads until the process closes its pipe. Returns false at the deadline.
 bool read_until(Process& process, double deadline_s, std::string& buffer) {
   while (true) {
     const double left_s = deadline_s - now_s();
@@ -86,12 +86,14 @@ bool read_until(Process& process, double deadline_s, std::string& buffer) {
   }
 }
 
-/// Among built-in methods, only slam methods read lidars; external methods may read all data that their kind receives.
+/// Returns true if the method reads lidars. Among built-in methods, only slam methods read lidars. External methods may
+/// read all data that methods of their kind receive.
 bool reads_lidars(const MethodInfo& info) {
   return info.kind == Kind::slam || (info.kind != Kind::rate && !info.version.empty());
 }
 
-/// Methods of kind `rate` read no lidar. Kept recordings contain lidars if any method of the run reads lidars.
+/// Returns whether the task simulates lidars. Methods of kind `rate` read no lidar. Kept recordings contain lidars if
+/// any method of the run reads lidars.
 Lidars lidars_for(const DrawTask& task, bool recordings_unseen) {
   const bool kept = task.keeping.when != Keeping::When::never && task.keeping.lidars;
   const bool read =
@@ -102,7 +104,7 @@ Lidars lidars_for(const DrawTask& task, bool recordings_unseen) {
   return read ? Lidars::simulated : Lidars::left_out;
 }
 
-/// A simulated run whose sensor data a setting modified; empty if there is no setting.
+/// A simulated run whose sensor data a setting modified. Empty if there is no setting.
 struct Given {
   Setting setting;
   std::optional<SimulatedDraw> draw, scored;
@@ -133,12 +135,12 @@ void reject(const DrawTask& task, const std::exception& error, int fd) {
   write_all(fd, to_line({{}, RejectedDraw{task.name, task.seed, one_line(error.what()), task.setting}}));
 }
 
-/// Assigns `status` to each method run of a simulated run that could not be produced.
+/// Assigns `status` to each method of a simulated run that could not be produced.
 void give_up(const DrawTask& task, OutcomeStatus status, const std::string& message, int fd) {
   for (const Outcome& outcome : without_answer(task, status, message)) write_all(fd, to_line({outcome, {}}));
 }
 
-/// A simulated or recorded run, and the true surface for map scores if a method builds maps.
+/// A simulated or recorded run. The true surface for map scores is included if a method builds maps.
 struct MadeDraw {
   SimulatedDraw draw;
   std::optional<sim::Surface> surface;
@@ -163,7 +165,7 @@ DrawValues motion_of(const DrawTask& task, const sim::Recording& recording) {
   return values;
 }
 
-/// Simulates or reads the run and reports its motion values. On failure, returns null after the reason was reported.
+/// Simulates or reads the run and reports its motion values. On failure, reports the reason and returns null.
 std::unique_ptr<MadeDraw> made_draw(const DataRoot& data, const DrawTask& task, int fd, bool recordings_unseen) {
   try {
     std::unique_ptr<MadeDraw> made = make(data, task, recordings_unseen);
@@ -183,7 +185,7 @@ std::unique_ptr<MadeDraw> made_draw(const DataRoot& data, const DrawTask& task, 
   return nullptr;
 }
 
-/// Runs one method on the sensor data. `given` contains the modified sensor data of the previous method run, which are
+/// Runs one method on the sensor data. `given` contains the modified sensor data of the previous method, which are
 /// reused if the settings are equal.
 Outcome run_one(const DrawTask& task, const DrawTask::Run& run, const MadeDraw& made, double timeout_s, Given& given,
                 DrawFiles& files) {
@@ -257,7 +259,8 @@ std::vector<Outcome> without_answer(const DrawTask& task, OutcomeStatus status, 
 void run_draw(const DataRoot& data, const DrawTask& task, double timeout_s, int fd, bool recordings_unseen) {
   const std::unique_ptr<const MadeDraw> made = made_draw(data, task, fd, recordings_unseen);
   if (!made) return;
-  // Memory that the simulation freed is returned to the system; otherwise it would hide the method's memory use.
+  // Memory that the simulation freed is returned to the system. Otherwise, the freed memory would hide the method's
+  // memory use.
   malloc_trim(0);
   DrawFiles files(task.keeping);
   bool failed = false;

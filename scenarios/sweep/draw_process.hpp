@@ -27,21 +27,21 @@ struct DrawTask {
   Keeping keeping;  ///< only for plain settings
 };
 
-/// Longest wait for workers before checking deadlines.
+/// Longest wait for messages from workers before deadlines are checked.
 inline constexpr int kPollMs = 200;
-/// Time limit of a simulation, in multiples of the time limit of a method run.
+/// Time limit of a simulation, in multiples of the time limit of one method.
 inline constexpr double kSimulateTimeouts = 2.0;
 
-/// Returns the status of a method run whose process ended without a result.
+/// Returns the status of a method whose process ended without a result.
 OutcomeStatus ended_as(const Process::End& end);
 
-/// Returns one outcome per method run if the process of the simulated run gave no result.
+/// Returns one outcome per method if the process of the simulated run gave no result.
 std::vector<Outcome> without_answer(const DrawTask& task, OutcomeStatus status, const std::string& message);
 
 /// Simulates one scenario and seed, without lidars if no method reads them, and runs the methods. Writes results to
-/// `fd`, one message per line: an outcome as each method run ends, or a rejection if the simulation is impossible. The
-/// caller writes the final empty message. `recordings_unseen` has the meaning of SweepOptions::recordings_unseen. The
-/// function runs in a worker process.
+/// `fd`, one message per line. The message is an outcome after each method, or a rejection if the simulation is
+/// impossible. The caller writes the final empty message. `recordings_unseen` has the meaning of
+/// SweepOptions::recordings_unseen. The function runs in a worker process.
 void run_draw(const DataRoot& data, const DrawTask& task, double timeout_s, int fd, bool recordings_unseen = false);
 
 /// Runs one method in a separate process for at most `timeout_s` of wall time. Crashes, time-outs and exceptions become
@@ -49,8 +49,8 @@ void run_draw(const DataRoot& data, const DrawTask& task, double timeout_s, int 
 /// process.
 ///
 /// The estimate is scored against `scored`, which equals `draw` unless its sensor data were changed (triage). The
-/// estimate is written to `folder` (estimate_file.hpp) unless `folder` is empty; on failure, `not_kept` states the
-/// reason.
+/// estimate is written to `folder` (estimate_file.hpp) unless `folder` is empty. If writing fails, `not_kept` states
+/// the reason.
 Outcome run_isolated(const Method& method, const SimulatedDraw& draw, const SimulatedDraw& scored,
                      const sim::Surface* surface, double timeout_s, const std::filesystem::path& folder = {},
                      std::string* not_kept = nullptr);

@@ -12,7 +12,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns the next line without its newline; returns empty if the other end is closed.
+/// Returns the next line without its newline. Returns empty if the other end is closed.
 std::optional<std::string> next_line(int fd, std::string& buffer) {
   char chunk[8192];
   std::size_t newline;
@@ -27,7 +27,7 @@ std::optional<std::string> next_line(int fd, std::string& buffer) {
   return line;
 }
 
-/// Runs in the worker process: reads one line per task until an empty line.
+/// Runs in the worker process. Reads one line per task until an empty line.
 void serve(const WorkerTerms& terms, int tasks, int fd) {
   limit_memory(terms.memory_mib);
   if (!terms.temporary.empty()) setenv("TMPDIR", terms.temporary.c_str(), 1);
@@ -36,7 +36,8 @@ void serve(const WorkerTerms& terms, int tasks, int fd) {
     if (line->empty()) return;
     run_draw(terms.data, terms.plan.from_line(*line), terms.timeout_s, fd, terms.recordings_unseen);
     malloc_trim(0);  // An idle worker must not hold memory of its last draw.
-    // The last message is sent after all destructors, so that a process that dies earlier is assigned to this task.
+    // The last message is sent after all destructors. If the process dies before this message, its death is assigned to
+    // this task.
     write_all(fd, to_line({}));
   }
 }
@@ -77,7 +78,7 @@ void DrawWorker::take_up(const Message& message) {
              run.setting == message.outcome->setting;
     });
   } else if (message.rejected) {
-    draw_.runs.clear();  // they no longer expect an answer
+    draw_.runs.clear();  // these methods no longer expect a result
   } else if (message.is_last()) {
     busy_ = false;
   }

@@ -41,10 +41,10 @@ class DrawWorker {
   /// Returns true if the worker may execute another run.
   bool is_fresh() const { return !busy_ && !spoilt_ && served_ < kDrawsPerWorker; }
   int read_end() const { return process_.read_end(); }
-  /// Returns the current task without the method runs that already have results.
+  /// Returns the current task without the methods that already have results.
   const DrawTask& draw() const { return draw_; }
 
-  /// Appends new messages; after the last message of a run the worker is idle. Returns false if the process has ended.
+  /// Appends new messages. After the last message of a run, the worker is idle. Returns false if the process has ended.
   bool hear(std::vector<Message>& said);
   void kill() { process_.kill(); }
   /// Ends an idle worker and waits for the end of the process.

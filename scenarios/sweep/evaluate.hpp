@@ -11,40 +11,39 @@
 
 namespace tumble::scenarios {
 
-/// One simulated run or recording, shared by all its outcomes.
+/// One simulated run or recording, which all its outcomes share.
 struct SimulatedDraw {
   std::string scenario;
   std::uint64_t seed = 0;
-  std::optional<sim::BuiltSituation>
-      built;  ///< set for simulations; source of the recording, true surface and pictures
+  std::optional<sim::BuiltSituation> built;  ///< set for simulations; contains the true surface
   sim::Recording recording;
   std::string recording_digest;
   double simulate_cpu_s = 0;
   bool has_truth = true;  ///< recordings without truth are estimated but not scored
 };
 
-/// States whether the lidars are simulated. Lidars need much of the time, and methods of kind `rate` do not read
+/// States whether the lidars are simulated. The simulation of lidars is slow, and methods of kind `rate` do not read
 /// lidars.
 enum class Lidars { simulated, left_out };
 
 /// Draws the random numbers, builds the situation and simulates it, each once. Without lidars, motion and IMUs are
-/// bit-identical, but the digest differs. Throws BadInput, sim::InvalidSituation, sim::SimulationFailure.
+/// bit-identical, but the digest differs. Throws BadInput, sim::InvalidSituation or sim::SimulationFailure.
 SimulatedDraw simulate_draw(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, int threads,
                             Lidars lidars = Lidars::simulated);
 
 /// Returns the digest that the recording would have without its lidars.
 std::string digest_without_lidars(const sim::Recording& recording);
 
-/// Returns the properties of a scenario on which the choice of methods depends.
+/// Returns the properties of a scenario that determine which methods can run on it.
 Subject subject_of(const Scenario& scenario);
 
-/// Returns the methods that apply, in the order of `methods`.
+/// Returns the methods that can run on `subject`, in the order of `methods`.
 std::vector<MethodPointer> applicable(std::span<const MethodPointer> methods, const Subject& subject);
 
 /// Throws BadInput with the reason if a method does not apply to a scenario.
 void require_applies(const Method& method, const Scenario& scenario);
 
-/// Runs a method on the sensor data of `draw`. An exception or error status sets `outcome` to failed; otherwise
+/// Runs a method on the sensor data of `draw`. An exception or error status sets `outcome` to failed. Otherwise,
 /// `outcome` stays ok and can be scored. The first score is the estimate's CPU time.
 Estimate run_method(const Method& method, const SimulatedDraw& draw, Outcome& outcome);
 

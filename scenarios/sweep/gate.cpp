@@ -29,13 +29,13 @@ bool by_difference(const MetricInfo& info) {
   return info.compared == Compared::by_difference;
 }
 
-/// Returns the part of `difference` that is tolerated.
+/// Returns the largest tolerated value of `difference`.
 double margin_of(const MetricInfo& info, const GatePolicy& policy) {
   if (!by_difference(info)) return std::log1p(policy.margin);
   return info.unit == Unit::time_offset ? policy.time_margin_s : policy.share_margin;
 }
 
-/// Returns the change from `before` to `now` in the metric's comparison (ratio or difference).
+/// Returns the change from `before` to `now`. The change is a log ratio or a difference, as the metric states.
 double difference(const MetricInfo& info, double before, double now) {
   if (before == now) return 0.0;
   if (by_difference(info)) return now - before;
@@ -44,8 +44,8 @@ double difference(const MetricInfo& info, double before, double now) {
   return std::log(now / before);
 }
 
-/// Returns how bad a value is, for `GatePolicy::worst`: one minus the value of a fraction, the distance from the target
-/// of a signed value.
+/// Returns how bad a value is, for `GatePolicy::worst`. For a fraction, the badness is one minus the value. For a
+/// signed value, the badness is the distance from the target.
 double badness(const MetricInfo& info, double value) {
   if (!by_difference(info)) return value;
   return info.unit == Unit::share ? 1.0 - value : std::abs(value - info.target);
@@ -53,7 +53,7 @@ double badness(const MetricInfo& info, double value) {
 
 struct GatePair {
   std::uint64_t seed = 0;
-  double before = 0.0, now = 0.0;  ///< infinite (worst) if it was not ok
+  double before = 0.0, now = 0.0;  ///< infinite (worst) if the run was not ok
 };
 
 /// Pairs of accepted and new values of a metric. Runs without a value in both results are omitted; runs that lost their
@@ -75,7 +75,7 @@ GatePairs pairs_of(const GateRun& all, const MethodRun& before, const MethodRun&
     GatePair pair{all.seeds[k], value_at(before, info.name, k), value_at(now, info.name, k)};
     if (was_ok && std::isnan(pair.before)) continue;
     if (was_ok && is_ok && std::isnan(pair.now)) out.lost.push_back(pair.seed);
-    // runs that are not ok rank as worst, whatever their values
+    // Runs that are not ok rank as worst, regardless of their values.
     if (!was_ok) pair.before = worst_value(info);
     if (!is_ok) pair.now = worst_value(info);
     if (!std::isnan(pair.before) && !std::isnan(pair.now)) out.pairs.push_back(pair);
@@ -89,7 +89,7 @@ double chance_beyond(std::vector<double> differences, double margin) {
   return signed_rank_chance(differences);
 }
 
-/// Checks that no run is worse than the worst accepted run times the allowed factor; the fault names the run.
+/// Checks that no run is worse than the worst accepted run times the allowed factor. The fault names the failing run.
 void hold_worst_draw(const MetricInfo& info, const std::vector<GatePair>& pairs, const GatePolicy& policy,
                      GateResult& result) {
   if (pairs.empty()) return;
@@ -107,8 +107,8 @@ void hold_worst_draw(const MetricInfo& info, const std::vector<GatePair>& pairs,
                              three_digits(now.now), now.seed, three_digits(before.before));
 }
 
-/// Each metric counts as one test; two-sided metrics use twice the smaller p-value. Adds the shift and any fault to the
-/// result.
+/// Tests the median of a metric, and adds the shift and any fault to the result. Each metric counts as one test.
+/// Two-sided metrics use twice the smaller p-value.
 void hold_middle(const std::vector<GatePair>& pairs, const MetricInfo& info, const GatePolicy& policy,
                  std::size_t tests, GateResult& result) {
   result.draws = pairs.size();
@@ -150,7 +150,7 @@ GateResult hold_metric(const GatePairs& found, const MethodRun& before, const Me
   return result;
 }
 
-/// A verdict that is 1 counts as a failure; a verdict that was 0 must stay 0.
+/// Returns true if a verdict is 1. A verdict of 1 counts as a failure; a verdict that was 0 must stay 0.
 bool is_condemned(const MethodRun& run, const MetricInfo& verdict, std::size_t draw) {
   return value_at(run, verdict.name, draw) > 0.0;
 }
@@ -176,7 +176,7 @@ GateResult hold_outcomes(const GateRun& all, const MethodRun& before, const Meth
       fault = condemned(now);
     was += was_good ? 0 : 1;
     is += fault.empty() ? 0 : 1;
-    // a missing run is a fault even if the run failed in the accepted results
+    // A missing run is a fault even if the run failed in the accepted results.
     if (result.fault.empty() && !fault.empty() && (was_good || !now.status[k])) {
       result.fault = fault + seed;
       result.seed = all.seeds[k];
@@ -197,7 +197,7 @@ MethodRun without_outcomes(const MethodRun& like) {
   return none;
 }
 
-/// A metric of a method over all scenarios that have the metric.
+/// One metric of a method over all scenarios that have the metric.
 struct Pooled {
   Kind kind = Kind::rate;
   std::string method;

@@ -14,17 +14,22 @@
 
 /// The gate compares results on a suite's fixed seeds with accepted results, for each simulated run.
 ///
-/// A simulated run has equal sensor data in both results, so differences between seeds cancel in each pair. For each
-/// scenario and method of the accepted results, the gate makes these checks:
-/// - outcomes: a run that was ok must be ok again, and no verdict (`map_failed`) may change to 1;
-/// - presence: an ok outcome must still have every metric of the accepted outcome;
-/// - median of each gate metric (metric.hpp, `held_metrics`): the pairs must not shift for the worse by more than the
-///   margin. The difference of a pair is the logarithm of the ratio or the plain difference, as the metric states
-///   (`Compared`). The test is the exact signed-rank test (statistics/paired.hpp) of the differences minus the margin.
-///   Metrics with a target are checked on both sides, so a covariance that becomes too small also fails. If the new
-///   results are not worse, the probability that any test of the gate fails is at most `risk` (Bonferroni);
-/// - median of a metric over all scenarios of a method, which detects shifts too small for one scenario;
-/// - the worst run, which tests of the median miss: at most `worst` times the accepted worst value.
+/// A simulated run has equal sensor data in both results, so differences between seeds cancel in each pair. The gate
+/// makes the following checks for each scenario and method of the accepted results.
+///
+/// Outcomes: a run that was ok must be ok again, and no verdict (`map_failed`) may change to 1. Presence: an ok outcome
+/// must still have every metric of the accepted outcome.
+///
+/// Median of each gate metric (metric.hpp, `held_metrics`): the pairs must not shift for the worse by more than the
+/// margin. The difference of a pair is the logarithm of the ratio or the plain difference, as the metric states
+/// (`Compared`). The exact signed-rank test (statistics/paired.hpp) is applied to the differences minus the margin.
+/// Metrics with a target are checked on both sides, so a covariance that becomes too small also fails. If the new
+/// results are not worse, the probability that any test of the gate fails is at most `risk` (Bonferroni).
+///
+/// Median of a metric over all scenarios of a method: this test detects shifts that are too small for one scenario.
+///
+/// Worst run: its value may be at most `worst` times the accepted worst value. The tests of the median miss single
+/// runs.
 namespace tumble::scenarios {
 
 /// Results of one method, in the order of `GateRun::seeds`.
@@ -32,7 +37,7 @@ struct MethodRun {
   std::string scenario;
   Kind kind = Kind::rate;
   std::string method;
-  std::vector<std::optional<OutcomeStatus>> status;   ///< empty: no outcome for this draw
+  std::vector<std::optional<OutcomeStatus>> status;   ///< empty: no outcome for this run
   std::map<std::string, std::vector<double>> values;  ///< by gate metric; NaN: no value
 };
 
@@ -54,8 +59,8 @@ struct GatePolicy {
   double worst = 2.0;           ///< allowed factor on the accepted worst draw; at least 1
 };
 
-/// The accepted results of a suite: scenarios/gates/SUITE.yaml states the policy, and SUITE.csv contains the results.
-/// The two files are kept in git.
+/// The accepted results of a suite. The file scenarios/gates/SUITE.yaml states the policy, and SUITE.csv contains the
+/// results. Both files are kept in git.
 struct Gate {
   std::string suite;
   GatePolicy policy;
@@ -63,30 +68,30 @@ struct Gate {
 };
 
 std::vector<std::string> gate_names(const DataRoot& data);
-/// Loads the gate of a suite, or a file if `name` ends in ".yaml" (with its results in the ".csv" file of equal name).
+/// Loads the gate of a suite, or a file if `name` ends in ".yaml". The results are in the ".csv" file of equal name.
 /// `described` are external methods (external_method.hpp) that the gate may contain. Throws BadInput with file and line
-/// for an unknown gate (suggests the nearest name), another suite, or empty results. Also throws for an unknown key,
-/// kind, method, metric or status, a wrong row length, or a number out of bounds.
+/// for an unknown gate, another suite, or empty results; the message for an unknown gate suggests the nearest name.
+/// Throws BadInput also for an unknown key, kind, method, metric or status, a wrong row length, or a number out of
+/// bounds.
 Gate load_gate(const DataRoot& data, const std::string& name, std::span<const MethodPointer> described = {});
-/// Return policy and results as text that `load_gate` reads; numbers are restored exactly.
+/// These functions return policy and results as text that `load_gate` reads. Numbers are restored exactly.
 std::string to_yaml(const Gate& gate);
 std::string to_csv(const GateRun& run);
 GateRun parse_gate_run(const std::string& text, const std::string& file, std::span<const MethodPointer> described = {});
 
-/// One result of the gate: the outcomes of a method (no metric), or one metric, for one scenario or all scenarios.
+/// One result of the gate, for one scenario or all scenarios. The result is about one metric, or about the outcomes of
+/// a method (no metric).
 struct GateResult {
-  std::string scenario;  ///< empty: all that have the metric
+  std::string scenario;  ///< empty: all scenarios that have the metric
   Kind kind = Kind::rate;
   std::string method, metric;
   std::size_t draws = 0;                   ///< compared pairs
-  double accepted = 0.0;                   ///< median, or the share of draws that were not ok, in the accepted run
-  double value = 0.0;                      ///< the same in the current run
+  double accepted = 0.0;                   ///< accepted median, or fraction of runs that were not ok
+  double value = 0.0;                      ///< current median, or fraction of runs that are not ok
   double change = 0.0;                     ///< median of the pairs: ratio minus one, or difference
-  double chance = 1.0;                     ///< p-value under the hypothesis of no degradation, times the number of
-                                           ///< tests
-  bool better = false;                     ///< significantly better by the opposite test; the new run should be
-                                           ///< accepted
-  std::string fault = {};                  ///< fault with a seed; empty if none
+  double chance = 1.0;                     ///< p-value of no degradation, times the number of tests
+  bool better = false;                     ///< significantly better; accept the new run
+  std::string fault = {};                  ///< description of the fault; empty if none
   std::optional<std::uint64_t> seed = {};  ///< seed of the fault
   bool passes() const { return fault.empty(); }
 };
@@ -94,7 +99,7 @@ struct GateResult {
 /// Compares new results with the gate. Throws BadInput if the seeds differ or the accepted results are empty.
 std::vector<GateResult> hold_to_gate(const GateRun& run, const Gate& gate);
 
-/// Throws BadInput if a simulated run has no outcome, or a method has no outcome that is ok; such results cannot be
+/// Throws BadInput if a simulated run has no outcome, or if no outcome of a method is ok. Such results cannot be
 /// accepted.
 void require_acceptable(const GateRun& run);
 

@@ -56,10 +56,10 @@ GateRun gate_run(std::span<const Outcome> outcomes, std::uint64_t first, std::ui
 
 GateRun gate_run(const Results& results, std::uint64_t first, std::uint64_t last) {
   std::vector<Outcome> outcomes = results.outcomes();
-  // both lists are sorted by scenario, seed, kind, method
+  // Both lists are sorted by scenario, seed, kind and method.
   std::size_t at = 0;
   for (const ScoreRow& row : results.scores()) {
-    if (row.kind.empty()) continue;  // rejected draw
+    if (row.kind.empty()) continue;  // rejected run
     const auto is_of = [&](const Outcome& outcome) {
       return outcome.scenario == row.scenario && outcome.seed == row.seed && row.kind == to_string(outcome.kind) &&
              outcome.method == row.method;

@@ -30,7 +30,7 @@ sim::ImuRecord& primary(sim::Sensors& sensors, const sim::Truth& truth) {
   return sensors.imus.front();
 }
 
-/// Shifts the stated centre of mass, and thereby the lever arm of every sensor; the relative mountings of the sensors
+/// Shifts the stated centre of mass, and thereby the lever arm of every sensor. The relative mountings of the sensors
 /// are unchanged. The shift replaces the lever-arm error of the primary IMU in the scenario.
 void lever_arm(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation, double size) {
   const Eigen::Vector3d given_m = primary(sensors, truth).T_BI.translation();
@@ -51,7 +51,7 @@ void extrinsic_rotation(sim::Sensors& sensors, const sim::Truth& truth, const si
   sensors.lidars.front().T_BL.linear() = R_BI_given * R_IL_true * error.toRotationMatrix();
 }
 
-/// Shifts the clock of the primary IMU; jitter remains. The shift replaces the time offset in the scenario.
+/// Shifts the clock of the primary IMU without changing its jitter. The shift replaces the time offset in the scenario.
 void time_offset(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation, double size) {
   const double own_s = situation.sensors.front().values.at("time_offset_s");
   const auto shift_ns = static_cast<std::int64_t>(std::llround((size - own_s) * 1e9));
@@ -65,7 +65,7 @@ void radius(sim::Sensors& sensors, const sim::Truth&, const sim::Situation&, dou
   sensors.sphere_radius_m += size;
 }
 
-/// States a range beyond every reading, so that no reading counts as clipped.
+/// States a range above every reading, so that no reading counts as clipped.
 void state_no_rail(sim::ImuRecord& imu) {
   double largest = 0.0;
   for (const Eigen::Vector3d& reading : imu.gyro_rad_s) largest = std::max(largest, reading.lpNorm<Eigen::Infinity>());
@@ -73,8 +73,8 @@ void state_no_rail(sim::ImuRecord& imu) {
   for (std::uint8_t& flags : imu.clip_flags) flags = static_cast<std::uint8_t>(flags & ~kGyroClipFlags);
 }
 
-/// Replaces clipped readings by unclipped readings with a constant error per clipped segment, which simulates the
-/// output of a rate method with this error. Removes all clip flags.
+/// Replaces clipped readings by unclipped readings with a constant error per clipped segment, and removes all clip
+/// flags. The result simulates the output of a rate method with this error.
 void rate_error(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation, double size) {
   const ClippingTruth clipping(sensors, truth);
   sim::ImuRecord& imu = primary(sensors, truth);
@@ -90,15 +90,15 @@ void rate_error(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situa
   state_no_rail(imu);
 }
 
-/// Changes the stated range relative to the true saturation level, and removes the device's clip flags, which would
-/// reveal the truth.
+/// Changes the stated range relative to the true saturation level. Also removes the device's clip flags, which would
+/// reveal the true level.
 void stated_rail(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation, double size) {
   sim::ImuRecord& imu = primary(sensors, truth);
   imu.stated_gyro_range_rad_s = situation.sensors.front().values.at("gyro_rail_rad_s") * (1.0 + size);
   for (std::uint8_t& flags : imu.clip_flags) flags = static_cast<std::uint8_t>(flags & ~kGyroClipFlags);
 }
 
-/// Sets the saturation level of methods that have a parameter for this level.
+/// Sets the parameter for the saturation level in methods that have this parameter.
 void report_rail(std::span<const sim::Parameter> known, double size, sim::Values& given) {
   for (const sim::Parameter& parameter : known) {
     if (parameter.name != "saturation_point_rad_s") continue;

@@ -9,15 +9,16 @@
 namespace tumble::scenarios {
 
 /// An error of stated size in the sensor data or calibration that methods receive. Motion and true measurements are
-/// unchanged, so one simulation serves all sizes of the error. Each error is registered in one line (given_errors.cpp).
+/// unchanged, so one simulation serves all sizes of the error. Each error is registered by one line of
+/// given_errors.cpp.
 struct GivenError {
-  sim::Parameter parameter;  ///< size of the error: name, unit, bounds, meaning; the default is no error
+  sim::Parameter parameter;  ///< size of the error; the default is no error
   bool needs_lidar = false;
   /// Applies the error to `sensors`, which belong to `truth` and `situation`. A random direction of the error is drawn
   /// from the situation's seed and does not depend on the size.
   void (*put_in)(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation,
                  double size) = nullptr;
-  /// Applies the error to the parameters of a method; null if the error does not concern parameters.
+  /// Applies the error to the parameters of a method. Null if the error does not affect parameters.
   void (*tune)(std::span<const sim::Parameter> known, double size, sim::Values& given) = nullptr;
 };
 

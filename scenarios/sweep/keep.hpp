@@ -17,23 +17,23 @@
 /// Keeps recordings and estimates of a sweep's simulated runs next to its database (README.md, "What is kept").
 namespace tumble::scenarios {
 
-/// Rule that selects which simulated runs are kept. The selection depends on the results only, not on processes,
+/// Rule that selects which simulated runs are kept. The selection depends on the results only, regardless of processes,
 /// interruptions or shards.
 struct Keep {
   enum class Which { none, failed, worst, all };
   Which which = Which::none;
-  std::size_t count = 0;  ///< for `worst`: draws per scenario and method
+  std::size_t count = 0;  ///< for `worst`: runs per scenario and method
   bool operator==(const Keep&) const = default;
 };
 
-/// Key of the note that stores the rule, as `to_string` writes it.
+/// Key of the note that stores the keep rule, as `to_string` writes it.
 inline constexpr const char* kKeepNote = "keep";
 
 /// Parses "none", "failed", "all", or "worst:N" with N from 1 to 1000. Throws BadInput for any other text.
 Keep parse_keep(const std::string& text);
 std::string to_string(const Keep& keep);
 
-/// Scenario and seed of a simulated run, without settings of curves.
+/// Scenario and seed of a simulated run, without the setting of a curve.
 struct DrawName {
   std::string scenario;
   std::uint64_t seed = 0;
@@ -42,13 +42,14 @@ struct DrawName {
 };
 
 /// Returns the simulated runs to keep. `all` keeps every run with a row. `failed` keeps runs with a status that is not
-/// ok. `worst` keeps, for each scenario and each method that does not use the truth, the worst runs by the first
-/// headline metric of the method's kind. Runs that are not ok rank worst; equally bad runs are kept by ascending seed.
-/// Rejected runs have no recording and are never kept.
+/// ok. `worst` keeps the worst runs of each scenario and each method that does not use the truth. The runs are ranked
+/// by the first headline metric of the method's kind. Runs that are not ok rank worst. Among equally bad runs, lower
+/// seeds are kept first. Rejected runs have no recording and are never kept.
 std::set<DrawName> draws_to_keep(const Results& results, const Keep& keep);
 
-/// The folder of kept runs next to a database, FILE.db.files/kept: SCENARIO/SEED/ with recording.h5,
-/// estimates/KIND-METHOD/ and `command`. All functions throw BadInput with path and reason on file system errors.
+/// The folder of kept runs next to a database, FILE.db.files/kept. Each run has a folder SCENARIO/SEED/ with
+/// recording.h5, estimates/KIND-METHOD/ and `command`. All functions throw BadInput with path and reason on file system
+/// errors.
 class KeptDraws {
  public:
   explicit KeptDraws(const std::filesystem::path& database);
@@ -58,10 +59,10 @@ class KeptDraws {
   bool holds(const DrawName& draw, std::span<const Outcome> estimated) const;
   std::vector<DrawName> found() const;
   void remove(const DrawName& draw) const;
-  /// Removes incomplete files of a killed process. No other process may write to the folder during the call.
+  /// Removes incomplete files of a killed process. During the call, no other process may write to the folder.
   void discard_unfinished() const;
-  /// Copies the run, or its missing estimates, from another folder of kept runs, by hard links where possible. Returns
-  /// false if the other folder does not have the run.
+  /// Copies the run, or its missing estimates, from another folder of kept runs. Uses hard links where possible.
+  /// Returns false if the folder `from` does not have the run.
   bool take(const DrawName& draw, const KeptDraws& from) const;
 
  private:
@@ -71,9 +72,9 @@ class KeptDraws {
 /// Returns the folder of a method's estimate in the folder of a run.
 std::filesystem::path estimate_folder(const std::filesystem::path& draw, Kind kind, const std::string& method);
 
-/// Joins the kept runs of a merge, after the rows were joined (merge.hpp). If all inputs and `out` have one rule, the
-/// result equals that of a single sweep. Returns the number of kept runs in `out` after the merge. If the rules differ
-/// or nothing is kept, `out` is unchanged.
+/// Joins the kept runs of a merge, after the rows were joined (merge.hpp). If all inputs and `out` have one keep rule,
+/// the result equals the kept runs of a single sweep. Returns the number of kept runs in `out` after the merge. If the
+/// rules differ or nothing is kept, `out` is unchanged.
 std::size_t merge_kept(const DatabaseOwner& out, std::span<const std::filesystem::path> in);
 
 }  // namespace tumble::scenarios

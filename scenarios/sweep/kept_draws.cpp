@@ -64,7 +64,7 @@ fs::path KeptDraws::folder_of(const DrawName& draw) const {
 
 bool KeptDraws::holds(const DrawName& draw, std::span<const Outcome> estimated) const {
   const fs::path folder = folder_of(draw);
-  // the file `command` is written last
+  // The file `command` is written last and marks a complete folder.
   return guarded([&] {
     return fs::exists(folder / kDrawCommand) &&
            std::all_of(estimated.begin(), estimated.end(), [&](const Outcome& row) {

@@ -29,7 +29,7 @@ std::string text_of(const Notes& notes, const std::string& key) {
   return found == notes.end() ? std::string() : found->second;
 }
 
-/// Throws BadInput if outcomes come from another program, or from other models and scenarios, because they are not
+/// Throws BadInput if outcomes come from different programs, models or scenarios, because such outcomes are not
 /// comparable.
 void require_same_origin(const Notes& first, const Notes& other, const fs::path& path) {
   const std::pair<const char*, const char*> origins[] = {{"build", "was written by build"},
@@ -41,7 +41,7 @@ void require_same_origin(const Notes& first, const Notes& other, const fs::path&
   }
 }
 
-/// Joins the version notes of external methods with their rows; rejects two versions of one method.
+/// Joins the version notes of external methods with the methods' rows. Rejects two versions of one method.
 void join_method_notes(const Notes& shard, const fs::path& path, bool mixed, Results& into) {
   for (const auto& [key, theirs] : shard) {
     if (!is_method_note(key)) continue;
@@ -53,7 +53,7 @@ void join_method_notes(const Notes& shard, const fs::path& path, bool mixed, Res
   }
 }
 
-/// Joins the paths of descriptions and recordings. For conflicting paths, the path of the first input is kept, even if
+/// Joins the paths of descriptions and recordings. If two paths conflict, the path of the first input is kept, even if
 /// the path no longer exists.
 void join_place_notes(const Notes& shard, Results& into) {
   for (const auto& [key, place] : shard) {
@@ -68,7 +68,7 @@ void join_command_notes(const std::vector<Notes>& notes, Results& into) {
   if (!commands.empty()) into.set_note(kCommandNote, commands);
 }
 
-/// Reads the notes of all inputs before any merge, with one input open at a time.
+/// Reads the notes of all inputs before any merge. Only one input is open at a time.
 std::vector<Notes> checked_notes(std::span<const fs::path> in, bool mixed) {
   std::vector<Notes> notes;
   for (const fs::path& path : in) {
@@ -78,7 +78,7 @@ std::vector<Notes> checked_notes(std::span<const fs::path> in, bool mixed) {
   return notes;
 }
 
-/// Returns the keep rule of all inputs; empty if the rules differ.
+/// Returns the keep rule that all inputs share. Empty if the rules differ.
 std::string common_rule(const std::vector<Notes>& notes) {
   const std::string rule = text_of(notes.front(), kKeepNote);
   const auto is_it = [&](const Notes& each) { return text_of(each, kKeepNote) == rule; };
@@ -123,7 +123,7 @@ MergeCounts merge_results(const DatabaseOwner& owner, std::span<const fs::path> 
       }
       for (const Notes& own : notes) join_place_notes(own, results);
       join_command_notes(notes, results);
-      // The result keeps the origin of its rows, not the program that joined the rows.
+      // The result keeps the origin of its rows. The program that joined the rows is not recorded.
       for (const char* key : {"suite", "build", "data"}) {
         std::string text;
         for (std::size_t i = 0; i < notes.size() && text.empty(); ++i) text = text_of(notes[i], key);

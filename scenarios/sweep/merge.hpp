@@ -9,14 +9,15 @@
 
 namespace tumble::scenarios {
 
-/// Joins results databases into `out`, which may be new or existing, in one transaction: a failed merge leaves `out`
-/// unchanged. If two rows have equal scenario, seed and method, the row that `outranks` the other row stays,
+/// Joins results databases into `out`, which may be new or existing, in one transaction. A failed merge leaves `out`
+/// unchanged. If two rows have equal scenario, seed and method, the row that `outranks` the other row is kept,
 /// independent of their order.
 ///
-/// Throws BadInput in these cases: two scored rows differ in status, digest or a score other than cost (a build must
-/// give one result); a value is not a number; the inputs have different builds, models or scenarios; `out` is an input;
-/// another process writes to `out` (database_owner.hpp). With `mixed`, rows of different builds are joined, and the
-/// first of two different rows stays. If `out` has no rows, it adopts the common keep rule of the inputs (merge_kept).
+/// Throws BadInput if two scored rows differ in status, digest or a score other than cost, because one build must give
+/// one result. Throws BadInput also if a value is not a number, if the inputs have different builds, models or
+/// scenarios, if `out` is an input, or if another process writes to `out` (database_owner.hpp). With `mixed`, rows of
+/// different builds are joined, and the first of two different rows is kept. If `out` has no rows, it adopts the common
+/// keep rule of the inputs (merge_kept).
 MergeCounts merge_results(const DatabaseOwner& out, std::span<const std::filesystem::path> in, bool mixed);
 /// Joins results databases and owns `out` during the merge.
 MergeCounts merge_results(const std::filesystem::path& out, std::span<const std::filesystem::path> in, bool mixed);

@@ -77,7 +77,7 @@ std::string to_line(const Message& message) {
                       {"setting", to_json(message.draw->setting)}};
   }
   if (message.not_kept) object["not_kept"] = *message.not_kept;
-  // text that is not UTF-8 must not prevent the storage of an outcome
+  // Text that is not UTF-8 must not prevent the storage of an outcome.
   return object.dump(-1, ' ', false, json::error_handler_t::replace) + "\n";
 }
 

@@ -8,21 +8,22 @@
 
 namespace tumble::scenarios {
 
-/// A message from a worker about its current simulated run, one JSON object per line. At most one field is set; if no
+/// A message from a worker about its current simulated run, one JSON object per line. At most one field is set. If no
 /// field is set, the run is complete.
 struct Message {
   std::optional<Outcome> outcome;
   std::optional<RejectedDraw> rejected;
   std::optional<DrawValues> draw = std::nullopt;
-  std::optional<std::string> not_kept = std::nullopt;  ///< why the draw's files could not be kept
+  std::optional<std::string> not_kept = std::nullopt;  ///< why the run's files could not be kept
   /// Returns true for the last message of a simulated run.
   bool is_last() const { return !outcome && !rejected && !draw && !not_kept; }
 };
 
-/// Returns the message with a newline. Numbers are restored bit-exactly; non-finite numbers become NaN.
+/// Returns the message with a newline. Numbers are restored bit-exactly. Non-finite numbers become NaN.
 std::string to_line(const Message& message);
 
-/// Parses a line without its newline; returns empty if the line is no message (the process died while writing).
+/// Parses a line without its newline. Returns empty if the line is not a message, because the process died while
+/// writing.
 std::optional<Message> from_line(const std::string& line);
 
 }  // namespace tumble::scenarios

@@ -10,7 +10,7 @@
 namespace tumble::scenarios {
 
 /// Returns the motion's summary (scenarios/scoring/motion_summary.hpp) as named numbers for the results database.
-/// Returns no values for a recording without an IMU.
+/// Returns no values for a recording without an IMU. The names and meanings are as follows.
 ///
 /// | name | meaning |
 /// | --- | --- |

@@ -9,7 +9,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Hashes number by number, so that no struct padding enters the digest.
+/// Hashes each number separately, so that no struct padding enters the digest.
 class NumberHasher : public Hasher {
  public:
   template <typename Number>

@@ -11,8 +11,8 @@
 
 namespace tumble::scenarios {
 
-/// The point of a curve to which a row belongs (variation.hpp): varied key and value. An empty key means an unmodified
-/// scenario and unmodified methods.
+/// The point of a curve to which a row belongs (variation.hpp): the varied key and its value. An empty key means an
+/// unmodified scenario and unmodified methods.
 struct Setting {
   std::string key;
   double value = 0.0;
@@ -35,7 +35,7 @@ struct Outcome {
   Setting setting = {};
 };
 
-/// Motion values of one simulated run, independent of the methods (scenarios/scoring/motion_summary.hpp).
+/// Motion values of one simulated run. They do not depend on the methods (scenarios/scoring/motion_summary.hpp).
 struct DrawValues {
   std::string scenario;
   std::uint64_t seed = 0;
@@ -43,17 +43,17 @@ struct DrawValues {
   Setting setting = {};
 };
 
-/// Returns true if the method completed: ok, diverged, failed.
+/// Returns true if the method completed: its status is ok, diverged or failed.
 bool was_scored(OutcomeStatus status);
 
-/// Returns true if `status` has more information about the method than `other`. The order is: completed, then crashed
-/// and timeout, then killed.
+/// Returns true if `status` has more information about the method than `other`. A completed run has most information,
+/// then crashed and timeout, then killed.
 bool outranks(OutcomeStatus status, OutcomeStatus other);
 
-/// Returns true if a sweep may repeat rows with this status: crashed, timeout, killed.
+/// Returns true if a sweep may repeat rows with this status: crashed, timeout or killed.
 bool may_run_again(OutcomeStatus status);
 
-/// A scenario and seed that cannot be drawn or simulated on any machine; kind and method are empty in the database. If
+/// A scenario and seed that cannot be drawn or simulated on any machine. Kind and method are empty in the database. If
 /// a process dies instead, the status of its methods is crashed, timeout or killed.
 struct RejectedDraw {
   std::string scenario;

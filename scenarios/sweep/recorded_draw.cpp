@@ -15,7 +15,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Escapes the name of the folder, which is not a pattern.
+/// Escapes the characters of a folder name that have a meaning in patterns.
 std::string escaped(const std::string& text) {
   std::string out;
   for (const char c : text) {

@@ -24,16 +24,17 @@ struct RecordedDraw {
   bool has_truth = false;
 };
 
-/// Returns the recordings that match the patterns (glob(7), relative to `folder` unless absolute), each recording once,
-/// sorted by name. Throws BadInput for a pattern without a match, two files with one name, and unreadable files.
+/// Returns the recordings that match the patterns, each recording once, sorted by name. Patterns have the syntax of
+/// glob(7) and are relative to `folder` unless absolute. Throws BadInput for a pattern without a match, two files with
+/// one name, and unreadable files.
 std::vector<RecordedDraw> find_recordings(std::span<const std::string> patterns, const std::filesystem::path& folder);
 
-/// Returns the methods that can run on a recording, in the order of `methods`: methods that apply to its robot, if
-/// known, and its sensors. Oracles need a simulated recording.
+/// Returns the methods that can run on a recording, in the order of `methods`. These methods apply to the recording's
+/// sensors and, if known, its robot. Oracles need a simulated recording.
 std::vector<MethodPointer> applicable(std::span<const MethodPointer> methods, const RecordedDraw& recording);
 
-/// Reads the recording in the form of a simulated run. Throws BadInput if the recording's digest has changed since
-/// find_recordings.
+/// Reads the recording in the form of a simulated run. Throws BadInput if the recording's digest has changed since the
+/// call of find_recordings.
 SimulatedDraw read_draw(const RecordedDraw& recording);
 
 }  // namespace tumble::scenarios

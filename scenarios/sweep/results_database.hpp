@@ -28,7 +28,7 @@ inline std::uint64_t read_seed(std::int64_t stored) {
   return std::bit_cast<std::uint64_t>(stored);
 }
 
-/// An open results database, shared by results_reading.cpp and results.cpp (writing).
+/// An open results database. results_reading.cpp and results.cpp (writing) share this struct.
 struct Results::Impl {
   std::filesystem::path path;
   SQLite::Database database;
@@ -50,13 +50,13 @@ struct Results::Impl {
 
   Impl(const std::filesystem::path& file, Mode mode)
       : path(file),
-        // single-threaded: avoids a lock for each value
+        // The connection is used by one thread only, so SQLite needs no lock for each value.
         database(file.string(),
                  SQLite::OPEN_NOMUTEX |
                      (mode == Mode::read_only ? SQLite::OPEN_READONLY : SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE),
                  kBusyTimeoutMs) {
-    // Rollback journal: the database is one file, is readable in a read-only folder, and each store is on disk before
-    // the call returns.
+    // With a rollback journal, the database is one file and is readable in a read-only folder. Each store is on disk
+    // before the call returns.
     if (mode == Mode::read_only) return;
     database.exec("PRAGMA synchronous = FULL");
     database.exec(mode == Mode::join ? "PRAGMA foreign_keys = OFF" : "PRAGMA foreign_keys = ON");
@@ -78,7 +78,7 @@ struct Results::Impl {
 
   void create() {
     SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
-    // another process may have created the schema while this process waited for the lock
+    // Another process may have created the schema while this process waited for the lock.
     if (is_empty()) {
       database.exec(kSchema);
       database.exec("PRAGMA application_id = " + std::to_string(kApplicationId));

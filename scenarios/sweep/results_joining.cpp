@@ -21,7 +21,7 @@ namespace {
 
 constexpr const char* kDraw = " WHERE scenario = ? AND seed = ? AND varied = ? AND setting = ? AND kind ";
 
-/// A row of the table `outcomes` in the shard; the texts are valid until the next row.
+/// A row of the table `outcomes` in the shard. The texts are valid until the next row.
 struct ShardRow {
   std::int64_t id, seed;
   const char *scenario, *kind, *method, *status, *message, *recording_digest, *estimate_digest, *varied;
@@ -110,7 +110,7 @@ class Joining {
     statement.bind(4, row.setting);
   }
 
-  /// Advances to the next row; error messages include the path of the shard.
+  /// Advances to the next row. Error messages include the path of the shard.
   bool next(SQLite::Statement& select) const {
     try {
       return select.executeStep();
@@ -153,7 +153,7 @@ class Joining {
     return run(insert_) == 1;
   }
 
-  /// Inserts or replaces the row; returns true if the row was stored, with the number of the row in `id`.
+  /// Inserts or replaces the row. Returns true if the row was stored, with the number of the row in `id`.
   bool take(const ShardRow& row, std::int64_t& id) {
     require_kind(row.kind);
     const OutcomeStatus own = status(row.status);
@@ -199,7 +199,8 @@ class Joining {
     }
     if (outranks(known, own) || mixed_ || !was_scored(known)) return false;
     if (own != known || estimate != row.estimate_digest ||
-        // Lidars are not simulated if only rate methods run, so the recording's digest is not compared for kind rate.
+        // If only rate methods run, lidars are not simulated. The recording's digest is therefore not compared for kind
+        // rate.
         (std::string(to_string(Kind::rate)) != row.kind && recording != row.recording_digest))
       complain(row, status_text, estimate);
     require_same_scores(row, id);
@@ -212,7 +213,7 @@ class Joining {
         path_.string(), words(row), row.status, row.estimate_digest, known, digest));
   }
 
-  /// Rows with equal digests must have bit-identical scores, except costs.
+  /// Throws BadInput if two rows with equal digests differ in a score other than cost.
   void require_same_scores(const ShardRow& row, std::int64_t held) {
     std::map<std::string, double> known;
     held_scores_.bind(1, held);
@@ -246,7 +247,7 @@ class Joining {
                                words(row), metric, here, elsewhere));
   }
 
-  /// Visits the scores of a row of the shard, sorted by name; rows must be requested in order.
+  /// Visits the scores of a row of the shard, sorted by name. Rows must be requested in order.
   template <typename Visit>
   void each_score(const ShardRow& row, const Visit& visit) {
     while (more_scores_ && scores_.getColumn(0).getInt64() < row.id) more_scores_ = next(scores_);
@@ -280,7 +281,7 @@ class Joining {
                           "SELECT id, status, recording_digest, estimate_digest FROM outcomes WHERE scenario = ? AND "
                           "seed = ? AND kind = ? AND method = ? AND varied = ? AND setting = ?"};
   SQLite::Statement held_scores_{into_, "SELECT metric, value FROM score_values WHERE outcome = ?"};
-  // Mode::join does not cascade deletes
+  // In Mode::join, the database does not cascade deletes.
   SQLite::Statement remove_scores_{into_, "DELETE FROM score_values WHERE outcome = ?"};
   SQLite::Statement remove_{into_, "DELETE FROM outcomes WHERE id = ?"};
   SQLite::Statement forget_{into_, std::string("DELETE FROM outcomes") + kDraw + "= ''"};

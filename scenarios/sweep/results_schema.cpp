@@ -10,7 +10,7 @@ namespace tumble::scenarios {
 // Seeds are unsigned 64-bit numbers, stored as signed numbers with equal bits. A rejected run is an outcome with empty
 // kind and method and status 'rejected'. The view `scores` has a row for each score, and a row with a null metric for
 // an outcome without scores. A point of a curve has its keys in `varied` and their value in `setting`. `varied` is
-// empty for unmodified scenarios and methods; the view `scores` only contains rows with empty `varied`, and the view
+// empty for unmodified scenarios and methods. The view `scores` only contains rows with empty `varied`, and the view
 // `curves` contains points of curves.
 const char* const kSchema = R"sql(
 CREATE TABLE notes (
@@ -75,7 +75,7 @@ CREATE TABLE certificates (
 
 namespace {
 
-/// Returns names such as "table outcomes", "column seed of table outcomes", "view scores". The columns of views are
+/// Returns names such as "table outcomes", "column seed of table outcomes" and "view scores". The columns of views are
 /// omitted, because they follow from the tables.
 std::set<std::string> parts_of(const SQLite::Database& database) {
   std::set<std::string> parts;

@@ -12,14 +12,14 @@ namespace tumble::scenarios {
 /// Application id in SQLite's header ("TMBL"), so that databases of other programs are never modified.
 inline constexpr int kApplicationId = 0x544d424c;
 inline constexpr int kSchemaVersion = 4;
-/// Older schema version that is still readable; it differs only in the allowed statuses.
+/// Older schema version that is still readable. It differs from the current version only in the allowed statuses.
 inline constexpr int kReadableVersion = 3;
 
 /// SQL that creates an empty results database.
 extern const char* const kSchema;
 
-/// Returns the first missing table, column or view, as "table score_values", or an empty text if the schema is
-/// complete. Throws SQLite::Exception.
+/// Returns the first missing table, column or view, for example "table score_values". Returns an empty text if the
+/// schema is complete. Throws SQLite::Exception.
 std::string missing_of_schema(const SQLite::Database& database);
 
 }  // namespace tumble::scenarios

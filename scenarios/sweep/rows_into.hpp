@@ -22,7 +22,7 @@ inline void bind_number(double value, SQLite::Statement& to, int index) {
     to.bind(index, value);
 }
 
-/// Stores each text that many rows share only once.
+/// Stores each text once, although many rows share it.
 class Kept {
  public:
   const std::string& operator()(std::string_view text) {
@@ -74,8 +74,7 @@ struct DrawValue {
   }
 };
 
-/// Inserts rows in order, with many rows per statement, because a statement has a fixed cost as large as the cost of a
-/// row.
+/// Inserts rows in order, with many rows per statement. The fixed cost of a statement is as large as the cost of a row.
 template <typename Row>
 class RowsInto {
  public:
@@ -85,7 +84,7 @@ class RowsInto {
     rows_.push_back(row);
     if (rows_.size() == kMany) flush();
   }
-  /// Writes waiting rows; must be called before the rows are read.
+  /// Writes waiting rows. The caller must call this function before reading the rows.
   void flush() {
     if (rows_.size() == kMany) {
       for (std::size_t i = 0; i < kMany; ++i) rows_[i].bind(many_, static_cast<int>(i) * Row::kColumns);

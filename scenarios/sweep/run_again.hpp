@@ -7,11 +7,11 @@
 
 #include "scenarios/sweep/outcome.hpp"
 
-/// Computes the command that reproduces one row of the results; reports, gates and messages show this command for
+/// Computes the command that reproduces one row of the results. Reports, gates and messages show this command for
 /// failed runs.
 namespace tumble::scenarios {
 
-/// A row of the results. Kind and method are empty for a rejected run.
+/// Key of a row of the results. Kind and method are empty for a rejected run.
 struct RunKey {
   std::string scenario;
   std::uint64_t seed = 0;
@@ -20,24 +20,24 @@ struct RunKey {
 };
 RunKey key_of(const Outcome& outcome);
 
-/// Return the keys of the notes that a sweep stores for reproduction: the description file of an external method, and
-/// the path of a recording.
+/// These functions return the keys of the notes that a sweep stores for reproduction. The notes contain the description
+/// file of an external method and the path of a recording.
 std::string description_note(const std::string& kind, const std::string& method);
 std::string recording_note(const std::string& name);
 bool is_place_note(const std::string& key);
 
 /// Returns `tumble run SCENARIO --seed N --method KIND/NAME`. A point of a curve adds `--vary KEY=VALUE`; an external
 /// method adds the path of its description. For a recording, returns `tumble estimate FILE.h5 --method KIND/NAME -o
-/// NAME`. Words are quoted for a POSIX shell. `notes` are the notes of the results (Results::notes); missing
-/// information appears as placeholders in capitals. With equal build, models and scenarios, the command gives
-/// bit-identical results.
+/// NAME`. Words are quoted for a POSIX shell. `notes` are the notes of the results (Results::notes). Placeholders in
+/// capitals replace missing information. With equal build, models and scenarios, the command gives bit-identical
+/// results.
 std::string command_again(const RunKey& run, const std::map<std::string, std::string>& notes);
 
-/// Parses a point of a curve: "world.rock_count=10", "a.x+b.y=0.5". Throws BadInput for a malformed text; `check`
-/// (variation.hpp) tests whether the key exists.
+/// Parses a point of a curve: "world.rock_count=10", "a.x+b.y=0.5". Throws BadInput for a malformed text. The function
+/// `check` (variation.hpp) tests whether the key exists.
 Setting setting_from(const std::string& text);
 
-/// Returns the point of a curve as text; numbers are restored exactly.
+/// Returns the point of a curve as text. Numbers are restored exactly.
 std::string to_text(const Setting& setting);
 
 }  // namespace tumble::scenarios

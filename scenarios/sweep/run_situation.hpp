@@ -30,9 +30,9 @@ struct RunResult {
   std::vector<Outcome> outcomes;    ///< parallel to methods
 };
 
-/// Draws, simulates, estimates and scores one situation in this process. Skips methods that do not apply to the robot.
-/// With a `setting`, the run is that point of a sweep's curve (variation.hpp), and the recording contains the sensor
-/// data that the methods receive. Throws BadInput, sim::InvalidSituation, sim::SimulationFailure.
+/// Draws, simulates, estimates and scores one situation in this process. Methods that do not apply to the robot are
+/// skipped. With a `setting`, the run is one point of a sweep's curve (variation.hpp), and the recording contains the
+/// sensor data that the methods receive. Throws BadInput, sim::InvalidSituation or sim::SimulationFailure.
 RunResult run_situation(const DataRoot& data, const Scenario& scenario, std::uint64_t seed,
                         std::span<const MethodPointer> methods, int threads, Lidars lidars = Lidars::simulated,
                         const Setting& setting = {});

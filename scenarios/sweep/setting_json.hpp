@@ -7,7 +7,8 @@
 
 namespace tumble::scenarios {
 
-/// Converts a setting to a JSON pair of key and value. Used only within scenarios/sweep.
+/// These functions convert a setting to and from a JSON pair of key and value. They are used only within
+/// scenarios/sweep.
 nlohmann::json to_json(const Setting& setting);
 Setting setting_from(const nlohmann::json& pair);
 

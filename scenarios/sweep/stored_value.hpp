@@ -11,8 +11,8 @@
 
 namespace tumble::scenarios {
 
-/// Reads a number from a results database; null becomes NaN. Throws BadInput with the path and `row()`, a description
-/// of the row, if the column contains text or a blob, because SQLite would convert text and blobs to 0.
+/// Reads a number from a results database. Null becomes NaN. Throws BadInput if the column contains text or a blob,
+/// which SQLite would convert to 0. The message contains the path and `row()`, a description of the row.
 template <typename Row>
 double stored_value(const SQLite::Column& column, const std::filesystem::path& path, const Row& row) {
   const int type = column.getType();

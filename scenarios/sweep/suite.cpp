@@ -169,7 +169,7 @@ std::string method_name(const std::string& text, const std::filesystem::path& fo
   return is_method_file(text) ? (folder / text).string() : text;
 }
 
-// Names are checked early, so that a suite with a misspelt name does not start.
+// Throws BadInput if the text is the file of a scenario instead of a suite.
 void require_no_scenario(const YamlNode& root) {
   if (!root.is_map()) return;
   for (const auto& [key, value] : root.entries()) {

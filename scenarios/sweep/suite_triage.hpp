@@ -19,12 +19,12 @@ namespace tumble::scenarios {
 /// Triage result of one simulated run.
 struct DrawTriage {
   DrawName draw;
-  std::vector<TriageRow> rows;  ///< as returned by triage(); the first is the unmodified draw
+  std::vector<TriageRow> rows;  ///< rows of triage(); the first is the unmodified run
   std::string trouble;          ///< why rows are missing: simulation impossible, process died or timed out
 };
 
-/// Returns scenarios and seeds of the suite for the method's robots, in the order of a sweep with seeds as the outer
-/// loop. Throws BadInput if the seeds are invalid.
+/// Returns the scenarios and seeds of the suite that fit the method's robots. The order is that of a sweep, with seeds
+/// as the outer loop. Throws BadInput if the seeds are invalid.
 std::vector<DrawName> draws_of(const DataRoot& data, const Suite& suite, const Method& method);
 
 /// Returns the unmodified simulated runs on which the method failed in `results`.
@@ -33,15 +33,15 @@ std::set<DrawName> failed_draws(const Results& results, const Method& method, co
 struct SuiteTriageOptions {
   TriageOptions triage;                  ///< `on_run` and `on_row` are not called
   int jobs = 1;                          ///< processes
-  double memory_mib = kWorkerMemoryMib;  ///< memory limit (RLIMIT_DATA) of a draw's process and of each of its runs
+  double memory_mib = kWorkerMemoryMib;  ///< memory limit (RLIMIT_DATA) of each process of a run
   const std::atomic<bool>* stop = nullptr;
   std::function<void(const DrawTriage&)> on_draw;  ///< called after each draw
 };
 
-/// Runs the triage of each simulated run in a separate process, limited to `memory_mib` and to the time of its method
-/// runs plus two. If a process dies or times out, its completed rows remain, with an error. The order is that of
-/// `draws`; the list is shorter if the triage was stopped. Throws BadInput for an unreadable scenario, an invalid
-/// memory limit, or if no process can be started.
+/// Runs the triage of each simulated run in a separate process. The process is limited to `memory_mib` and to the time
+/// of its method runs plus two. If a process dies or times out, its completed rows remain, with an error. The order is
+/// that of `draws`. If the triage was stopped, the list is shorter. Throws BadInput for an unreadable scenario, an
+/// invalid memory limit, or if no process can be started.
 std::vector<DrawTriage> triage_draws(const DataRoot& data, std::span<const DrawName> draws, const Method& method,
                                      const SuiteTriageOptions& options);
 

@@ -41,7 +41,7 @@ void claim(Results& results, const DataRoot& data, const Suite& suite, const std
   if (!suite.recordings.empty()) results.set_note("source", kRecordingsSource);
 }
 
-/// Stores absolute paths, so that each method run can be repeated from any folder (run_again.hpp).
+/// Stores absolute paths, so that each run can be repeated from any folder (run_again.hpp).
 void note_descriptions(Results& results, const Suite& suite) {
   for (const std::string& name : suite.methods) {
     if (!is_method_file(name)) continue;
@@ -127,7 +127,7 @@ class Sweep {
       }
       report();
     }
-    // Messages that stopped workers had sent are still stored.
+    // Messages that workers sent before they were stopped are still stored.
     for (DrawWorker& worker : workers_) {
       const bool busy = worker.is_busy();
       hear(worker);
@@ -141,7 +141,7 @@ class Sweep {
         std::count_if(workers_.begin(), workers_.end(), [](const DrawWorker& worker) { return worker.is_busy(); }));
   }
 
-  /// Returns the next task with a method to run.
+  /// Returns the next task that has a method to run.
   std::optional<DrawTask> next_draw() {
     for (; !plan_.at_end() && !stopped(); plan_.advance()) {
       DrawTask task = plan_.next(results_);
@@ -155,7 +155,7 @@ class Sweep {
     return std::nullopt;
   }
 
-  /// Passes the task to an idle or new worker; returns false if no worker is available.
+  /// Passes the task to an idle or new worker. Returns false if no worker is available.
   bool give(const DrawTask& task) {
     if (busy() >= options_.jobs) return false;
     const double deadline_s = now_s() + suite_.timeout_s * (static_cast<double>(task.runs.size()) + kSimulateTimeouts);
@@ -187,7 +187,7 @@ class Sweep {
     poll(waiting.data(), waiting.size(), kPollMs);
   }
 
-  /// Stores a worker's messages. Returns true if the worker died during a task.
+  /// Stores the messages of a worker. Returns true if the worker died during a task.
   bool serve(DrawWorker& worker) {
     if (!worker.is_busy()) return false;
     const bool open = hear(worker);
@@ -205,7 +205,7 @@ class Sweep {
     return true;
   }
 
-  /// Returns false if the worker has ended.
+  /// Reads the messages of a worker. Returns false if the worker has ended.
   bool hear(DrawWorker& worker) {
     std::vector<Message> said;
     const bool open = worker.hear(said);
@@ -219,7 +219,7 @@ class Sweep {
     return open;
   }
 
-  // The process of a task died, so the remaining method runs of the task have no result.
+  // The process of a task died, so the remaining methods of the task have no result.
   void account_for_death(const DrawTask& draw, bool late, const Process::End& end) {
     const std::string what =
         late ? "the draw did not finish within its time limit" : "the draw's process " + end.describe();
@@ -303,7 +303,7 @@ class Sweep {
   std::list<DrawWorker> workers_;
   SweepProgress progress_;
   std::uint64_t done_before_ = 0;
-  bool updating_kept_ = false;  ///< draws are only reproduced for their files
+  bool updating_kept_ = false;  ///< runs are only reproduced for their files
 };
 
 }  // namespace

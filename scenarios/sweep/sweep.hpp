@@ -21,14 +21,14 @@
 
 namespace tumble::scenarios {
 
-/// A class of simulated runs ("mild"); each run is a scenario and a seed.
+/// A class of simulated runs ("mild"). Each run is a scenario and a seed.
 struct DrawClass {
   std::string name;
   std::vector<std::pair<std::string, std::uint64_t>> draws;
 };
 
-/// A suite file, scenarios/suites/NAME.yaml: scenarios x seeds x methods, repeated for each point of each curve, or
-/// recordings x methods (recorded_draw.hpp).
+/// A suite file, scenarios/suites/NAME.yaml. A suite contains scenarios x seeds x methods, repeated for each point of
+/// each curve, or recordings x methods (recorded_draw.hpp).
 struct Suite {
   std::string name;
   std::string doc;
@@ -38,13 +38,12 @@ struct Suite {
   double timeout_s = 300;                   ///< limit for one method on one draw
   std::vector<std::string> recordings;      ///< file patterns, instead of scenarios and seeds
   std::filesystem::path recordings_folder;  ///< base folder of the patterns; default: the suite file's
-  std::vector<DrawClass> classes;           ///< key `draws`: restricts scenarios x seeds to these; empty: all
+  std::vector<DrawClass> classes;           ///< key `draws`: restricts scenarios x seeds to these runs; empty: all
   std::vector<std::string> shown_metrics;   ///< key `metrics`: shown by `bench`; empty: the headline metrics
-  std::vector<Variation> curves;            ///< key `vary`: {KEY: [values]}; keys that change together are joined by
-                                            ///< "+"
+  std::vector<Variation> curves;            ///< key `vary`: {KEY: [values]}; "+" joins keys that change together
 
   bool has_draw(const std::string& scenario, std::uint64_t seed) const;
-  /// Returns the number of unmodified simulated runs from `first_seed` to `last_seed`, which may be the seeds of a
+  /// Returns the number of unmodified simulated runs from `first_seed` to `last_seed`. These may be the seeds of a
   /// shard.
   std::uint64_t draw_count() const;
 };
@@ -61,8 +60,8 @@ struct SweepProgress {
   std::uint64_t draws_done = 0, draws_total = 0;
   std::uint64_t outcomes = 0, rejected = 0;
   std::map<OutcomeStatus, std::uint64_t> failures;  ///< outcomes that are not ok, by status
-  std::uint64_t kept = 0, to_keep = 0;              ///< kept draws at the end, and how many should be kept
-  std::string not_kept;                             ///< last error of keeping a draw
+  std::uint64_t kept = 0, to_keep = 0;              ///< kept runs at the end, and how many should be kept
+  std::string not_kept;                             ///< last error of keeping a run
   double elapsed_s = 0, left_s = 0;
   double peak_mib = 0;  ///< largest resident size of any finished process
   std::uint64_t not_ok() const;
@@ -79,14 +78,14 @@ struct SweepOptions {
   const std::atomic<bool>* stop = nullptr;  ///< set to stop after storing completed results
   std::function<void(const SweepProgress&)> on_progress;
   std::vector<OutcomeStatus> again;  ///< repeat rows with these statuses: crashed, timeout, killed
-  Keep keep;                         ///< which draws are kept next to the database; none: kept files are unchanged
+  Keep keep;                         ///< which runs are kept next to the database; none: kept files are unchanged
   RecordingInfo versions;            ///< versions of program and engine, for kept recordings
   /// Simulates without lidars if the built-in methods of the suite read no lidar. Estimates and scores are unchanged
   /// without lidars, but the recording's digest differs. The option cannot be combined with `keep`.
   bool recordings_unseen = false;
 };
 
-/// Throws BadInput for invalid options: jobs, seeds, statuses to repeat, keep rule, memory.
+/// Throws BadInput if an option is invalid: jobs, seeds, statuses to repeat, keep rule or memory.
 void require_sound(const Suite& suite, const SweepOptions& options);
 
 /// Opens or creates the database for this suite, build, models and scenarios. Throws BadInput if the database belongs
@@ -98,9 +97,9 @@ Results open_results(const DataRoot& data, const Suite& suite, const std::filesy
 /// sweep. Outcomes are stored as they complete. Simulated runs are planned one at a time, so memory does not grow with
 /// their number.
 ///
-/// At the end, the kept runs match the keep rule. Throws BadInput for a recording whose rows were made from other data
-/// (another digest). Returns the final progress; draws_done < draws_total if stopped. Throws BadInput if no method
-/// applies to any scenario.
+/// At the end, the kept runs match the keep rule. Returns the final progress. If the sweep was stopped, draws_done is
+/// below draws_total. Throws BadInput for a recording whose rows were made from other data (another digest), or if no
+/// method applies to any scenario.
 SweepProgress sweep(const DataRoot& data, const Suite& suite, const DatabaseOwner& database,
                     const SweepOptions& options);
 /// Executes the sweep and owns the database during the sweep. Throws BadInput if another process owns the database.

@@ -7,20 +7,20 @@
 /// Keys and values of notes that a sweep stores in its results (Results::set_note).
 namespace tumble::scenarios {
 
-/// Value of the note `source` for results of recordings, which cannot be simulated again.
+/// Value of the note `source` for results of recordings. Recordings cannot be simulated again.
 inline constexpr const char* kRecordingsSource = "recordings";
 
 /// Value of the note `build` for results merged from several builds (report-only databases).
 inline constexpr const char* kMixedBuilds = "mixed";
 
-/// Key of the note with the commands that produced the results, one line per sweep: suite, seeds and methods, quoted
-/// for a shell.
+/// Key of the note with the commands that produced the results. The note has one line per sweep with suite, seeds and
+/// methods, quoted for a shell.
 inline constexpr const char* kCommandNote = "command";
 
 /// Returns the non-empty lines of `note`.
 std::vector<std::string> commands_of(const std::string& note);
 
-/// Appends the lines of `more` that `note` lacks, and returns the result.
+/// Appends the lines of `more` that `note` does not contain, and returns the result.
 std::string with_commands(const std::string& note, const std::string& more);
 
 /// Quotes `text` as one word of a POSIX shell if it contains anything but letters, digits and `_-./:=,+@%`.

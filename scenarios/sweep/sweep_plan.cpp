@@ -15,8 +15,8 @@ namespace {
 
 using nlohmann::json;
 
-// Fraction of a method's time limit that an external command receives, so that the process that started the command
-// ends it first.
+// Fraction of a method's time limit that an external command receives. The process that started the command can then
+// end the command before its own time limit.
 constexpr double kOwnShare = 0.9;
 
 }  // namespace
@@ -47,7 +47,7 @@ SweepPlan::SweepPlan(const DataRoot& data, const Suite& suite, const SweepOption
       std::all_of(recordings_.begin(), recordings_.end(), idle)) {
     throw BadInput("suite " + suite.name + ": none of its methods applies to its scenarios");
   }
-  // If no situation can be drawn from a scenario of the catalogue, this is an error of the caller, not an outcome.
+  // If no situation can be drawn from a scenario of the catalogue, the caller gets an exception instead of an outcome.
   for (const Planned& each : scenarios_) draw(data, each.scenario, suite.first_seed);
   next_.seed = suite.first_seed;
   next_.past_seeds = scenarios_.empty();
@@ -103,7 +103,7 @@ DrawTask SweepPlan::next(const Results& results) const {
   return next_.recording < recordings_.size() ? of_recording(results) : of_scenario(results);
 }
 
-/// Adds method runs without a row for `setting`, or with a row to be repeated.
+/// Adds the methods without a row for `setting`, or with a row to be repeated.
 void SweepPlan::add_missing(const std::vector<MethodPointer>& methods, const std::vector<Outcome>& held,
                             const Setting& setting, DrawTask& task) const {
   const auto stands = [&](const MethodInfo& info) {
@@ -166,8 +166,8 @@ DrawTask SweepPlan::again(const DrawName& draw, const Results& results) const {
   return task;
 }
 
-/// Returns true if any method reads lidars on the scenario and seed, in this sweep or in an earlier sweep. Neither the
-/// remaining nor the completed method runs alone reveal whether lidars are read.
+/// Returns true if any method reads lidars on the scenario and seed, in this sweep or in an earlier sweep. Both the
+/// remaining and the completed methods must be considered.
 bool SweepPlan::read_lidars(const Planned& planned, const std::vector<Outcome>& held) const {
   const auto reads = [](Kind kind) { return kind != Kind::rate; };
   return std::any_of(planned.methods.begin(), planned.methods.end(),

@@ -14,35 +14,34 @@
 
 namespace tumble::scenarios {
 
-/// Iterates over the scenarios and seeds of a suite, with the method runs on each, in constant memory. Workers that are
-/// forked later can parse the tasks that the plan writes as lines.
+/// Iterates over the scenarios and seeds of a suite, with the methods to run on each, in constant memory. The plan
+/// writes tasks as lines. Workers that are forked later can parse these lines.
 class SweepPlan {
  public:
-  /// Throws BadInput for an unknown method, scenario or recording, a catalogue from which no situation can be drawn, or
-  /// if no method applies.
+  /// Throws BadInput for an unknown method, scenario or recording, and for a catalogue from which no situation can be
+  /// drawn. Throws BadInput also if no method applies.
   SweepPlan(const DataRoot& data, const Suite& suite, const SweepOptions& options,
             const std::filesystem::path& database);
 
-  SweepPlan(const SweepPlan&) = delete;  // tasks point into it
+  SweepPlan(const SweepPlan&) = delete;  // tasks point into the plan
   SweepPlan& operator=(const SweepPlan&) = delete;
 
   std::uint64_t draws_total() const;
   const std::vector<MethodPointer>& methods() const { return methods_; }
   /// Throws BadInput if the results contain rows of an older import of a recording.
   void require_same_recordings(const Results& results) const;
-  /// Stores the paths of the recordings, so that the method runs can be repeated (run_again.hpp).
+  /// Stores the paths of the recordings, so that runs can be repeated (run_again.hpp).
   void note_recordings(Results& results) const;
 
-  /// Recordings come first, then seeds as the outer loop, so that a stopped sweep covers all scenarios and curve
-  /// points.
+  /// Recordings come first, then seeds as the outer loop. A stopped sweep thus covers all scenarios and curve points.
   bool at_end() const { return next_.recording == recordings_.size() && next_.past_seeds; }
   void advance();
-  /// Returns the next task, with the method runs that have no row yet or that are to be repeated.
+  /// Returns the next task, with the methods that have no row yet or that are to be repeated.
   DrawTask next(const Results& results) const;
 
   /// Returns true if the scenario belongs to the suite, for any seed.
   bool has(const DrawName& draw) const;
-  /// Returns a task that repeats the completed method runs of a scenario and seed of the suite, so that their files are
+  /// Returns a task that repeats the completed methods of a scenario and seed of the suite, so that their files are
   /// kept.
   DrawTask again(const DrawName& draw, const Results& results) const;
 
@@ -80,7 +79,8 @@ class SweepPlan {
   const Suite& suite_;
   const SweepOptions& options_;
   KeptDraws kept_;
-  /// settings that need their own simulation, and those that reuse the plain one
+  /// `simulated_` contains settings that need their own simulation. `shared_` contains settings that reuse the
+  /// unmodified simulation.
   std::vector<Setting> simulated_ = {Setting{}}, shared_;
   std::vector<MethodPointer> methods_;
   std::vector<Planned> scenarios_;

@@ -10,7 +10,7 @@
 
 namespace tumble::scenarios {
 
-/// One input of a method, and a function that replaces the input by its truth. An input is registered in one line of
+/// One input of a method, and a function that replaces the input by its truth. Each input is registered by one line of
 /// true_inputs.cpp.
 struct TrueInput {
   std::string name;
@@ -20,13 +20,13 @@ struct TrueInput {
   bool (*replace)(sim::Sensors& sensors, const sim::Truth& truth);
 };
 
-/// Returns all inputs; the last entry replaces all inputs at once.
+/// Returns all inputs. The last entry replaces all inputs at once.
 std::span<const TrueInput> true_inputs();
 
 /// Criteria of a failure: a status other than ok, a failing verdict (`map_failed`), or a metric beyond a limit.
 struct Failure {
   std::string metric;  ///< empty: status and verdicts only
-  double limit = 0.0;  ///< upper limit, or lower limit where higher is better
+  double limit = 0.0;  ///< upper limit, or lower limit if higher is better
   bool holds(const Outcome& outcome) const;
 };
 

@@ -22,7 +22,7 @@ double largest(const Readings& readings) {
   return largest;
 }
 
-/// States a range beyond every reading, so that no reading counts as clipped.
+/// Returns a range above every reading, so that no reading counts as clipped.
 double beyond(double stated, const Readings& readings) {
   return stated > 0.0 ? std::max(stated, 1.1 * largest(readings)) : stated;
 }
@@ -43,7 +43,7 @@ bool replace_accel(sim::ImuRecord& imu, const Readings& readings) {
   return true;
 }
 
-/// Applies `replace(record, truth)` to each IMU; returns true if any IMU changed.
+/// Applies `replace(record, truth)` to each IMU. Returns true if any IMU changed.
 template <typename Replace>
 bool each_imu(sim::Sensors& sensors, const sim::Truth& truth, Replace&& replace) {
   bool changed = false;
@@ -93,7 +93,7 @@ bool exact_mounting(sim::Sensors& sensors, const sim::Truth& truth) {
   return changed;
 }
 
-/// Sets each stamp to the end of the sample's averaging window; needs a complete recording.
+/// Sets each stamp to the end of the sample's averaging window. Needs a complete recording.
 bool exact_stamps(sim::Sensors& sensors, const sim::Truth& truth) {
   bool changed = false;
   const std::int64_t end_ns = static_cast<std::int64_t>(truth.q_WB.size() - 1) * truth.period_ns;
@@ -108,7 +108,7 @@ bool exact_stamps(sim::Sensors& sensors, const sim::Truth& truth) {
   return changed;
 }
 
-/// Returns the lidar's pose; `lidar` must be the first lidar, whose frame the track has.
+/// Returns the lidar's pose. `lidar` must be the first lidar, whose frame the track has.
 Eigen::Isometry3d pose_of(const TruthTrack& track, std::int64_t time_ns) {
   const PoseState pose = track.pose(std::min(time_ns, track.last_ns()));
   Eigen::Isometry3d T_WL = Eigen::Isometry3d::Identity();
@@ -133,7 +133,7 @@ bool exact_ranges(sim::Sensors& sensors, const sim::Truth& truth) {
   return !lidar.range_m.empty();
 }
 
-/// Removes motion distortion: moves all points to the sensor pose at the last point, with stamps within a microsecond.
+/// Removes motion distortion. Moves all points to the sensor pose at the last point, with stamps within a microsecond.
 /// Range errors remain in the points.
 bool unbent_sweeps(sim::Sensors& sensors, const sim::Truth& truth) {
   if (sensors.lidars.empty() || truth.lidars.empty()) return false;
@@ -171,7 +171,8 @@ bool exact_series(sim::Sensors& sensors, const sim::Truth& truth) {
   return changed;
 }
 
-/// Range errors are corrected first, because this needs the time of each point, which removing distortion deletes.
+/// Range errors are corrected first, because this correction needs the time of each point. Removing distortion deletes
+/// these times.
 bool everything(sim::Sensors& sensors, const sim::Truth& truth) {
   bool changed = false;
   for (const auto& replace :

@@ -8,9 +8,9 @@ namespace tumble::scenarios {
 /// Subfolder for incomplete folders, next to the complete folders.
 inline constexpr const char* kUnfinished = ".unfinished";
 
-/// A folder under construction, WITHIN/.unfinished/NAME, until it is moved to its final path; otherwise the folder is
-/// removed. Only one process at a time may build a folder with a name. Throws std::filesystem::filesystem_error on
-/// failure.
+/// A folder under construction, WITHIN/.unfinished/NAME. The destructor removes the folder unless it was moved to its
+/// final path. Only one process at a time may build a folder with this name. Throws std::filesystem::filesystem_error
+/// on failure.
 class UnfinishedFolder {
  public:
   UnfinishedFolder(const std::filesystem::path& place, const std::filesystem::path& within);
@@ -18,7 +18,7 @@ class UnfinishedFolder {
   UnfinishedFolder(const UnfinishedFolder&) = delete;
   UnfinishedFolder& operator=(const UnfinishedFolder&) = delete;
   const std::filesystem::path& path() const { return path_; }
-  /// Replaces any existing folder.
+  /// Moves the folder to its final path, and replaces any existing folder.
   void move_into_place();
 
  private:

@@ -12,13 +12,15 @@
 
 namespace tumble::scenarios {
 
-/// A curve of a suite: one number, or several numbers that change together, set to a list of values. A key is
+/// A curve of a suite: one number, or several numbers that change together, set to a list of values. There are three
+/// sorts of keys.
 ///
-/// | key | is | for each value |
-/// | --- | --- | --- |
-/// | `world.rock_count`, `sensors.imu.output_rate_hz` | a number of the scenario (fixed_number.hpp) | new simulation |
-/// | `given.lever_arm_error_m` | an error in the methods' input (given_errors.hpp) | one simulation for all values |
-/// | `rate/saave.jerk_psd_rad2_s5` | a parameter of one method | one simulation for all values, only this method |
+/// - A key such as `world.rock_count` or `sensors.imu.output_rate_hz` is a number of the scenario (fixed_number.hpp).
+///   Each value needs a new simulation.
+/// - A key such as `given.lever_arm_error_m` is an error in the methods' input (given_errors.hpp). One simulation
+///   serves all values.
+/// - A key such as `rate/saave.jerk_psd_rad2_s5` is a parameter of one method. One simulation serves all values, for
+///   only this method.
 struct Variation {
   std::vector<std::string> keys;  ///< all of one sort
   std::vector<double> values;     ///< as written, each once
@@ -27,24 +29,25 @@ struct Variation {
   std::vector<Setting> settings() const;
 };
 
-/// States which part of a run a setting affects, and hence which part must be repeated.
+/// States which part of a run a setting affects. This part must be repeated for the setting.
 enum class Reach { nothing, simulation, input, method };
 Reach reach(const Setting& setting);
 
 /// Returns true if the setting is an input error of a lidar.
 bool needs_lidar(const Setting& setting);
 
-/// Throws BadInput in these cases: a key is unknown (suggests the nearest name), is of another sort than the other
-/// keys, or does not apply to one of the scenarios; or no situation with seed `seed` can be drawn with one of the
-/// values.
+/// Throws BadInput if a key is unknown, is of another sort than the other keys, or does not apply to one of the
+/// scenarios. The message for an unknown key suggests the nearest name. Throws BadInput also if no situation with seed
+/// `seed` can be drawn with one of the values.
 void check(const Variation& variation, const DataRoot& data, std::span<const std::string> scenarios,
            std::uint64_t seed);
 
-/// Returns the scenario with the setting's numbers fixed; unchanged if the setting does not affect the simulation.
+/// Returns the scenario with the setting's numbers fixed. It is unchanged if the setting does not affect the
+/// simulation.
 Scenario with_setting(Scenario scenario, const Setting& setting);
 
 /// Returns the simulated run with the setting's errors applied to its sensor data. Throws BadInput if the sensor is
-/// missing, or for a recording, because a recording lacks the situation that determines the error.
+/// missing. Throws BadInput also for a recording, because a recording has no situation to determine the error.
 SimulatedDraw with_setting(const SimulatedDraw& draw, const Setting& setting);
 
 /// Returns the method with the setting's parameters.

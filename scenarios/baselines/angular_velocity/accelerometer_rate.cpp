@@ -93,7 +93,7 @@ Status AccelerometerRate::estimate(std::span<const ImuSample> samples,
     }
     for (int j = 0; j < 3; ++j) {
       double low = -params_.rate_max_rad_s, high = params_.rate_max_rad_s;
-      // a clipped reading still limits the rate on one side
+      // A reading at the saturation limit gives a one-sided bound of the true rate.
       if ((clippings[k].gyro >> j & 1) != 0 && reading[j] > 0.0) low = std::min(reading[j], high);
       if ((clippings[k].gyro >> j & 1) != 0 && reading[j] < 0.0) high = std::max(reading[j], low);
       filter.x[j] = std::clamp(filter.x[j], low, high);

@@ -16,14 +16,14 @@ namespace tumble::baselines {
 /// Estimates angular rates from several accelerometers at known positions (gyro-free inertial system), by an extended
 /// Kalman filter.
 ///
-/// - State: rate and angular acceleration, driven by white jerk.
-/// - Measurements: the difference of the specific force between each auxiliary IMU and the primary, alpha x p + w x (w
-///   x p). The filter is valid in flight, contact and rest. The unclipped gyro axes are also used (`use_gyro`), so that
-///   the accelerometers only need to supply clipped axes.
-/// - Designed for long fast rotation and widely spaced accelerometers (projectiles, vehicles). Centripetal acceleration
-///   grows with the squared rate, so noise and misalignment hide slow rotation.
-/// - Not modelled: free flight, bias and misalignment of the accelerometers, correlation between the auxiliary IMUs'
-///   differences.
+/// The state contains the rate and the angular acceleration, driven by white jerk. The measurement is the difference of
+/// the specific force between each auxiliary IMU and the primary IMU: alpha x p + w x (w x p). The filter is valid in
+/// flight, in contact and at rest. The filter also uses the unclipped gyro axes (`use_gyro`), so the accelerometers
+/// only need to supply the clipped axes.
+///
+/// The method is designed for long fast rotation and widely spaced accelerometers (projectiles, vehicles). Centripetal
+/// acceleration grows with the squared rate, so noise and misalignment hide slow rotation. Free flight, bias and
+/// misalignment of the accelerometers, and the correlation between the auxiliary IMUs' differences are not modelled.
 ///
 /// With one auxiliary IMU, the rate about the line between the two IMUs is only observable through products with the
 /// other axes' rates. Without auxiliary IMUs, the filter bridges clipped readings by assuming a smooth rate.
@@ -31,15 +31,14 @@ class AccelerometerRate {
  public:
   struct Params {
     RailDetector::Params rails = {};
-    bool tilted_rails = false;  ///< also detects tilted saturation planes (ClippingFinder); the published method only
-                                ///< checks single axes
+    bool tilted_rails = false;  ///< also detects tilted rails (ClippingFinder); the published method does not
     bool use_gyro = true;
     double gyro_noise_density = 5.236e-4;  ///< [rad/s/sqrt(Hz)]
     double accel_noise_density = 1.5e-3;   ///< largest of the accelerometers [m/s^2/sqrt(Hz)]
-    double accel_floor_m_s2 = 0.05;        ///< standard deviation of a difference's bias
+    double accel_floor_m_s2 = 0.05;        ///< standard deviation of the bias of a force difference
     double accel_scale_error = 2e-3;       ///< scale and misalignment, relative to the force
     double jerk_psd = 1e7;                 ///< density of the white angular jerk [rad^2/s^5]
-    double rate_max_rad_s = 50.0;          ///< bound of the result
+    double rate_max_rad_s = 50.0;          ///< largest rate about one axis in the result
     double gap_max_s = 1.0;
 
     /// Visits every parameter with its name, unit and limits.
@@ -70,9 +69,9 @@ class AccelerometerRate {
   /// Throws InvalidParams if a parameter is outside its limits.
   explicit AccelerometerRate(const Params& params);
 
-  /// Computes one RateState per sample. On error, `out` is unchanged: `empty`, `too_few` (less than two samples, or
-  /// another number in an auxiliary IMU), `non_finite`, `time_order`, `gap`. The cost is proportional to the number of
-  /// samples times the number of auxiliary IMUs.
+  /// Computes one RateState per sample. On error, `out` is unchanged. Errors: `empty`, `too_few` (fewer than two
+  /// samples, or an auxiliary IMU with a different number of samples), `non_finite`, `time_order`, `gap`. The cost is
+  /// proportional to the number of samples times the number of auxiliary IMUs.
   Status estimate(std::span<const ImuSample> samples, std::span<const AuxiliaryAccelerometer> auxiliary_imus,
                   std::vector<RateState>& out) const;
 

@@ -14,11 +14,11 @@ namespace tumble::baselines {
 
 namespace {
 
-// Input and output of the smoother for one axis.
+// Data of one gyro axis for the smoother: readings, clipping flags and variance.
 struct Axis {
   std::span<const ImuSample> samples;
   std::vector<bool> clipped;    ///< saturated
-  std::vector<bool> overflown;  ///< saturated, with readings that carry no information
+  std::vector<bool> overflown;  ///< saturated beyond the limit: the readings carry no information
   int index = 0;
   double variance = 0.0;  ///< variance of an unclipped reading
 
@@ -62,7 +62,7 @@ std::vector<Value> interpolate(const Axis& axis) {
       const double span_s = axis.time_s(b) - axis.time_s(a), share = (axis.time_s(k) - axis.time_s(a)) / span_s;
       out[k].rate =
           cubic(share, span_s, axis.reading(a), slope_at(axis, a, -1), axis.reading(b), slope_at(axis, b, +1));
-      // A cubic has no variance, so the distance from the reading serves as the standard deviation.
+      // A cubic has no variance, so the distance between cubic and reading serves as the standard deviation.
       const double departure = out[k].rate - axis.reading(k);
       out[k].variance = axis.variance + departure * departure;
     }
@@ -107,8 +107,8 @@ struct BoundedJerk {
   Matrix noise(double, const Matrix& F) const { return start() - F * start() * F.transpose(); }
 };
 
-// Models the rate of one axis as a linear process. The model ignores clipped readings except `bounds`, which add one
-// Gaussian factor per sample.
+// Models the rate of one axis as a linear Gaussian process. The model ignores clipped readings, unless `bounds` adds
+// one Gaussian factor per clipped sample.
 template <typename Process>
 class Chain {
  public:
@@ -176,9 +176,9 @@ class Chain {
   std::vector<Moment> after_;
 };
 
-// Computes the most likely curve that respects all clipped readings as limits. Each round of smoothing adds hard limits
-// where the curve violates a clipped reading. The variance is the variance of the unlimited curve, truncated at the
-// reading.
+// Computes the most likely rate curve whose magnitude is at least every clipped reading. Each round smooths the curve
+// and adds a hard limit where the curve violates a clipped reading. The reported variance belongs to the curve without
+// limits, truncated at the reading.
 std::vector<Value> smooth_with_bounds(const Axis& axis, const ClippedBaseline::Params& params) {
   constexpr int kRounds = 8;
   const BoundedJerk process(params.snap_psd, params.rate_sigma_rad_s);

@@ -24,31 +24,29 @@ namespace tumble::baselines {
 ///   between corrections by another sensor.
 /// - `constant_jerk`: a smoother with the stationary Matern 5/2 process of deviation `rate_sigma_rad_s`: white snap
 ///   over short times, bounded rate over long times. The smoother uses clipped readings as hard lower limits of the
-///   rate's magnitude; it does not truncate the result afterwards. The `constant_jerk` model suits swings without
-///   impacts and gaps up to about 2 / lambda = 0.15 s, with lambda = (3 snap_psd / (16 rate_sigma^2))^(1/5). In longer
-///   gaps the `constant_jerk` estimate returns towards the saturation level, with the variance of a curve above that
-///   level.
+///   rate's magnitude. The `constant_jerk` model suits swings without impacts and gaps up to about 2 / lambda = 0.15 s,
+///   with lambda = (3 snap_psd / (16 rate_sigma^2))^(1/5). In longer gaps, the `constant_jerk` estimate returns towards
+///   the saturation level. The reported variance then belongs to a curve above the saturation level.
 ///
-/// An impact at the start or end of a gap gives both smooth models a wrong derivative: on tumbles of the rig their mean
-/// error exceeds the error of the clipped reading. Not modelled: impacts within a gap, and the coupling of a tumbling
-/// body's axes.
+/// An impact at the start or end of a gap gives `interpolate` and `constant_jerk` a wrong derivative. On tumbles of the
+/// rig, the mean error of these smooth models exceeds the error of the clipped reading. Impacts within a gap and the
+/// coupling between the axes of a tumbling body are not modelled.
 class ClippedBaseline {
  public:
   enum class Kind { interpolate, reject, constant_jerk };
   struct Params {
     Kind kind = Kind::interpolate;
     RailDetector::Params rails = {};
-    bool tilted_rails = false;  ///< also detects tilted saturation planes (ClippingFinder); the published method only
-                                ///< checks single axes
+    bool tilted_rails = false;  ///< also detects tilted rails (ClippingFinder); the published method does not
     /// Noise density of the gyro [rad/s/sqrt(Hz)].
     double gyro_noise_density = 5.236e-4;
-    /// Density of the white angular acceleration of `reject` [rad^2/s^3].
+    /// Density of the white angular acceleration that model `reject` assumes [rad^2/s^3].
     double acceleration_psd = 1e3;
-    /// Density of the white angular snap of `constant_jerk` [rad^2/s^7].
+    /// Density of the white angular snap that model `constant_jerk` assumes [rad^2/s^7].
     double snap_psd = 1e9;
-    /// Typical rate of one axis that `constant_jerk` assumes [rad/s].
+    /// Standard deviation of one axis's rate that model `constant_jerk` assumes [rad/s].
     double rate_sigma_rad_s = 20.0;
-    double rate_max_rad_s = 50.0;  ///< bound of the result in a gap
+    double rate_max_rad_s = 50.0;  ///< largest rate about one axis in a gap
     double gap_max_s = 1.0;        ///< longest accepted time between samples
 
     /// Visits every parameter with its name, unit and limits.
@@ -76,8 +74,8 @@ class ClippedBaseline {
   /// Throws InvalidParams if a parameter is outside its limits.
   explicit ClippedBaseline(const Params& params);
 
-  /// Computes one RateState per sample. On error, `out` is unchanged: `empty`, `too_few` (less than two samples),
-  /// `non_finite`, `time_order`, `gap`. O(N).
+  /// Computes one RateState per sample in O(N). On error, `out` is unchanged. Errors: `empty`, `too_few` (fewer than
+  /// two samples), `non_finite`, `time_order`, `gap`.
   Status estimate(std::span<const ImuSample> samples, std::vector<RateState>& out) const;
 
  private:

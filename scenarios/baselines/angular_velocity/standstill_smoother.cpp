@@ -50,13 +50,13 @@ struct Step {
   ErrorCovariance transition = ErrorCovariance::Identity();
 };
 
-// Noise per sample, from the parameters and the period.
+// Noise of one sample, computed from the parameters and the sample period.
 struct Noise {
   double gyro_variance = 0.0, accel_variance = 0.0;
 };
 
-// Rate of one axis with white jerk over short times and bounded over long times: the stationary Matern 3/2 process with
-// the state rate and acceleration.
+// Models the rate of one axis by the stationary Matern 3/2 process: white jerk over short times, bounded rate over long
+// times. The state of the process is rate and acceleration.
 struct BoundedAcceleration {
   double lambda = 1.0, variance = 1.0;
 
@@ -74,7 +74,7 @@ struct BoundedAcceleration {
 void predict(const StandstillSmoother::Params& p, const BoundedAcceleration& process, const Noise& noise,
              const ImuSample& sample, double dt_s, Belief& belief, ErrorCovariance& F) {
   Navigation& n = belief.mean;
-  // Force and rate are means over the sample's window, which ends with the step.
+  // Force and rate of a sample are means over the averaging window that ends with this time step.
   const Eigen::Matrix2d motion = process.transition(dt_s);
   const Vector3d turn = dt_s * (motion(0, 0) * n.rate_rad_s + motion(0, 1) * n.acceleration_rad_s2);
   const Eigen::Quaterniond middle = n.q_WI * so3::exp(0.5 * turn);
@@ -102,7 +102,7 @@ void predict(const StandstillSmoother::Params& p, const BoundedAcceleration& pro
   belief.covariance = (F * belief.covariance * F.transpose() + Q).eval();
 }
 
-// Processes one scalar measurement: residual = row * error + noise.
+// Updates the estimate with one scalar measurement: residual = row * error + noise.
 void measure(const Eigen::Matrix<double, 1, kErrorSize>& row, double residual, double variance, Belief& belief) {
   belief.mean.add(scalar_update(row, residual, variance, belief.covariance));
 }
@@ -113,7 +113,7 @@ void measure_component(int index, double residual, double variance, Belief& beli
   measure(row, residual, variance, belief);
 }
 
-// Applies a clipped reading as a limit of the rate, together with the maximum rate.
+// Restricts the rate of one axis to the range between its clipped reading and the maximum rate.
 void hold(const StandstillSmoother::Params& p, double reading, int axis, Belief& belief) {
   constexpr double kSoftness = 0.05;  // rad/s
   const double side = std::copysign(1.0, reading), rate = side * belief.mean.rate_rad_s[axis];
@@ -122,7 +122,7 @@ void hold(const StandstillSmoother::Params& p, double reading, int axis, Belief&
   if (held != rate) measure_component(6 + axis, side * (held - rate), kSoftness * kSoftness, belief);
 }
 
-// Returns true if the tilt or velocity error at rest exceeds the error that the linear filter can distribute over the
+// Returns true if the tilt or velocity error at rest is too large for the linear smoother to distribute over the
 // preceding motion.
 bool is_lost(const StandstillSmoother::Params& p, const ImuSample& sample, const Belief& belief) {
   const Vector3d up = belief.mean.q_WI * sample.specific_force_m_s2.normalized();
@@ -133,7 +133,7 @@ bool is_lost(const StandstillSmoother::Params& p, const ImuSample& sample, const
   return v.dot(spread.ldlt().solve(v)) > p.velocity_gate * p.velocity_gate;
 }
 
-// Restarts attitude and velocity without correlation to earlier states; the rate continues.
+// Restarts attitude and velocity without correlation to earlier states; the rate estimate is kept.
 void restart(const ImuSample& sample, Belief& belief, ErrorCovariance& F) {
   constexpr double kAnyTilt = 10.0, kAnyVelocity = 1e4;  // variances
   Navigation& n = belief.mean;
@@ -149,7 +149,7 @@ void restart(const ImuSample& sample, Belief& belief, ErrorCovariance& F) {
 void measure_rest(const StandstillSmoother::Params& p, const ImuSample& sample, Belief& belief) {
   const double still = p.rest_velocity_sigma_m_s * p.rest_velocity_sigma_m_s;
   for (int j = 0; j < 3; ++j) measure_component(3 + j, -belief.mean.v_W_m_s[j], still, belief);
-  // gravity: the horizontal force in the world measures the tilt
+  // At rest, a horizontal component of the specific force in world axes indicates a tilt error.
   const double tilt_sigma = p.rest_force_m_s2 / p.gravity_m_s2;
   const Vector3d up = (belief.mean.q_WI * sample.specific_force_m_s2).normalized();
   const double tilt[2] = {up.y(), -up.x()};  // small rotation from `up` to the vertical

@@ -12,43 +12,43 @@
 
 namespace tumble::baselines {
 
-/// Estimates angular rates between standstills with an inertial navigation filter, zero-velocity and zero-rate updates
-/// at rest, and a backward smoothing pass. The rotation lost to saturation between two rests is distributed over the
-/// clipped samples.
+/// Estimates angular rates between standstills with an inertial navigation filter and a backward smoothing pass. At
+/// rest the filter applies zero-velocity and zero-rate updates. The smoother distributes the rotation lost to
+/// saturation over the clipped samples between two rests.
 ///
 /// The error state has 12 elements: attitude, velocity, rate, angular acceleration. The filter integrates the specific
 /// force and models the rate as a Matern 3/2 process: white angular jerk over short times, bounded rate over long
-/// times. Measurements are unclipped gyro axes, limits from clipped gyro axes, and at standstill zero velocity, zero
-/// rate and the direction of gravity. A forward extended Kalman filter is followed by a backward Rauch-Tung-Striebel
-/// pass.
+/// times. Unclipped gyro axes are measurements, and clipped gyro axes are limits of the rate. At standstill, the filter
+/// also measures zero velocity, zero rate and the direction of gravity. A backward Rauch-Tung-Striebel pass follows the
+/// forward extended Kalman filter.
 ///
-/// The method is based on zero-velocity smoothers for foot-mounted and hand-moved sensors (Dang and Suh). Designed for
-/// motions of one or two seconds between rests with few clipped samples. If tilt or velocity at the next standstill has
-/// a larger error than a linear filter can correct, attitude and velocity restart at that standstill. After a restart,
-/// the rates between the standstills follow only from the limits of the clipped readings and from smoothness, as in a
-/// tumble of several turns. Not modelled: clipped specific force, a lever arm, sensor bias.
+/// The method is based on zero-velocity smoothers for foot-mounted and hand-moved sensors (Dang and Suh). It is
+/// designed for motions of one or two seconds between rests with few clipped samples. If the tilt or velocity error at
+/// the next standstill is too large for a linear filter, attitude and velocity restart at that standstill. After a
+/// restart, the rates since the previous standstill follow only from the limits of the clipped readings and from
+/// smoothness. A tumble of several turns causes such a restart. Clipped specific force, a lever arm and sensor bias are
+/// not modelled.
 class StandstillSmoother {
  public:
   struct Params {
     RailDetector::Params rails = {};
-    bool tilted_rails = false;  ///< also detects tilted saturation planes (ClippingFinder); the published method only
-                                ///< checks single axes
+    bool tilted_rails = false;  ///< also detects tilted rails (ClippingFinder); the published method does not
     double gravity_m_s2 = 9.80665;
     double gyro_noise_density = 5.236e-4;   ///< [rad/s/sqrt(Hz)]
     double accel_noise_density = 5.9e-4;    ///< [m/s^2/sqrt(Hz)]
     double accel_error_m_s2 = 0.05;         ///< scale and bias errors of the force, modelled as noise per sample
     double jerk_psd = 1e5;                  ///< density of the white angular jerk [rad^2/s^5]
-    double rest_rate_rad_s = 0.1;           ///< rest: rates below this,
-    double rest_force_m_s2 = 0.3;           ///< and force within this of gravity,
-    double rest_s = 0.2;                    ///< for this duration
+    double rest_rate_rad_s = 0.1;           ///< rest: largest rate,
+    double rest_force_m_s2 = 0.3;           ///< largest deviation of the force from gravity,
+    double rest_s = 0.2;                    ///< shortest duration
     double rest_velocity_sigma_m_s = 0.01;  ///< standard deviation of the zero velocity
     double rate_sigma_rad_s = 20.0;         ///< typical rate of one axis
-    double tilt_max_rad = 0.5;              ///< at a standstill; a larger tilt indicates lost rotation
-    double velocity_gate = 5.0;             ///< same for the velocity, in standard deviations
-    double rate_max_rad_s = 50.0;           ///< Visits every parameter with its name, unit and limits.
+    double tilt_max_rad = 0.5;              ///< largest tilt error at a standstill; more indicates lost rotation
+    double velocity_gate = 5.0;             ///< largest velocity error at a standstill, in standard deviations
+    double rate_max_rad_s = 50.0;           ///< largest rate about one axis in the result
     double gap_max_s = 1.0;
 
-    /// Throws InvalidParams if a parameter is outside its limits.
+    /// Visits every parameter with its name, unit and limits.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("rails_", p.rails);
@@ -80,12 +80,12 @@ class StandstillSmoother {
     }
   };
 
-  /// Throws InvalidParams for a parameter out of bounds.
+  /// Throws InvalidParams if a parameter is outside its limits.
   explicit StandstillSmoother(const Params& params);
 
   /// Computes one RateState per sample; the rates of unclipped axes are copied from the gyro. On error, `out` is
-  /// unchanged: `empty`, `too_few` (less than two samples), `non_finite`, `time_order`, `gap`. Time and memory are
-  /// proportional to the number of samples.
+  /// unchanged. Errors: `empty`, `too_few` (fewer than two samples), `non_finite`, `time_order`, `gap`. Time and memory
+  /// are proportional to the number of samples.
   Status estimate(std::span<const ImuSample> samples, std::vector<RateState>& out) const;
 
  private:

@@ -10,7 +10,7 @@
 
 namespace tumble::baselines {
 
-/// Selects how Autogain converts a rate to the factor that selects between gyro-led and accelerometer-led correction.
+/// Selects how Autogain converts the angular rate to the factor that weights gyro against accelerometer.
 enum class AutogainProfile : std::uint8_t {
   paper,     ///< eq 2: 0 up to `lower`, (|w_k| - lower)^2 / (upper - lower)^2, 1 from `upper`
   code2021,  ///< the authors' code of 2021: min(1, (w_k / 2)^2); below 0.1 the gains, but not the factors, use 0
@@ -25,25 +25,24 @@ struct AutogainGains {
   double slerp_share = 0.0;                          ///< alpha (eq 5): share of the complementary step
 };
 
-/// Estimates attitude with the published filter for a rolling sphere (Zevering et al., IEEE MFI 2021, eqs 2-5). Applies
-/// a Madgwick step whose gain grows with the rate, then a complementary step whose weight falls with the rate. During
-/// slow rotation the filter relies on the accelerometer even if the body accelerates. Estimates neither bias nor
-/// heading.
+/// Estimates attitude with the published filter for a rolling sphere (Zevering et al., IEEE MFI 2021, eqs 2-5). The
+/// filter applies a Madgwick step whose gain grows with the rate, then a complementary step whose weight falls with the
+/// rate. During slow rotation the filter relies on the accelerometer even if the body accelerates. It estimates neither
+/// bias nor heading.
 class Autogain {
  public:
   struct Params {
     AutogainProfile profile = AutogainProfile::paper;
     double gain_rad_s = 0.2;   ///< capital Theta: the Madgwick gain at full rate
-    double tau_s = 0.396;      ///< time constant of the complementary step at rest: 0.02 (Theta / 10) per sample at 125
-                               ///< Hz
+    double tau_s = 0.396;      ///< time constant of the complementary step at rest (0.02 per sample at 125 Hz)
     double lower_rad_s = 0.1;  ///< unused by code2021
     double upper_rad_s = 2.1;  ///< above lower_rad_s; unused by code2021
     /// Computes the complementary step as the authors' code does, where the check for gimbal lock is always true. As a
-    /// consequence, the target attitude keeps the current roll, and roll is never corrected. The variant serves to
-    /// reproduce the authors' recordings.
+    /// consequence, the target attitude keeps the current roll, and roll is never corrected. The option reproduces the
+    /// results in the authors' recordings.
     bool roll_error_2021 = false;
-    /// Computes the complementary step as the smallest rotation instead of a target in roll, pitch and yaw; the smooth
-    /// profile uses this form.
+    /// Computes the complementary step as the smallest rotation instead of a target in roll, pitch and yaw. The
+    /// `smooth` profile uses the smallest rotation.
     bool tilt_form = false;
     double gap_max_s = 1.0;
 

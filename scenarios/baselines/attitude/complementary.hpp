@@ -9,9 +9,9 @@
 
 namespace tumble::baselines {
 
-/// Estimates attitude by a complementary filter: integrates the gyro exactly, then applies the fraction 1 - exp(-dt /
-/// tau) of the smallest rotation that levels the specific force. The attitude is steady at rest, but accelerations that
-/// last longer than tau cause errors. Estimates no bias.
+/// Estimates attitude by a complementary filter. The filter integrates the gyro exactly, then applies the fraction 1 -
+/// exp(-dt / tau) of the smallest rotation that levels the specific force. The attitude is steady at rest, but
+/// accelerations that last longer than tau cause errors. The filter estimates no bias.
 class Complementary {
  public:
   struct Params {

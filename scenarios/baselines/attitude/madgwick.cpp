@@ -15,7 +15,7 @@ namespace {
 constexpr double kGradientMin = 1e-12;
 
 /// Returns the gradient J^T F of half the squared distance between predicted and measured up direction, as (x, y, z,
-/// w): s of attitude.md (A24).
+/// w). The gradient is s in equation (A24) of attitude.md.
 Eigen::Vector4d tilt_gradient(const Eigen::Quaterniond& q, const Eigen::Vector3d& up_I) {
   const double w = q.w(), x = q.x(), y = q.y(), z = q.z();
   const double f1 = 2.0 * (x * z - w * y) - up_I.x();
@@ -38,7 +38,7 @@ Eigen::Vector4d correction(const Eigen::Quaterniond& q, const Eigen::Vector3d& f
 
 }  // namespace
 
-/// attitude.md (A24).
+/// Implements equation (A24) of attitude.md.
 Eigen::Quaterniond madgwick_step(const Eigen::Quaterniond& q_WI, const Eigen::Vector3d& w_I_rad_s,
                                  const Eigen::Vector3d& f_I_m_s2, double gain_rad_s, double dt_s) {
   const Eigen::Quaterniond rate(0.0, w_I_rad_s.x(), w_I_rad_s.y(), w_I_rad_s.z());

@@ -16,12 +16,12 @@
 
 namespace tumble::baselines {
 
-/// Estimates trajectory and map with the published mapping chain from given rates (Deschenes et al., ICRA 2024, with
-/// the constants of the authors' launch files). The steps are Madgwick's attitude, accelerometer odometry with velocity
-/// feedback from registration, deskewing, time weighting, and trimmed point-to-plane registration of voxelised points
-/// to a map. Deskewing refers to the start of the sweep, or to the common time of the sweep's points. The map grows
-/// only where it is empty. Parameters switch each known error of the published chain; the defaults are those of the
-/// launch files.
+/// Estimates trajectory and map from given rates with the published mapping chain (Deschenes et al., ICRA 2024, with
+/// the constants of the authors' launch files). Madgwick's filter estimates attitude, and accelerometer odometry
+/// estimates position with velocity feedback from registration. The chain deskews each sweep, weights its points by
+/// time, and registers the voxelised points to a map by trimmed point-to-plane registration. Deskewing refers to the
+/// start of the sweep, or to the common time of the sweep's points. The map grows only where it is empty. A parameter
+/// switches each known error of the published chain; the defaults are those of the launch files.
 class PublishedChain {
  public:
   struct Params {
@@ -82,15 +82,15 @@ class PublishedChain {
     std::span<const LidarPoint> points;
   };
 
-  /// Takes the samples of a whole recording and their `rates`, one per sample, which replace the gyro. `samples` must
-  /// outlive this object.
+  /// Stores the samples of a whole recording and one rate per sample in `rates`, which replaces the gyro. `samples`
+  /// must outlive this object.
   PublishedChain(const Params& params, std::span<const ImuSample> samples, std::span<const RateState> rates);
 
   /// Returns true if the IMU samples extend beyond the end of the sweep.
   bool covers(const Sweep& sweep) const;
-  /// Registers a sweep that `covers` accepts and that is later than all sweeps before. Errors: `out_of_range` if a
-  /// point's offset is beyond the end of the samples (the state is unchanged); `empty`, `degenerate` (all points have
-  /// one time) and `too_few` (points in range), where the odometry continues without registration.
+  /// Registers a sweep that `covers` accepts and that is later than all sweeps before. Returns `out_of_range` if a
+  /// point's offset is beyond the end of the samples; the state is then unchanged. Returns `empty`, `degenerate` (all
+  /// points have one time) or `too_few` (points in range) without registration; the odometry then continues.
   Status add(const Sweep& sweep, SweepReport& report);
   /// Returns the map points with normals that point towards the sensor.
   std::vector<MapPoint> map() const;

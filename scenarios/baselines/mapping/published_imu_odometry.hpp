@@ -20,15 +20,17 @@ class PublishedImuOdometry {
   PublishedImuOdometry(double madgwick_gain_rad_s, std::span<const ImuSample> samples,
                        std::span<const RateState> rates);
 
-  /// Integrates up to the first sample at or after `to_ns`.
+  /// Integrates the samples up to the first sample at or after `to_ns`.
   void advance(TimeNs to_ns);
-  /// Sets the velocity from registration, valid at `time_ns`, and adds the later accelerometer increments again.
+  /// Sets the velocity at `time_ns` to the velocity from registration, and adds the later accelerometer increments
+  /// again.
   void feed_back(const Eigen::Vector3d& velocity_m_s, TimeNs time_ns);
 
-  /// Returns the pose of the IMU, interpolated linearly (position) and by slerp (attitude) between samples, and
-  /// constant before the first sample.
+  /// Returns the pose of the IMU. Between samples, position is interpolated linearly and attitude by slerp. Before the
+  /// first sample, the pose is constant.
   Eigen::Isometry3d pose(TimeNs time_ns) const;
-  /// Returns the integrated velocity at the first sample at or after the time, without feedback that arrived later.
+  /// Returns the integrated velocity at the first sample at or after the time, without feedback that arrived after that
+  /// sample.
   const Eigen::Vector3d& velocity_m_s(TimeNs time_ns) const;
 
  private:

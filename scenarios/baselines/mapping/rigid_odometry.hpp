@@ -18,9 +18,10 @@ namespace tumble::baselines {
 
 /// Registers sweeps to a map, with a motion model that the caller supplies. Deskews each sweep once, to the sweep's
 /// end, and corrects the end pose as a rigid body, like most lidar odometries. Published lidar odometries differ in the
-/// motion model (`Motion`) and in the use of the result; the caller chooses both.
+/// motion model (`Motion`) and in how they use the registered pose; the caller chooses both.
 ///
-/// Not modelled: motion errors within the sweep, mounting errors and clock offsets, recovery after tracking failure.
+/// Motion errors within the sweep, mounting errors, clock offsets, and recovery after tracking failure are not
+/// modelled.
 class RigidOdometry {
  public:
   struct Params {
@@ -28,7 +29,7 @@ class RigidOdometry {
     double range_min_m = 0.3;
     double range_max_m = 100.0;
     Eigen::AlignedBox3d own_body_L;  ///< returns inside belong to the robot; an empty box keeps all
-    double sweep_voxel_m = 0.25;     ///< one point per voxel of a sweep is registered
+    double sweep_voxel_m = 0.25;     ///< the filter registers one point per voxel of a sweep
     double map_voxel_m = 0.5;
     double map_spacing_m = 0.1;
     /// Inserts unregistered sweeps into the map at the predicted pose, as most published methods do.
@@ -68,11 +69,12 @@ class RigidOdometry {
 
   explicit RigidOdometry(const Params& params);
 
-  /// Registers a sweep with points between start_ns and end_ns. Errors as in LidarInertialOdometry::add_sweep.
+  /// Registers a sweep with points between start_ns and end_ns. The errors are those of
+  /// LidarInertialOdometry::add_sweep.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points, const Motion& motion,
                    LidarInertialOdometry::SweepReport& report);
 
-  /// Return the predicted state, and the registered state with covariance, at the end of the last sweep.
+  /// These functions return the predicted state and the registered state with covariance at the end of the last sweep.
   const MotionState& predicted() const { return predicted_; }
   const MotionState& state() const { return state_; }
 

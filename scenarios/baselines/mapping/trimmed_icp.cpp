@@ -19,8 +19,7 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 Vector6 solve(const Matrix6& H, const Vector6& g) {
   const Eigen::LLT<Matrix6> factor(H);
   if (factor.info() == Eigen::Success) return factor.solve(-g);
-  return H.completeOrthogonalDecomposition().solve(-g);  // minimum-norm solution where surfaces leave directions
-                                                         // unconstrained
+  return H.completeOrthogonalDecomposition().solve(-g);  // minimum-norm solution of a singular system
 }
 
 }  // namespace
@@ -59,7 +58,8 @@ const TrimmedIcp::Normal& TrimmedIcp::normal(const VoxelMap& map, std::uint32_t 
   entry.known = true;
   Neighbours found;
   map.nearest(map.position_W_m(index), params_.normal_neighbours, static_cast<float>(params_.match_distance_m), found);
-  // the original accepts the smallest eigenvector of any neighbourhood, planar or not
+  // The original accepts the smallest eigenvector of any neighbourhood as the normal, even if the neighbourhood is not
+  // planar.
   PlaneBounds any;
   any.neighbours_min = 3;
   any.collinear_share = 0.0;

@@ -15,13 +15,13 @@
 namespace tumble::baselines {
 
 /// Aligns a sweep to a map as the published chain does: point-to-plane registration with k matches per point. The
-/// registration keeps a fraction of matches that is chosen from the data (Chetverikov et al., 2005; Phillips et al.,
-/// 2007, with lambda) and weights each match by the inverse variances of both points. Each iteration solves small-angle
-/// normal equations.
+/// registration chooses the fraction of matches to keep from the data (Chetverikov et al., 2005; Phillips et al., 2007,
+/// with lambda). The registration weights each match by the inverse variances of both points. Each iteration solves
+/// small-angle normal equations.
 ///
-/// The result has no measure of observability; an unobservable direction, as in a corridor, is reported as success.
-/// LidarInertialOdometry detects unobservable directions. The cost of an iteration is proportional to the number of
-/// points times k.
+/// The result has no measure of observability. If a direction is unobservable, as in a corridor, the registration still
+/// reports success. LidarInertialOdometry detects unobservable directions. The cost of an iteration is proportional to
+/// the number of points times k.
 class TrimmedIcp {
  public:
   struct Params {
@@ -32,7 +32,7 @@ class TrimmedIcp {
     double trim_max = 0.7;
     double trim_lambda = 2.35;
     /// Reproduces an error of the original, where the kept fraction refers to all match slots, although unmatched slots
-    /// are missing from the sorted list. The original reads beyond the end of the sorted list; here the index stops at
+    /// are missing from the sorted list. The original reads beyond the end of the sorted list. This function stops at
     /// the end of the list.
     bool count_unmatched_slots = false;
     int iterations_max = 40;
@@ -41,7 +41,7 @@ class TrimmedIcp {
     double correction_max_m = 15.0;
     double correction_max_rad = 1.1;
 
-    /// Describes every parameter once.
+    /// Visits every parameter with its name, unit and limits.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.neighbours, {"neighbours", "1", 1, 32, "number of matches per point"});
@@ -80,12 +80,11 @@ class TrimmedIcp {
   /// chain. Returns an error if there are no matches or if the correction exceeds its limit.
   Result align(std::span<const Point> points, const Eigen::Isometry3d& prior, const VoxelMap& map);
 
-  /// Returns the fraction f of the sorted squared distances d^2 to keep. The fraction minimises (sum of the smallest f
-  /// n distances d^2) / (f n f^(2 lambda)) over f in [trim_min, trim_max], with n = `slots`.
+  /// Returns the number of sorted squared distances d^2 to keep. The kept fraction f minimises (sum of the smallest f n
+  /// distances d^2) / (f n f^(2 lambda)) over f in [trim_min, trim_max], with n = `slots`.
   static std::size_t trim(std::span<const float> sorted_d2, std::size_t slots, const Params& params);
 
-  /// The caller must call this function after each change of the map, because normals are computed on demand and
-  /// cached.
+  /// Clears the cached normals. The caller must call this function after each change of the map.
   void forget_normals() { normals_.clear(); }
 
  private:

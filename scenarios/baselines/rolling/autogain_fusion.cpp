@@ -13,7 +13,7 @@ namespace tumble::baselines {
 
 namespace {
 
-/// Eq 8: scales each axis by the larger factor of the two other axes, because rotation about the two other axes moves
+/// Scales each axis by the larger factor of the two other axes (eq 8), because rotation about the two other axes moves
 /// the sphere along this axis.
 Eigen::Vector3d coupling(const Eigen::Vector3d& factor) {
   return {std::max(factor.y(), factor.z()), std::max(factor.x(), factor.z()), std::max(factor.x(), factor.y())};
@@ -42,19 +42,20 @@ Status AutogainFusion::step(const ImuSample& sample, const Eigen::Quaterniond& q
   return {};
 }
 
-/// Eqs 6-9: returns the gated integral of the linear acceleration, in W.
+/// Returns the gated integral of the linear acceleration in W (eqs 6-9).
 Eigen::Vector3d AutogainFusion::accelerated(const ImuSample& sample, const Eigen::Quaterniond& q_WI, double dt_s,
                                             State& state) const {
   const double length = sample.specific_force_m_s2.norm();
   const double unit = params_.direction_only ? std::max(length, kForceMin_m_s2) : params_.gravity_m_s2;
-  // the force is a mean over the window, so gravity is subtracted at the attitude in its middle
+  // The force is a mean over the averaging window, so gravity is subtracted at the attitude in the middle of the
+  // window.
   const Eigen::Quaterniond q_mid = q_WI * so3::exp(-0.5 * dt_s * sample.angular_velocity_rad_s);
   const Eigen::Vector3d up_I = q_mid.conjugate() * Eigen::Vector3d::UnitZ();
   const Eigen::Vector3d linear_g = sample.specific_force_m_s2 / unit - up_I;
   const Eigen::Vector3d a_I = (params_.direction_only ? 1.0 : params_.gravity_m_s2) * linear_g;
   const Eigen::Vector3d scale = coupling(autogain_.gains(sample.angular_velocity_rad_s, dt_s).factor);
 
-  // the coupling acts in sensor axes, whichever frame the integral uses
+  // The coupling factors apply to the sensor axes, even if the integral is in world axes.
   const Eigen::Quaterniond q = params_.integrate_in_body ? Eigen::Quaterniond::Identity() : q_WI;
   state.v_integral_m_s += dt_s * (params_.integrate_in_body ? a_I : q_mid * a_I);
   const Eigen::Vector3d gated_I = scale.cwiseProduct(q.conjugate() * state.v_integral_m_s);
@@ -62,7 +63,7 @@ Eigen::Vector3d AutogainFusion::accelerated(const ImuSample& sample, const Eigen
   return q_WI * gated_I;
 }
 
-/// Eqs 12 and 13: applies the limits, the vertical part, and the weighted sum.
+/// Applies the limits, the vertical part and the weighted sum (eqs 12 and 13).
 Eigen::Vector3d AutogainFusion::fuse(const Eigen::Vector3d& v_acc_W, const Eigen::Vector3d& v_rot_W) const {
   Eigen::Vector2d acc = v_acc_W.head<2>(), rot = v_rot_W.head<2>();
   const double speed = rot.norm();

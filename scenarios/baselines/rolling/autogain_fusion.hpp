@@ -11,10 +11,11 @@
 namespace tumble::baselines {
 
 /// Estimates the position of a rolling sphere on a flat floor by fusing rolling with the integrated accelerometer
-/// (Zevering et al., IEEE MFI 2021, eqs 6-13). The integral of the acceleration is used only during rotation, limited
-/// to slightly more than the rolling velocity, and averaged with the rolling velocity. Only the sign of the integral
-/// matters, so the estimated path of a sphere that rolls without slip is up to half too short. The class exists for
-/// comparison; its options select the variants of the paper and of the authors' code.
+/// (Zevering et al., IEEE MFI 2021, eqs 6-13). The filter uses the integrated acceleration only during rotation. It
+/// limits the integral to slightly more than the rolling velocity, then averages the integral with the rolling
+/// velocity. Only the sign of the integral matters, so the estimated path of a sphere that rolls without slip is up to
+/// half too short. The class is a baseline for comparisons; its options select the variants of the paper and of the
+/// authors' code.
 class AutogainFusion {
  public:
   struct Params {
@@ -25,16 +26,14 @@ class AutogainFusion {
     double acceleration_weight = 0.5;  ///< eq 13
     Autogain::Params autogain = {};    ///< only for the factors of eq 2
 
-    // The options switch the differences between the paper and the authors' code. The defaults are the paper's
+    // Each option switches one difference between the paper and the authors' code. The defaults are the paper's
     // equations as printed.
     bool integrate_in_body = true;    ///< eq 7 in the rotating frame, without w x v; false integrates in W
-    bool direction_only = false;      ///< as in the code: normalises f before subtracting gravity, without multiplying
-                                      ///< by g
+    bool direction_only = false;      ///< as in the code: subtracts gravity from f / |f|, without multiplying by g
     bool recursive_coupling = false;  ///< as in the code: eq 8 scales the integral itself at each sample
     bool limit_per_axis = true;       ///< limits along the world's axes; false limits the horizontal vector
     bool shrink_per_axis = true;      ///< eq 12 subtracts v_z^2 from each axis; false once from the horizontal vector
-    bool vertical_by_norm = false;    ///< as in the code: limits |v_z| by the norm of v_rot; false by the mean of both
-                                      ///< sizes
+    bool vertical_by_norm = false;    ///< as in the code: limits |v_z| by |v_rot|; false by the mean of both sizes
 
     double gap_max_s = 1.0;
 
@@ -84,7 +83,7 @@ class AutogainFusion {
 
   explicit AutogainFusion(const Params& params);
 
-  /// Processes one IMU sample; `q_WI` is the attitude at the end of the sample's averaging window. On error the state
+  /// Processes one IMU sample. `q_WI` is the attitude at the end of the sample's averaging window. On error the state
   /// is unchanged.
   Status step(const ImuSample& sample, const Eigen::Quaterniond& q_WI, State& state) const;
 

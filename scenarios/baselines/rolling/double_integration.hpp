@@ -11,7 +11,8 @@ namespace tumble::baselines {
 
 /// Computes the position of an IMU by integrating the specific force twice, minus gravity at an attitude that the
 /// caller supplies. The integration is second order in the sample period, and exact if the force is constant in W over
-/// each sample. The drift is unbounded: a tilt error of 0.1 deg gives 1.7 cm/s^2, or 1 m after 11 s.
+/// each sample. The drift is unbounded: a tilt error of 0.1 deg causes an acceleration error of 1.7 cm/s^2, and a
+/// position error of 1 m after 11 s.
 class DoubleIntegration {
  public:
   struct Params {
@@ -37,7 +38,7 @@ class DoubleIntegration {
 
   explicit DoubleIntegration(const Params& params);
 
-  /// Processes one IMU sample; `q_WI` is the attitude at the end of the sample's averaging window. The integration
+  /// Processes one IMU sample. `q_WI` is the attitude at the end of the sample's averaging window. The integration
   /// starts at rest at the origin with the first sample. On error the state is unchanged. O(1), no allocation.
   Status step(const ImuSample& sample, const Eigen::Quaterniond& q_WI, State& state) const;
 

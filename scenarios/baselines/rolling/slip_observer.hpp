@@ -14,19 +14,19 @@ namespace tumble::baselines {
 /// Estimates the position of a rolling sphere on a flat floor with an observer of the slip velocity u of the contact
 /// point: v = r w x n + u.
 ///
-/// Without slip, the acceleration of the sphere's centre is r w' x n. A slip event starts if the measured acceleration
-/// differs strongly from r w' x n; the difference e is computed over a window of 11 samples. During an event, the
-/// observer integrates e to u; the event ends when e is small and u has returned to zero. At the start of an event, the
-/// observer also integrates e over the last 25 samples, because a slide starts before its detection. At the end of an
-/// event, the observer removes the linear drift of u; an event that lasts too long is undone. The window length is
-/// designed for a sample rate of about 125 Hz.
+/// Without slip, the acceleration of the sphere's centre is r w' x n. The residual e is the measured acceleration minus
+/// r w' x n over a window of 11 samples. A slip event starts if e is large. During an event, the observer integrates e
+/// to u. The event ends when e is small and u has returned to zero. At the start of an event, the observer also
+/// integrates e over the last 25 samples, because a slide starts before its detection. At the end of an event, the
+/// observer removes the linear drift of u. An event that lasts too long is undone. The window length is designed for a
+/// sample rate of about 125 Hz.
 ///
-/// Not modelled: tilt changes within a slip event, impacts, slopes. The observer performs better on ideal signals: on
-/// simulated physics its position is hardly better than with the rolling assumption alone.
+/// Tilt changes within a slip event, impacts and slopes are not modelled. In simulations with realistic physics, the
+/// estimated position is hardly better than with the rolling assumption alone.
 class SlipObserver {
  public:
   static constexpr int kWindow = 11;   ///< samples for fitting acceleration and rate; the delay is half of this
-  static constexpr int kHistory = 25;  ///< samples integrated when an event starts
+  static constexpr int kHistory = 25;  ///< samples integrated at the start of an event
 
   struct Params {
     double radius_m = 0.145;
@@ -34,10 +34,10 @@ class SlipObserver {
     Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< from centre to IMU, sensor axes
     double open_m_s2 = 0.5;                                 ///< |e| that starts an event
     double quiet_m_s2 = 0.25;                               ///< |e| below which an event may end
-    double quiet_time_s = 0.12;                             ///< required duration
+    double quiet_time_s = 0.12;                             ///< shortest time below quiet_m_s2 before an event ends
     double closing_speed_m_s = 0.08;                        ///< |u| below which an event may end
-    double timeout_s = 2.0;                                 ///< longer events are undone
-    double ignore_time_s = 1.0;                             ///< required quiet time after a time-out
+    double timeout_s = 2.0;                                 ///< an event that lasts longer is undone
+    double ignore_time_s = 1.0;                             ///< required time below quiet_m_s2 after a time-out
     double closed_decay_per_s = 8.0;                        ///< decay of u outside events
     double bias_tau_s = 1.0;    ///< time constant of e's mean in quiet phases (tilt, accelerometer bias)
     double blend_tau_s = 0.25;  ///< time constant for applying a position correction
@@ -92,7 +92,7 @@ class SlipObserver {
 
   explicit SlipObserver(const Params& params);
 
-  /// Processes one IMU sample; `q_WI` is the attitude at the end of the sample's averaging window. On error the state
+  /// Processes one IMU sample. `q_WI` is the attitude at the end of the sample's averaging window. On error the state
   /// is unchanged. O(kWindow), no allocation.
   Status step(const ImuSample& sample, const Eigen::Quaterniond& q_WI, State& state) const;
 
