@@ -24,7 +24,7 @@ constexpr double kCarried = 0.5;
 Status run_thrown(const sim::Sensors& sensors, const sim::Values& parameters, const std::vector<ImuSample>& samples,
                   const std::vector<ImuSample>& recovered, const std::vector<Eigen::Matrix3d>& covariances,
                   std::vector<RateState>& rates, Estimate& estimate) {
-  CarriedElements known = find_clipped(sensors.imus.front(), samples, estimate.health);
+  ClippedReadings known = find_clipped(sensors.imus.front(), samples, estimate.health);
   for (std::size_t k = 0; k < samples.size(); ++k) {
     if (!covariances[k].isZero(0.0)) known.signs[k].gyro = {};
   }

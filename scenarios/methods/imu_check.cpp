@@ -92,7 +92,7 @@ Status check_turning(const sim::Sensors& sensors, std::span<const ImuSample> sam
   gyro_right = std::abs(plausibility.rotation_slope(state) - 1.0) < kSlopeRight &&
                plausibility.rotation_agreement(state) > kSlopeAgreed;
   if (plausibility.frozen_s(state) > 0.0) estimate.health["imu_frozen_s"] = plausibility.frozen_s(state);
-  if (const auto labels = plausibility.other_labels(state)) {
+  if (const auto labels = plausibility.better_axis_labels(state)) {
     constexpr const char* kKeys[] = {"imu_accel_x_is", "imu_accel_y_is", "imu_accel_z_is"};
     for (std::size_t j = 0; j < 3; ++j) estimate.health[kKeys[labels->axis[j]]] = labels->sign[j] * (1.0 + double(j));
     if (labels->gyro_flipped) estimate.health["imu_gyro_flipped"] = 1.0;

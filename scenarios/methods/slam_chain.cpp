@@ -199,7 +199,7 @@ Estimate run_passes(const sim::LidarRecord& lidar, std::span<const ImuSample> sa
   }
   const bool converged = run.status.ok() && determines_calibration(run) && mahalanobis <= kMaxDeviations;
   if (converged) {
-    const auto sigma = odometry.calibration_weight().diagonal().cwiseSqrt().eval();
+    const auto sigma = odometry.calibration_weighting_covariance().diagonal().cwiseSqrt().eval();
     start_from(odometry.calibration());
     params.mount_sigma_rad = sigma.head<3>().maxCoeff();
     params.mount_sigma_m = sigma.segment<3>(3).maxCoeff();

@@ -41,7 +41,8 @@ bool AuxiliaryReading::same(const AuxiliaryReading& other) const {
   const auto equal = [](const Vector3d& a, const Vector3d& b) {
     return ((a.array() == b.array()) || (a.array().isNaN() && b.array().isNaN())).all();
   };
-  if (rate_by_elements != other.rate_by_elements || force_by_elements != other.force_by_elements) return false;
+  if (rate_along_elements != other.rate_along_elements || force_along_elements != other.force_along_elements)
+    return false;
   return equal(rate_rad_s, other.rate_rad_s) && equal(force_m_s2, other.force_m_s2) &&
          equal(rate_sigma_rad_s, other.rate_sigma_rad_s) && equal(force_sigma_m_s2, other.force_sigma_m_s2);
 }
@@ -74,8 +75,8 @@ Status align(const AuxiliaryImu& auxiliary_imu, std::span<const ImuSample> sampl
     const bool left = near.share<1.0, right = near.share> 0.0;
     const unsigned gyro = (left ? c.gyro | c.missing_gyro : 0u) | (right ? d.gyro | d.missing_gyro : 0u);
     const unsigned accel = (left ? c.accel : 0u) | (right ? d.accel : 0u);
-    out[k].rate_by_elements = gyro != 0;
-    out[k].force_by_elements = accel != 0;
+    out[k].rate_along_elements = gyro != 0;
+    out[k].force_along_elements = accel != 0;
     const Vector3d rates = gyro != 0 ? auxiliary_imu.gyro_elements.rows * rate.value : rate.value;
     const Vector3d forces = accel != 0 ? auxiliary_imu.accel_elements.rows * force.value : force.value;
     for (int j = 0; j < 3; ++j) {

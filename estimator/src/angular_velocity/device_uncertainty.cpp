@@ -61,8 +61,8 @@ bool about_corrected(const SensorErrorEvidence& evidence, const Vector& deviatio
 
 }  // namespace
 
-DeviceUncertainty::DeviceUncertainty(const SensorErrorSizes& sizes, double uncalibrated)
-    : sheet_(error_deviations(sizes, 0.0)), unknown_(error_deviations(sizes, 1.0)), uncalibrated_(uncalibrated) {}
+DeviceUncertainty::DeviceUncertainty(const SensorErrorPriors& sizes, double uncalibrated)
+    : sheet_(prior_deviations(sizes, 0.0)), unknown_(prior_deviations(sizes, 1.0)), uncalibrated_(uncalibrated) {}
 
 void DeviceUncertainty::reset(Posterior& posterior) const {
   posterior.unlike = uncalibrated_;

@@ -47,8 +47,8 @@ bool RailPlane::contradicted_by(std::span<const Vector3d> readings_rad_s) const 
   return beyond >= kContradicting;
 }
 
-ElementRows element_rows(const RailPlanes& planes, double unknown_sigma) {
-  ElementRows out;
+SensingDirections element_rows(const RailPlanes& planes, double unknown_sigma) {
+  SensingDirections out;
   for (std::size_t j = 0; j < 3; ++j) {
     const auto i = static_cast<Eigen::Index>(j);
     const std::optional<RailPlane>& plane = planes.element[j];

@@ -117,7 +117,7 @@ bool RailWatch::observe(const Vector3d& reading, Triad triad, State& state) cons
   const RailPlanes planes = search(triad, state);
   const bool upright = are_upright(memory.readings, planes, state.known.upright_rails, triad);
   RailPlanes& known = triad == Triad::gyro ? state.known.planes : state.known.accel_planes;
-  bool& known_upright = triad == Triad::gyro ? state.known.upright : state.known.accel_upright;
+  bool& known_upright = triad == Triad::gyro ? state.known.upright : state.known.accel_clips_after_compensation;
   const bool changed = planes != known || upright != known_upright;
   known = planes;
   known_upright = upright;

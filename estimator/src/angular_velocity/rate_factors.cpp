@@ -87,7 +87,7 @@ RateFactor element_factor(const RateKnot& knot, const RigConstants& rig, const V
   f.by_knot.setZero();
   f.jacobian_calibration.setZero();
   for (int j = 0; j < 3; ++j) {
-    const Vector3d row = rig.element_row(j);
+    const Vector3d row = rig.sensing_direction(j);
     f.residual[j] = row.dot(off);
     f.by_knot.row(j).head<3>() = row;
     f.jacobian_calibration.row(j).segment<3>(3) = row;

@@ -33,13 +33,13 @@ bool sees_free_axes(const Eigen::RowVector3d& axis, const RateObservation& obser
 
 // Returns the matrix that converts the primary IMU's specific force to the axes or sensing elements of an auxiliary
 // IMU.
-Eigen::Matrix3d seen_by(const Eigen::Matrix3d& R_CI, const ElementRows& elements, bool by_elements) {
+Eigen::Matrix3d seen_by(const Eigen::Matrix3d& R_CI, const SensingDirections& elements, bool by_elements) {
   return by_elements ? Eigen::Matrix3d(elements.rows * R_CI) : R_CI;
 }
 
 // Returns the standard deviation of an unsaturated element's reading that is due to the element's uncertain sensing
 // direction. `most` is the maximum saturation deficit of the other elements.
-double unknown_row(const ElementRows& elements, bool by_elements, int j, double most) {
+double unknown_row(const SensingDirections& elements, bool by_elements, int j, double most) {
   return by_elements ? elements.slope_sigma[j] * most : 0.0;
 }
 
@@ -57,14 +57,14 @@ void RateModel::add_auxiliary_imus(const RateObservation& observation, const Rat
     const Vector3d force = observation.sample.specific_force_m_s2 - rig.accel_bias_m_s2 + rotation.residual;
     const double misplaced =
         mount.position_error_m * (estimate.knot.rate_rad_s.squaredNorm() + estimate.knot.acceleration_rad_s2.norm());
-    const Eigen::Matrix3d gyro = seen_by(R_CI, mount.gyro_elements, reading.rate_by_elements);
-    const Eigen::Matrix3d accel = seen_by(R_CI, mount.accel_elements, reading.force_by_elements);
+    const Eigen::Matrix3d gyro = seen_by(R_CI, mount.gyro_elements, reading.rate_along_elements);
+    const Eigen::Matrix3d accel = seen_by(R_CI, mount.accel_elements, reading.force_along_elements);
     for (int j = 0; j < 3; ++j) {
       if (std::isfinite(reading.rate_rad_s[j])) {
         AuxiliaryRow row = AuxiliaryRow::Zero();
         row.head<3>() = gyro.row(j);
         const double unknown =
-            unknown_row(mount.gyro_elements, reading.rate_by_elements, j, estimate.knot.rate_rad_s.norm());
+            unknown_row(mount.gyro_elements, reading.rate_along_elements, j, estimate.knot.rate_rad_s.norm());
         add_row(row, gyro.row(j).dot(estimate.knot.rate_rad_s) - reading.rate_rad_s[j],
                 std::hypot(reading.rate_sigma_rad_s[j], unknown), block);
       }
@@ -72,7 +72,7 @@ void RateModel::add_auxiliary_imus(const RateObservation& observation, const Rat
       if (!std::isfinite(reading.force_m_s2[j]) || !sees_free_axes(axis, observation)) continue;
       AuxiliaryRow row = axis * rotation.by_knot;
       row.tail<3>() /= time_scale_s_;
-      const double unknown = unknown_row(mount.accel_elements, reading.force_by_elements, j, force.norm());
+      const double unknown = unknown_row(mount.accel_elements, reading.force_along_elements, j, force.norm());
       const double lasting =
           std::sqrt((misplaced * misplaced + unknown * unknown) / share_ + accel_variance_together(observation));
       const double sigma = std::hypot(reading.force_sigma_m_s2[j], lasting);

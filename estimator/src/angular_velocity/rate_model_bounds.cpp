@@ -34,7 +34,7 @@ void RateModel::seek_flight(const RateObservation& observation, const RigConstan
   const Eigen::Matrix3d J = rig.inertia_matrix();
   // the saturation deficit of one sensing element changes the readings of all axes, by a column of M^-1: rails.md (R51)
   Eigen::Matrix3d rows;
-  for (int j = 0; j < 3; ++j) rows.row(j) = rig.element_row(j);
+  for (int j = 0; j < 3; ++j) rows.row(j) = rig.sensing_direction(j);
   const Eigen::Matrix3d hides = rows.inverse();
   RateFactor flight;
   for (int iteration = 0; iteration <= kSeekIterations; ++iteration) {

@@ -79,7 +79,7 @@ Eigen::Vector3d RateModel::read_accel_elements(const RateObservation& observatio
   Eigen::Vector3d unknown = Eigen::Vector3d::Zero();
   const unsigned clipped = observation.clipping.accel;
   if (clipped == 0) return unknown;
-  const ElementRows& elements = observation.accel_rows;
+  const SensingDirections& elements = observation.accel_rows;
   if (elements.tilted()) {
     flight.residual = elements.rows * flight.residual;
     flight.by_knot = (elements.rows * flight.by_knot).eval();

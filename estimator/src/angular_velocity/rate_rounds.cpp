@@ -27,7 +27,7 @@ void shift_force(std::span<const ImuSample> samples, std::span<const Clipping> c
 }
 
 // Returns the standard deviations of the data sheet, without the larger standard deviations of an uncalibrated device.
-SensorErrorSizes as_stated(SensorErrorSizes sizes) {
+SensorErrorPriors as_stated(SensorErrorPriors sizes) {
   sizes.gyro_uncalibrated = sizes.accel_uncalibrated = sizes.g_sensitivity_uncalibrated_s_m =
       sizes.delay_uncalibrated_s = 0.0;
   return sizes;
@@ -35,7 +35,7 @@ SensorErrorSizes as_stated(SensorErrorSizes sizes) {
 
 // Returns whether a device with the stated errors `given` may have the errors `found`. Errors beyond kDeviations come
 // from the flight model, not from the device.
-bool plausible(const SensorErrors& found, const SensorErrors& given, const SensorErrorSizes& sizes) {
+bool plausible(const SensorErrors& found, const SensorErrors& given, const SensorErrorPriors& sizes) {
   constexpr double kDeviations = 6.0;
   const SensorErrors errors = SensorErrors::from(found.vector() - given.vector());
   const double delay_s = kDeviations * std::max(sizes.delay_s, sizes.delay_uncalibrated_s);
@@ -139,15 +139,15 @@ constexpr double kPlainOdds = 0.05;
 // Returns whether a device clearly contradicts its data sheet in scale or in sampling. If the scale of a device
 // contradicts the data sheet, the stated sampling is also unreliable, and vice versa. The test combines the evidence
 // from scale and sampling by naive Bayes. `triads_asynchronous`: gyro and accelerometer are known to be asynchronous.
-bool off_sheet(const SensorErrorFit& device, const SensorErrorSizes& sizes, bool triads_asynchronous) {
+bool off_sheet(const SensorErrorFit& device, const SensorErrorPriors& sizes, bool triads_asynchronous) {
   const SensorErrorFit before = fit_sensor_errors({}, sizes);
   const auto odds = [](double p) { return std::max(p, 1e-12) / std::max(1.0 - p, 1e-12); };
-  const double of_scale = odds(device.in_sheet_probability) / odds(before.in_sheet_probability);
+  const double of_scale = odds(device.data_sheet_probability) / odds(before.data_sheet_probability);
   return triads_asynchronous || of_scale * odds(device.synchronous_probability) < kPlainOdds;
 }
 
 // Returns the standard deviations of the sensor errors of a device without a data sheet.
-SensorErrorSizes unstated(SensorErrorSizes sizes) {
+SensorErrorPriors unstated(SensorErrorPriors sizes) {
   sizes.gyro = std::max(sizes.gyro, sizes.gyro_uncalibrated);
   sizes.accel = std::max(sizes.accel, sizes.accel_uncalibrated);
   sizes.g_sensitivity_s_m = std::max(sizes.g_sensitivity_s_m, sizes.g_sensitivity_uncalibrated_s_m);
@@ -157,14 +157,14 @@ SensorErrorSizes unstated(SensorErrorSizes sizes) {
 
 // Expresses the sensor errors estimated in an earlier run relative to the errors that the caller states now.
 SensorErrorEvidence calibration_evidence_about(const SensorErrors& given, KnownSensorErrors learnt,
-                                               const SensorErrorSizes& sizes) {
+                                               const SensorErrorPriors& sizes) {
   learnt.errors = SensorErrors::from(learnt.errors.vector() - given.vector());
   return calibration_evidence(learnt, sizes);
 }
 
 // Fits sensor errors relative to the errors that the caller states. `learnt`, the estimate of an earlier run, is also
 // relative to the stated errors.
-SensorErrorFit fit_about(const SensorErrors& given, SensorErrorEvidence evidence, const SensorErrorSizes& sizes,
+SensorErrorFit fit_about(const SensorErrors& given, SensorErrorEvidence evidence, const SensorErrorPriors& sizes,
                          const SensorErrorEvidence& learnt) {
   evidence.about = SensorErrors::from(evidence.about.vector() - given.vector());
   SensorErrorFit out = fit_sensor_errors(evidence, sizes, learnt);
@@ -182,9 +182,9 @@ struct Rounds {
   bool triads_asynchronous = false;  ///< a triad repeats readings, so gyro and accelerometer are asynchronous
   TriadDelay guess = {};             ///< empty if the data sheet states the delay
   std::vector<double> age_s = {};    ///< age of the accelerometer's readings in the log
-  SensorErrorSizes sizes = {};       ///< stated sizes, except for the sampling of asynchronous triads
+  SensorErrorPriors sizes = {};      ///< stated sizes, except for the sampling of asynchronous triads
 
-  const SensorErrorSizes& stated() const { return known.expert.error_sizes; }
+  const SensorErrorPriors& stated() const { return known.expert.error_sizes; }
   bool delay_open() const { return estimated && stated().delay_uncalibrated_s > stated().delay_s; }
   /// Returns whether the body has impacts and flight. Such a body is not hand-held, so sensor errors may change its
   /// calibration.
@@ -289,8 +289,7 @@ Status descend_rounds(const Rounds& rounds, std::span<RateObservation> observati
     if (Status status = take_evidence(rounds, rounds_state.errors, fit, health); !status.ok()) return status;
     rounds_state.found = fit_about(given, fit.moved.evidence, rounds.sizes, rounds_state.learnt);
     rounds_state.is_plausible = plausible(rounds_state.found.known.errors, given, rounds.stated());
-    if (health.calibration_at_prior || !rounds_state.is_plausible ||
-        round >= rounds.params.expert.error_rounds_max)
+    if (health.calibration_at_prior || !rounds_state.is_plausible || round >= rounds.params.expert.error_rounds_max)
       return {};
     if (!far_apart(rounds_state.found.known.errors, rounds_state.errors)) return {};
     rounds_state.errors = rounds_state.found.known.errors;
@@ -300,12 +299,12 @@ Status descend_rounds(const Rounds& rounds, std::span<RateObservation> observati
 // If a device clearly contradicts its data sheet, enlarges the covariance of the sensor errors to the covariance of an
 // uncalibrated device. The correction keeps only sensor errors that the readings clearly determine. Returns the
 // standard deviations of the sensor errors that are in use.
-SensorErrorSizes leave_open(const Rounds& rounds, const RateFit& fit, RoundsState& rounds_state, RateReport& health) {
+SensorErrorPriors leave_open(const Rounds& rounds, const RateFit& fit, RoundsState& rounds_state, RateReport& health) {
   const bool open =
       rounds.delay_open() && (off_sheet(rounds_state.found, rounds.stated(), rounds.triads_asynchronous) ||
                               health.calibration_mahalanobis > rounds.params.calibration_mahalanobis_max);
   if (!open) return rounds.sizes;
-  const SensorErrorSizes sizes = unstated(rounds.sizes);
+  const SensorErrorPriors sizes = unstated(rounds.sizes);
   health.common_delay_sigma_s = std::sqrt(0.5) * sizes.delay_s;
   KnownSensorErrors& found = rounds_state.found.known;
   const KnownSensorErrors unknown =
@@ -333,10 +332,10 @@ Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& kno
   const Rounds rounds = rounds_of(params, known, samples, clippings, observations, health);
   RoundsState rounds_state;
   if (Status status = descend_rounds(rounds, observations, fit, health, rounds_state); !status.ok()) return status;
-  health.in_sheet_probability = rounds_state.found.in_sheet_probability;
+  health.data_sheet_probability = rounds_state.found.data_sheet_probability;
   health.synchronous_probability = rounds.triads_asynchronous ? 0.0 : rounds_state.found.synchronous_probability;
-  const SensorErrorSizes sizes = leave_open(rounds, fit, rounds_state, health);
-  const SensorErrorSizes stated = as_stated(rounds.stated());
+  const SensorErrorPriors sizes = leave_open(rounds, fit, rounds_state, health);
+  const SensorErrorPriors stated = as_stated(rounds.stated());
   if (health.calibration_at_prior || !rounds_state.is_plausible || !rounds.estimated) {
     // Without flight, the run contains no information about the device beyond the prior. All sensor errors then remain
     // uncertain.
@@ -350,8 +349,8 @@ Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& kno
   health.calibration.constants = fit.solution.rig;
   // Sensor errors belong to the device. The next run is affected by the same sensor errors, and includes their
   // uncertainty again.
-  const SensorErrors::Matrix of_device = fit_sensor_errors({}, stated).known.covariance;
-  health.calibration.covariance += fit.moved.of_rig * of_device * fit.moved.of_rig.transpose();
+  const SensorErrors::Matrix device_covariance = fit_sensor_errors({}, stated).known.covariance;
+  health.calibration.covariance += fit.moved.of_rig * device_covariance * fit.moved.of_rig.transpose();
   return {};
 }
 

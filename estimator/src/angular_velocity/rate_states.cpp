@@ -127,7 +127,7 @@ std::vector<RateState> rate_states(const RateSmoother::Params& params, std::span
   const std::vector<Eigen::Matrix3d> covariances = rate_covariances(params, readings, fit, health);
   // if saturation planes are axis-aligned, equal readings identify saturation without the planes
   const std::vector<std::uint8_t> near =
-      may_meet_rails(samples, health.rails_axis_aligned ? RailPlanes{} : readings.planes);
+      may_meet_rails(samples, health.clips_after_compensation ? RailPlanes{} : readings.planes);
   const std::vector<std::optional<InterpolatedRate>> own = read_in_time(samples, readings);
   std::vector<RateState> states(samples.size());
   std::size_t in_flight = 0;

@@ -74,8 +74,8 @@ RateStream::RateStream(const Params& params)
   require_within("lag_s", params.lag_s, 2.0 * params.period_s, params.lag_max_s());
   capacity_ = static_cast<std::size_t>(std::lround(params.lag_s / params.period_s)) + 1;
   prior_delay_s_ = corrected_for(params).errors.accel_delay_s;
-  const SensorErrorSizes& sizes = params.model.expert.error_sizes;
-  delay_open_ =
+  const SensorErrorPriors& sizes = params.model.expert.error_sizes;
+  delay_is_estimated_ =
       !params.calibrated_errors && sizes.delay_uncalibrated_s > sizes.delay_s && params.expert.uncalibrated > 0.0;
   samples_per_step_ =
       std::clamp(static_cast<std::size_t>(params.step_s / params.period_s + 1e-6), std::size_t{1}, capacity_);
@@ -213,7 +213,8 @@ void RateStream::append(const ImuSample& sample, std::span<const AuxiliaryReadin
   knot.by_upright_rails = rails_.upright_rails().classify(sample, state.rails.known.upright_rails);
   repeat_detector_.observe(sample, (knot.by_upright_rails.gyro | knot.by_upright_rails.missing_gyro) != 0,
                            state.repeat_state);
-  knot.observation = {sample, knot.by_upright_rails, rests_.observe(sample, state.rests, params_.model.nominal.gyro_bias_rad_s)};
+  knot.observation = {sample, knot.by_upright_rails,
+                      rests_.observe(sample, state.rests, params_.model.nominal.gyro_bias_rad_s)};
   knot.read = {sample.specific_force_m_s2, static_cast<std::uint8_t>(sample.device_clip_flags & kClipAccel),
                knot.by_upright_rails.accel};
   std::copy(auxiliary_imus.begin(), auxiliary_imus.end(), knot.observation.auxiliary_imus.begin());
@@ -230,7 +231,7 @@ void RateStream::append(const ImuSample& sample, std::span<const AuxiliaryReadin
   if (knot.by_upright_rails.missing_gyro == 0) state.least.add(sample.angular_velocity_rad_s);
   if (changed) classify_again(state);
   judge_from(changed ? 0 : paired, state);
-  count_strokes(state);
+  accumulate_impacts(state);
   state.extremes[0] = state.extremes[0].cwiseMin(sample.angular_velocity_rad_s);
   state.extremes[1] = state.extremes[1].cwiseMax(sample.angular_velocity_rad_s);
   mark_possible_rails(state);
@@ -336,7 +337,7 @@ bool RateStream::step(State& state) const {
     const double share = std::min(1.0, params_.expert.step_max_rad_s / std::max(1e-300, physical.head<3>().norm()));
     knot.estimate.knot.rate_rad_s += share * physical.head<3>();
     knot.estimate.knot.acceleration_rad_s2 += share * physical.tail<3>();
-    knot.covariance_rad2_s2 = arrow::rate_covariance(conditional, rig_spread) + of_device(k, state);
+    knot.covariance_rad2_s2 = arrow::rate_covariance(conditional, rig_spread) + device_covariance(k, state);
     if (knot.estimate.soft_bounds) {
       model_.update_bounds(knot.observation, state.rig, conditional, rig_covariance, params_.expert.bound_damping,
                            knot.estimate);

@@ -97,8 +97,8 @@ std::size_t RateStream::pair_newest(State& state) const {
 
 // Adds the interval between two consecutive readings to the impact statistics: rate_stream.md (R104). The interval is
 // old enough that its clipping, and forces up to the maximum delay, are known.
-void RateStream::count_strokes(State& state) const {
-  if (!delay_open_ || state.window.size() < ForceAbout::kReadings) return;
+void RateStream::accumulate_impacts(State& state) const {
+  if (!delay_is_estimated_ || state.window.size() < ForceAbout::kReadings) return;
   const std::size_t first = state.window.size() - ForceAbout::kReadings, after = first + kBeside + 1;
   const Knot &a = state.window[after - 1], &b = state.window[after];
   const Eigen::Vector3d &begin = a.observation.sample.angular_velocity_rad_s,
@@ -129,12 +129,12 @@ TriadDelay RateStream::guessed_delay(const State& state) const {
 void RateStream::seek_delay(State& state) const {
   RateStreamDelay& delay = state.device.front().delay;
   const TimeNs now_ns = state.window.back().observation.sample.time_ns;
-  if (!delay_open_ || (delay.updated_ns && now_ns - *delay.updated_ns < kUpdateEvery_ns)) return;
+  if (!delay_is_estimated_ || (delay.updated_ns && now_ns - *delay.updated_ns < kUpdateEvery_ns)) return;
   delay.updated_ns = now_ns;
-  if (delay.found && repeats_readings(state)) return take_delay(prior_delay_s_, false, state);
+  if (delay.found && repeats_readings(state)) return apply_delay(prior_delay_s_, false, state);
   const auto correlates = [&](double at_s) { return delay.strokes.correlation_at(at_s, params_.period_s); };
   if (delay.found && correlates(prior_delay_s_) - correlates(delay.in_use_s) > kGainMin)
-    return take_delay(prior_delay_s_, false, state);
+    return apply_delay(prior_delay_s_, false, state);
   if (const TriadDelay guess = guessed_delay(state); guess.sigma_s > 0.0) {
     const bool gains =
         correlates(guess.delay_s) - correlates(prior_delay_s_) > kGainMin &&
@@ -142,14 +142,14 @@ void RateStream::seek_delay(State& state) const {
     const bool plain = gains && device_.odds_of_sheet(guess.delay_s - prior_delay_s_, guess.sigma_s) < kPlainOdds;
     const bool far = std::abs(guess.delay_s - delay.in_use_s) > kGuessFar * guess.sigma_s;
     delay.guess = guess;
-    if (plain && (!delay.found || far)) return take_delay(guess.delay_s, true, state);
-    if (!plain && delay.found) return take_delay(prior_delay_s_, false, state);
+    if (plain && (!delay.found || far)) return apply_delay(guess.delay_s, true, state);
+    if (!plain && delay.found) return apply_delay(prior_delay_s_, false, state);
   }
   if (delay.found && std::abs(delay.estimated_s - delay.in_use_s) > kMoved_s) refine_delay(state);
 }
 
 // Applies a different delay. The window restarts, and the calibration estimated with the previous delay is discarded.
-void RateStream::take_delay(double delay_s, bool found, State& state) const {
+void RateStream::apply_delay(double delay_s, bool found, State& state) const {
   RateStreamDelay& delay = state.device.front().delay;
   delay.in_use_s = delay.estimated_s = delay_s;
   delay.found = found;

@@ -118,7 +118,7 @@ void RateStream::consider_errors(const arrow::BorderVector& rig_step, State& sta
 
 // Returns the covariance of a sample's rate that is due to sensor errors and to a delay common to gyro and
 // accelerometer.
-Matrix3d RateStream::of_device(std::size_t k, const State& state) const {
+Matrix3d RateStream::device_covariance(std::size_t k, const State& state) const {
   const Knot& knot = state.window[k];
   if (!moves(knot)) return Matrix3d::Zero();
   const RateStreamDevice& device = state.device.front();

@@ -92,9 +92,9 @@ void RateStream::classify_again(State& state) const {
 // because the classification of a reading depends on its neighbours. A newly clipped sample gets a new initial rate.
 void RateStream::judge_from(std::size_t changed, State& state) const {
   const std::size_t first = reading_before(changed, state.window).value_or(0);
-  const KnownRails& rails = state.rails.known;
+  const SaturationLevels& rails = state.rails.known;
   const RailPlanes planes = rails.planes_in_use(), accel_planes = rails.planes_in_use(Triad::accelerometer);
-  const ElementRows accel_rows = rails.rows(Triad::accelerometer, params_.model.element_sigma);
+  const SensingDirections accel_rows = rails.rows(Triad::accelerometer, params_.model.element_sigma);
   const double noise = model_.gyro_sigma_rad_s();
   for (std::size_t k = first; k < state.window.size(); ++k) {
     Knot& knot = state.window[k];
@@ -259,7 +259,7 @@ void RateStream::store_entry(const Knot& leaving, const Knot& next, State& state
 // Adds the saturation planes' information about the directions of clipped elements. Each step adds the information
 // again, because the planes improve.
 void RateStream::add_rails(const State& state, arrow::Corner& corner) const {
-  const KnownRails& rails = state.rails.known;
+  const SaturationLevels& rails = state.rails.known;
   const RailPlanes planes = rails.planes_in_use();
   for (int j = 0; j < 3; ++j) {
     const Eigen::Index first = RigConstants::kElements + 2 * j;

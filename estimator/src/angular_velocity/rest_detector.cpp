@@ -56,7 +56,7 @@ bool RestDetector::observe_mean(const Eigen::Vector3d& rate_rad_s, const Eigen::
   if ((rate_rad_s - bias_rad_s).cwiseAbs().maxCoeff() > params_.rate_max_rad_s + params_.rate_spread_rad_s ||
       force < params_.force_min_m_s2 || force > params_.force_max_m_s2) {
     state.weight = 0.0;
-    state.quiet_ns = 0;
+    state.within_bias_since_ns = 0;
     return false;
   }
   if (state.weight == 0.0) {
@@ -75,8 +75,8 @@ bool RestDetector::observe_mean(const Eigen::Vector3d& rate_rad_s, const Eigen::
   state.weight += 1.0;
   const bool is_bias =
       (state.rate_sum_rad_s / state.weight - bias_rad_s).cwiseAbs().maxCoeff() <= params_.rate_max_rad_s;
-  state.quiet_ns = is_bias ? to_ns - state.first_ns : 0;
-  state.rests = is_bias && seconds(state.quiet_ns) >= params_.rest_s;
+  state.within_bias_since_ns = is_bias ? to_ns - state.first_ns : 0;
+  state.rests = is_bias && seconds(state.within_bias_since_ns) >= params_.rest_s;
   return state.rests;
 }
 

@@ -48,7 +48,7 @@ Eigen::Matrix<double, 5, 1> RigConstants::inertia_coordinates(const Eigen::Matri
   return coordinates;
 }
 
-Eigen::Vector3d RigConstants::element_row(int j) const {
+Eigen::Vector3d RigConstants::sensing_direction(int j) const {
   Eigen::Vector3d row;
   row[j] = 1.0;
   row[(j + 1) % 3] = elements[2 * j];

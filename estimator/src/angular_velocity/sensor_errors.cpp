@@ -38,7 +38,7 @@ struct Shares {
   double scale = 1.0, cross = 1.0, g_sensitivity = 1.0, delay = 1.0;
 };
 
-Vector deviations(const SensorErrorSizes& s, const Shares& shares) {
+Vector deviations(const SensorErrorPriors& s, const Shares& shares) {
   Vector out;
   const double delay = between(s.delay_s, s.delay_uncalibrated_s, shares.delay);
   out << Eigen::Matrix<double, 9, 1>::Constant(between(s.gyro, s.gyro_uncalibrated, shares.cross)),
@@ -92,7 +92,7 @@ Hypothesis posterior(const Matrix& information, const Matrix& learnt, const Vect
   return out;
 }
 
-Matrix evidence_of(const Matrix& information, const SensorErrorSizes& sizes) {
+Matrix evidence_of(const Matrix& information, const SensorErrorPriors& sizes) {
   const Vector unit = deviations(sizes, {});
   const Matrix scaled = unit.asDiagonal() * (0.5 * (information + information.transpose())) * unit.asDiagonal();
   Vector values;
@@ -129,7 +129,7 @@ void require_known(const KnownSensorErrors& learnt) {
   require_within("learnt errors' covariance, least pivot", pivots.minCoeff(), -1e-9 * pivots.maxCoeff(), 1.0);
 }
 
-Vector error_deviations(const SensorErrorSizes& sizes, double share) {
+Vector prior_deviations(const SensorErrorPriors& sizes, double share) {
   return deviations(sizes, {share, share, share, share});
 }
 
@@ -153,7 +153,7 @@ void discount_unobservable(double share, SensorErrorEvidence& evidence) {
   evidence.gradient.noalias() -= (1.0 - share) * unobservable.lazyProduct(pulled);
 }
 
-SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const SensorErrorSizes& sizes,
+SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const SensorErrorPriors& sizes,
                                  const SensorErrorEvidence& learnt) {
   const Matrix information = evidence_of(evidence.information, sizes);
   const Vector h = evidence.gradient + information * evidence.about.vector() + learnt.gradient +
@@ -182,7 +182,7 @@ SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const Sens
   SensorErrorFit out{{}, 0.0, 0.0};
   for (Hypothesis& one : all) {
     one.log_odds /= sum;
-    if (one.shares.scale == 0.0) out.in_sheet_probability += one.log_odds;
+    if (one.shares.scale == 0.0) out.data_sheet_probability += one.log_odds;
     if (one.shares.delay == 0.0) out.synchronous_probability += one.log_odds;
   }
   // the corrections follow the data sheet until the readings clearly contradict the data sheet
@@ -204,7 +204,7 @@ SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const Sens
 }
 
 // Converts the sensor errors of an earlier run to information: rate_smoother.md (R43).
-SensorErrorEvidence calibration_evidence(const KnownSensorErrors& learnt, const SensorErrorSizes& sizes) {
+SensorErrorEvidence calibration_evidence(const KnownSensorErrors& learnt, const SensorErrorPriors& sizes) {
   const Vector unit = deviations(sizes, {});
   const Matrix symmetric = 0.5 * (learnt.covariance + learnt.covariance.transpose());
   const Matrix scaled = unit.cwiseInverse().asDiagonal() * symmetric * unit.cwiseInverse().asDiagonal();

@@ -132,7 +132,7 @@ Status CarriedStream::push(const ImuSample& sample, const ClippedElements& known
   if (!(determinant > carried::kRowsMin)) return {Trouble::degenerate, "rows", determinant, carried::kRowsMin};
 
   append(sample, repeated, state);
-  if (read_again(known, state)) rebuild(state);
+  if (reclassify(known, state)) rebuild(state);
   const Reading& latest = state.readings.back();
   const auto end = [&] { return state.first_node + static_cast<std::int64_t>(state.window.size()); };
   const bool begun = latest.node >= end();
@@ -195,7 +195,7 @@ void CarriedStream::append(const ImuSample& sample, const RepeatDetector::State&
 }
 
 // Updates saturation signs and sensing directions. Returns whether samples in the window have changed.
-bool CarriedStream::read_again(const ClippedElements& known, State& state) const {
+bool CarriedStream::reclassify(const ClippedElements& known, State& state) const {
   bool changed = state.rows != known.rows;
   state.rows = known.rows;
   const std::size_t count = std::min(known.signs.size(), state.readings.size());
@@ -295,7 +295,7 @@ void CarriedStream::predict(const Node& before, const Eigen::Matrix3d& rows, Kno
 // Returns the density of the held point's acceleration: carried.md (C41).
 double CarriedStream::hand(const State& state) const {
   return std::max(params_.body.expert.hand.hand_floor,
-                  1.0 + params_.body.expert.hand.hand_noise_adaptation * (state.hand_power - 1.0));
+                  1.0 + params_.body.expert.hand.hand_noise_adaptation * (state.acceleration_power_ratio - 1.0));
 }
 
 // Adds the prior from marginalised nodes: rate_stream.md (R91).
@@ -341,7 +341,8 @@ void CarriedStream::marginalise_oldest(State& state) const {
   state.prior_constants = state.constants;
   const double assumed = 3.0 * params_.body.hand_m_s2 * params_.body.hand_m_s2;
   const double share = std::min(1.0, 2.0 * params_.body.expert.node_s / params_.body.expert.hand.hand_window_s);
-  state.hand_power += share * (oldest.node.a_W_m_s2.squaredNorm() / assumed - state.hand_power);
+  state.acceleration_power_ratio +=
+      share * (oldest.node.a_W_m_s2.squaredNorm() / assumed - state.acceleration_power_ratio);
   ++state.first_node;
   state.window.erase(state.window.begin());
   prune_output_samples(state);

@@ -83,18 +83,19 @@ void CarriedStream::count_revolutions(std::size_t at, const RateState& rate, Sta
   const Reading& reading = state.readings[at];
   const double since_s = at > 0 ? reading.end_s - state.readings[at - 1].end_s : params_.period_s;
   const auto open = [&](Eigen::Index j) {
-    return state.hidden_rad[j] > carried::kAngleShare * std::numbers::pi &&
+    return state.clipped_angle_sigma_rad[j] > carried::kAngleShare * std::numbers::pi &&
            carried::revolution_cost(state.hidden_s[j], params_.body.jerk_rad_s3_sqrts) < 2.0 * carried::kLogOdds;
   };
   for (Eigen::Index j = 0; j < 3; ++j) {
     if (reading.signs.gyro[static_cast<std::size_t>(j)] == 0) {
-      state.hidden_s[j] = state.hidden_rad[j] = 0.0;
+      state.hidden_s[j] = state.clipped_angle_sigma_rad[j] = 0.0;
       continue;
     }
     const Eigen::RowVector3d m = state.rows.row(j);
     const bool before = open(j);
     state.hidden_s[j] += since_s;
-    state.hidden_rad[j] += since_s * std::sqrt(std::max(0.0, m.dot(rate.covariance_rad2_s2 * m.transpose())));
+    state.clipped_angle_sigma_rad[j] +=
+        since_s * std::sqrt(std::max(0.0, m.dot(rate.covariance_rad2_s2 * m.transpose())));
     if (!before && open(j)) ++state.revolutions_open;
   }
 }

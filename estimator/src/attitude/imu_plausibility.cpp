@@ -23,7 +23,7 @@ auto least_unexplained(const ImuPlausibility::State& state) {
 // Returns the scalar product of rotation by gyro and rotation by force, from |a - b|^2 = |a|^2 + |b|^2 - 2 a b:
 // imu_merge.md (I20).
 double together_rad2(const ImuPlausibility::State& state) {
-  return 0.5 * (state.by_force_rad2 + state.by_gyro_rad2 - state.unexplained_rad2.front());
+  return 0.5 * (state.force_rotation_rad2 + state.gyro_rotation_rad2 - state.unexplained_rad2.front());
 }
 
 }  // namespace
@@ -121,8 +121,8 @@ void ImuPlausibility::compare(const Eigen::Vector3d& force_m_s2, State& state) c
   state.all_force_rad2 += by_force;
   state.all_gyro_rad2 += by_gyro;
   if (by_force < least) return;
-  state.by_force_rad2 += by_force;
-  state.by_gyro_rad2 += by_gyro;
+  state.force_rotation_rad2 += by_force;
+  state.gyro_rotation_rad2 += by_gyro;
   state.rotated_windows += 1.0;
   const Eigen::Matrix3d back = state.turned.conjugate().toRotationMatrix(), forth = back.transpose();
   for (std::size_t k = 0; k < state.unexplained_rad2.size(); ++k) {
@@ -139,12 +139,13 @@ double ImuPlausibility::force_share(const State& state) const {
 }
 
 bool ImuPlausibility::turned(const State& state) const {
-  return state.by_force_rad2 >= params_.expert.turning.rotation_min_rad2 &&
+  return state.force_rotation_rad2 >= params_.expert.turning.rotation_min_rad2 &&
          state.rotated_windows >= params_.expert.turning.rotated_windows_min;
 }
 
 double ImuPlausibility::unexplained_share(const State& state) const {
-  return turned(state) ? state.unexplained_rad2.front() / std::max(state.by_force_rad2, state.by_gyro_rad2) : 0.0;
+  return turned(state) ? state.unexplained_rad2.front() / std::max(state.force_rotation_rad2, state.gyro_rotation_rad2)
+                       : 0.0;
 }
 
 /// Returns how long a reading has been frozen. A device that never changed counts as frozen only while the body moves.
@@ -165,12 +166,13 @@ double ImuPlausibility::frozen_s(const State& state) const {
 /// Returns the slope of the force's rotation over the gyro's rotation: imu_merge.md (I20).
 double ImuPlausibility::rotation_slope(const State& state) const {
   if (!turned(state)) return 1.0;
-  return together_rad2(state) / std::max(state.by_gyro_rad2, kStandstillRad2);
+  return together_rad2(state) / std::max(state.gyro_rotation_rad2, kStandstillRad2);
 }
 
 double ImuPlausibility::rotation_agreement(const State& state) const {
   if (!turned(state)) return 1.0;
-  return together_rad2(state) / std::sqrt(state.by_force_rad2 * std::max(state.by_gyro_rad2, kStandstillRad2));
+  return together_rad2(state) /
+         std::sqrt(state.force_rotation_rad2 * std::max(state.gyro_rotation_rad2, kStandstillRad2));
 }
 
 double ImuPlausibility::force_rotated_share(const State& state) const {
@@ -179,7 +181,7 @@ double ImuPlausibility::force_rotated_share(const State& state) const {
 }
 
 /// Returns the axis labels that explain the readings better than the current labels: imu_merge.md (I22).
-std::optional<AxisLabels> ImuPlausibility::other_labels(const State& state) const {
+std::optional<AxisLabels> ImuPlausibility::better_axis_labels(const State& state) const {
   if (unexplained_share(state) < params_.expert.naming.unexplained_least) return std::nullopt;
   const auto least = least_unexplained(state);
   if (*least >= params_.expert.naming.unexplained_share_max * state.unexplained_rad2.front()) return std::nullopt;
@@ -190,7 +192,7 @@ std::optional<AxisLabels> ImuPlausibility::other_labels(const State& state) cons
 /// the force, but leave an equal residual for any gyro scale.
 bool ImuPlausibility::explains_more(const State& state) const {
   const double slope = rotation_slope(state), agreement = rotation_agreement(state);
-  const double left = state.by_force_rad2 * (1.0 - agreement * agreement);
+  const double left = state.force_rotation_rad2 * (1.0 - agreement * agreement);
   // Pushes often reduce the slope. Pushes rarely invert the slope or increase the slope by half.
   const bool low = slope > 0.0 && slope < 1.0;
   const double most = low ? params_.expert.naming.unexplained_share_max : params_.expert.turning.unexplained_share_max;
@@ -211,7 +213,7 @@ Status ImuPlausibility::verdict(const State& state) const {
     return {Trouble::out_of_range, "seconds for which a triad repeats one reading", frozen,
             params_.expert.frozen.repeats_s};
   }
-  if (other_labels(state)) {
+  if (better_axis_labels(state)) {
     const double least = *least_unexplained(state);
     return {
         Trouble::out_of_range,

@@ -44,7 +44,7 @@ struct Seen {
 };
 
 template <typename Railed>
-Seen seen_by(const ElementRows& elements, const Eigen::Matrix3d& R_IC, const Eigen::Vector3d& reading,
+Seen seen_by(const SensingDirections& elements, const Eigen::Matrix3d& R_IC, const Eigen::Vector3d& reading,
              const Railed& railed) {
   Seen out{R_IC, reading};
   bool any = false;

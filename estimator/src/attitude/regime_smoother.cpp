@@ -44,11 +44,11 @@ Status RegimeSmoother::estimate(std::span<const ImuSample> samples, std::vector<
 void RegimeSmoother::join(std::span<const ImuSample> samples, std::vector<RateState>& rates, Report& report) const {
   const RigCalibration& rig = report.rate.calibration;
   const Eigen::Matrix3d lever_covariance = rig.covariance.topLeftCorner<3, 3>();
-  std::vector<RegimeShares> shares;
+  std::vector<RegimeProbabilities> shares;
   if (!evidence_.find(forces_in_time(samples), rates, rig.constants.lever_arm_m, lever_covariance, shares).ok()) return;
   report.judged = true;
   const double each = 1.0 / static_cast<double>(shares.size());
-  for (const RegimeShares& share : shares) {
+  for (const RegimeProbabilities& share : shares) {
     report.shares.flight += each * share.flight;
     report.shares.contact += each * share.contact;
     report.shares.carried += each * share.carried;
@@ -59,12 +59,12 @@ void RegimeSmoother::join(std::span<const ImuSample> samples, std::vector<RateSt
 
   ClippingFinder::Params finding;
   finding.upright_rails = params_.rate.rails;
-  CarriedElements known = carried_elements(samples, ClippingFinder(finding).find(samples));
+  ClippedReadings known = carried_elements(samples, ClippingFinder(finding).find(samples));
   known.mark_suspect(samples, report.rate.suspect_axes);
   std::vector<RateState> other;
   std::vector<AttitudeState> attitudes;
   if (!carried_.estimate(samples, known.clipped(), other, attitudes, report.carried).ok()) return;
-  known.mark_near(other);
+  known.mark_partly_saturated(other);
   report.carried_asked = true;
   for (std::size_t k = 0; k < rates.size(); ++k) {
     if (by_segment[k] <= params_.carried_min) continue;
@@ -78,8 +78,8 @@ void RegimeSmoother::join(std::span<const ImuSample> samples, std::vector<RateSt
 /// Returns the probability of hand-held motion for samples in a segment of clipped or suspect readings: carried.md
 /// (C40). The probability is the smallest value within `near_s` of the sample and within its segment. Outside such
 /// segments, the probability is 0.
-std::vector<double> RegimeSmoother::carried_segments(std::span<const RegimeShares> shares, const RateReport& report,
-                                                     std::span<const RateState> rates) const {
+std::vector<double> RegimeSmoother::carried_segments(std::span<const RegimeProbabilities> shares,
+                                                     const RateReport& report, std::span<const RateState> rates) const {
   std::vector<double> out(rates.size(), 0.0);
   const TimeNs near_ns = static_cast<TimeNs>(1e9 * params_.near_s);
   for (std::size_t k = 0; k < rates.size();) {

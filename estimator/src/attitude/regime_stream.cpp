@@ -122,8 +122,9 @@ ClippedElements RegimeStream::known_of(State& state) const {
   return out;
 }
 
-RegimeShares RegimeStream::next(const RegimeShares& before, double dt_s, std::span<const RateStream::Knot> window,
-                                std::size_t k, const RigCalibration& rig, bool unstable) const {
+RegimeProbabilities RegimeStream::next(const RegimeProbabilities& before, double dt_s,
+                                       std::span<const RateStream::Knot> window, std::size_t k,
+                                       const RigCalibration& rig, bool unstable) const {
   const RateStream::Knot& knot = window[k];
   // A rate fitted to the force with an invalid calibration agrees with the force in any kind of motion.
   if (unstable && knot.observation.unseen() != 0) return before;
@@ -178,7 +179,7 @@ double RegimeStream::share_of(const RateState& rate, State& state) const {
   const TimeNs next_ns = next_clipped == window.end() ? 0 : next_clipped->observation.sample.time_ns;
   const bool before = next_clipped != window.end() && next_ns - rate.time_ns <= near_ns;
   const bool within = after && before && next_ns - *state.clipped_ns <= near_ns;
-  std::erase_if(state.near, [&](const ReportedShare& reported) {
+  std::erase_if(state.near, [&](const ReportedProbability& reported) {
     return reported.time_ns < rate.time_ns - near_ns || (within && reported.carried >= state.shares.carried);
   });
   if (within) state.near.push_back({rate.time_ns, state.shares.carried});
@@ -186,7 +187,7 @@ double RegimeStream::share_of(const RateState& rate, State& state) const {
   double out = state.near.empty() ? 1.0 : state.near.front().carried;
   if (out < params_.carried_min || !before) return out;
   // continues with the provisional rates of the samples that are not reported yet
-  RegimeShares shares = state.shares;
+  RegimeProbabilities shares = state.shares;
   const RigCalibration rig = rate_.calibration(state.rate);
   const bool unstable = calibration_is_unstable(state);
   for (std::size_t k = here + 1; k < window.size(); ++k) {

@@ -98,9 +98,9 @@ Vector3d RegimeEvidence::likelihood(double dt_s, const ImuSample& sample, const 
 }
 
 // Computes one forward step of the motion type probabilities: carried.md (C38).
-RegimeShares RegimeEvidence::next(const RegimeShares& before, double dt_s, const ImuSample& sample,
-                                  const RateState& rate, const Vector3d& alpha, const Vector3d& lever_arm_m,
-                                  const Matrix3d& lever_arm_covariance_m2) const {
+RegimeProbabilities RegimeEvidence::next(const RegimeProbabilities& before, double dt_s, const ImuSample& sample,
+                                         const RateState& rate, const Vector3d& alpha, const Vector3d& lever_arm_m,
+                                         const Matrix3d& lever_arm_covariance_m2) const {
   const Vector3d predicted = changes(params_, dt_s) * Vector3d(before.flight, before.contact, before.carried);
   Vector3d after =
       predicted.cwiseProduct(likelihood(dt_s, sample, rate, alpha, lever_arm_m, lever_arm_covariance_m2.trace()));
@@ -111,7 +111,7 @@ RegimeShares RegimeEvidence::next(const RegimeShares& before, double dt_s, const
 // Computes the motion type probabilities of a recording by a forward and a backward pass: carried.md (C38).
 Status RegimeEvidence::find(std::span<const ImuSample> samples, std::span<const RateState> rates,
                             const Vector3d& lever_arm_m, const Matrix3d& lever_arm_covariance_m2,
-                            std::vector<RegimeShares>& out) const {
+                            std::vector<RegimeProbabilities>& out) const {
   out.clear();
   const std::size_t count = samples.size();
   if (count == 0) return {Trouble::empty, "samples", 0.0, 1.0};

@@ -28,8 +28,8 @@ double after_ns(TimeNs later_ns, TimeNs earlier_ns) {
 
 struct Line {
   double period_ns = 0.0, last_ns = 0.0;  ///< slope; value of the line at the last stamp, relative to the first stamp
-  double sum_n = 0.0, sum_nn = 0.0;       ///< sums over the sample numbers, counted from the last stamp
-  double mean_square_error_ns2 = 0.0;     ///< variance of the stamps about the line
+  double weighted_sum_number = 0.0, sum_nn = 0.0;  ///< sums over the sample numbers, counted from the last stamp
+  double mean_square_error_ns2 = 0.0;              ///< variance of the stamps about the line
 };
 
 using Offsets = std::array<double, SampleClock::kStart>;  // times relative to the first stamp [ns]
@@ -41,14 +41,14 @@ Line fit(const Offsets& x_ns, const Numbers& n) {
   double sum_x = 0.0, sum_nx = 0.0;
   for (std::size_t k = 0; k < SampleClock::kStart; ++k) {
     const double from_last = n[k] - n.back();
-    line.sum_n += from_last;
+    line.weighted_sum_number += from_last;
     line.sum_nn += from_last * from_last;
     sum_x += x_ns[k];
     sum_nx += from_last * x_ns[k];
   }
-  const double determinant = kCount * line.sum_nn - line.sum_n * line.sum_n;
-  line.last_ns = (line.sum_nn * sum_x - line.sum_n * sum_nx) / determinant;
-  line.period_ns = (kCount * sum_nx - line.sum_n * sum_x) / determinant;
+  const double determinant = kCount * line.sum_nn - line.weighted_sum_number * line.weighted_sum_number;
+  line.last_ns = (line.sum_nn * sum_x - line.weighted_sum_number * sum_nx) / determinant;
+  line.period_ns = (kCount * sum_nx - line.weighted_sum_number * sum_x) / determinant;
   for (std::size_t k = 0; k < SampleClock::kStart; ++k) {
     const double residual = x_ns[k] - line.last_ns - (n[k] - n.back()) * line.period_ns;
     line.mean_square_error_ns2 += residual * residual / (kCount - 2.0);
@@ -111,7 +111,7 @@ Status SampleClock::push(TimeNs stamp_ns, State& state, TimeNs& time_ns) const {
   time_ns = stamp_ns;
   if (corrects_stamps(state) && std::abs(stamp_ns) < kLast_ns) {
     const double bound_ns = 0.5 * state.period_ns;
-    time_ns += std::llround(std::clamp(state.fit_minus_stamp_ns, -bound_ns, bound_ns));
+    time_ns += std::llround(std::clamp(state.fit_residual_ns, -bound_ns, bound_ns));
   }
   // Time must increase after an uncorrected stamp and after a burst of stamps. The corrected stamps then catch up.
   if (state.stamp_ns && time_ns <= state.time_ns)
@@ -134,9 +134,9 @@ void SampleClock::begin(State& state) const {
   if (!(std::sqrt(line.mean_square_error_ns2) < kNoPeriod * line.period_ns)) return;
   state.line_fitted = true;
   state.period_ns = line.period_ns;
-  state.fit_minus_stamp_ns = line.last_ns - x_ns.back();
+  state.fit_residual_ns = line.last_ns - x_ns.back();
   state.sum = kStart;
-  state.sum_n = line.sum_n;
+  state.weighted_sum_number = line.weighted_sum_number;
   state.sum_nn = line.sum_nn;
   state.mean_square_error_ns2 = line.mean_square_error_ns2;
   state.mean_error_product_ns2 = state.error_ns = 0.0;
@@ -146,11 +146,11 @@ void SampleClock::begin(State& state) const {
 /// Updates the line with a stamp: sample_clock.md (S1), (S2), (S3). If the sample number is uncertain, restarts the
 /// fit.
 void SampleClock::follow(double step_ns, TimeNs stamp_ns, State& state) const {
-  const double passed_ns = step_ns - state.fit_minus_stamp_ns;
+  const double passed_ns = step_ns - state.fit_residual_ns;
   const double number = std::max(1.0, std::round(passed_ns / state.period_ns));
   const double error_ns = passed_ns - number * state.period_ns;
   const double jitter_ns = std::max(std::sqrt(state.mean_square_error_ns2), params_.jitter_min * state.period_ns);
-  const double before = state.sum * state.sum_nn - state.sum_n * state.sum_n;
+  const double before = state.sum * state.sum_nn - state.weighted_sum_number * state.weighted_sum_number;
   const double unsure_ns = number * jitter_ns * std::sqrt(state.sum / before);
   state.outliers = std::abs(error_ns) > kStray * state.period_ns ? state.outliers + 1 : 0;
   const bool lost = unsure_ns > kNumberSigma * state.period_ns || state.outliers > kStraysMax ||
@@ -169,12 +169,12 @@ void SampleClock::follow(double step_ns, TimeNs stamp_ns, State& state) const {
 
   // sample numbers count from the current sample, so only the residual of the current sample enters the sum
   const double keep = 1.0 - fading;
-  state.sum_nn = keep * (state.sum_nn - 2.0 * number * state.sum_n + number * number * state.sum);
-  state.sum_n = keep * (state.sum_n - number * state.sum);
+  state.sum_nn = keep * (state.sum_nn - 2.0 * number * state.weighted_sum_number + number * number * state.sum);
+  state.weighted_sum_number = keep * (state.weighted_sum_number - number * state.sum);
   state.sum = keep * state.sum + 1.0;
-  const double determinant = state.sum * state.sum_nn - state.sum_n * state.sum_n;
-  state.fit_minus_stamp_ns = state.sum_nn / determinant * limited_ns - error_ns;
-  state.period_ns -= state.sum_n / determinant * limited_ns;
+  const double determinant = state.sum * state.sum_nn - state.weighted_sum_number * state.weighted_sum_number;
+  state.fit_residual_ns = state.sum_nn / determinant * limited_ns - error_ns;
+  state.period_ns -= state.weighted_sum_number / determinant * limited_ns;
 }
 
 Status SampleClock::check_state(const State& state) {
@@ -184,7 +184,7 @@ Status SampleClock::check_state(const State& state) {
     return {Trouble::out_of_range, "stamps.time_ns", double(state.time_ns), double(*state.stamp_ns)};
   if (!state.line_fitted) return {};
   if (!(state.period_ns > 0.0)) return {Trouble::out_of_range, "stamps.period_ns", state.period_ns, 0.0};
-  const double determinant = state.sum * state.sum_nn - state.sum_n * state.sum_n;
+  const double determinant = state.sum * state.sum_nn - state.weighted_sum_number * state.weighted_sum_number;
   if (!(determinant > 0.0)) return {Trouble::out_of_range, "stamps.sum_nn", determinant, 0.0};
   return {};
 }

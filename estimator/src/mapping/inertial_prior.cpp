@@ -65,10 +65,10 @@ Eigen::Matrix3d railed_velocity_variance(const LidarInertialOdometry::Params& pa
   for (const MotionSample& sample : samples) {
     const double from = std::max(seconds(sample.from_ns - trajectory.start_ns()), 0.0);
     const double to = std::min(seconds(sample.time_ns - trajectory.start_ns()), trajectory.duration_s());
-    if (to <= from || sample.railed_axes == 0) continue;
+    if (to <= from || sample.accel_saturated_axes == 0) continue;
     const Eigen::Matrix3d R = trajectory.at(0.5 * (from + to), hint).q_WI.toRotationMatrix();
     for (int axis = 0; axis < 3; ++axis) {
-      if (sample.railed_axes >> axis & 1) lasted.col(axis) += (to - from) * R.col(axis);
+      if (sample.accel_saturated_axes >> axis & 1) lasted.col(axis) += (to - from) * R.col(axis);
     }
   }
   return params.expert.rails.force_sigma_m_s2 * params.expert.rails.force_sigma_m_s2 * lasted * lasted.transpose();

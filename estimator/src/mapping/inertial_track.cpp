@@ -22,7 +22,7 @@ WindowRate rate_of(const MotionSample& sample) {
   return {sample.w_WI_I_rad_s, sample.rate_sigma_rad_s, sample.from_ns, sample.time_ns};
 }
 
-std::uint8_t railed_axes(const Params& params, const ImuSample& sample) {
+std::uint8_t accel_saturated_axes(const Params& params, const ImuSample& sample) {
   std::uint8_t axes = 0;
   for (int axis = 0; axis < 3; ++axis) {
     const bool railed = std::abs(sample.specific_force_m_s2[axis]) >= params.expert.rails.accel_m_s2 ||
@@ -70,7 +70,7 @@ void InertialTrack::take(const Params& params, const ImuSample& sample, const Ra
   next.f_I_m_s2 = sample.specific_force_m_s2;
   next.rate_sigma_rad_s = assumed_rate_sigma(params, rate);
   next.clipped_axes = static_cast<std::uint8_t>(rate.clipped_axes & kClipGyro);
-  next.railed_axes = railed_axes(params, sample);
+  next.accel_saturated_axes = accel_saturated_axes(params, sample);
   const bool after_gap = next.time_ns - next.from_ns > kGap_ns;
   // after a gap, a reading's window is as long as the window before the gap
   if (after_gap && newest_ && !next.at_rest)
@@ -143,14 +143,14 @@ void InertialTrack::listen_for_rest(const Params& params, const ImuSample& sampl
   // during the initial rest, the mean rate is the gyro's bias
   const Eigen::Vector3d bias = initial_.lasts ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : initial_.gyro_bias_rad_s;
   if (clipped) rest_ = {};
-  if (!clipped && rests_.observe(received, rest_, bias)) next.rests_since_ns = rest_.first_ns;
+  if (!clipped && rests_.observe(received, rest_, bias)) next.rest_start_ns = rest_.first_ns;
   if (initial_.lasts) {
     if (!initial_.first_ns) initial_.first_ns = initial_.run_ns = sample.time_ns;
     // The mean of a new run is as noisy as single readings. Noise may therefore restart the run.
-    if (next.rests_since_ns && seconds(*next.rests_since_ns - *initial_.first_ns) < params.expert.start.bias_rest_s)
-      initial_.run_ns = next.rests_since_ns;
-    initial_.lasts = next.rests_since_ns == initial_.run_ns;
-    if (initial_.lasts && seconds(rest_.quiet_ns) >= params.expert.start.bias_rest_s)
+    if (next.rest_start_ns && seconds(*next.rest_start_ns - *initial_.first_ns) < params.expert.start.bias_rest_s)
+      initial_.run_ns = next.rest_start_ns;
+    initial_.lasts = next.rest_start_ns == initial_.run_ns;
+    if (initial_.lasts && seconds(rest_.within_bias_since_ns) >= params.expert.start.bias_rest_s)
       initial_.gyro_bias_rad_s = rest_.mean_rate_rad_s();
   }
   next.at_rest = initial_.lasts;
@@ -158,17 +158,17 @@ void InertialTrack::listen_for_rest(const Params& params, const ImuSample& sampl
     undecided_rad_s_.push_back(rate.w_WI_I_rad_s);
     return;
   }
-  const bool goes_on = next.rests_since_ns && *next.rests_since_ns < rest_.pending_first_ns;
-  if (!goes_on) take_back_rest(next.rests_since_ns);
+  const bool goes_on = next.rest_start_ns && *next.rest_start_ns < rest_.pending_first_ns;
+  if (!goes_on) take_back_rest(next.rest_start_ns);
   undecided_rad_s_.clear();
 }
 
 /// If a complete reading shows motion, marks all samples since the start of the reading as motion.
-void InertialTrack::take_back_rest(std::optional<TimeNs> rests_since_ns) {
+void InertialTrack::take_back_rest(std::optional<TimeNs> rest_start_ns) {
   const std::size_t count = std::min(undecided_rad_s_.size(), samples_.size());
   for (std::size_t back = 1; back <= count; ++back) {
     MotionSample& sample = samples_[samples_.size() - back];
-    sample.rests_since_ns = rests_since_ns;
+    sample.rest_start_ns = rest_start_ns;
     if (!sample.at_rest || initial_.lasts) continue;
     sample.at_rest = false;
     sample.w_WI_I_rad_s = undecided_rad_s_[undecided_rad_s_.size() - back] - initial_.gyro_bias_rad_s;
@@ -183,7 +183,7 @@ bool InertialTrack::starts_at_rest(double lasted_s) const {
 }
 
 bool InertialTrack::rests_until(TimeNs end_ns) const {
-  const auto rests = [&](const MotionSample& sample) { return sample.from_ns >= end_ns || sample.rests_since_ns; };
+  const auto rests = [&](const MotionSample& sample) { return sample.from_ns >= end_ns || sample.rest_start_ns; };
   return std::all_of(samples_.begin(), samples_.end(), rests);
 }
 
@@ -191,7 +191,7 @@ bool InertialTrack::rests_between(TimeNs from_ns, TimeNs end_ns) const {
   const std::span<const MotionSample> samples = samples_from(from_ns);
   const auto after = [&](const MotionSample& sample) { return sample.from_ns >= end_ns; };
   const auto end = std::find_if(samples.begin(), samples.end(), after);
-  return std::all_of(samples.begin(), end, [](const MotionSample& sample) { return bool(sample.rests_since_ns); });
+  return std::all_of(samples.begin(), end, [](const MotionSample& sample) { return bool(sample.rest_start_ns); });
 }
 
 std::span<const MotionSample> InertialTrack::samples_from(TimeNs from_ns) const {
@@ -204,11 +204,11 @@ std::optional<Eigen::Vector3d> InertialTrack::resting_force(TimeNs time_ns, doub
   return rest_.mean_force_m_s2();
 }
 
-void InertialTrack::exclude_force(TimeNs end_ns) {
+void InertialTrack::exclude_accelerometer(TimeNs end_ns) {
   for (MotionSample& sample : samples_) {
     if (sample.from_ns >= end_ns) break;
     sample.bridges_gap = true;
-    sample.railed_axes = 0;
+    sample.accel_saturated_axes = 0;
   }
 }
 

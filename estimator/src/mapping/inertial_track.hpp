@@ -42,7 +42,7 @@ class InertialTrack {
   bool rests_until(TimeNs end_ns) const;
   bool rests_between(TimeNs from_ns, TimeNs end_ns) const;
   /// Marks the forces before `end_ns` as unknown, as in a gap; the rates remain.
-  void exclude_force(TimeNs end_ns);
+  void exclude_accelerometer(TimeNs end_ns);
   /// Deletes samples that ended by `end_ns`, the end of a sweep.
   void prune_until(TimeNs end_ns);
 
@@ -62,7 +62,7 @@ class InertialTrack {
   };
 
   void listen_for_rest(const Params& params, const ImuSample& sample, const RateState& rate, MotionSample& next);
-  void take_back_rest(std::optional<TimeNs> rests_since_ns);
+  void take_back_rest(std::optional<TimeNs> rest_start_ns);
   bool detect_flight(const Params& params, const MotionSample& next, bool after_gap);
   void fill_gap(const Params& params, bool in_flight);
   bool fly_through(const Params& params, const WindowRate& before, const WindowRate& after);

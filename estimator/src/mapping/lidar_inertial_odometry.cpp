@@ -77,7 +77,7 @@ Status LidarInertialOdometry::add_reading(const OdometerReading& reading) {
   return status;
 }
 
-void LidarInertialOdometry::exclude_force() {
+void LidarInertialOdometry::exclude_accelerometer() {
   impl_->known = mapping::ConstantVelocity{};
 }
 
@@ -103,7 +103,7 @@ Status LidarInertialOdometry::predict(std::span<const ImuSample> samples, std::s
   }
   if (track.samples().empty()) return pose_at(my.boundary.time_ns(), pose);
   const TimeNs end_ns = track.samples().back().time_ns;
-  if (std::holds_alternative<mapping::ConstantVelocity>(my.known)) track.exclude_force(end_ns);
+  if (std::holds_alternative<mapping::ConstantVelocity>(my.known)) track.exclude_accelerometer(end_ns);
   const Registration::Estimate& last = my.boundary.state_estimate.mean;
   SweepTrajectory trajectory;
   if (Status status = trajectory.build(last.state, track.samples(), end_ns, last.calibration.gravity_W_m_s2);
@@ -133,7 +133,7 @@ SweepCalibration::Covariance LidarInertialOdometry::calibration_covariance() con
   return mapping::unknowns::block(impl_->boundary.state_estimate.error, mapping::unknowns::calibration);
 }
 
-SweepCalibration::Covariance LidarInertialOdometry::calibration_weight() const {
+SweepCalibration::Covariance LidarInertialOdometry::calibration_weighting_covariance() const {
   return mapping::unknowns::block(impl_->boundary.state_estimate.weight, mapping::unknowns::calibration);
 }
 
@@ -143,7 +143,8 @@ Status LidarInertialOdometry::vertical() const {
   const double variance = u::variances(impl_->boundary.state_estimate.error, u::gravity).head<2>().maxCoeff();
   const double sigma_rad = std::sqrt(variance) / std::max(impl_->params.expert.gravity_m_s2, 1e-3);
   if (!mapping::has_started(impl_->tracking) || !(sigma_rad > kMost_rad)) return {};
-  return {Trouble::out_of_range, "standard deviation of the map's vertical after a start in motion", sigma_rad, kMost_rad};
+  return {Trouble::out_of_range, "standard deviation of the map's vertical after a start in motion", sigma_rad,
+          kMost_rad};
 }
 
 Status LidarInertialOdometry::pose_at(TimeNs time_ns, PoseState& pose) const {

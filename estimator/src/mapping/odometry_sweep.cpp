@@ -27,7 +27,7 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
   if (Status status = check_sweep(start_ns, end_ns, returns); !status.ok()) return status;
   if (Status status = level_at_first(); !status.ok()) return status;
 
-  if (std::holds_alternative<mapping::ConstantVelocity>(known)) track.exclude_force(end_ns);
+  if (std::holds_alternative<mapping::ConstantVelocity>(known)) track.exclude_accelerometer(end_ns);
   if (!mapping::has_started(tracking)) {
     if (Status status = start_map(start_ns, end_ns, returns, report); !status.ok()) return status;
   }
@@ -93,7 +93,7 @@ Status LidarInertialOdometry::Impl::check_sweep(TimeNs start_ns, TimeNs end_ns,
   // With a wrong clock, the first sweep may start before the first sample. The initial rest is therefore extended
   // backwards.
   const double early_s = seconds(samples.front().from_ns - start_ns);
-  if (!started && early_s > (params.time_offset_s != 0.0 ? SweepTrajectory::kBeyond_s : 0.0)) {
+  if (!started && early_s > (params.time_offset_s != 0.0 ? SweepTrajectory::kExtrapolation_s : 0.0)) {
     return {Trouble::too_few, "start_ns", double(start_ns), double(samples.front().from_ns)};
   }
   return mapping::check_offsets(end_ns - start_ns, returns);
@@ -259,8 +259,8 @@ void LidarInertialOdometry::Impl::propagate(const UpdatedSweep& sweep, const Pla
     world.add_drift(report.weakest_sigma_m, report.weakest_direction);
   report.trajectory = poses_along(sweep.trajectory, motion.end_ns, sweep.start.error);
   const Registration::Matrix to_end = mapping::unknowns_at(sweep.trajectory, sweep.trajectory.duration_s());
-  report.map_sigma_m = world.sigma_in_map_m(mapping::pose_and_mounting(to_end, sweep.start.error),
-                                            report.trajectory.back().p_WA_m);
+  report.map_sigma_m =
+      world.sigma_in_map_m(mapping::pose_and_mounting(to_end, sweep.start.error), report.trajectory.back().p_WA_m);
   enter_window(sweep, motion, boundary, window).inserted = std::move(inserted);
   if (aligned) {
     window.smooth();

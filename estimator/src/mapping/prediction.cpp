@@ -26,7 +26,7 @@ void carry_deficit(const Params& params, const SweepBoundary& boundary, const Sw
   constexpr int kLast = SweepTrajectory::kKnots - 1;
   u::rows(next.by_last, u::deficit).setZero();
   if (!params.expert.rails.estimate_deficit) return;
-  const Eigen::Vector3d share_at_start = trajectory.deficit_share_at_start();
+  const Eigen::Vector3d share_at_start = trajectory.deficit_factor_at_start();
   const double rho = knot_correlation(params, trajectory);
   for (int axis = 0; axis < 3; ++axis) {
     if (!(share_at_start[axis] > 0.0 && boundary.deficit_share[axis] > 0.0)) continue;
@@ -162,7 +162,7 @@ namespace {
   // noise of the normals (errors in variables) is not information
   Registration::Matrix kept = Registration::Matrix::Identity();
   dense::solve_semidefinite(invertible(prediction.prior.covariance), kept);
-  kept += aligned.errors_in_variables_information;
+  kept += aligned.normal_noise_information;
   out.noalias() = aligned.covariance * kept;
 }
 
@@ -205,7 +205,7 @@ void boundary_after(const Params& params, const StateEstimate& start, const Moti
   boundary.railed_velocity_m2_s2 = railed_velocity_variance(params, trajectory, window.samples);
   const bool aligned = alignment != nullptr;
   boundary.deficit_share = Eigen::Vector3d::Zero();
-  if (aligned) boundary.deficit_share = trajectory.deficit_share_at_end();
+  if (aligned) boundary.deficit_share = trajectory.deficit_factor_at_end();
   boundary.constrained = aligned && alignment->weakest_sigma_m <= params.expert.matching.degenerate_sigma_m;
 }
 

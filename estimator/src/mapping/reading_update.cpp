@@ -34,7 +34,7 @@ struct Offsets {
 };
 
 struct Expected {
-  Rows<kUnknowns> by_start;
+  Rows<kUnknowns> jacobian_start;
   Rows<kMotion> by_noise;
   Values residual;  ///< innovation: the reading minus its prediction
   Covariance variance;
@@ -45,7 +45,7 @@ struct Moment {
   double noise_share = 0.0;  ///< fraction of the sweep's noise up to this time
   Eigen::Quaterniond q_WI;
   Eigen::Vector3d p_WI_m, v_WI_m_s;
-  Eigen::Matrix<double, kMotion, kUnknowns> by_start;
+  Eigen::Matrix<double, kMotion, kUnknowns> jacobian_start;
 };
 
 class Sweep {
@@ -53,7 +53,7 @@ class Sweep {
   Sweep(const Registration::Estimate& predicted, const MotionWindow& window) : predicted_(predicted), window_(window) {}
 
   bool holds(TimeNs time_ns) const {
-    const auto beyond_ns = static_cast<TimeNs>(1e9 * SweepTrajectory::kBeyond_s);
+    const auto beyond_ns = static_cast<TimeNs>(1e9 * SweepTrajectory::kExtrapolation_s);
     return time_ns >= predicted_.state.time_ns - beyond_ns && time_ns <= window_.end_ns + beyond_ns;
   }
 
@@ -76,12 +76,12 @@ class Sweep {
     std::size_t hint = 0;
     const SweepTrajectory::Instant instant = trajectory.at(t_s, Eigen::Vector3d::Zero(), hint, out.v_WI_m_s);
     out.q_WI = instant.q_WI;
-    out.p_WI_m = trajectory.base_m(t_s) + instant.preintegrated_position_m;
+    out.p_WI_m = trajectory.common_position_m(t_s) + instant.preintegrated_position_m;
     const SweepTrajectory::Transition step = trajectory.transition(inside_s);
-    out.by_start.setZero();
-    u::columns(out.by_start, u::motion) = step.by_start;
-    u::columns(out.by_start, u::deficit) = step.by_deficit_s;
-    u::columns(out.by_start, u::gravity) = step.by_gravity;
+    out.jacobian_start.setZero();
+    u::columns(out.jacobian_start, u::motion) = step.jacobian_start;
+    u::columns(out.jacobian_start, u::deficit) = step.jacobian_deficit_s;
+    u::columns(out.jacobian_start, u::gravity) = step.jacobian_gravity;
     return out;
   }
 
@@ -94,9 +94,9 @@ class Sweep {
 /// reading.
 template <int Size>
 void add(const OfMotion<Size>& by_moment, const Moment& moment, Expected& out) {
-  const Eigen::Matrix<double, Size, kUnknowns> by_start = by_moment * moment.by_start;
-  out.by_start += by_start;
-  out.by_noise += moment.noise_share * by_start.template leftCols<kMotion>();
+  const Eigen::Matrix<double, Size, kUnknowns> jacobian_start = by_moment * moment.jacobian_start;
+  out.jacobian_start += jacobian_start;
+  out.by_noise += moment.noise_share * jacobian_start.template leftCols<kMotion>();
 }
 
 template <int Size>
@@ -155,20 +155,20 @@ struct Work {
   Matrix at_start, before, left;  ///< covariance at the start, the part due to noise; factor of the remaining errors
   Offsets offsets;
   Expected expected;
-  Gain<kUnknowns> by_start;  ///< gain of the unknowns at the boundary
-  Gain<kMotion> by_noise;    ///< gain of the noise since the boundary
+  Gain<kUnknowns> jacobian_start;  ///< gain of the unknowns at the boundary
+  Gain<kMotion> by_noise;          ///< gain of the noise since the boundary
 };
 
 /// Computes the gains at the current linearisation point: mapping.md (R37).
 bool find_gains(const MotionNoise& within, Work& work) {
   const Expected& expected = work.expected;
-  work.by_start = work.at_start * expected.by_start.transpose();
+  work.jacobian_start = work.at_start * expected.jacobian_start.transpose();
   work.by_noise = within * expected.by_noise.transpose();
-  Covariance S = expected.by_start * work.by_start + expected.by_noise * work.by_noise + expected.variance;
+  Covariance S = expected.jacobian_start * work.jacobian_start + expected.by_noise * work.by_noise + expected.variance;
   make_symmetric(S);
   const Eigen::LLT<Covariance> factors(S);
   if (factors.info() != Eigen::Success) return false;
-  work.by_start = factors.solve(work.by_start.transpose()).transpose();
+  work.jacobian_start = factors.solve(work.jacobian_start.transpose()).transpose();
   work.by_noise = factors.solve(work.by_noise.transpose()).transpose();
   return true;
 }
@@ -179,9 +179,9 @@ bool find_gains(const MotionNoise& within, Work& work) {
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     work.expected = std::visit([&](const auto& kind) { return expect(kind, sweep, work.offsets); }, reading);
     if (!find_gains(within, work)) return false;
-    const Values innovation = work.expected.residual + work.expected.by_start * work.offsets.start +
+    const Values innovation = work.expected.residual + work.expected.jacobian_start * work.offsets.start +
                               work.expected.by_noise * work.offsets.noise;
-    const Offsets next{work.by_start * innovation, work.by_noise * innovation};
+    const Offsets next{work.jacobian_start * innovation, work.by_noise * innovation};
     if (!next.start.allFinite() || !next.noise.allFinite()) return false;
     const double change = std::max((next.start - work.offsets.start).cwiseAbs().maxCoeff(),
                                    (next.noise - work.offsets.noise).cwiseAbs().maxCoeff());
@@ -196,16 +196,16 @@ bool find_gains(const MotionNoise& within, Work& work) {
   Registration::Vector moved = work.offsets.start;
   u::segment(moved, u::motion) += work.offsets.noise;
   prediction.prior.mean.add(moved);
-  work.by_start.topRows<kMotion>() += work.by_noise;  // from here on, the gain of the sum
-  const Rows<kUnknowns> by_last = work.expected.by_start * prediction.by_last;
-  prediction.by_last.noalias() -= work.by_start * by_last;
+  work.jacobian_start.topRows<kMotion>() += work.by_noise;  // from here on, the gain of the sum
+  const Rows<kUnknowns> by_last = work.expected.jacobian_start * prediction.by_last;
+  prediction.by_last.noalias() -= work.jacobian_start * by_last;
   work.left.setIdentity();
-  work.left.noalias() -= work.by_start * work.expected.by_start;
+  work.left.noalias() -= work.jacobian_start * work.expected.jacobian_start;
 }
 
 /// Adds the noise within the sweep, which the gains reduce, and the noise of the reading: mapping.md (R38).
 [[gnu::noinline]] void add_noise(const MotionNoise& within, Work& work, Prediction& prediction) {
-  const Gain<kUnknowns>& K = work.by_start;
+  const Gain<kUnknowns>& K = work.jacobian_start;
   Eigen::Matrix<double, kUnknowns, kMotion> left = -K * work.expected.by_noise;
   left.topRows<kMotion>().diagonal().array() += 1.0;
   const Eigen::Matrix<double, kUnknowns, kMotion> spread = left * within;

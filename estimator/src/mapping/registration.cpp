@@ -225,7 +225,7 @@ void Registration::describe_shape(std::span<const SweepPoint> points, double ker
   result.eigenvalues = result.eigenvalues.cwiseMax(0.0).eval();
   Eigen::Matrix<double, 6, 1> information;
   dense::eigenvalues(scale.asDiagonal() *
-                         (u::block(sum.H, u::pose) - u::block(result.errors_in_variables_information, u::pose)) *
+                         (u::block(sum.H, u::pose) - u::block(result.normal_noise_information, u::pose)) *
                          scale.asDiagonal(),
                      information);
   result.weakest_sigma_m = 1.0 / std::sqrt(std::max(information[0], 1e-12));

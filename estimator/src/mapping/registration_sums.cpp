@@ -86,7 +86,7 @@ double Registration::residual(const SweepTrajectory& trajectory, const SweepCali
   const Eigen::Vector3d n = plane.normal_W.cast<double>();
   const mapping::PointMotion motion(trajectory, calibration, point, hint);
   motion.along(n, derivative);
-  return n.dot(trajectory.base_m(point.t_s) + motion.lever_m() - plane.centre_W_m.cast<double>());
+  return n.dot(trajectory.common_position_m(point.t_s) + motion.lever_m() - plane.centre_W_m.cast<double>());
 }
 
 void Registration::find_match(const VoxelMap& map, std::size_t point, Neighbours& found) {
@@ -94,14 +94,14 @@ void Registration::find_match(const VoxelMap& map, std::size_t point, Neighbours
   const float rematch2 = static_cast<float>(params_.expert.rematch_m * params_.expert.rematch_m);
   float radius_m = static_cast<float>(params_.match_distance_m);
   if (match.searched) {
-    const float moved2 = (positions_[point] - match.searched_at_W_m).squaredNorm();
+    const float moved2 = (positions_[point] - match.search_position_W_m).squaredNorm();
     if (moved2 <= rematch2) return;
     // The previous neighbours are within this radius. A search for the new neighbours therefore needs no larger radius.
     // A small margin covers rounding.
     radius_m = std::min(radius_m, kRounding * (match.reach_m + std::sqrt(moved2)));
   }
   match.searched = true;
-  match.searched_at_W_m = positions_[point];
+  match.search_position_W_m = positions_[point];
   map.nearest(positions_[point], params_.neighbours, radius_m, found);
   match.reach_m = found.count == params_.neighbours ? std::sqrt(found.distance2_m2[found.count - 1])
                                                     : std::numeric_limits<float>::infinity();
@@ -137,7 +137,7 @@ void Registration::match_points(const SweepTrajectory& trajectory, std::span<con
     const std::size_t begin = block * kBlock, end = std::min(points.size(), (block + 1) * kBlock);
     trajectory.levers(points.subspan(begin, end - begin), std::span(levers_).subspan(begin, end - begin));
     for (std::size_t i = begin; i < end; ++i) {
-      positions_[i] = (trajectory.base_m(points[i].t_s) + levers_[i].cast<double>()).cast<float>();
+      positions_[i] = (trajectory.common_position_m(points[i].t_s) + levers_[i].cast<double>()).cast<float>();
       find_match(map, i, found);
       distances_[i] = matches_[i].plane.normal_W.dot(positions_[i] - matches_[i].plane.centre_W_m);
     }
@@ -285,9 +285,9 @@ void Registration::describe_errors(std::span<const SweepPoint> points, const Swe
                                    const SweepCalibration& calibration, const Unknowns& unknowns, double kernel_m,
                                    Result& result) {
   cluster_of_.clear();
-  pulls_.clear();
+  cluster_gradients_.clear();
   NoiseOfNormals noise(unknowns);
-  Pulls pulls{cluster_of_, pulls_, static_cast<float>(1.0 / params_.expert.cluster_m)};
+  Pulls pulls{cluster_of_, cluster_gradients_, static_cast<float>(1.0 / params_.expert.cluster_m)};
   std::size_t hint = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Match& match = matches_[i];
@@ -298,7 +298,7 @@ void Registration::describe_errors(std::span<const SweepPoint> points, const Swe
     noise.add(motion, match.plane, std::sqrt(information));
     pulls.add(motion, match.plane, positions_[i], information * r);
   }
-  result.errors_in_variables_information = noise.information();
+  result.normal_noise_information = noise.information();
   result.score_covariance = pulls.covariance(unknowns);
 }
 

@@ -51,9 +51,9 @@ Matrix unknowns_at(const SweepTrajectory& trajectory, double t_s) {
   namespace u = unknowns;
   const SweepTrajectory::Transition step = trajectory.transition(t_s);
   Matrix F = Matrix::Identity();
-  u::block(F, u::motion) = step.by_start;
-  u::block(F, u::motion, u::deficit) = step.by_deficit_s;
-  u::block(F, u::motion, u::gravity) = step.by_gravity;
+  u::block(F, u::motion) = step.jacobian_start;
+  u::block(F, u::motion, u::deficit) = step.jacobian_deficit_s;
+  u::block(F, u::motion, u::gravity) = step.jacobian_gravity;
   return F;
 }
 

@@ -41,7 +41,7 @@ void turn(double rate2_rad2_s2, Lanes& p) {
 
 /// Evaluates the trajectory at the time of each point: mapping.md (R2), (R4), (R6).
 void SweepTrajectory::levers(std::span<const SweepPoint> points, std::span<Eigen::Vector3f> levers_W_m) const {
-  const double from_s = -kBeyond_s, to_s = duration_s_ + kBeyond_s;
+  const double from_s = -kExtrapolation_s, to_s = duration_s_ + kExtrapolation_s;
   std::size_t hint = 0;
   for (std::size_t first = 0; first < points.size();) {
     const Interval& now = interval_at(std::clamp<double>(points[first].t_s, from_s, to_s), hint);
@@ -73,7 +73,7 @@ void SweepTrajectory::levers(std::span<const SweepPoint> points, std::span<Eigen
     turn(rate2, p);
     const Eigen::Quaterniond& q = now.q_WI;
     const double ax = q.x(), ay = q.y(), az = q.z(), aw = q.w();
-    const Eigen::Vector3d &w = now.w_I, &S = now.preintegrated_p, &V = now.preintegrated_v, &A = now.a_W;
+    const Eigen::Vector3d &w = now.w_I, &S = now.preintegrated_p, &V = now.preintegrated_velocity_m_s, &A = now.a_W;
     alignas(16) float ux[kLanes], uy[kLanes], uz[kLanes];
     for (int l = 0; l < kLanes; ++l) {
       const double s = p.s[l], x = p.x[l], y = p.y[l], z = p.z[l];

@@ -25,8 +25,9 @@ Status SweepPoints::select(const Params& params, std::span<const LidarPoint> ret
 }
 
 void SweepPoints::choose(const Params& params, const SweepTrajectory& predicted) {
-  compute_levers(predicted, all_, positions_W_m_);
-  for (std::size_t i = 0; i < all_.size(); ++i) positions_W_m_[i] += predicted.base_m(all_[i].t_s).cast<float>();
+  compute_lever_arm_vectors(predicted, all_, positions_W_m_);
+  for (std::size_t i = 0; i < all_.size(); ++i)
+    positions_W_m_[i] += predicted.common_position_m(all_[i].t_s).cast<float>();
   sampler_.choose(positions_W_m_, params.sweep_voxel_m, chosen_index_);
   for (const std::uint32_t index : chosen_index_) chosen_.push_back(all_[index]);
 }

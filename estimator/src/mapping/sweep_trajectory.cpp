@@ -93,8 +93,10 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
   const Eigen::Vector3d sigma = least_known(samples, end_ns);
   Interval next{};
   next.q_WI = start.q_WI;
-  next.preintegrated_v = next.preintegrated_p = next.w_I = next.a_W = next.deficit_share = Eigen::Vector3d::Zero();
-  next.deficit_attitude = next.deficit_v = next.deficit_p = next.deficit_a = ByDeficit::Zero();
+  next.preintegrated_velocity_m_s = next.preintegrated_p = next.w_I = next.a_W = next.deficit_share =
+      Eigen::Vector3d::Zero();
+  next.attitude_jacobian = next.velocity_jacobian = next.position_jacobian = next.acceleration_jacobian =
+      DeficitJacobian::Zero();
   for (const MotionSample& sample : samples) {
     const TimeNs from = std::max(sample.from_ns, start.time_ns);
     const TimeNs to = std::min(sample.time_ns, end_ns);
@@ -115,15 +117,15 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
     now.a_W = sample.bridges_gap ? Eigen::Vector3d(-gravity_W_m_s2) : Eigen::Vector3d(mean_rotation * sample.f_I_m_s2);
 
     next.q_WI = (now.q_WI * so3::exp(now.w_I * dt)).normalized();
-    next.preintegrated_v = now.preintegrated_v + now.a_W * dt;
-    next.preintegrated_p = now.preintegrated_p + now.preintegrated_v * dt + now.a_W * (0.5 * dt * dt);
+    next.preintegrated_velocity_m_s = now.preintegrated_velocity_m_s + now.a_W * dt;
+    next.preintegrated_p = now.preintegrated_p + now.preintegrated_velocity_m_s * dt + now.a_W * (0.5 * dt * dt);
     if (clipped_axes_ == 0) continue;
-    now.deficit_a = -so3::hat(now.a_W) * now.deficit_attitude;
-    next.deficit_attitude = now.deficit_attitude + gained_by_deficit(now, dt);
+    now.acceleration_jacobian = -so3::hat(now.a_W) * now.attitude_jacobian;
+    next.attitude_jacobian = now.attitude_jacobian + deficit_jacobian_within(now, dt);
     // the mean attitude error of the interval rotates the force: mapping.md (R10)
-    const ByDeficit turn = -so3::hat(now.a_W) * (0.5 * (now.deficit_attitude + next.deficit_attitude));
-    next.deficit_v = now.deficit_v + turn * dt;
-    next.deficit_p = now.deficit_p + now.deficit_v * dt + turn * (0.5 * dt * dt);
+    const DeficitJacobian turn = -so3::hat(now.a_W) * (0.5 * (now.attitude_jacobian + next.attitude_jacobian));
+    next.velocity_jacobian = now.velocity_jacobian + turn * dt;
+    next.position_jacobian = now.position_jacobian + now.velocity_jacobian * dt + turn * (0.5 * dt * dt);
   }
   if (intervals_.empty()) return {Trouble::too_few, "imu samples", 0.0, 1.0};
   return {};
@@ -139,30 +141,31 @@ const SweepTrajectory::Interval& SweepTrajectory::interval_at(double t_s, std::s
 
 /// Evaluates attitude, velocity and position within an interval: mapping.md (R2), (R4), (R6).
 SweepTrajectory::Instant SweepTrajectory::at(double t_s, std::size_t& hint) const {
-  const double t = std::clamp(t_s, -kBeyond_s, duration_s_ + kBeyond_s);
+  const double t = std::clamp(t_s, -kExtrapolation_s, duration_s_ + kExtrapolation_s);
   const Interval& now = interval_at(t, hint);
   const double s = t - now.start_s;
-  return {now.q_WI * rotated_by(now.w_I, s), now.preintegrated_p + s * now.preintegrated_v + (0.5 * s * s) * now.a_W};
+  return {now.q_WI * rotated_by(now.w_I, s),
+          now.preintegrated_p + s * now.preintegrated_velocity_m_s + (0.5 * s * s) * now.a_W};
 }
 
 SweepTrajectory::Instant SweepTrajectory::at(double t_s, const Eigen::Vector3d& x_I_m, std::size_t& hint,
                                              Eigen::Vector3d& velocity_m_s) const {
-  const double t = std::clamp(t_s, -kBeyond_s, duration_s_ + kBeyond_s);
+  const double t = std::clamp(t_s, -kExtrapolation_s, duration_s_ + kExtrapolation_s);
   const Interval& now = interval_at(t, hint);
   const double s = t - now.start_s;
   const Eigen::Quaterniond turned = rotated_by(now.w_I, s);
-  velocity_m_s = start_.v_WI_m_s + t * gravity_W_m_s2_ + now.preintegrated_v + s * now.a_W +
+  velocity_m_s = start_.v_WI_m_s + t * gravity_W_m_s2_ + now.preintegrated_velocity_m_s + s * now.a_W +
                  now.q_WI * (turned * now.w_I.cross(x_I_m));
-  return {now.q_WI * turned, now.preintegrated_p + s * now.preintegrated_v + (0.5 * s * s) * now.a_W};
+  return {now.q_WI * turned, now.preintegrated_p + s * now.preintegrated_velocity_m_s + (0.5 * s * s) * now.a_W};
 }
 
 /// Returns the derivative of the attitude by the knots of the saturation deficit, `s` seconds into an interval:
 /// mapping.md (R9).
-SweepTrajectory::ByDeficit SweepTrajectory::gained_by_deficit(const Interval& now, double s) {
-  if (now.deficit_share.isZero(0.0)) return ByDeficit::Zero();
+SweepTrajectory::DeficitJacobian SweepTrajectory::deficit_jacobian_within(const Interval& now, double s) {
+  if (now.deficit_share.isZero(0.0)) return DeficitJacobian::Zero();
   const Eigen::Matrix3d gained =
       now.q_WI.toRotationMatrix() * so3::left_jacobian(now.w_I * s) * now.deficit_share.asDiagonal() * s;
-  ByDeficit out;
+  DeficitJacobian out;
   for (int k = 0; k < kKnots; ++k) out.middleCols<3>(3 * k) = now.knot_weight[k] * gained;
   return out;
 }
@@ -173,10 +176,11 @@ SweepTrajectory::DeficitDerivative SweepTrajectory::deficit_derivative(double t_
   const Interval& now = interval_at(t, hint);
   const double s = t - now.start_s;
   if (now.deficit_share.isZero(0.0))
-    return {now.deficit_attitude, now.deficit_p + s * now.deficit_v + now.deficit_a * (0.5 * s * s)};
-  const ByDeficit gained = gained_by_deficit(now, s);
-  const ByDeficit turn = -so3::hat(now.a_W) * (now.deficit_attitude + 0.5 * gained);
-  return {now.deficit_attitude + gained, now.deficit_p + s * now.deficit_v + turn * (0.5 * s * s)};
+    return {now.attitude_jacobian,
+            now.position_jacobian + s * now.velocity_jacobian + now.acceleration_jacobian * (0.5 * s * s)};
+  const DeficitJacobian gained = deficit_jacobian_within(now, s);
+  const DeficitJacobian turn = -so3::hat(now.a_W) * (now.attitude_jacobian + 0.5 * gained);
+  return {now.attitude_jacobian + gained, now.position_jacobian + s * now.velocity_jacobian + turn * (0.5 * s * s)};
 }
 
 MotionState SweepTrajectory::state(double t_s) const {
@@ -187,9 +191,10 @@ MotionState SweepTrajectory::state(double t_s) const {
   MotionState state;
   state.time_ns = start_.time_ns + static_cast<TimeNs>(std::llround(t * 1e9));
   state.q_WI = (now.q_WI * so3::exp(now.w_I * s)).normalized();
-  state.p_WI_m = base_m(t) + now.preintegrated_p + s * now.preintegrated_v + (0.5 * s * s) * now.a_W;
-  state.v_WI_m_s = start_.v_WI_m_s + now.preintegrated_v + s * now.a_W + t * gravity_W_m_s2_;
-  const Eigen::Matrix<double, 9, 9> F = transition(t).by_start;
+  state.p_WI_m =
+      common_position_m(t) + now.preintegrated_p + s * now.preintegrated_velocity_m_s + (0.5 * s * s) * now.a_W;
+  state.v_WI_m_s = start_.v_WI_m_s + now.preintegrated_velocity_m_s + s * now.a_W + t * gravity_W_m_s2_;
+  const Eigen::Matrix<double, 9, 9> F = transition(t).jacobian_start;
   const Eigen::Matrix<double, 9, 9> P = F * start_.covariance * F.transpose();
   state.covariance = 0.5 * (P + P.transpose());
   return state;
@@ -203,17 +208,18 @@ SweepTrajectory::Transition SweepTrajectory::transition(double t_s) const {
   const double s = t - now.start_s;
   namespace u = mapping::unknowns;
   Transition out;
-  out.by_start.setIdentity();
-  u::block(out.by_start, u::position, u::attitude) =
-      -so3::hat(now.preintegrated_p + s * now.preintegrated_v + (0.5 * s * s) * now.a_W);
-  u::block(out.by_start, u::position, u::velocity) = t * Eigen::Matrix3d::Identity();
-  u::block(out.by_start, u::velocity, u::attitude) = -so3::hat(now.preintegrated_v + s * now.a_W);
+  out.jacobian_start.setIdentity();
+  u::block(out.jacobian_start, u::position, u::attitude) =
+      -so3::hat(now.preintegrated_p + s * now.preintegrated_velocity_m_s + (0.5 * s * s) * now.a_W);
+  u::block(out.jacobian_start, u::position, u::velocity) = t * Eigen::Matrix3d::Identity();
+  u::block(out.jacobian_start, u::velocity, u::attitude) = -so3::hat(now.preintegrated_velocity_m_s + s * now.a_W);
 
   const DeficitDerivative deficit = deficit_derivative(t, hint);
-  const ByDeficit mean_attitude = 0.5 * (now.deficit_attitude + deficit.attitude_s);
-  out.by_deficit_s << deficit.preintegrated_position_m_s, deficit.attitude_s,
-      now.deficit_v - so3::hat(now.a_W) * mean_attitude * s;
-  out.by_gravity << 0.5 * t * t * Eigen::Matrix3d::Identity(), Eigen::Matrix3d::Zero(), t * Eigen::Matrix3d::Identity();
+  const DeficitJacobian mean_attitude = 0.5 * (now.attitude_jacobian + deficit.attitude_jacobian_s);
+  out.jacobian_deficit_s << deficit.position_jacobian_m_s, deficit.attitude_jacobian_s,
+      now.velocity_jacobian - so3::hat(now.a_W) * mean_attitude * s;
+  out.jacobian_gravity << 0.5 * t * t * Eigen::Matrix3d::Identity(), Eigen::Matrix3d::Zero(),
+      t * Eigen::Matrix3d::Identity();
   return out;
 }
 

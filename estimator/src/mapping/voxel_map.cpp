@@ -144,7 +144,7 @@ std::uint32_t VoxelMap::new_chunk(std::uint32_t& first) {
   sweep_.resize(sweep_.size() + kChunk, 0);
   line_.resize(line_.size() + kChunk, kNoLine);
   seen_through_.resize(seen_through_.size() + kChunk, 0);
-  vacant_ += kChunk;
+  free_slots_ += kChunk;
   return first;
 }
 
@@ -154,7 +154,7 @@ bool VoxelMap::has_room_for(const Eigen::Vector3f& position) const {
   return (position * cubes_per_m_).cwiseAbs().maxCoeff() < static_cast<float>(SpatialHash::kLimit - 2);
 }
 
-bool VoxelMap::is_taken(const Eigen::Vector3f& position) const {
+bool VoxelMap::is_occupied(const Eigen::Vector3f& position) const {
   if (!has_room_for(position)) return true;
   return params_.spacing_m > 0.0 &&
          taken_.find(SpatialHash::key(cube_of(position, cubes_per_m_))) != SpatialHash::kAbsent;
@@ -178,7 +178,7 @@ std::uint32_t VoxelMap::put(const Eigen::Vector3f& position, float sigma_m, std:
   sigma_m_[first * kChunk + place] = std::max(sigma_m, 0.0f);
   sweep_[first * kChunk + place] = sweep;
   line_[first * kChunk + place] = line;
-  --vacant_;
+  --free_slots_;
   return first * kChunk + place;
 }
 
@@ -194,7 +194,7 @@ bool VoxelMap::move(std::uint32_t index, const Eigen::Vector3f& position) {
   return true;
 }
 
-void VoxelMap::count_sight(std::uint32_t index, bool through) {
+void VoxelMap::count_observation(std::uint32_t index, bool through) {
   std::uint8_t& count = seen_through_[index];
   if (through ? count < std::numeric_limits<std::uint8_t>::max() : count > 0) count += through ? 1 : -1;
 }
@@ -205,7 +205,7 @@ Eigen::Vector3f VoxelMap::position_W_m(std::uint32_t index) const {
   return {chunk.x[place], chunk.y[place], chunk.z[place]};
 }
 
-std::vector<std::uint32_t> VoxelMap::keep_within(const Eigen::Vector3f& centre, float radius_m) {
+std::vector<std::uint32_t> VoxelMap::remove_beyond(const Eigen::Vector3f& centre, float radius_m) {
   const auto stays = [&](std::uint32_t index) {
     return exists(index) && (position_W_m(index) - centre).squaredNorm() <= radius_m * radius_m;
   };
@@ -228,7 +228,7 @@ std::vector<std::uint32_t> VoxelMap::keep_within(const Eigen::Vector3f& centre, 
   return kept;
 }
 
-void VoxelMap::keep_before(std::uint32_t first_sweep) {
+void VoxelMap::remove_sweeps_from(std::uint32_t first_sweep) {
   VoxelMap kept(params_);
   for (std::uint32_t index = 0; index < index_end(); ++index) {
     if (!exists(index) || sweep_[index] >= first_sweep) continue;

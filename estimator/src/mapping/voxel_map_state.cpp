@@ -80,7 +80,7 @@ void VoxelMap::load_chunk(StateReader& in) {
     sweep_[index] = sweep;
     line_[index] = line;
     seen_through_[index] = seen_through;
-    --vacant_;
+    --free_slots_;
   }
 }
 

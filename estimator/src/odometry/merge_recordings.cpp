@@ -25,21 +25,22 @@ struct Units {
   std::vector<std::size_t> index;
   std::vector<Eigen::Isometry3d> T_BI;
   std::vector<std::vector<ImuSample>> samples;
-  std::vector<ElementRows> gyro_elements, accel_elements;
+  std::vector<SensingDirections> gyro_elements, accel_elements;
   std::vector<std::vector<FrozenAxis>> frozen;
 };
 
 /// Sets the clip flags in the readings of a unit, and estimates the directions of its sensing elements. The unit may
 /// have frozen axes.
-void flag_clipped(const ImuSheet& sheet, std::vector<ImuSample>& samples, ElementRows& gyro, ElementRows& accel) {
+void flag_clipped(const ImuSheet& sheet, std::vector<ImuSample>& samples, SensingDirections& gyro,
+                  SensingDirections& accel) {
   ClippingFinder::Params params;
   if (sheet.gyro_range_rad_s > 0.0) params.upright_rails.stated_gyro_rad_s = sheet.gyro_range_rad_s;
   if (sheet.accel_range_m_s2 > 0.0) params.upright_rails.stated_accel_m_s2 = sheet.accel_range_m_s2;
   const ClippingFinder::Found found = ClippingFinder(params).find(samples);
-  const CertainRails certain{.gyro = found.rails.planes_in_use(),
-                             .accel = found.rails.planes_in_use(Triad::accelerometer),
-                             .gyro_range_rad_s = sheet.gyro_range_rad_s,
-                             .accel_range_m_s2 = sheet.accel_range_m_s2};
+  const ConfirmedSaturation certain{.gyro = found.rails.planes_in_use(),
+                                    .accel = found.rails.planes_in_use(Triad::accelerometer),
+                                    .gyro_range_rad_s = sheet.gyro_range_rad_s,
+                                    .accel_range_m_s2 = sheet.accel_range_m_s2};
   for (std::size_t k = 0; k < samples.size(); ++k)
     samples[k].device_clip_flags = certain.flags(samples[k], found.clippings[k]);
   gyro = found.rails.rows(Triad::gyro, kUnknownSlope);
@@ -205,8 +206,8 @@ void report_calibration(const ImuMerge& merge, const ImuMerge::State& state, con
     const ImuMerge::Unit& unit = state.units[k];
     constexpr int kOffset = ImuMerge::kErrors - 1;
     out.readings_excluded += static_cast<std::size_t>(unit.left_out);
-    out.units.push_back({units.index[k], unit.offset_s(), std::sqrt(std::max(0.0, unit.P(kOffset, kOffset))),
-                         unit.x.head<3>().norm()});
+    out.units.push_back(
+        {units.index[k], unit.offset_s(), std::sqrt(std::max(0.0, unit.P(kOffset, kOffset))), unit.x.head<3>().norm()});
   }
 }
 

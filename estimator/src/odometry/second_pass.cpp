@@ -19,7 +19,7 @@ constexpr std::size_t kSweepsPerRejection = 5;
 
 /// Initialises the stream with the saturation levels that the first pass detected. The covariance of the saturation
 /// planes is multiplied by `inflation`, as for the calibration.
-void start_from_rails(const KnownRails& known, double inflation, RateStream::Params& params) {
+void start_from_rails(const SaturationLevels& known, double inflation, RateStream::Params& params) {
   params.expert.planes.known = known.planes;
   params.expert.accel_planes.known = known.accel_planes;
   for (RailPlanes* const planes : {&params.expert.planes.known, &params.expert.accel_planes.known}) {
@@ -54,7 +54,8 @@ void SecondPass::give_up() {
 
 void SecondPass::store(const ImuSample& sample) {
   if (!wanted_) return;
-  if (!moves_ns_ && !rests_.observe(sample, rest_, rate_.rate.model.nominal.gyro_bias_rad_s)) moves_ns_ = sample.time_ns;
+  if (!moves_ns_ && !rests_.observe(sample, rest_, rate_.rate.model.nominal.gyro_bias_rad_s))
+    moves_ns_ = sample.time_ns;
   if (!moves_ns_) {
     const TimeNs from_ns = sample.time_ns - static_cast<TimeNs>(1e9 * params_.rest_s);
     while (!sweeps_.empty() && sweeps_.front().start_ns < from_ns) sweeps_.pop_front();
@@ -109,7 +110,7 @@ LidarInertialOdometry::Params SecondPass::calibrated_mapping(const OdometryPass&
   LidarInertialOdometry::Params out = mapping_;
   if (kSweepsPerRejection * rejected_by_first_ > sweeps_.size()) return out;
   const SweepCalibration learnt = first.mapper().calibration();
-  const auto sigma = first.mapper().calibration_weight().diagonal().cwiseSqrt().eval();
+  const auto sigma = first.mapper().calibration_weighting_covariance().diagonal().cwiseSqrt().eval();
   out.T_IL = learnt.T_IL;
   out.time_offset_s = learnt.time_offset_s;
   out.mount_sigma_rad = sigma.head<3>().maxCoeff();

@@ -118,7 +118,7 @@ void RollingFilter::close_node(const Eigen::Vector3d& next_rate_rad_s, State& st
     state.hypotheses[0].P.block<3, 3>(rolling::kPosition, rolling::kPosition) += state.pruned_spread_m2;
     state.position_covariance_m2 += state.pruned_spread_m2;
   }
-  call_uncertain(state);
+  flag_uncertain(state);
   weigh_events(state);
   rebase(lost_heading, state);
   constrain_position(state);
@@ -169,7 +169,7 @@ Eigen::Matrix3d RollingFilter::position_spread(const State& state) {
   return spread / total;
 }
 
-void RollingFilter::call_uncertain(State& state) const {
+void RollingFilter::flag_uncertain(State& state) const {
   const double variance_m2 = state.position_covariance_m2(0, 0) + state.position_covariance_m2(1, 1);
   const bool event = slips(state.hypotheses[0].mode);
   if (!event) state.variance_before_event_m2 = variance_m2;
@@ -191,8 +191,9 @@ void RollingFilter::weigh_events(State& state) {
 
 /// Decides whether the reported position remains constant until the next node.
 void RollingFilter::constrain_position(State& state) const {
-  const bool quiet = seconds(state.rest.quiet_ns) >= std::min(rolling::kConstrainAfter_s, params_.expert.rest.rest_s) &&
-                     !slips(state.hypotheses[0].mode);
+  const bool quiet =
+      seconds(state.rest.within_bias_since_ns) >= std::min(rolling::kConstrainAfter_s, params_.expert.rest.rest_s) &&
+      !slips(state.hypotheses[0].mode);
   const bool revised = state.hypotheses[0].parent != 0;
   const bool stands = quiet && !revised && state.v_WG_m_s.norm() < rolling::kConstrainSpeed_m_s;
   if (!stands || !state.position_constrained) {
@@ -229,7 +230,7 @@ void RollingFilter::report(State& state) const {
   if (!state.position_constrained) state.p_WG_m = nominal.p_WI_m - arm_W;
   state.v_WG_m_s = nominal.v_WI_m_s - w_W.cross(arm_W);
   state.mode = state.hypotheses[0].mode;
-  state.contact_velocity_m_s = state.hypotheses[0].u_W_m_s;
+  state.contact_velocity_m_s = state.hypotheses[0].contact_velocity_W_m_s;
 }
 
 /// Returns the most probable mode over all hypotheses. The best hypothesis may be one of several hypotheses that differ

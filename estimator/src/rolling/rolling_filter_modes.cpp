@@ -97,7 +97,7 @@ double log_still(const rolling::Contact& c, const RollingFilter::Hypothesis& h, 
 /// rolling.md (R24), (R25).
 double log_moving(const rolling::Contact& c, const RollingFilter::Hypothesis& h, RollingMode mode,
                   const Eigen::Vector3d& u, const RollingParams& params) {
-  const Eigen::Vector3d change = u - h.u_W_m_s;
+  const Eigen::Vector3d change = u - h.contact_velocity_W_m_s;
   const double horizontal = log_change(change.head<2>().squaredNorm());
   if (mode == RollingMode::bump) return horizontal + log_rise(change.z());
   const double vertical = c.H.row(2) * h.P * c.H.row(2).transpose() + squared(params.expert.contact.vertical_sigma_m_s);
@@ -248,7 +248,7 @@ void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, bool lost_
     rolling::contact_rows(
         params_, c, candidate.mode, node_s, state.nominal.v_WI_m_s, h.x, h.P,
         [&](const auto& row, double measured, double variance) { rolling::update(row, measured, variance, h.x, h.P); });
-    h.u_W_m_s = c.velocity(h.x);
+    h.contact_velocity_W_m_s = c.velocity(h.x);
     h.log_weight = candidate.log_weight - ordered[0].log_weight;
     h.mode = candidate.mode;
     h.switched_node = candidate.switched_node;
@@ -282,7 +282,7 @@ void RollingFilter::correct_at_rest(State& state) const {
       h.switched_node = state.node;
       h.mode = RollingMode::grip;
     }
-    h.u_W_m_s.setZero();
+    h.contact_velocity_W_m_s.setZero();
   }
   const auto count = static_cast<std::size_t>(state.count);
   Origins order{};
@@ -292,7 +292,7 @@ void RollingFilter::correct_at_rest(State& state) const {
   });
   rearrange(order, count, state.hypotheses);
   // After some rest, the hypotheses agree about the present. One hypothesis is then sufficient.
-  const bool rested = seconds(state.rest.quiet_ns) > kLongAgo_s;
+  const bool rested = seconds(state.rest.within_bias_since_ns) > kLongAgo_s;
   if (rested && state.count > 1) state.pruned_spread_m2 = position_spread(state);
   const double best = state.hypotheses[0].log_weight;
   std::size_t kept = 0;

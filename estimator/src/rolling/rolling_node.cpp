@@ -56,7 +56,7 @@ Eigen::Vector3d contact_variance(const RollingParams& params, const Contact& c, 
 Eigen::Vector3d Contact::velocity(const Vector& x) const {
   const Eigen::Vector2d change = x.segment<2>(kSlope);
   const double curved = upward(slope + change) - upward(slope) + slope.dot(change) / upward(slope);
-  return u_W_m_s + H * x + curved * lift_W;
+  return contact_velocity_W_m_s + H * x + curved * lift_W;
 }
 
 bool starts_in_motion(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s) {
@@ -170,7 +170,7 @@ void integrate(const RollingParams& params, const ImuAverage& reading, RollingNo
     sums.R_force_s += R_T;
     sums.f_W_m_s += R_T * f;
     for (int axis = 0; axis < 3; ++axis) sums.R_f.middleCols<3>(3 * axis) += f_raw[axis] * R_T;
-    sums.R_wxf += R_T * w.cross(f_raw);
+    sums.rotated_rate_cross_force += R_T * w.cross(f_raw);
   }
   sums.w_I_rad += dt_s * w;
   sums.f_I_m_s += dt_s * f_raw;
@@ -244,7 +244,7 @@ Moving transition(const RollingSums& sums) {
   B.block<3, 3>(kVelocity, kAttitude) = -so3::hat(sums.f_W_m_s);
   B.block<3, 3>(kVelocity, kAccelBias) = -sums.R_force_s;
   B.block<3, 9>(kVelocity, kAccelScale) = -sums.R_f;
-  B.block<3, 1>(kVelocity, kDelay) = -sums.R_wxf;
+  B.block<3, 1>(kVelocity, kDelay) = -sums.rotated_rate_cross_force;
   B.middleRows<3>(kPosition) = 0.5 * sums.node_s * B.middleRows<3>(kVelocity);
   B.block<3, 3>(kPosition, kVelocity) += sums.node_s * Eigen::Matrix3d::Identity();
   return B;
@@ -287,7 +287,7 @@ Contact contact(const RollingParams& params, const RollingNominal& nominal, cons
   // The vector from the IMU to the contact point determines the contact velocity u = v + w x (-arm - r n).
   const Eigen::Matrix3d reach = so3::hat(arm_W + r * n);
   Contact out;
-  out.u_W_m_s = nominal.v_WI_m_s + reach * w_W;
+  out.contact_velocity_W_m_s = nominal.v_WI_m_s + reach * w_W;
   out.H.setZero();
   out.H.middleCols<3>(kVelocity).setIdentity();
   // an attitude error rotates the rate w and the lever arm, but not the normal of the floor

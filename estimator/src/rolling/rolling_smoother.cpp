@@ -209,7 +209,7 @@ Status RollingSmoother::step(const ImuSample& sample, State& state, std::vector<
       step.mode[k] = live.hypotheses[k].mode;
     }
     step.spread_m2 = live.pruned_spread_m2;
-    step.rest_s = seconds(live.rest.quiet_ns);
+    step.rest_s = seconds(live.rest.within_bias_since_ns);
     step.at_rest = live.at_rest;
     step.spins_in_place = live.spins_in_place;
     steps.push_back(step);

@@ -55,11 +55,11 @@ class RestDetector {
     // rest.
     Eigen::Vector3d rate_sum_rad_s = Eigen::Vector3d::Zero();
     Eigen::Vector3d force_sum_m_s2 = Eigen::Vector3d::Zero();
-    double weight = 0.0;      ///< weight of the sums: number of readings, with lower weights of older readings
-    TimeNs first_ns = 0;      ///< time of the run's first sample
-    TimeNs last_mean_ns = 0;  ///< time of the last reading
-    TimeNs quiet_ns = 0;      ///< duration of the run with a mean within the bias bound
-    bool rests = false;       ///< whether the run, up to the last reading, is rest
+    double weight = 0.0;              ///< weight of the sums: number of readings, with lower weights of older readings
+    TimeNs first_ns = 0;              ///< time of the run's first sample
+    TimeNs last_mean_ns = 0;          ///< time of the last reading
+    TimeNs within_bias_since_ns = 0;  ///< duration of the run with a mean within the bias bound
+    bool rests = false;               ///< whether the run, up to the last reading, is rest
     // Sums of the samples since the last averaged reading.
     Eigen::Vector3d pending_rate_rad_s = Eigen::Vector3d::Zero();
     Eigen::Vector3d pending_force_m_s2 = Eigen::Vector3d::Zero();

@@ -60,7 +60,8 @@ class TumblingOdometry {
   explicit TumblingOdometry(const Params& params);
 
   /// Processes an IMU sample; stamps must increase. Registers the sweeps whose rates become available. Samples with
-  /// `non_finite`, `out_of_range`, `time_order` or `gap` are rejected. A single wrong stamp costs one sample (StampOrder).
+  /// `non_finite`, `out_of_range`, `time_order` or `gap` are rejected. A single wrong stamp costs one sample
+  /// (StampOrder).
   /// - After a gap of more than a second, the second sample restarts the rates with the current calibration. The mapper
   ///   bridges the gap by inertial integration.
   /// - If the clock steps back, samples are rejected with `time_order` for 0.2 s. The run then restarts as by
@@ -93,8 +94,8 @@ class TumblingOdometry {
   /// Starts a new run with a new map, at the origin and at rest. Sweeps not yet fetched by take() remain available, and
   /// the counts continue.
   void reset();
-  /// Starts a new run as reset() does, at a known pose of the IMU. Position and heading are those of `T_WI`; the tilt is
-  /// levelled at rest. Covariances are relative to this pose.
+  /// Starts a new run as reset() does, at a known pose of the IMU. Position and heading are those of `T_WI`; the tilt
+  /// is levelled at rest. Covariances are relative to this pose.
   void reset(const Eigen::Isometry3d& T_WI);
 
   /// Predicts pose and velocity of the IMU at its newest sample, with covariance, by inertial integration from the last
@@ -122,7 +123,7 @@ class TumblingOdometry {
   const std::optional<RateState>& smoothed_rate() const { return pass_.smoothed_rate(); }
   /// Returns the estimated calibration of the IMU on the body: lever arm, biases, inertia and sensing directions.
   RigCalibration rig() const { return pass_.rates().rate().calibration(pass_.rate_state().rate); }
-  const KnownRails& rails() const { return pass_.rate_state().rate.rails.known; }
+  const SaturationLevels& rails() const { return pass_.rate_state().rate.rails.known; }
   /// Returns the number of restarts after a gap or after a clock that stepped back.
   std::size_t gaps() const { return gaps_; }
   /// Returns the number of samples that OutlierFilter rejected because of wild readings or time stamps.
@@ -174,9 +175,7 @@ class TumblingOdometry {
   void restart_without_first();
   void restart_with_offset(const Eigen::Vector3d& offset_rad_s);
   void set_gyro_offset(const Eigen::Vector3d& offset_rad_s);
-  const Eigen::Vector3d& gyro_offset_rad_s() const {
-    return pass_.rates().params().rate.model.nominal.gyro_bias_rad_s;
-  }
+  const Eigen::Vector3d& gyro_offset_rad_s() const { return pass_.rates().params().rate.model.nominal.gyro_bias_rad_s; }
   void begin_rates();
 
   Params params_;
