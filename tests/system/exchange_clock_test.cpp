@@ -17,7 +17,8 @@ using nlohmann::json;
 using ::testing::HasSubstr;
 
 double ate_m(const Ended& scored) {
-  for (const json& row : json_of(scored)["scores"])
+  const json document = json_of(scored);
+  for (const json& row : document["scores"])
     if (row["metric"] == "ate_m") return row["value"].get<double>();
   return std::nan("");
 }

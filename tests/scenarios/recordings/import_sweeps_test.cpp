@@ -221,7 +221,7 @@ TEST_F(ImportSweeps, HostileInputIsOneClearLine) {
   EXPECT_THAT(complaint_of(),
               HasSubstr("times.txt:3: the time stamp 1000000000 ns does not increase; the previous one is 1100000000"));
   put("times.txt", "1.0\n1.1x\n");
-  EXPECT_THAT(complaint_of(), HasSubstr("times.txt:2: '1.1x' is not a number"));
+  EXPECT_THAT(complaint_of(), HasSubstr("times.txt:2: '1.1x' is not a time"));
   put("times.txt", "1.0\n1.1\n");
   ASSERT_EQ(complaint_of(), "");
   put("2.ply", sweep("float time", {"0.01", "nan", "0.09"}));
