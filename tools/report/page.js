@@ -7,8 +7,8 @@
   const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
   const drawn = new Set();
 
-  // WCAG 2: relative luminance, and contrast of two luminances
-  const luminance = (rgb) => {
+  // WCAG 2: relative brightness of a colour, and contrast of two brightnesses
+  const brightness = (rgb) => {
     const [r, g, b] = rgb.map((c) => (c / 255 <= 0.03928 ? c / 255 / 12.92 : ((c / 255 + 0.055) / 1.055) ** 2.4));
     return 0.2126 * r + 0.7152 * g + 0.0722 * b;
   };
@@ -18,9 +18,9 @@
 
   // lightens a colour until it stands out from the dark ground of a plot (contrast of at least 3)
   function lightened(hex) {
-    const ground = luminance(rgbOf(colour('--card')));
+    const ground = brightness(rgbOf(colour('--card')));
     let rgb = rgbOf(hex);
-    for (let k = 0; k < 20 && contrast(luminance(rgb), ground) < 3; ++k) rgb = rgb.map((c) => c + 0.1 * (255 - c));
+    for (let k = 0; k < 20 && contrast(brightness(rgb), ground) < 3; ++k) rgb = rgb.map((c) => c + 0.1 * (255 - c));
     return hexOf(rgb);
   }
   const paper = () => document.documentElement.classList.contains('paper');
