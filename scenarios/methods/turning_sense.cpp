@@ -13,7 +13,7 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr double kTurnsOtherwise = 0.5, kTurnsAsSaid = 0.15;
-/// Largest rotation difference that remains once a delay is corrected; the limit for references (reference_check.cpp).
+/// Largest accepted rotation difference after the correction of a delay, equal to the limit in reference_check.cpp.
 constexpr double kTurnsOnceCorrected = 0.3;
 
 std::vector<TimedAttitude> attitudes_of(const Estimate& estimate) {

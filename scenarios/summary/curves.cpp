@@ -196,8 +196,8 @@ std::string bin_label(const BinnedMetric& bin, double factor) {
 using Bins =
     std::map<std::pair<std::string, std::string>, std::map<double, std::pair<BinnedMetric, const std::string*>>>;
 
-/// Returns the bins of the measures that any run has. Registered bins without samples are included, so that a curve
-/// shows where samples are missing.
+/// Returns the bins of all measures for which any run has a value. Registered bins without samples are included, so
+/// that a curve shows where samples are missing.
 Bins bins_of(const Runs& runs, Names& names) {
   std::set<const std::string*> metrics;
   for (const auto& [method, own] : runs) {

@@ -98,7 +98,7 @@ class Sweep {
   }
 
  private:
-  /// Ends the workers and removes what they have not finished to keep.
+  /// Ends the workers and removes the incomplete files of runs to keep.
   void discard_unfinished() {
     for (DrawWorker& worker : workers_) worker.kill();
     workers_.clear();

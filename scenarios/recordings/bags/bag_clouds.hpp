@@ -22,7 +22,7 @@ Cloud cloud_of(const ros::PointCloud2& message, const std::string& where);
 /// a message that starts with `where`, if the number of points differs from the number that the message states.
 Cloud cloud_of(const ros::LivoxCustomMsg& message, const std::string& where);
 
-/// Returns a digest of all points; clouds with equal contents have equal digests. O(bytes).
+/// Returns a digest of all points. Clouds with equal contents have equal digests. O(bytes).
 std::uint64_t content_of(const ros::PointCloud2& message);
 std::uint64_t content_of(const ros::LivoxCustomMsg& message);
 
