@@ -34,17 +34,18 @@ Status check_rotation_between_rests(const sim::Sensors& sensors, std::span<const
                                     std::span<const RateState> rates, Estimate& estimate);
 
 /// Checks that a body rotating about a pivot turns as `rates` state (PivotCheck). `rates` has one entry per sample. The
-/// check only uses rates whose source is `measured`. It reports the log-likelihood ratio of another interpretation of
-/// the gyro (`pivot_evidence`) with the number of segments. It also reports the best-fitting scale (`pivot_scale`) with
-/// its standard deviation, and `imu_implausible`. The cost is proportional to the number of samples, about 1 ms per
-/// second of data at 100 Hz.
+/// check only uses rates whose source is `measured`. The pivot check reports the log-likelihood ratio of another
+/// interpretation of the gyro (`pivot_evidence`) with the number of segments. The pivot check also reports the
+/// best-fitting scale (`pivot_scale`) with its standard deviation, and `imu_implausible`. The cost is proportional to
+/// the number of samples, about 1 ms per second of data at 100 Hz.
 Status check_rotation_about_pivots(const sim::Sensors& sensors, std::span<const ImuSample> samples,
                                    std::span<const RateState> rates, Estimate& estimate);
 
 /// Checks whether specific forces in a rig's flights contradict the lever arm, axes or signs of the sensor
 /// (FlightSense). Reports `imu_implausible` and the affected duration `imu_flight_against_s`. `carried_share` is the
 /// fraction of hand-held samples. If `carried_share` shows that the body was never hand-held, the check also reports
-/// flipped and swapped axes of gyro and accelerometer, and also uses flights with a clipped axis. O(N).
+/// flipped and swapped axes of gyro and accelerometer. In this case, the check also uses flights with a clipped axis.
+/// O(N).
 Status check_flights(const sim::Sensors& sensors, std::span<const ImuSample> samples,
                      std::optional<double> carried_share, Estimate& estimate);
 

@@ -17,7 +17,8 @@ constexpr double kAccelSigmaMS2 = 0.316;
 constexpr double kStartSigmaMS = 0.1;
 
 /// Error-state Kalman filter with iterated updates. The filter predicts by strapdown integration with covariance and
-/// deskews the points to the sweep's end. It then updates position, attitude and velocity iteratively with all planes.
+/// deskews the points to the sweep's end. The filter then updates position, attitude and velocity iteratively with all
+/// planes.
 class IteratedFilter : public TrajectoryModel {
  public:
   IteratedFilter(std::span<const ImuSample> samples, std::span<const RateState> rates, const StartAtRest& start,

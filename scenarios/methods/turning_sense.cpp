@@ -26,7 +26,7 @@ std::vector<TimedAttitude> attitudes_of(const Estimate& estimate) {
 }
 
 /// Returns the rotation from IMU coordinates to the coordinates of the frame. Returns empty if the recording has no
-/// sensor of this frame.
+/// sensor with the frame.
 std::optional<Eigen::Quaterniond> q_AI(Frame frame, const sim::Sensors& sensors) {
   const Eigen::Quaterniond q_BI(sensors.imus.front().T_BI.linear());
   if (frame == Frame::imu) return Eigen::Quaterniond::Identity();

@@ -27,9 +27,9 @@ enum class AccelUnit { m_s2, g };
 enum class GyroUnit { rad_s, deg_s };
 
 /// Reads the readings of one IMU from a text table. The separator is the most frequent of comma, semicolon and tab in
-/// the first line that is no comment. If the line contains none of them, blanks are the separator. Comments, a row of
-/// units below the names, and a separator at the end of a line are accepted (tables/logged_table.hpp). Numbers may be
-/// in scientific notation.
+/// the first line that is no comment. If the first line contains none of the three, blanks are the separator. Comments,
+/// a row of units below the names, and a separator at the end of a line are accepted (tables/logged_table.hpp). Numbers
+/// may be in scientific notation.
 ///
 /// The names in the header identify the columns. The following names are known.
 /// - the names that export_csv writes (each once, no other names)
@@ -43,7 +43,7 @@ enum class GyroUnit { rad_s, deg_s };
 /// Units that column names state are used. If the unit of times is not stated, the unit is inferred from the time steps
 /// and noted. If the first line has numbers, the line is a sample, and columns are identified by position. The
 /// positions count from 0: 0 stamp s, 1 stamp ns, 8-10 rate, 12-14 specific force. If not empty, `columns` names the
-/// columns instead: "time=t,gyro=gx,gy,gz,accel=ax,ay,az". Each name may also be a position from 0.
+/// columns instead: "time=t,gyro=gx,gy,gz,accel=ax,ay,az". Each column name may also be a position, counted from 0.
 ///
 /// `device` supplies properties that the file does not contain: name, device, ranges, noise, T_BI. The period and the
 /// readings of `device` are replaced. Times count from the first stamp, and the period is the median step. If an IMU
@@ -107,16 +107,16 @@ Imported import_trajectory(const ReferenceSource& source);
 /// lidar poses without a lidar, or no overlap in time.
 void attach_reference(Imported& recording, const ReferenceSource& source);
 
-/// Adds the IMUs of `imu` to `recording`. Both recordings must use one clock; the earlier time 0 is kept. Throws
+/// Adds the IMUs of `imu` to `recording`. `imu` and `recording` must use one clock. The earlier time 0 is kept. Throws
 /// BadInput if the times of `imu` and `recording` do not overlap.
 void attach_imus(Imported& recording, Imported imu);
 
 /// Reads a trial of BROAD (Laidig et al., Data 2021, 6(7), 72) from its HDF5 file: imu_gyr, imu_acc, imu_mag (converted
 /// to tesla), sampling_rate. If opt_quat and opt_pos exist, they become the reference, which is unknown where the
-/// cameras lost the markers. Reference rates and velocities are differences over 140 ms. This window is sufficient to
-/// detect rest but blurs fast rotations. Reference rates at the IMU's samples use 40 ms (reference_rate.hpp). Sample k
-/// has time k / sampling_rate. The file does not state ranges and noise, so both are 0. Throws BadInput if the file is
-/// invalid.
+/// cameras lost the markers. Reference rates and velocities are differences over 140 ms. A window of 140 ms is
+/// sufficient to detect rest but blurs fast rotations. Reference rates at the IMU's samples use 40 ms
+/// (reference_rate.hpp). Sample k has time k / sampling_rate. The file does not state ranges and noise, so ranges and
+/// noise are 0. Throws BadInput if the file is invalid.
 Imported import_broad(const std::filesystem::path& path);
 
 /// Reads a recording of RepoIMU (Szczesna et al., ICCVG 2016) in its published form. Columns are separated by ';' after

@@ -14,9 +14,9 @@
 namespace tumble::scenarios {
 
 /// Largest fraction of the readings or clouds of one sensor that is left out as faulty. Single faults of drivers, buses
-/// and files stay below this fraction. A wrong clock, unit or layout affects most items, so the recording is refused.
+/// and files stay below the limit. A wrong clock, unit or layout affects most items, so the recording is refused.
 inline constexpr double kLeftOutShareMax = 0.05;
-/// If there are at least this many items, one item may be left out, even if it exceeds the fraction.
+/// Smallest number of items of which one may be left out, even if one item exceeds kLeftOutShareMax.
 inline constexpr std::size_t kLeftOutOneOf = 5;
 
 /// Returns true if `count` of `all` items may be left out.
@@ -66,9 +66,9 @@ class LeftOut {
 
 /// Returns which stamps to keep, such that the kept stamps increase. As few stamps as possible are dropped (longest
 /// increasing subsequence); of several choices, early stamps are kept. If there are at least ten stamps, a first or
-/// last stamp may also be dropped. It is dropped if the gap to the remaining stamps exceeds the duration of the
-/// remaining stamps. A few stamps at either end are dropped if the gap also exceeds a day, as before a clock is set.
-/// O(N log N), or O(N) for stamps that increase.
+/// last stamp may also be dropped. The first or last stamp is dropped if its distance from the remaining stamps exceeds
+/// their duration. A few stamps at either end are dropped if the gap also exceeds a day, as before a clock is set. O(N
+/// log N), or O(N) for stamps that increase.
 std::vector<bool> stamps_in_order(std::span<const std::int64_t> stamps_ns);
 
 /// Removes the rows that are not kept. A list of another length, for data that the sensor does not have, is unchanged.

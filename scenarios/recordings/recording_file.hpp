@@ -56,15 +56,15 @@ std::string digest(const StoredTruth& truth);
 void write_recording(const std::filesystem::path& path, const RecordingInfo& info, const sim::Sensors& sensors,
                      const sim::Truth* truth);
 
-/// Writes a recording whose points are on disk. The file is bit-identical to the file for points in memory. It is
+/// Writes a recording whose points are on disk. The file is bit-identical to the file for points in memory. The file is
 /// written directly to disk after the maximum size is reserved. Memory holds the sensors without points, the truth, and
 /// some MiB.
 void write_recording(const std::filesystem::path& path, const RecordingInfo& info, const sim::Sensors& sensors,
                      const std::vector<PointStore>& points, const sim::Truth* truth);
 
 /// Reads the metadata. Each reader function opens only the group that it needs. All reader functions throw BadInput
-/// with path and reason if the file is missing, truncated or not HDF5. They throw BadInput also if a dataset is missing
-/// or has a wrong shape, or if format version, lengths or digest do not match.
+/// with path and reason if the file is missing, truncated or not HDF5. The reader functions throw BadInput also if a
+/// dataset is missing or has a wrong shape, or if format version, lengths or digest do not match.
 RecordingInfo read_info(const std::filesystem::path& path);
 sim::Sensors read_sensors(const std::filesystem::path& path);
 /// Reads the sensors and stores the points on disk in `scratch`, one store per lidar. The records then have no points.

@@ -21,8 +21,8 @@ inline constexpr std::uint8_t kGyroClipFlags = 0b000111;
 /// Smaller differences do not matter.
 ///
 /// With tilted sensing elements (sim/imu/elements.hpp), one saturated element also changes the other axes. The change
-/// is the saturation deficit of the element times an entry of the inverse misalignment matrix. The other axes count as
-/// clipped where their change exceeds the tolerance.
+/// is the saturation deficit of the element times an entry of the inverse misalignment matrix. An axis also counts as
+/// clipped if its change by another element exceeds the tolerance.
 ///
 /// If the truth comes from a reference instrument, it has rates without unclipped readings (FORMAT.md, "References").
 /// An axis is then clipped where the reference confirms saturation (reference_clipping.hpp). Samples without a

@@ -35,7 +35,8 @@ struct Run {
     std::size_t place = 0;
     return find(metric, place);
   }
-  /// Finds a score. Tries index `place` first, at which the method's previous run had this score, and updates `place`.
+  /// Finds a score. Index `place` is tried first, because the method's previous run had the score at this index.
+  /// Updates `place`.
   const double* find(const std::string* metric, std::size_t& place) const {
     if (place < scores.size() && scores[place].metric == metric) return &scores[place].value;
     const auto found = std::find_if(scores.begin(), scores.end(), [&](const auto& s) { return s.metric == metric; });

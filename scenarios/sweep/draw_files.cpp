@@ -43,7 +43,7 @@ void DrawFiles::finish(const SimulatedDraw& draw, bool failed) {
     trouble_.clear();
     return folder_.reset();
   }
-  // If one of its estimates could not be written, for example because the disk is full, the run is not kept.
+  // If an estimate of a run could not be written, for example because the disk is full, the run is not kept.
   if (!trouble_.empty()) return folder_.reset();
   try {
     RecordingInfo info = keeping_.versions;

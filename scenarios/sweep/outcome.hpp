@@ -35,7 +35,8 @@ struct Outcome {
   Setting setting = {};
 };
 
-/// Motion values of one simulated run. They do not depend on the methods (scenarios/scoring/motion_summary.hpp).
+/// Motion values of one simulated run. Motion values do not depend on the methods
+/// (scenarios/scoring/motion_summary.hpp).
 struct DrawValues {
   std::string scenario;
   std::uint64_t seed = 0;

@@ -84,7 +84,7 @@ class Results {
   /// Stores a rejection. If the scenario and seed already have an outcome, stores nothing and returns false.
   bool store(const RejectedDraw& rejected);
   void store(const DrawValues& draw);
-  /// Stores a certificate. It replaces an existing certificate of its build.
+  /// Stores a certificate. The certificate replaces an existing certificate of its build.
   void store(const Certificate& certificate);
   /// Stores a text under a key with the results. Common keys are "suite", "build" and "data".
   void set_note(const std::string& key, const std::string& text);

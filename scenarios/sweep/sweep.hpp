@@ -43,7 +43,7 @@ struct Suite {
   std::vector<Variation> curves;            ///< key `vary`: {KEY: [values]}; "+" joins keys that change together
 
   bool has_draw(const std::string& scenario, std::uint64_t seed) const;
-  /// Returns the number of unmodified simulated runs from `first_seed` to `last_seed`. These may be the seeds of a
+  /// Returns the number of unmodified simulated runs from `first_seed` to `last_seed`. The seeds may be those of a
   /// shard.
   std::uint64_t draw_count() const;
 };

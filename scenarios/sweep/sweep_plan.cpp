@@ -166,7 +166,7 @@ DrawTask SweepPlan::again(const DrawName& draw, const Results& results) const {
   return task;
 }
 
-/// Returns true if any method reads lidars on the scenario and seed, in this sweep or in an earlier sweep. Both the
+/// Returns true if any method reads lidars on the scenario and seed, in this sweep or in an earlier sweep. The
 /// remaining and the completed methods must be considered.
 bool SweepPlan::read_lidars(const Planned& planned, const std::vector<Outcome>& held) const {
   const auto reads = [](Kind kind) { return kind != Kind::rate; };

@@ -15,7 +15,7 @@
 namespace tumble::scenarios {
 
 /// Iterates over the scenarios and seeds of a suite, with the methods to run on each, in constant memory. The plan
-/// writes tasks as lines. Workers that are forked later can parse these lines.
+/// writes tasks as lines of text, which workers that are forked later can parse.
 class SweepPlan {
  public:
   /// Throws BadInput for an unknown method, scenario or recording, and for a catalogue from which no situation can be

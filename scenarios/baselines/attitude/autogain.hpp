@@ -27,8 +27,8 @@ struct AutogainGains {
 
 /// Estimates attitude with the published filter for a rolling sphere (Zevering et al., IEEE MFI 2021, eqs 2-5). The
 /// filter applies a Madgwick step whose gain grows with the rate, then a complementary step whose weight falls with the
-/// rate. During slow rotation the filter relies on the accelerometer even if the body accelerates. It estimates neither
-/// bias nor heading.
+/// rate. During slow rotation the filter relies on the accelerometer even if the body accelerates. The filter estimates
+/// neither bias nor heading.
 class Autogain {
  public:
   struct Params {

@@ -32,8 +32,8 @@ class TrimmedIcp {
     double trim_max = 0.7;
     double trim_lambda = 2.35;
     /// Reproduces an error of the original, where the kept fraction refers to all match slots, although unmatched slots
-    /// are missing from the sorted list. The original reads beyond the end of the sorted list. This function stops at
-    /// the end of the list.
+    /// are missing from the sorted list. The original reads beyond the end of the sorted list. This implementation
+    /// stops at the end of the sorted list.
     bool count_unmatched_slots = false;
     int iterations_max = 40;
     double step_m = 0.01;  ///< both means over two increments must be below their bound

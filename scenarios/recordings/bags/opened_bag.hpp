@@ -63,7 +63,7 @@ struct OpenedBag {
   }
 
   /// Calls `take(message, origin)` for each message of the topic. Messages that cannot be decoded are counted in
-  /// `left_out`. If `left_out` is null, such a message throws BadInput.
+  /// `left_out`. If `left_out` is null, a message that cannot be decoded throws BadInput.
   template <class Message, class Take>
   void read(const std::string& name, Take&& take, LeftOut* left_out = nullptr) const {
     std::size_t number = 0;

@@ -15,7 +15,7 @@
 
 namespace tumble::scenarios {
 
-/// Options for reading points. They replace information that the file does not contain.
+/// Options for reading points. The options replace information that the file does not contain.
 struct SweepReading {
   sim::LidarRecord device;   ///< name, device, T_BL; sweep_period_ns 0: median step of the sweeps' starts
   std::string time_field;    ///< "": a field with a usual name

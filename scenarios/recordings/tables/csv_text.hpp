@@ -21,14 +21,14 @@ struct CsvLine {
 class CsvText {
  public:
   /// Separates fields with the most frequent separator in the first line that is no comment: comma, semicolon or tab.
-  /// If the line contains none of these separators, blanks separate the fields.
+  /// If the first line contains neither comma, semicolon nor tab, blanks separate the fields.
   explicit CsvText(const std::filesystem::path& path);
   /// Throws BadInput with the file if the file is missing or empty, or if the last line has no newline and may be
   /// truncated.
   CsvText(const std::filesystem::path& path, char separator);
   /// Reads the next line. Returns false at the end.
   bool next(CsvLine& line);
-  /// Position between two lines. `back_to` continues reading at such a position.
+  /// Position between two lines. `back_to` continues reading at a stored position.
   struct Place {
     std::size_t at = 0;
     int lines = 0;

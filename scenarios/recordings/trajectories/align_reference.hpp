@@ -11,7 +11,7 @@ namespace tumble::scenarios {
 
 /// The alignment is w_I(t) = R_IV w_V(t + delay), where V is the reference's body frame and I the IMU frame. `R_WV`
 /// rotates the reference's world to a level world. The uncertainties are standard deviations of separate estimates from
-/// eight parts of the recording. They do not include errors that all parts share.
+/// eight parts of the recording. The uncertainties do not include errors that all parts share.
 struct ReferenceAlignment {
   bool known = false;  ///< false: too little rotation while the gyro is unsaturated, or too few reference poses
   double delay_s = 0.0, delay_sigma_s = 0.0;
@@ -24,9 +24,9 @@ struct ReferenceAlignment {
 
 /// Estimates the delay by cross-correlation of |w| within +-0.1 s. Robust least squares then refine the delay and
 /// reject outliers beyond three times the median. The rotation is the solution of Wahba's problem over two kinds of
-/// vector pairs. The first pairs are the rates of gyro and reference at unsaturated samples. The second pairs are the
-/// specific force and the reference's gravity; their weight decreases with the difference between force and gravity.
-/// Rates alone do not determine the rotation if the body only turns about one axis.
+/// vector pairs. Pairs of the first kind are the rates of gyro and reference at unsaturated samples. Pairs of the
+/// second kind are the specific force and the reference's gravity; their weight decreases with the difference between
+/// force and gravity. Rates alone do not determine the rotation if the body only turns about one axis.
 ///
 /// A sample counts as unsaturated if every gyro axis is below 0.9 of the axis's extreme reading. The direction of
 /// gravity in the reference's world is the mean specific force, which assumes that the body ends with about its initial

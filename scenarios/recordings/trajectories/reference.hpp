@@ -75,8 +75,8 @@ sim::Truth reference_truth(const std::vector<ReferencePose>& poses, std::int64_t
 /// Returns the rotation vector of `q`, with an angle of at most pi.
 Eigen::Vector3d rotation_vector(const Eigen::Quaterniond& q);
 
-/// Computes velocity and rate by central differences over `reach` samples on each side. The result is unknown if one of
-/// these samples is unknown.
+/// Computes velocity and rate by central differences over `reach` samples on each side. Velocity and rate are unknown
+/// if one of the used samples is unknown.
 void differentiate(sim::Truth& truth, std::size_t reach);
 
 }  // namespace tumble::scenarios

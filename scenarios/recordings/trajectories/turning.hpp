@@ -13,7 +13,7 @@
 #include "sim/recording.hpp"
 
 /// Compares attitudes with a gyro. A pose file does not state the frame of its poses, the order and direction of its
-/// quaternions, or its clock. The gyro reveals all these conventions.
+/// quaternions, or its clock. The gyro reveals frame, quaternion convention and clock.
 namespace tumble::scenarios {
 
 struct TimedAttitude {
