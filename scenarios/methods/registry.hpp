@@ -64,7 +64,7 @@ Method slam_poses_autogain_fusion();
 Method slam_poses_tumble();
 Method slam_rolling_prior();
 
-/// These rate stages are shared by the rate methods and the slam chains. Each stage returns one RateState per sample.
+/// The rate methods and the slam chains share the following rate stages. Each stage returns one RateState per sample.
 /// On error, `out` is empty.
 Status raw_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, std::vector<RateState>& out);
 Status unclipped_rates(const sim::Sensors& sensors, const sim::Truth& truth, std::vector<RateState>& out);

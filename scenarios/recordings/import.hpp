@@ -98,8 +98,8 @@ struct ReferenceSource {
   std::int64_t steady_ns = 0;   ///< pose period of a KITTI file without sweeps
 };
 
-/// Reads a pose file as a recording that only has a truth. The poses are those of the body. Time 0 is chosen as for
-/// sweeps (import_sweeps). Throws BadInput if the file is invalid.
+/// Reads a pose file as a recording that only has a truth. The poses are those of the body. Time 0 follows the rule of
+/// import_sweeps. Throws BadInput if the file is invalid.
 Imported import_trajectory(const ReferenceSource& source);
 
 /// Uses the poses as truth of `recording`. The stamps are in the clock of the recording's source (`origin_ns`). A KITTI

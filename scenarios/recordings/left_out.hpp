@@ -67,11 +67,12 @@ class LeftOut {
 /// Returns which stamps to keep, such that the kept stamps increase. As few stamps as possible are dropped (longest
 /// increasing subsequence); of several choices, early stamps are kept. If there are at least ten stamps, a first or
 /// last stamp may also be dropped. The first or last stamp is dropped if its distance from the remaining stamps exceeds
-/// their duration. A few stamps at either end are dropped if the gap also exceeds a day, as before a clock is set. O(N
-/// log N), or O(N) for stamps that increase.
+/// their duration. A few stamps at either end are dropped if the gap also exceeds a day. Stamps before a clock is set
+/// have such gaps. O(N log N), or O(N) for stamps that increase.
 std::vector<bool> stamps_in_order(std::span<const std::int64_t> stamps_ns);
 
-/// Removes the rows that are not kept. A list of another length, for data that the sensor does not have, is unchanged.
+/// Removes the elements of `rows` for which `kept` is false. A list of another length, for data that the sensor does
+/// not have, is unchanged.
 template <class Row>
 void keep_rows(const std::vector<bool>& kept, std::vector<Row>& rows) {
   if (rows.size() != kept.size()) return;

@@ -25,7 +25,7 @@ inline constexpr std::uint8_t kGyroClipFlags = 0b000111;
 /// clipped if its change by another element exceeds the tolerance.
 ///
 /// If the truth comes from a reference instrument, it has rates without unclipped readings (FORMAT.md, "References").
-/// An axis is then clipped where the reference confirms saturation (reference_clipping.hpp). Samples without a
+/// In this case, an axis is clipped if the reference confirms saturation (reference_clipping.hpp). Samples without a
 /// reference rate are not scored.
 class ClippingTruth {
  public:

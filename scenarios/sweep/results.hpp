@@ -31,7 +31,7 @@ struct ScoreRow {
   Setting setting = {};
 };
 
-/// Selects rows of unmodified scenarios and methods, points of curves, or both.
+/// Selects rows of the results: unmodified scenarios and methods, points of curves, or all rows.
 enum class Rows { plain, curves, all };
 
 /// Row counts of a merge: added rows, rows that replaced a lower-ranked row, and rows that were already present.

@@ -32,7 +32,7 @@ OutcomeStatus status_named(const std::string& name, const std::filesystem::path&
   throw BadInput(path.string() + ": unknown status '" + name + "'");
 }
 
-/// Returns the SQL condition for `rows`, for a table or join with the column `varied`.
+/// Returns the SQL condition that selects `rows` in a table or join with the column `varied`.
 const char* picked(Rows rows) {
   switch (rows) {
     case Rows::plain:

@@ -51,7 +51,7 @@ void note_descriptions(Results& results, const Suite& suite) {
   }
 }
 
-/// Throws BadInput for rows of two versions of an external method under one name.
+/// Throws BadInput if the results would contain two versions of an external method under one name.
 void claim_methods(Results& results, std::span<const MethodPointer> methods) {
   for (const MethodPointer& method : methods) {
     if (method->info.version.empty()) continue;

@@ -98,8 +98,8 @@ Results open_results(const DataRoot& data, const Suite& suite, const std::filesy
 /// their number.
 ///
 /// At the end, the kept runs match the keep rule. Returns the final progress. If the sweep was stopped, draws_done is
-/// below draws_total. Throws BadInput for a recording whose rows were made from other data (another digest), or if no
-/// method applies to any scenario.
+/// below draws_total. Throws BadInput if the results of a recording were computed from other data (another digest), or
+/// if no method applies to any scenario.
 SweepProgress sweep(const DataRoot& data, const Suite& suite, const DatabaseOwner& database,
                     const SweepOptions& options);
 /// Executes the sweep and owns the database during the sweep. Throws BadInput if another process owns the database.

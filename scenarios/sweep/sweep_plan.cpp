@@ -103,7 +103,7 @@ DrawTask SweepPlan::next(const Results& results) const {
   return next_.recording < recordings_.size() ? of_recording(results) : of_scenario(results);
 }
 
-/// Adds the methods without a row for `setting`, or with a row to be repeated.
+/// Adds the methods that have no result for `setting`, or whose result must be repeated.
 void SweepPlan::add_missing(const std::vector<MethodPointer>& methods, const std::vector<Outcome>& held,
                             const Setting& setting, DrawTask& task) const {
   const auto stands = [&](const MethodInfo& info) {

@@ -37,9 +37,9 @@ class Autogain {
     double tau_s = 0.396;      ///< time constant of the complementary step at rest (0.02 per sample at 125 Hz)
     double lower_rad_s = 0.1;  ///< unused by code2021
     double upper_rad_s = 2.1;  ///< above lower_rad_s; unused by code2021
-    /// Computes the complementary step as the authors' code does, where the check for gimbal lock is always true. As a
-    /// consequence, the target attitude keeps the current roll, and roll is never corrected. The option reproduces the
-    /// results in the authors' recordings.
+    /// Computes the complementary step as the authors' code does. In that code, the check for gimbal lock is always
+    /// true. As a consequence, the target attitude keeps the current roll, and roll is never corrected. The option
+    /// reproduces the results in the authors' recordings.
     bool roll_error_2021 = false;
     /// Computes the complementary step as the smallest rotation instead of a target in roll, pitch and yaw. The
     /// `smooth` profile uses the smallest rotation.

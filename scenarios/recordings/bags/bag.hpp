@@ -114,9 +114,9 @@ struct BagReading {
 /// messages of ROS 2 (cdr) or ROS 1, in plain, LZ4 or Zstandard chunks, with or without index.
 ///
 /// Times come from the source `stamps`. Notes state how the stamps of headers and records differ. Units are checked
-/// against gravity as for a CSV file. Specific force in g at rest, as from Livox drivers, is converted and noted. Each
-/// sensor is named after its topic. Points are read as in import_sweeps. Duplicate messages (stamp and content) are
-/// read once. Single faulty messages are left out and noted (left_out.hpp).
+/// against gravity by the checks for CSV files. Specific force in g at rest, as from Livox drivers, is converted and
+/// noted. Each sensor is named after its topic. The rules of import_sweeps apply to points. Duplicate messages (stamp
+/// and content) are read once. Single faulty messages are left out and noted (left_out.hpp).
 ///
 /// Unless the caller chooses topics, clouds in "world", "map" or "odom" are skipped, because such clouds are not raw
 /// sensor data. Lidars whose points have times then come first.

@@ -10,7 +10,7 @@
 /// Converts point messages to columns. Used only within scenarios/recordings/bags.
 namespace tumble::scenarios {
 
-/// Returns true for the CustomMsg of a Livox driver, named as in ROS 1. The types of livox_ros_driver,
+/// Returns true if `type` is the CustomMsg of a Livox driver, with its ROS 1 name. The types of livox_ros_driver,
 /// livox_ros_driver2 and livox_interfaces have equal fields.
 bool is_livox_type(const std::string& type);
 
