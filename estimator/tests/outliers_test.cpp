@@ -264,5 +264,19 @@ TEST(Outliers, AHeldReadingOfASphereIsSaved) {
   EXPECT_EQ(one.save(), other.save());
 }
 
+TEST(Outliers, AWildFirstSampleCostsOneSample) {
+  const ThrownBody body;
+  const Flight clean = run_tumbling(body, body.imu());
+  for (const Wild& wild : {Wild{"first", 0, Reading::rate, 1, 20.0}, Wild{"first", 0, Reading::force, 0, 900.0}}) {
+    const std::vector<ImuSample> imu = with_wild(body.imu(), wild);
+    const Flight run = run_tumbling(body, imu);
+    EXPECT_EQ(run.rejected, 1u) << name_of(wild);
+    EXPECT_LT(run.end_error_m, clean.end_error_m + 0.01) << name_of(wild);
+    const std::vector<bool> inliers = find_inliers(OutlierFilter({.period_s = 0.01}), imu);
+    EXPECT_FALSE(inliers[0]) << name_of(wild);
+    EXPECT_EQ(std::count(inliers.begin(), inliers.end(), false), 1) << name_of(wild);
+  }
+}
+
 }  // namespace
 }  // namespace tumble

@@ -44,9 +44,9 @@ std::tuple<Rates, Attitudes, CarriedSmoother::Report> carried(const Carried& sel
     if (status.ok()) {
       ClippingFinder::Params finding;
       finding.upright_rails = self.upright_rails;
-      const CarriedElements known = carried_elements(samples, ClippingFinder(finding).find(samples));
+      const ClippedReadings known = carried_elements(samples, ClippingFinder(finding).find(samples));
       status = self.smoother.estimate(samples, known.clipped(), rates, std::get<1>(out).rows, std::get<2>(out));
-      if (status.ok()) known.mark_near(rates);
+      if (status.ok()) known.mark_partly_saturated(rates);
     }
   }
   require(status, samples);

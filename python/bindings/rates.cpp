@@ -100,7 +100,7 @@ Rates saave(const Saave& self, const ArrayLike& time_ns, const ArrayLike& gyro, 
   return out;
 }
 
-nb::dict shares_of(const RegimeShares& shares) {
+nb::dict shares_of(const RegimeProbabilities& shares) {
   nb::dict out;
   out["flight"] = shares.flight;
   out["contact"] = shares.contact;
@@ -285,7 +285,7 @@ void bind_streams(nb::module_& m) {
       .def(
           "regime_shares",
           [](Guarded<Streaming<RegimeStream>>& self) {
-            const RegimeShares shares = self.run([](Streaming<RegimeStream>& at) { return at.state->shares; });
+            const RegimeProbabilities shares = self.run([](Streaming<RegimeStream>& at) { return at.state->shares; });
             return shares_of(shares);
           },
           nb::sig("def regime_shares(self) -> dict[str, float]"),

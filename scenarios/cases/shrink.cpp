@@ -109,9 +109,8 @@ class Shrinking {
   /// Finds the first single input whose truth removes the original failure. The last input replaces all inputs.
   void find_cure(const Run& run) {
     const std::span<const TrueInput> single = true_inputs().first(true_inputs().size() - 1);
-    const auto cure = std::find_if(single.begin(), single.end(), [&](const TrueInput& input) {
-      return run.is_cured(input, method_, options_);
-    });
+    const auto cure = std::find_if(single.begin(), single.end(),
+                                   [&](const TrueInput& input) { return run.is_cured(input, method_, options_); });
     if (cure == single.end()) return;
     cure_ = &*cure;
     shrunk_.cure = cure->name;

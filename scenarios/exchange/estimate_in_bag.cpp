@@ -167,7 +167,9 @@ std::string plain_name(const std::string& method) {
 BagTrack in_bag(const std::string& name, const Estimate& estimate, const sim::Sensors& sensors,
                 const std::vector<PointStore>* points, const StoredTruth* truth) {
   if (estimate.poses.empty())
-    throw BadInput("the estimate contains no poses, so nothing can be added to the bag: rates and attitudes have no message in it; "
+    throw BadInput(
+        "the estimate contains no poses, so nothing can be added to the bag: rates and attitudes have no message in "
+        "it; "
         "choose an estimate of a position or slam method");
   const Eigen::Isometry3d T_AB = mounting_of(estimate, sensors, truth).inverse();
   const Alignment alignment = alignment_of(estimate, truth);

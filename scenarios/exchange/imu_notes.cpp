@@ -42,7 +42,7 @@ std::string imu_note(const sim::ImuRecord& imu, double gravity_m_s2) {
     return fmt::format(
         "caution: gyro or accelerometer repeats exactly the same reading for {} s; the sensor may be frozen",
         rounded(frozen_s));
-  if (const std::optional<AxisLabels> labels = plausibility.other_labels(state)) return labels_text(*labels);
+  if (const std::optional<AxisLabels> labels = plausibility.better_axis_labels(state)) return labels_text(*labels);
   const Status verdict = plausibility.verdict(state);
   return verdict.ok() ? ""
                       : "caution: the readings are inconsistent with each other or with gravity: " + verdict.message();

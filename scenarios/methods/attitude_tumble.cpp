@@ -55,7 +55,7 @@ Estimate run_rig(const sim::Sensors& sensors, const sim::Values& parameters) {
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (!estimate.status.ok()) return estimate;
   (void)check_imu(sensors, samples, estimate);  // Only a warning: constant external pushes can cause the same readings.
-  report_frozen_axes(sensors, samples, estimate);
+  (void)report_frozen_axes(sensors, samples, estimate);
   const std::vector<ImuSample> read = samples;
   const RecoveredRates recovered = recover_in_time(sensors, samples, estimate.health);
   (void)check_flights(sensors, read, recovered.carried.share, estimate);

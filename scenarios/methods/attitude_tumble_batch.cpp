@@ -24,7 +24,7 @@ constexpr double kCarried = 0.5;
 Status run_thrown(const sim::Sensors& sensors, const sim::Values& parameters, const std::vector<ImuSample>& samples,
                   const std::vector<ImuSample>& recovered, const std::vector<Eigen::Matrix3d>& covariances,
                   std::vector<RateState>& rates, Estimate& estimate) {
-  CarriedElements known = find_clipped(sensors.imus.front(), samples, estimate.health);
+  ClippedReadings known = find_clipped(sensors.imus.front(), samples, estimate.health);
   for (std::size_t k = 0; k < samples.size(); ++k) {
     if (!covariances[k].isZero(0.0)) known.signs[k].gyro = {};
   }
@@ -57,7 +57,7 @@ Estimate run_attitude_tumble_batch(const sim::Sensors& sensors, const sim::Value
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (!estimate.status.ok()) return estimate;
   (void)check_imu(sensors, samples, estimate);  // Only a warning, as in the filters.
-  report_frozen_axes(sensors, samples, estimate);
+  (void)report_frozen_axes(sensors, samples, estimate);
   std::vector<ImuSample> recovered = samples;
   RecoveredRates recovery;
   if (sensors.sphere_radius_m <= 0.0) recovery = recover_clipped(sensors, recovered, estimate.health);

@@ -13,7 +13,7 @@ const Settings<CarriedSmoother::Params>& carried_settings() {
   return all;
 }
 
-CarriedElements find_clipped(const sim::ImuRecord& record, std::span<const ImuSample> samples,
+ClippedReadings find_clipped(const sim::ImuRecord& record, std::span<const ImuSample> samples,
                              std::map<std::string, double>& health) {
   ClippingFinder::Params params;
   params.upright_rails = stated_rails(record);
@@ -34,11 +34,11 @@ Status run_carried(const sim::Sensors& sensors, const sim::Values& parameters, s
   std::vector<ImuSample> samples;
   if (const Status status = bridge::primary_imu_samples(sensors, samples); !status.ok()) return status;
   const CarriedSmoother::Params params = carried_params(sensors, parameters);
-  const CarriedElements known = find_clipped(sensors.imus.front(), samples, health);
+  const ClippedReadings known = find_clipped(sensors.imus.front(), samples, health);
   CarriedSmoother::Report report;
   const Status status = CarriedSmoother(params).estimate(samples, known.clipped(), rates, attitudes, report);
   if (!status.ok()) return status;
-  known.mark_near(rates);
+  known.mark_partly_saturated(rates);
   report_carried(report, health);
   return status;
 }

@@ -21,7 +21,7 @@ const Settings<CarriedSmoother::Params>& carried_settings();
 
 /// Returns which sensing elements are saturated at each sample, according to the stated ranges and the readings. Adds
 /// the detected saturation limits to `health` (report_rails.hpp).
-CarriedElements find_clipped(const sim::ImuRecord& record, std::span<const ImuSample> samples,
+ClippedReadings find_clipped(const sim::ImuRecord& record, std::span<const ImuSample> samples,
                              std::map<std::string, double>& health);
 
 /// Returns the smoother's parameters. `parameters` override the values of the recording.

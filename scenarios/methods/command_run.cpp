@@ -34,8 +34,9 @@ std::string with_last_words(const std::string& what, const CommandEnd& end) {
 void require_done(const CommandEnd& end) {
   if (end.how == CommandEnd::How::done) return;
   if (end.how == CommandEnd::How::out_of_time)
-    throw NoAnswer(NoAnswer::Why::out_of_time,
-                   with_last_words(end.reason + "; the key time_limit_s of the method's description sets the limit", end));
+    throw NoAnswer(
+        NoAnswer::Why::out_of_time,
+        with_last_words(end.reason + "; the key time_limit_s of the method's description sets the limit", end));
   throw NoAnswer(NoAnswer::Why::crashed, with_last_words(end.reason, end));
 }
 

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "scenarios/methods/bridge.hpp"
-#include "scenarios/methods/frozen_axes.hpp"
 #include "scenarios/recordings/rounded_stamps.hpp"
 #include "tumble/angular_velocity/detail/flight_sense.hpp"
 #include "tumble/angular_velocity/rate_model_params.hpp"
@@ -57,25 +56,6 @@ void inflate_rate(std::size_t k, const Eigen::Matrix3d& by_rad2_s2, Estimate& es
   estimate.rates[k].covariance_rad2_s2 += by_rad2_s2;
 }
 
-/// Adds the squared rate to the covariance of all rates. A flipped sign gives an error of twice the rate; a scale of
-/// one half gives an error of half the rate.
-void inflate_rates(Estimate& estimate) {
-  for (std::size_t k = 0; k < estimate.rates.size(); ++k)
-    inflate_rate(k, estimate.rates[k].w_WI_I_rad_s.squaredNorm() * Eigen::Matrix3d::Identity(), estimate);
-  add_doubt({Doubt::About::rates}, estimate);
-}
-
-/// Increases the covariance of rates whose gyro axis is frozen.
-void inflate_frozen_rates(const FrozenAxis& frozen, double sigma_rad_s, Estimate& estimate) {
-  if (frozen.triad != Triad::gyro) return;
-  Eigen::Matrix3d by_rad2_s2 = Eigen::Matrix3d::Zero();
-  by_rad2_s2(frozen.axis, frozen.axis) = sigma_rad_s * sigma_rad_s;
-  for (std::size_t k = 0; k < estimate.rates.size(); ++k) {
-    const TimeNs time_ns = estimate.rates[k].time_ns;
-    if (time_ns >= frozen.from_ns && time_ns <= frozen.to_ns) inflate_rate(k, by_rad2_s2, estimate);
-  }
-}
-
 RestGravity rest_gravity(const sim::Sensors& sensors) {
   RestGravity::Params params;
   params.gravity_m_s2 = sensors.gravity_m_s2;
@@ -112,7 +92,7 @@ Status check_turning(const sim::Sensors& sensors, std::span<const ImuSample> sam
   gyro_right = std::abs(plausibility.rotation_slope(state) - 1.0) < kSlopeRight &&
                plausibility.rotation_agreement(state) > kSlopeAgreed;
   if (plausibility.frozen_s(state) > 0.0) estimate.health["imu_frozen_s"] = plausibility.frozen_s(state);
-  if (const auto labels = plausibility.other_labels(state)) {
+  if (const auto labels = plausibility.better_axis_labels(state)) {
     constexpr const char* kKeys[] = {"imu_accel_x_is", "imu_accel_y_is", "imu_accel_z_is"};
     for (std::size_t j = 0; j < 3; ++j) estimate.health[kKeys[labels->axis[j]]] = labels->sign[j] * (1.0 + double(j));
     if (labels->gyro_flipped) estimate.health["imu_gyro_flipped"] = 1.0;
@@ -191,23 +171,43 @@ Status check_rotation_about_pivots(const sim::Sensors& sensors, std::span<const 
   return reported(pivots.verdict(found), estimate);
 }
 
-void check_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, std::optional<double> carried_share,
+bool check_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, std::optional<double> carried_share,
                  Estimate& estimate) {
   const Status of_flights = check_flights(sensors, samples, carried_share, estimate);
   const Status of_readings = check_imu(sensors, samples, estimate);
   const Status of_rates = check_rotation_between_rests(sensors, samples, estimate.rates, estimate);
   const Status of_pivots = check_rotation_about_pivots(sensors, samples, estimate.rates, estimate);
-  if (of_flights.ok() && of_readings.ok() && of_rates.ok() && of_pivots.ok()) return;
-  inflate_rates(estimate);
+  return of_flights.ok() && of_readings.ok() && of_rates.ok() && of_pivots.ok();
 }
 
-void report_frozen_axes(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate) {
-  for (const FrozenAxis& frozen : find_frozen_axes(sensors.imus.front(), samples)) {
+void inflate_rates(Estimate& estimate) {
+  for (std::size_t k = 0; k < estimate.rates.size(); ++k)
+    inflate_rate(k, estimate.rates[k].w_WI_I_rad_s.squaredNorm() * Eigen::Matrix3d::Identity(), estimate);
+  add_doubt({Doubt::About::rates}, estimate);
+}
+
+std::vector<FrozenAxis> report_frozen_axes(const sim::Sensors& sensors, std::span<const ImuSample> samples,
+                                           Estimate& estimate) {
+  std::vector<FrozenAxis> all = find_frozen_axes(sensors.imus.front(), samples);
+  for (const FrozenAxis& frozen : all) {
     const Doubt doubt{Doubt::About::unit_frozen, seconds(frozen.from_ns - samples.front().time_ns),
                       sensors.imus.front().name + "_" + to_string(frozen)};
     if (!has_doubt(doubt, estimate)) add_doubt(doubt, estimate);  // keep the earliest time
     add_doubt({Doubt::About::readings}, estimate);
-    inflate_frozen_rates(frozen, fastest_rad_s(samples), estimate);
+  }
+  return all;
+}
+
+void inflate_frozen_rates(std::span<const FrozenAxis> frozen, std::span<const ImuSample> samples, Estimate& estimate) {
+  const double sigma_rad_s = fastest_rad_s(samples);
+  for (const FrozenAxis& axis : frozen) {
+    if (axis.triad != Triad::gyro) continue;
+    Eigen::Matrix3d by_rad2_s2 = Eigen::Matrix3d::Zero();
+    by_rad2_s2(axis.axis, axis.axis) = sigma_rad_s * sigma_rad_s;
+    for (std::size_t k = 0; k < estimate.rates.size(); ++k) {
+      const TimeNs time_ns = estimate.rates[k].time_ns;
+      if (time_ns >= axis.from_ns && time_ns <= axis.to_ns) inflate_rate(k, by_rad2_s2, estimate);
+    }
   }
 }
 

@@ -3,7 +3,9 @@
 
 #include <optional>
 #include <span>
+#include <vector>
 
+#include "scenarios/methods/frozen_axes.hpp"
 #include "scenarios/methods/method.hpp"
 #include "scenarios/methods/sphere_imus.hpp"
 #include "tumble/common/imu.hpp"
@@ -21,11 +23,16 @@ Status check_imu(const sim::Sensors& sensors, std::span<const ImuSample> samples
 /// permuted axes (`imu_other_axes_share`).
 Status check_imus(const sim::Sensors& sensors, const MergedImus& imus, Estimate& estimate);
 
-/// Checks the primary IMU of a rig. The estimate must contain one rate per sample. The function also checks the rates
-/// against gravity between rests (check_rotation_between_rests) and about pivots (check_rotation_about_pivots). If a
-/// check fails, the covariance of every rate grows by the square of the rate (`imu_rates_doubted`). O(N).
-void check_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, std::optional<double> carried_share,
+/// Checks the primary IMU of a rig; the estimate must contain one rate per sample. Adds the checks against gravity
+/// between rests (check_rotation_between_rests) and about pivots (check_rotation_about_pivots). Returns false if a
+/// check failed. The checks use the whole recording. O(N).
+bool check_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, std::optional<double> carried_share,
                  Estimate& estimate);
+
+/// Increases the covariance of every rate by the squared rate and reports `imu_rates_doubted`. A flipped sign gives an
+/// error of twice the rate; a scale of one half gives an error of half the rate. Only for batch methods: the answers of
+/// a live or lagged method must not depend on later readings.
+void inflate_rates(Estimate& estimate);
 
 /// Checks that `rates` rotate gravity correctly from each rest to the next rest (RestGravity). `rates` has one entry
 /// per sample. Reports `rest_gravity_missed_rad` with its standard deviation, `rest_velocity_share` with its limit, and
@@ -49,9 +56,13 @@ Status check_rotation_about_pivots(const sim::Sensors& sensors, std::span<const 
 Status check_flights(const sim::Sensors& sensors, std::span<const ImuSample> samples,
                      std::optional<double> carried_share, Estimate& estimate);
 
-/// Reports frozen axes of the primary IMU as `imu_implausible`, and the start as `imu_gyro_z_frozen_since_s`. While a
-/// gyro axis is frozen, only the largest reading of the recording limits the true rate. The covariance of the estimated
-/// rates grows accordingly. O(N).
-void report_frozen_axes(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate);
+/// Reports and returns the frozen axes of the primary IMU: as `imu_implausible`, and the start as
+/// `imu_gyro_z_frozen_since_s`. O(N).
+std::vector<FrozenAxis> report_frozen_axes(const sim::Sensors& sensors, std::span<const ImuSample> samples,
+                                           Estimate& estimate);
+
+/// Increases the covariance of rates while their gyro axis is frozen: only the largest reading of the run limits the
+/// true rate. Only for batch methods, as inflate_rates(). O(N).
+void inflate_frozen_rates(std::span<const FrozenAxis> frozen, std::span<const ImuSample> samples, Estimate& estimate);
 
 }  // namespace tumble::scenarios

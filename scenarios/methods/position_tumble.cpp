@@ -116,8 +116,8 @@ Status replay(const std::vector<UnitRecording>& recordings, RollingOdometry& odo
 }
 
 void report(const RollingOdometry& odometry, const RollingOdometry::Params& params, Estimate& estimate) {
-  if (odometry.gaps() > 0) {
-    estimate.health["gaps_bridged"] = static_cast<double>(odometry.gaps());
+  if (odometry.bridged_gaps() > 0) {
+    estimate.health["gaps_bridged"] = static_cast<double>(odometry.bridged_gaps());
     estimate.health["gap_longest_s"] = odometry.longest_gap_s();
   }
   if (odometry.started_in_motion()) estimate.health["started_in_motion"] = 1.0;

@@ -2,7 +2,6 @@
 #include "scenarios/methods/rate_baseline.hpp"
 
 #include "scenarios/methods/bridge.hpp"
-#include "tumble/angular_velocity/clipping_finder.hpp"
 
 namespace tumble::scenarios {
 
@@ -11,19 +10,6 @@ RailDetector::Params stated_rails(const sim::ImuRecord& record) {
   if (record.stated_gyro_range_rad_s > 0.0) rails.stated_gyro_rad_s = record.stated_gyro_range_rad_s;
   if (record.stated_accel_range_m_s2 > 0.0) rails.stated_accel_m_s2 = record.stated_accel_range_m_s2;
   return rails;
-}
-
-Status railed_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, std::vector<RateState>& out) {
-  ClippingFinder::Params params;
-  params.upright_rails = stated_rails(sensors.imus.front());
-  const std::vector<Clipping> clipping = ClippingFinder(params).find(samples).clippings;
-
-  if (const Status status = raw_rates(sensors, samples, out); !status.ok()) return status;
-  for (std::size_t k = 0; k < out.size(); ++k) {
-    out[k].clipped_axes = clipping[k].gyro;
-    out[k].source = clipping[k].gyro ? RateSource::bounded_only : RateSource::measured;
-  }
-  return {};
 }
 
 Estimate run_clipped_baseline(const Settings<baselines::ClippedBaseline::Params>& settings, const sim::Sensors& sensors,

@@ -10,9 +10,6 @@ namespace tumble::scenarios {
 /// Returns the saturation levels stated in the record. A range of 0 means unknown.
 RailDetector::Params stated_rails(const sim::ImuRecord& record);
 
-/// Returns the unmodified gyro readings, one RateState per sample, with flags for clipped axes.
-Status railed_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, std::vector<RateState>& out);
-
 /// Runs one of the baselines on the primary IMU, with the noise and ranges of the IMU's data sheet.
 Estimate run_clipped_baseline(const Settings<baselines::ClippedBaseline::Params>& settings, const sim::Sensors& sensors,
                               const sim::Values& parameters);

@@ -81,17 +81,17 @@ void report_health(const RateReport& report, Estimate& result) {
   health["calibration_at_prior"] = report.calibration_at_prior ? 1.0 : 0.0;
   health["flight_share"] = report.flight_share;
   health["readings_missing"] = static_cast<double>(report.missing_readings);
-  health["rails_disagreeing"] =
-      static_cast<double>(std::count(report.rail_disagrees.begin(), report.rail_disagrees.end(), true));
+  health["rails_disagreeing"] = static_cast<double>(
+      std::count(report.contradicts_stated_range.begin(), report.contradicts_stated_range.end(), true));
   constexpr int kDelay = SensorErrors::kDelay;
   health["accel_delay_s"] = report.sensor_errors.errors.accel_delay_s;
   health["accel_delay_sigma_s"] = std::sqrt(report.sensor_errors.covariance(kDelay, kDelay));
-  health["device_calibrated"] = report.in_sheet_probability;
+  health["device_calibrated"] = report.data_sheet_probability;
   health["triads_together"] = report.synchronous_probability;
   health["error_rounds"] = report.error_rounds;
   health["gyro_update_s"] = report.gyro_update_s;
   health["accel_update_s"] = report.accel_update_s;
-  health["rails_upright"] = report.rails_axis_aligned ? 1.0 : 0.0;
+  health["rails_upright"] = report.clips_after_compensation ? 1.0 : 0.0;
   report_unit(Doubt::About::rate_unit, report.rate_unit_suspect, result);
   report_unit(Doubt::About::force_unit, report.force_unit_suspect, result);
   const char* const names[] = {"x", "y", "z"};
@@ -238,9 +238,9 @@ void learn(const RateReport& report, const LearntRig* given, const RateModelPara
     found = learnt(report);
     return;
   }
-  KnownRails rails;
+  SaturationLevels rails;
   rails.planes = report.planes;
-  rails.upright = report.rails_axis_aligned;
+  rails.upright = report.clips_after_compensation;
   rails.accel_planes = report.accel_planes;
   if (std::optional<LearntRig> rig = with_rails(known_before(given, model), rails)) found = std::move(rig);
 }
@@ -257,8 +257,8 @@ Estimate rates_of_batch(const sim::Sensors& sensors, const sim::Values& paramete
     estimate.status = tumble_rates(sensors, samples, params, smoothed, estimate);
     estimate.rates = std::move(smoothed.rates);
     if (estimate.status.ok()) {
-      check_rates(sensors, samples, smoothed.carried.share, estimate);
-      report_frozen_axes(sensors, samples, estimate);
+      if (!check_rates(sensors, samples, smoothed.carried.share, estimate)) inflate_rates(estimate);
+      inflate_frozen_rates(report_frozen_axes(sensors, samples, estimate), samples, estimate);
     }
     estimate.health["imus"] = 1.0 + static_cast<double>(smoothed.auxiliary_imus);
     if (estimate.status.ok() && found != nullptr) learn(smoothed.report, given, params.model, *found);

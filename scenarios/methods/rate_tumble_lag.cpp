@@ -63,7 +63,7 @@ RegimeStream::Params stream_params(const sim::Sensors& sensors, const sim::Value
 LearntRig rig_of(const RateStream& stream, const RateStream::Params& params, const RateStream::State& state) {
   LearntRig rig{stream.calibration(state), {}};
   const RailDetector upright_rails(params.rails);
-  const KnownRails& known = state.rails.known;
+  const SaturationLevels& known = state.rails.known;
   for (int c = 0; c < 6; ++c) {
     std::optional<double>& rail = rig.rail[static_cast<std::size_t>(c)];
     rail = upright_rails.rail(known.upright_rails, c);
@@ -71,7 +71,7 @@ LearntRig rig_of(const RateStream& stream, const RateStream::Params& params, con
     if (plane) rail = plane->distance_rad_s;
   }
   if (!known.upright) rig.keep(known.planes);
-  if (!known.accel_upright) rig.keep(known.accel_planes, Triad::accelerometer);
+  if (!known.accel_clips_after_compensation) rig.keep(known.accel_planes, Triad::accelerometer);
   return rig;
 }
 
@@ -155,8 +155,8 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
     if (std::optional<LearntRig> rig = learnt_by(stream, params.rate, given, at_prior, state)) *found = std::move(rig);
   }
   if (estimate.status.ok()) {
-    check_rates(sensors, samples, carried_share, estimate);
-    report_frozen_axes(sensors, samples, estimate);
+    (void)check_rates(sensors, samples, carried_share, estimate);  // reported only: the answers were given before
+    (void)report_frozen_axes(sensors, samples, estimate);
   }
   count_sources(estimate.rates, estimate.health);
   return estimate;

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <initializer_list>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "scenarios/methods/method.hpp"
 #include "tumble/common/imu.hpp"
+#include "tumble/mapping/detail/odometer_reading.hpp"
 
 /// Registers the methods. A new method needs a file KIND_NAME.cpp that defines `Method KIND_NAME()`, a declaration in
 /// this file, a line in registry.cpp, and the file's name in CMakeLists.txt.
@@ -29,7 +32,6 @@ Method rate_reject();
 Method rate_constant_jerk();
 Method rate_accelerometers();
 Method rate_zero_velocity();
-Method rate_magnetometer();
 Method rate_saave();
 Method rate_tumble();
 Method rate_carried();
@@ -57,7 +59,6 @@ Method position_oracle_contact();
 Method slam_icp();
 Method slam_icp_raw();
 Method slam_tumble();
-Method slam_tumble_gyro_only();
 Method slam_oracle();
 Method slam_poses_rolling();
 Method slam_poses_autogain_fusion();
@@ -72,14 +73,10 @@ Status unclipped_rates(const sim::Sensors& sensors, const sim::Truth& truth, std
 /// Counts the rates in `health` by their source, for example measured or estimated.
 void count_sources(std::span<const RateState> rates, std::map<std::string, double>& health);
 
-/// A motion that is known in advance, as one velocity per IMU sample.
+/// Motion that an odometer measures beside the IMU.
 struct KnownMotion {
-  struct Velocity {
-    Eigen::Vector3d v_WI_I_m_s = Eigen::Vector3d::Zero();
-    double sigma_m_s = 0.0;
-  };
-  std::vector<Velocity> velocities;
-  double gravity_m_s2 = 0.0;      ///< gravity in the samples generated from the motion
+  /// Returns the motion of the IMU between two times; empty if the odometer does not cover both.
+  std::function<std::optional<MotionReading>(TimeNs from_ns, TimeNs to_ns)> between;
   double correction_max_m = 1.0;  ///< registrations with a larger correction are rejected
   double correction_max_rad = 1.0;
 };
@@ -89,7 +86,7 @@ struct SlamChain {
   /// If true, the chain estimates lidar mounting, lidar clock offset and gravity. The recording is then processed
   /// twice. The second pass starts from the calibration of the first pass.
   bool calibration = false;
-  const KnownMotion* along = nullptr;  ///< motion that generated the samples
+  const KnownMotion* along = nullptr;  ///< odometer
 };
 
 struct SlamStage;

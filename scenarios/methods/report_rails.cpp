@@ -38,7 +38,7 @@ void report_plane(std::size_t j, const RailPlane& plane, std::map<std::string, d
 
 }  // namespace
 
-void report_rails(const KnownRails& rails, std::map<std::string, double>& health) {
+void report_rails(const SaturationLevels& rails, std::map<std::string, double>& health) {
   const RailPlanes in_use = rails.planes_in_use();
   for (std::size_t j = 0; j < 3; ++j) {
     const double level_rad_s = rails.upright_rails.channels[j].rail;

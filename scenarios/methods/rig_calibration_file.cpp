@@ -146,7 +146,7 @@ bool reported_level(const RailPlane& plane, int sign) {
 LearntRig learnt(const RateReport& report) {
   LearntRig out{report.calibration, report.rail};
   out.device_errors = report.sensor_errors;
-  if (!report.rails_axis_aligned) out.keep(report.planes);
+  if (!report.clips_after_compensation) out.keep(report.planes);
   out.keep(report.accel_planes, Triad::accelerometer);
   return out;
 }
@@ -197,10 +197,10 @@ void take_element(const RailPlane& plane, Triad triad, std::size_t j, LearntRig&
 
 }  // namespace
 
-std::optional<LearntRig> with_rails(const LearntRig& before, const KnownRails& rails) {
+std::optional<LearntRig> with_rails(const LearntRig& before, const SaturationLevels& rails) {
   LearntRig found, out = before;
   if (!rails.upright) found.keep(rails.planes);
-  if (!rails.accel_upright) found.keep(rails.accel_planes, Triad::accelerometer);
+  if (!rails.accel_clips_after_compensation) found.keep(rails.accel_planes, Triad::accelerometer);
   out.rails_alone = true;
   bool sure = false;
   for (const Triad triad : {Triad::gyro, Triad::accelerometer}) {
@@ -230,7 +230,7 @@ RailPlanes LearntRig::planes(Triad triad) const {
     if (!low && !high) continue;
     const Eigen::Index first = RigConstants::kElements + 2 * j;
     RailPlane plane;
-    plane.row = (gyro ? calibration.constants : of_accel).element_row(j);
+    plane.row = (gyro ? calibration.constants : of_accel).sensing_direction(j);
     plane.distance_rad_s = low && high ? 0.5 * (*high - *low) : low ? -*low : *high;
     plane.offset_rad_s = low && high ? 0.5 * (*high + *low) : 0.0;
     const double sigma = kDistanceShare * plane.distance_rad_s;

@@ -42,7 +42,7 @@ LearntRig learnt(const RateReport& report);
 /// Returns the calibration `before`, with the certain saturation levels of a run that could not estimate the constants.
 /// Old levels are kept unless the run found better levels. Levels that readings contradict are removed. Returns empty
 /// if no plane is certain.
-std::optional<LearntRig> with_rails(const LearntRig& before, const KnownRails& rails);
+std::optional<LearntRig> with_rails(const LearntRig& before, const SaturationLevels& rails);
 
 /// Applies a calibration to the next run: constants, saturation planes of the gyro, and errors of the device. The
 /// lowest saturation level of a sensor becomes the sensor's range. The covariance of the constants is multiplied by

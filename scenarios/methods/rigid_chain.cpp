@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "scenarios/methods/bridge.hpp"
-#include "scenarios/methods/rate_baseline.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/robot_presets.hpp"
 #include "scenarios/methods/slam_registry.hpp"
@@ -57,35 +56,6 @@ Status start_at_rest(std::span<const ImuSample> samples, StartAtRest& out) {
   }
   out.gyro_bias_rad_s = rest.mean_rate_rad_s();
   return level(rest.rests ? rest.mean_force_m_s2() : samples.front().specific_force_m_s2, out.q_WI);
-}
-
-Status raw_start(const sim::Sensors& sensors, std::vector<ImuSample>& samples, std::vector<RateState>& rates,
-                 StartAtRest& start) {
-  Status status = bridge::primary_imu_samples(sensors, samples);
-  if (status.ok()) status = start_at_rest(samples, start);
-  if (status.ok()) status = railed_rates(sensors, samples, rates);
-  return status;
-}
-
-std::vector<MotionSample> imu_motion(std::span<const ImuSample> samples, std::span<const RateState> rates,
-                                     const Eigen::Vector3d& bias_rad_s, TimeNs from_ns, TimeNs to_ns, int parts) {
-  std::vector<MotionSample> motion;
-  for_windows(samples, from_ns, to_ns, [&](std::size_t k, TimeNs start, TimeNs end) {
-    const std::size_t before = k > 0 ? k - 1 : k, after = std::min(k + 1, samples.size() - 1);
-    for (int part = 0; part < parts; ++part) {
-      // The mean over a window is the value at the window's middle. A part is up to half a window away from the middle.
-      const double place = (part + 0.5) / parts - 0.5;
-      const std::size_t other = place < 0.0 ? before : after;
-      const double share = std::abs(place);
-      MotionSample& sample = motion.emplace_back();
-      sample.from_ns = start + (end - start) * part / parts;
-      sample.time_ns = start + (end - start) * (part + 1) / parts;
-      sample.w_WI_I_rad_s = (1.0 - share) * rates[k].w_WI_I_rad_s + share * rates[other].w_WI_I_rad_s - bias_rad_s;
-      sample.f_I_m_s2 = (1.0 - share) * samples[k].specific_force_m_s2 + share * samples[other].specific_force_m_s2;
-      sample.clipped_axes = rates[k].clipped_axes;
-    }
-  });
-  return motion;
 }
 
 std::vector<MotionSample> steady_motion(std::span<const ImuSample> samples, const Eigen::Vector3d& rate_I_rad_s,

@@ -10,9 +10,8 @@
 #include "sim/parameters.hpp"
 #include "tumble/common/imu.hpp"
 
-/// Declares building blocks of the rigid registration methods. A rate method supplies Estimate::rates, a trajectory
-/// model predicts the motion within a sweep, and RigidOdometry registers the sweep. The file of each method combines a
-/// rate method with a trajectory model.
+/// Building blocks of the rigid registration methods. A trajectory model predicts the motion
+/// within a sweep, and RigidOdometry registers the sweep. The file of each method defines its trajectory model.
 namespace tumble::scenarios {
 
 /// Predicts the motion of each sweep. The registration result updates the model.
@@ -35,19 +34,8 @@ struct StartAtRest {
 /// second. Returns `too_few` or `degenerate` if the readings do not determine an attitude.
 Status start_at_rest(std::span<const ImuSample> samples, StartAtRest& out);
 
-/// Computes the input of methods that use the raw gyro: samples of the first IMU, rates with flagged clipped axes, and
-/// initial values.
-Status raw_start(const sim::Sensors& sensors, std::vector<ImuSample>& samples, std::vector<RateState>& rates,
-                 StartAtRest& start);
-
-/// Returns the IMU averaging windows that overlap (from_ns, to_ns], with bias-corrected rates and forces. Each window
-/// is split into `parts`. Rate and force vary linearly between the mean values of consecutive windows. The first window
-/// starts at or before from_ns.
-std::vector<MotionSample> imu_motion(std::span<const ImuSample> samples, std::span<const RateState> rates,
-                                     const Eigen::Vector3d& bias_rad_s, TimeNs from_ns, TimeNs to_ns, int parts = 1);
-
-/// Returns the IMU averaging windows that overlap the interval, with constant rate and acceleration in body axes. The
-/// acceleration excludes gravity.
+/// Returns the IMU averaging windows that overlap the interval, with constant body rate and acceleration (body axes,
+/// without gravity).
 std::vector<MotionSample> steady_motion(std::span<const ImuSample> samples, const Eigen::Vector3d& rate_I_rad_s,
                                         const Eigen::Vector3d& force_I_m_s2, TimeNs from_ns, TimeNs to_ns);
 

@@ -42,8 +42,8 @@ std::array<std::string, 3> detail::coordinate_names(const std::string& name, con
 SettingsTable::SettingsTable(SettingsOptions options) : options_(std::move(options)) {}
 
 std::string SettingsTable::name_of(const std::string& field_name) const {
-  const auto is_taken = [&](const sim::Parameter& other) { return other.name == field_name; };
-  const bool taken = std::any_of(options_.beside.begin(), options_.beside.end(), is_taken);
+  const auto is_occupied = [&](const sim::Parameter& other) { return other.name == field_name; };
+  const bool taken = std::any_of(options_.beside.begin(), options_.beside.end(), is_occupied);
   return taken ? options_.prefix + field_name : field_name;
 }
 

@@ -34,7 +34,6 @@ LidarInertialOdometry::Params odometry_params(const sim::Sensors& sensors, const
   const double accel_range_m_s2 = sensors.imus.front().stated_accel_range_m_s2;
   if (accel_range_m_s2 > 0.0) odometry.expert.rails.accel_m_s2 = unsaturated_range(accel_range_m_s2);
   if (chain.along) {
-    odometry.expert.gravity_m_s2 = chain.along->gravity_m_s2;
     odometry.expert.matching.correction_max_m = chain.along->correction_max_m;
     odometry.expert.matching.correction_max_rad = chain.along->correction_max_rad;
   }
@@ -56,17 +55,6 @@ bool shorten(std::int64_t end_ns, bridge::Sweep& sweep) {
   return true;
 }
 
-/// Interpolates the velocity at `time_ns`. `next` is the index of the first sample after `time_ns`, or slightly more.
-KnownMotion::Velocity velocity_at(std::int64_t time_ns, std::span<const ImuSample> samples, const KnownMotion& motion,
-                                  std::size_t next) {
-  while (next > 0 && samples[next - 1].time_ns >= time_ns) --next;
-  if (next == 0 || next == samples.size()) return motion.velocities[next == 0 ? 0 : next - 1];
-  const KnownMotion::Velocity &a = motion.velocities[next - 1], &b = motion.velocities[next];
-  const double share =
-      seconds(time_ns - samples[next - 1].time_ns) / seconds(samples[next].time_ns - samples[next - 1].time_ns);
-  return {a.v_WI_I_m_s + share * (b.v_WI_I_m_s - a.v_WI_I_m_s), std::max(a.sigma_m_s, b.sigma_m_s)};
-}
-
 /// Feeds a recording to the mapper and collects the sweeps in `estimate`.
 class SweepFeed {
  public:
@@ -82,7 +70,7 @@ class SweepFeed {
       leave_out_unfinished(estimate_);
       return true;
     }
-    return add_velocity() && add_points(sweep);
+    return add_motion(sweep.end_ns + offset_ns_) && add_points(sweep);
   }
 
   /// Processes the sweeps that are pending at the end of the recording.
@@ -101,11 +89,11 @@ class SweepFeed {
     return true;
   }
 
-  /// Adds the known velocity at the end of the last sweep, if available.
-  bool add_velocity() {
+  /// Adds the odometer's motion from the end of the last sweep, if available.
+  bool add_motion(TimeNs to_ns) {
     if (!along_ || estimate_.sweeps.empty()) return true;
-    const KnownMotion::Velocity velocity = velocity_at(estimate_.sweeps.back().pose.time_ns, samples_, *along_, next_);
-    estimate_.status = odometry_.add_velocity(velocity.v_WI_I_m_s, velocity.sigma_m_s);
+    const std::optional<MotionReading> motion = along_->between(estimate_.sweeps.back().pose.time_ns, to_ns);
+    if (motion) estimate_.status = odometry_.add_reading(*motion);
     return estimate_.status.ok();
   }
 
@@ -211,7 +199,7 @@ Estimate run_passes(const sim::LidarRecord& lidar, std::span<const ImuSample> sa
   }
   const bool converged = run.status.ok() && determines_calibration(run) && mahalanobis <= kMaxDeviations;
   if (converged) {
-    const auto sigma = odometry.calibration_weight().diagonal().cwiseSqrt().eval();
+    const auto sigma = odometry.calibration_weighting_covariance().diagonal().cwiseSqrt().eval();
     start_from(odometry.calibration());
     params.mount_sigma_rad = sigma.head<3>().maxCoeff();
     params.mount_sigma_m = sigma.segment<3>(3).maxCoeff();
@@ -258,7 +246,7 @@ Estimate begin_with_rates(const sim::Sensors& sensors, std::vector<ImuSample>& s
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (estimate.status.ok()) estimate.status = rates(estimate);
   if (!estimate.status.ok()) return estimate;
-  report_frozen_axes(sensors, samples, estimate);
+  inflate_frozen_rates(report_frozen_axes(sensors, samples, estimate), samples, estimate);
   flag_railed_forces(sensors.imus.front(), samples);
   return estimate;
 }

@@ -15,10 +15,6 @@ namespace tumble::scenarios {
 
 Method slam_published();
 Method slam_constant_velocity();
-Method slam_constant_jerk();
-Method slam_iterated_filter();
-Method slam_pointwise_reject();
-Method slam_health_switch();
 Method slam_floor();
 Method slam_tumble_lag();
 Method slam_tumble_live();

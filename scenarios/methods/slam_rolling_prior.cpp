@@ -10,34 +10,22 @@
 #include "scenarios/methods/sample_times.hpp"
 #include "scenarios/methods/slam_settings.hpp"
 #include "scenarios/methods/sphere_attitude.hpp"
-#include "tumble/common/so3.hpp"
 
-/// Builds maps of a rolling sphere with the rig's registration and rolling odometry as the prior.
+/// Builds maps from a rolling sphere with the rig's registration and with rolling as an odometer (add_reading).
 namespace tumble::scenarios {
 
 namespace {
 
-// Uncertainty of a sweep's start relative to the last sweep's end, over 0.1 s. The velocity's uncertainty is added.
-constexpr double kPriorSigmaM = 1e-4, kPriorSigmaRad = 2e-5, kPriorSigmaMS = 1e-4, kForceSigmaShare = 2e-3;
-
-/// Returns the chain's parameters with a tight prior from rolling, because consecutive sweeps see new, unmapped areas.
+/// Returns the chain's parameters; the odometer sets the limits of a correction.
 const Settings<SlamParams>& prior_settings() {
-  static const Settings<SlamParams> all = [] {
-    SlamParams params;
-    params.odometry.expert.prior.sigma_m = kPriorSigmaM;
-    params.odometry.expert.prior.sigma_rad = kPriorSigmaRad;
-    params.odometry.expert.prior.sigma_m_s = kPriorSigmaMS;
-    params.odometry.expert.prior.force_share = kForceSigmaShare;
-    // The fixed parameters belong to the generated samples.
-    return slam_settings(params, {"gravity_m_s2", "correction_max_m", "correction_max_rad"});
-  }();
+  static const Settings<SlamParams> all = slam_settings({}, {"correction_max_m", "correction_max_rad"});
   return all;
 }
 
-/// Parameters of the velocity prior from rolling.
+/// Parameters of rolling as an odometer.
 struct AlongParams {
-  double gravity_m_s2 = 1.2;
   double grip_sigma_share = 4e-3, still_sigma_m_s = 3e-4, loose_sigma_share = 0.1, loose_sigma_m_s = 0.03;
+  double rotation_sigma_rad = 2e-4;
   double moving_m_s = 0.03;
   double correction_m = 0.03, correction_rad = 0.015, loose_correction_m = 0.1;
   double segment_m = 0.5, segment_sigma_m = 3e-3;
@@ -45,9 +33,6 @@ struct AlongParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.gravity_m_s2, {"along_gravity_m_s2", "m/s^2", 0.1, 20.0,
-                           "gravity in the accelerometer readings that are computed along the rolled poses; large "
-                           "enough for levelling, small enough that attitude corrections cause no false acceleration"});
     visit(p.grip_sigma_share,
           {"along_grip_sigma_share", "1", 1e-6, 1.0,
            "standard deviation of the rolling velocity while gripping, as a share of it (scale error)"});
@@ -58,6 +43,8 @@ struct AlongParams {
            "standard deviation of the velocity during an event or while the radius is uncertain, as a share of it"});
     visit(p.loose_sigma_m_s, {"along_loose_sigma_m_s", "m/s", 1e-9, 10.0,
                               "least standard deviation of the velocity in that case while moving"});
+    visit(p.rotation_sigma_rad, {"along_rotation_sigma_rad", "rad", 1e-9, 1.0,
+                                 "standard deviation of the rotation between the ends of two sweeps, per axis"});
     visit(p.moving_m_s, {"along_moving_m_s", "m/s", 1e-6, 10.0, "speed from which the sphere counts as moving"});
     visit(p.correction_m,
           {"along_correction_m", "m", 1e-6, 100.0,
@@ -89,36 +76,6 @@ const Settings<AlongParams>& along_settings() {
 const Method& followed() {
   static const Method method = position_tumble();
   return method;
-}
-
-/// Generates IMU readings along the poses of the position method, with little gravity. The mapper integrates the
-/// generated readings within a sweep, and thus the rolling odometry is its prior.
-std::vector<ImuSample> samples_along(const Estimate& poses, const sim::Sensors& sensors, std::span<const ImuSample> raw,
-                                     double gravity_m_s2) {
-  const Eigen::Isometry3d& T_BI = sensors.imus.front().T_BI;
-  const Eigen::Vector3d arm_B = T_BI.translation() - poses.centre_B_m;  // from the centre
-  const Eigen::Vector3d gravity_W(0.0, 0.0, gravity_m_s2);
-  std::vector<ImuSample> out(raw.begin(), raw.end());
-  Eigen::Vector3d v_before = Eigen::Vector3d::Zero();
-  for (std::size_t k = 0; k < out.size(); ++k) {
-    const PoseState& pose = poses.poses[k];
-    const Eigen::Quaterniond q_WI = pose.q_WA * Eigen::Quaterniond(T_BI.linear());
-    const double dt_s = k > 0 ? seconds(out[k].time_ns - out[k - 1].time_ns) : 0.0;
-    if (k > 0) {
-      const Eigen::Quaterniond q_before = poses.poses[k - 1].q_WA * Eigen::Quaterniond(T_BI.linear());
-      out[k].angular_velocity_rad_s = so3::log(q_before.conjugate() * q_WI) / dt_s;
-    } else {
-      out[k].angular_velocity_rad_s.setZero();
-    }
-    const Eigen::Vector3d w_W = q_WI * out[k].angular_velocity_rad_s;
-    const Eigen::Vector3d v = pose.v_WA_m_s + w_W.cross(pose.q_WA * arm_B);
-    const Eigen::Vector3d a = k > 0 ? Eigen::Vector3d((v - v_before) / dt_s) : Eigen::Vector3d::Zero();
-    const Eigen::Quaterniond q_mid = q_WI * so3::exp(-0.5 * dt_s * out[k].angular_velocity_rad_s);
-    out[k].specific_force_m_s2 = q_mid.conjugate() * (a + gravity_W);
-    out[k].device_clip_flags = 0;
-    v_before = v;
-  }
-  return out;
 }
 
 struct Radius {
@@ -179,48 +136,88 @@ Estimate roll(const sim::Sensors& sensors, const sim::Values& parameters, double
   return followed().run(own, values, {});
 }
 
-/// Returns the velocity of the primary IMU along the poses. `loosely` increases the uncertainty to allow for an
-/// uncertain radius.
-KnownMotion motion_of(const Estimate& rolled, std::span<const ImuSample> samples, const sim::Sensors& sensors,
-                      const AlongParams& params, bool loosely) {
-  const Eigen::Isometry3d& T_BI = sensors.imus.front().T_BI;
-  const Eigen::Vector3d arm_I = T_BI.linear().transpose() * (T_BI.translation() - rolled.centre_B_m);
-  KnownMotion motion;
-  motion.gravity_m_s2 = params.gravity_m_s2;
-  double variance_m2 = 0.0;
-  motion.velocities.resize(samples.size());
-  for (std::size_t k = 0; k < samples.size(); ++k) {
-    const PoseState& pose = rolled.poses[k];
-    variance_m2 = std::max(variance_m2, pose.covariance.topLeftCorner<3, 3>().trace());
-    const Eigen::Quaterniond q_WI = pose.q_WA * Eigen::Quaterniond(T_BI.linear());
-    const double speed_m_s = pose.v_WA_m_s.norm();
-    KnownMotion::Velocity& velocity = motion.velocities[k];
-    velocity.v_WI_I_m_s = q_WI.conjugate() * pose.v_WA_m_s + samples[k].angular_velocity_rad_s.cross(arm_I);
-    const bool loose = loosely || rolled.contacts[k] != sim::ContactLabel::grip;
-    velocity.sigma_m_s =
-        params.still_sigma_m_s + (loose ? params.loose_sigma_share : params.grip_sigma_share) * speed_m_s;
-    if (loose && speed_m_s > params.moving_m_s)
-      velocity.sigma_m_s = std::max(velocity.sigma_m_s, params.loose_sigma_m_s);
+/// Rolling as an odometer of the primary IMU. `loosely` increases the uncertainty to allow for an uncertain radius.
+class RolledMotion {
+ public:
+  RolledMotion(const Estimate& rolled, const sim::Sensors& sensors, const AlongParams& params, bool loosely)
+      : rolled_(rolled),
+        T_GI_(Eigen::Translation3d(-rolled.centre_B_m) * sensors.imus.front().T_BI),
+        params_(params),
+        loosely_(loosely) {}
+
+  std::optional<MotionReading> between(TimeNs from_ns, TimeNs to_ns) const {
+    const std::vector<PoseState>& poses = rolled_.poses;
+    if (poses.empty() || from_ns < poses.front().time_ns || to_ns > poses.back().time_ns || from_ns >= to_ns) return {};
+    MotionReading motion;
+    motion.from_ns = from_ns;
+    motion.to_ns = to_ns;
+    motion.T_from_to = pose_of_imu(from_ns).inverse(Eigen::Isometry) * pose_of_imu(to_ns);
+    const double sigma_m = velocity_sigma_m_s(from_ns, to_ns) * seconds(to_ns - from_ns);
+    motion.covariance.diagonal().head<3>().setConstant(sigma_m * sigma_m);
+    motion.covariance.diagonal().tail<3>().setConstant(params_.rotation_sigma_rad * params_.rotation_sigma_rad);
+    return motion;
   }
+
+ private:
+  std::size_t index_at(TimeNs time_ns) const {
+    const auto found = std::lower_bound(rolled_.poses.begin(), rolled_.poses.end(), time_ns,
+                                        [](const PoseState& pose, TimeNs t) { return pose.time_ns < t; });
+    return static_cast<std::size_t>(found - rolled_.poses.begin());
+  }
+
+  /// Interpolates the pose between two samples.
+  Eigen::Isometry3d pose_of_imu(TimeNs time_ns) const {
+    const std::size_t k = index_at(time_ns);
+    const PoseState& after = rolled_.poses[k];
+    const PoseState& before = rolled_.poses[k > 0 ? k - 1 : 0];
+    const double share = after.time_ns > before.time_ns
+                             ? seconds(time_ns - before.time_ns) / seconds(after.time_ns - before.time_ns)
+                             : 0.0;
+    const Eigen::Vector3d p = (1.0 - share) * before.p_WA_m + share * after.p_WA_m;
+    return Eigen::Translation3d(p) * before.q_WA.slerp(share, after.q_WA) * T_GI_;
+  }
+
+  /// Returns the largest standard deviation of the velocity in the interval.
+  double velocity_sigma_m_s(TimeNs from_ns, TimeNs to_ns) const {
+    double largest_m_s = 0.0;
+    for (std::size_t k = index_at(from_ns); k < rolled_.poses.size() && rolled_.poses[k].time_ns <= to_ns; ++k) {
+      const double speed_m_s = rolled_.poses[k].v_WA_m_s.norm();
+      const bool loose = loosely_ || rolled_.contacts[k] != sim::ContactLabel::grip;
+      double sigma_m_s =
+          params_.still_sigma_m_s + (loose ? params_.loose_sigma_share : params_.grip_sigma_share) * speed_m_s;
+      if (loose && speed_m_s > params_.moving_m_s) sigma_m_s = std::max(sigma_m_s, params_.loose_sigma_m_s);
+      largest_m_s = std::max(largest_m_s, sigma_m_s);
+    }
+    return std::max(largest_m_s, params_.still_sigma_m_s);
+  }
+
+  const Estimate& rolled_;
+  Eigen::Isometry3d T_GI_;
+  const AlongParams& params_;
+  bool loosely_;
+};
+
+/// Returns the largest correction of the position that the registration may make.
+double correction_max_m(const Estimate& rolled, const AlongParams& params, bool loosely) {
+  double variance_m2 = 0.0;
+  for (const PoseState& pose : rolled.poses)
+    variance_m2 = std::max(variance_m2, pose.covariance.topLeftCorner<3, 3>().trace());
   const double lost_m = std::ranges::any_of(rolled.uncertain, std::identity()) ? 3.0 * std::sqrt(variance_m2) : 0.0;
-  motion.correction_max_m = params.correction_m + (loosely ? params.loose_correction_m : 0.0) + lost_m;
-  motion.correction_max_rad = params.correction_rad;
-  return motion;
+  return params.correction_m + (loosely ? params.loose_correction_m : 0.0) + lost_m;
 }
 
-/// Registers sweeps with the motion `rolled` as the prior between two sweeps.
-Estimate register_along(const Estimate& rolled, const sim::Sensors& sensors, std::span<const ImuSample> raw,
+/// Registers sweeps with `rolled` as an odometer between the ends of two sweeps.
+Estimate register_along(const Estimate& rolled, const sim::Sensors& sensors, std::span<const ImuSample> samples,
                         const sim::Values& parameters, bool loosely) {
   Estimate estimate;
   estimate.frame = Frame::imu;
   estimate.status = rolled.status;
   if (!estimate.status.ok()) return estimate;
   const AlongParams params = along_settings().read(parameters);
-  const std::vector<ImuSample> samples = samples_along(rolled, sensors, raw, params.gravity_m_s2);
   estimate.status = raw_rates(sensors, samples, estimate.rates);
-  // The prior already contains the gyro noise.
-  for (RateState& rate : estimate.rates) rate.covariance_rad2_s2.setZero();
-  const KnownMotion motion = motion_of(rolled, samples, sensors, params, loosely);
+  const RolledMotion rolling(rolled, sensors, params, loosely);
+  const KnownMotion motion{[&](TimeNs from_ns, TimeNs to_ns) { return rolling.between(from_ns, to_ns); },
+                           correction_max_m(rolled, params, loosely), params.correction_rad};
   SlamChain chain;
   chain.along = &motion;
   if (estimate.status.ok()) run_slam_chain(sensors, samples, {prior_settings(), parameters}, chain, estimate);
@@ -231,21 +228,21 @@ Estimate register_along(const Estimate& rolled, const sim::Sensors& sensors, std
 Estimate run_rolling_prior(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   Estimate estimate;
   estimate.frame = Frame::imu;
-  std::vector<ImuSample> raw;
-  estimate.status = bridge::primary_imu_samples(sensors, raw);
+  std::vector<ImuSample> samples;
+  estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (!estimate.status.ok()) return estimate;
   require_sphere("slam/rolling_prior", sensors);
   const AlongParams params = along_settings().read(parameters);
   const double radius_m = parameters.has(kRadius) ? parameters.at(kRadius) : sensors.sphere_radius_m;
   Estimate rolled = roll(sensors, parameters, radius_m);
-  estimate = register_along(rolled, sensors, raw, parameters, true);
+  estimate = register_along(rolled, sensors, samples, parameters, true);
   if (!estimate.status.ok()) return estimate;
   const std::optional<Radius> radius = radius_by_lidar(rolled, estimate, sensors, radius_m, params);
   const double off_m = radius ? std::abs(radius->m - radius_m) : 0.0;
   const bool corrected = radius && radius->m > 0.0 &&
                          off_m > std::max(params.corrected_sigmas * radius->sigma_m, params.corrected_share * radius_m);
   if (corrected) rolled = roll(sensors, parameters, radius->m);
-  estimate = register_along(rolled, sensors, raw, parameters, false);
+  estimate = register_along(rolled, sensors, samples, parameters, false);
   if (corrected) estimate.health["radius_mended"] = 1.0;
   if (radius) {
     estimate.health["radius_m"] = radius->m;

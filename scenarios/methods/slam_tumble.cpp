@@ -33,7 +33,7 @@ Estimate run_slam_tumble(const sim::Sensors& sensors, const sim::Values& paramet
     SmoothedRates smoothed;
     const Status status = tumble_rates(sensors, samples, params, smoothed, out);
     out.rates = std::move(smoothed.rates);
-    if (status.ok()) check_rates(sensors, samples, smoothed.carried.share, out);
+    if (status.ok() && !check_rates(sensors, samples, smoothed.carried.share, out)) inflate_rates(out);
     return status;
   });
   if (estimate.status.ok())

@@ -125,9 +125,9 @@ class Listener {
 };
 
 /// Passes the recording to TumblingOdometry in real-time order: each sample at the end of its window, each sweep after
-/// its last point.
+/// its last point. Counts the sweeps that end after the last sample in `estimate`.
 Status replay(const sim::Sensors& sensors, std::span<const ImuSample> samples, TumblingOdometry& odometry,
-              Listener& listener) {
+              Listener& listener, Estimate& estimate) {
   const sim::LidarRecord& lidar = sensors.lidars.front();
   const std::size_t sweeps = bridge::sweep_count(lidar);
   std::optional<bridge::Sweep> present;
@@ -146,6 +146,7 @@ Status replay(const sim::Sensors& sensors, std::span<const ImuSample> samples, T
   }
   odometry.finish();
   listener.take(odometry);
+  for (std::size_t left = sweeps - next + (present ? 1 : 0); left > 0; --left) leave_out_unfinished(estimate);
   return {};
 }
 
@@ -161,11 +162,11 @@ Estimate run_slam_tumble_lag(const sim::Sensors& sensors, const sim::Values& par
   }
   (void)check_imu(sensors, samples, estimate);  // Only a warning, as for attitudes.
   (void)check_flights(sensors, samples, std::nullopt, estimate);
-  report_frozen_axes(sensors, samples, estimate);
+  (void)report_frozen_axes(sensors, samples, estimate);
   const TumblingOdometry::Params params = stated_params(sensors, parameters);
   TumblingOdometry odometry(params);
   Listener listener(word, params, estimate);
-  estimate.status = replay(sensors, samples, odometry, listener);
+  estimate.status = replay(sensors, samples, odometry, listener, estimate);
   if (!estimate.status.ok()) return estimate;
   report_rails(odometry.rails(), estimate.health);
   const std::size_t left_out = sensors.imus.front().time_ns.size() - samples.size();

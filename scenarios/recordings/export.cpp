@@ -118,8 +118,9 @@ void require_own_kind(const std::string& format, const path& out) {
   const std::string ending = out.extension().string();
   if (own == kEndings.end() || ending.empty() || own->second.contains(ending)) return;
   if (!std::filesystem::is_regular_file(out)) return;
-  throw BadInput(fmt::format("{}: exists and is of another kind than the format '{}'; name another output, ending in {}",
-                             out.string(), format, fmt::join(own->second, " or ")));
+  throw BadInput(
+      fmt::format("{}: exists and is of another kind than the format '{}'; name another output, ending in {}",
+                  out.string(), format, fmt::join(own->second, " or ")));
 }
 
 Notes export_recording(const path& recording, const std::string& format, const path& out,

@@ -15,9 +15,8 @@ namespace {
 
 constexpr std::size_t kBytesRead = 16;
 
-constexpr std::pair<std::string_view, const char*> kFirstBytes[] = {{"#ROSBAG V", "a ROS 1 bag"},
-                                                                     {"\x89MCAP0", "an MCAP file"},
-                                                                     {"SQLite format 3", "a ROS 2 bag or a database"}};
+constexpr std::pair<std::string_view, const char*> kFirstBytes[] = {
+    {"#ROSBAG V", "a ROS 1 bag"}, {"\x89MCAP0", "an MCAP file"}, {"SQLite format 3", "a ROS 2 bag or a database"}};
 constexpr std::pair<std::string_view, const char*> kEndings[] = {
     {".csv", "a table"}, {".tum", "a trajectory"}, {".txt", "a text file"}, {".kitti", "a trajectory"}};
 

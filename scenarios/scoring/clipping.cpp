@@ -39,6 +39,8 @@ ClippingTruth::ClippingTruth(const sim::Sensors& sensors, const sim::Truth& trut
       (!reference && truth_->gyro_unclipped_rad_s.size() != count)) {
     throw BadInput(fmt::format("the readings of imu '{}' and its truth differ in number", record_->name));
   }
+  for (std::size_t i = 0; i < truth_->gyro_elements.size() && i < 3; ++i)
+    elements_.row(static_cast<Eigen::Index>(i)) = truth_->gyro_elements[i].transpose();
   if (reference) reference_axes_ = clipped_by_reference(record_->gyro_rad_s, truth_->rate_rad_s);
 }
 
@@ -48,20 +50,34 @@ std::size_t ClippingTruth::known_samples() const {
   return count;
 }
 
-std::uint8_t ClippingTruth::clipped_axes(std::size_t index) const {
-  if (is_reference()) return reference_axes_[index];
+Eigen::Vector3d ClippingTruth::lost_rad_s(std::size_t index) const {
+  const auto& unclipped = is_reference() ? truth_->rate_rad_s : truth_->gyro_unclipped_rad_s;
+  return unclipped[index] - record_->gyro_rad_s[index];
+}
+
+std::uint8_t ClippingTruth::beyond_tolerance(const Eigen::Vector3d& lost_rad_s) const {
   std::uint8_t axes = 0;
   for (int j = 0; j < 3; ++j) {
-    const double lost = std::abs(truth_->gyro_unclipped_rad_s[index][j] - record_->gyro_rad_s[index][j]);
-    // The negated comparison is true for NaN, so that NaN counts as clipped.
-    if (!(lost <= tolerance_rad_s_)) axes = static_cast<std::uint8_t>(axes | (1u << j));
+    // written such that NaN counts as clipped
+    if (!(std::abs(lost_rad_s[j]) <= tolerance_rad_s_)) axes = static_cast<std::uint8_t>(axes | (1u << j));
   }
   return axes;
 }
 
+std::uint8_t ClippingTruth::clipped_axes(std::size_t index) const {
+  if (is_reference()) return reference_axes_[index];
+  return beyond_tolerance(elements_ * lost_rad_s(index));
+}
+
+std::uint8_t ClippingTruth::cross_axes(std::size_t index) const {
+  if (is_reference()) return 0;
+  const std::uint8_t clipped = clipped_axes(index);
+  if (clipped == 0) return 0;
+  return static_cast<std::uint8_t>(beyond_tolerance(lost_rad_s(index)) & ~clipped);
+}
+
 double ClippingTruth::depth_rad_s(std::size_t index) const {
-  const auto& unclipped = is_reference() ? truth_->rate_rad_s : truth_->gyro_unclipped_rad_s;
-  return (unclipped[index] - record_->gyro_rad_s[index]).lpNorm<Eigen::Infinity>();
+  return lost_rad_s(index).lpNorm<Eigen::Infinity>();
 }
 
 std::optional<std::size_t> ClippingTruth::index_at(std::int64_t time_ns) const {
@@ -77,10 +93,11 @@ std::optional<ClippingTruth::Sample> ClippingTruth::at(std::int64_t time_ns) con
   if (!found) return std::nullopt;
   const std::size_t index = *found;
   if (!known(index) || (times[index] != time_ns && !known(index - 1))) return std::nullopt;
-  if (times[index] == time_ns) return Sample{truth_->rate_rad_s[index], clipped_axes(index)};
+  if (times[index] == time_ns) return Sample{truth_->rate_rad_s[index], clipped_axes(index), cross_axes(index)};
   const double share =
       static_cast<double>(time_ns - times[index - 1]) / static_cast<double>(times[index] - times[index - 1]);
-  return Sample{(1.0 - share) * truth_->rate_rad_s[index - 1] + share * truth_->rate_rad_s[index], clipped_axes(index)};
+  return Sample{(1.0 - share) * truth_->rate_rad_s[index - 1] + share * truth_->rate_rad_s[index], clipped_axes(index),
+                cross_axes(index)};
 }
 
 }  // namespace tumble::scenarios

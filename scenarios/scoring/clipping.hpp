@@ -15,23 +15,26 @@ inline constexpr std::uint8_t kGyroClipFlags = 0b000111;
 
 /// Determines the true rates of the primary gyro, and which of its samples are clipped.
 ///
-/// All scores use one definition: axis j of a sample is clipped if the reading differs from the unclipped reading by
-/// more than a tolerance. The unclipped reading has the errors of the clipped reading but no saturation. The tolerance
-/// is one standard deviation of the gyro's white noise per sample, sqrt(density^2 / period), but at least 1e-6 rad/s.
-/// Smaller differences do not matter.
+/// All scores use one definition: axis j of a sample is clipped if the sensing element of this axis is beyond its rail.
+/// The saturation deficit of element j is row j of the misalignment matrix M times the unclipped minus the delivered
+/// reading. The unclipped reading has the errors of the delivered reading but no saturation. Element j is beyond its
+/// rail if the deficit exceeds a tolerance. The tolerance is one standard deviation of the gyro's white noise per
+/// sample, sqrt(density^2 / period), but at least 1e-6 rad/s. Smaller deficits do not matter.
 ///
-/// With tilted sensing elements (sim/imu/elements.hpp), one saturated element also changes the other axes. The change
-/// is the saturation deficit of the element times an entry of the inverse misalignment matrix. An axis also counts as
-/// clipped if its change by another element exceeds the tolerance.
+/// With tilted elements (sim/imu/elements.hpp), a saturated element also changes the readings of the other axes. The
+/// change is the deficit times entries of the inverse of M. An axis has a cross-axis error if another element changes
+/// its reading by more than the tolerance while its own element is not beyond its rail. An axis with a cross-axis error
+/// does not count as clipped.
 ///
 /// If the truth comes from a reference instrument, it has rates without unclipped readings (FORMAT.md, "References").
-/// In this case, an axis is clipped if the reference confirms saturation (reference_clipping.hpp). Samples without a
-/// reference rate are not scored.
+/// In this case, an axis is clipped if the reference confirms saturation (reference_clipping.hpp). Cross-axis errors
+/// are then unknown. Samples without a reference rate are not scored.
 class ClippingTruth {
  public:
   struct Sample {
     Eigen::Vector3d rate_rad_s;  ///< true mean rate over the sample's window, true IMU axes
-    std::uint8_t clipped_axes;   ///< bit j: axis j is clipped
+    std::uint8_t clipped_axes;   ///< bit j: the element of axis j is beyond its rail
+    std::uint8_t cross_axes;     ///< bit j: axis j has a cross-axis error of a clipped element
   };
 
   /// Throws BadInput if the sensors and the truth do not belong together.
@@ -55,12 +58,18 @@ class ClippingTruth {
   std::size_t known_samples() const;
   /// Returns the clipped axes of a sample, or 0 if its rate is unknown.
   std::uint8_t clipped_axes(std::size_t index) const;
-  /// Returns the largest difference over the axes between the reading and the unclipped reading or reference.
+  /// Returns the axes of a sample with a cross-axis error; no axis is in both sets.
+  std::uint8_t cross_axes(std::size_t index) const;
+  /// Returns the largest difference of an axis to the unclipped reading, or to the reference.
   double depth_rad_s(std::size_t index) const;
 
  private:
+  Eigen::Vector3d lost_rad_s(std::size_t index) const;
+  std::uint8_t beyond_tolerance(const Eigen::Vector3d& lost_rad_s) const;
+
   const sim::ImuRecord* record_;
   const sim::ImuTruth* truth_;
+  Eigen::Matrix3d elements_ = Eigen::Matrix3d::Identity();  ///< M
   double tolerance_rad_s_;
   std::vector<std::uint8_t> reference_axes_;
 };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <cstdint>
+#include <limits>
 #include <optional>
 
 #include "scenarios/scoring/beside_truth.hpp"
@@ -12,12 +14,29 @@ namespace tumble::scenarios {
 
 namespace {
 
-// Returns the last sweep within the time of the truth. If a clock is delayed, the last sweeps of a recording may have
-// stamps after the truth.
+// Returns the time up to which sweeps enter the comparison: a quarter of a period after the end of the last sweep that
+// the primary IMU covers completely. Some methods drop a sweep that the IMU covers in part, others shorten the sweep.
+std::int64_t last_sweep_before_ns(const sim::Sensors& sensors) {
+  constexpr std::int64_t kAll = std::numeric_limits<std::int64_t>::max();
+  if (sensors.lidars.empty() || sensors.imus.empty() || sensors.imus.front().time_ns.empty()) return kAll;
+  const sim::LidarRecord& lidar = sensors.lidars.front();
+  // deskewed sweeps belong to one instant
+  const std::int64_t length_ns = lidar.point_times == sim::PointTimes::measured ? lidar.sweep_period_ns : 0;
+  const std::int64_t covered_ns = sensors.imus.front().time_ns.back() - length_ns;
+  const auto after = std::upper_bound(lidar.sweep_start_ns.begin(), lidar.sweep_start_ns.end(), covered_ns);
+  if (lidar.sweep_period_ns <= 0 || after == lidar.sweep_start_ns.begin()) return kAll;
+  return *(after - 1) + length_ns + lidar.sweep_period_ns / 4;
+}
+
+// Returns the last sweep within the time of the truth that the IMU covers. A delayed clock can stamp the last sweeps of
+// a recording beyond the truth. All methods end at this sweep.
 const LidarInertialOdometry::SweepReport* last_covered(const ScoredEstimate& scored) {
   const Estimate& estimate = scored.estimate();
   const TruthTrack& truth = truth_track(scored);
-  const auto covered = [&](const auto& sweep) { return truth.covers(sweep.pose.time_ns); };
+  const std::int64_t before_ns = last_sweep_before_ns(scored.sensors());
+  const auto covered = [&](const auto& sweep) {
+    return truth.covers(sweep.pose.time_ns) && sweep.pose.time_ns <= before_ns;
+  };
   const auto last = std::find_if(estimate.sweeps.rbegin(), estimate.sweeps.rend(), covered);
   return last == estimate.sweeps.rend() ? nullptr : &*last;
 }
@@ -113,14 +132,15 @@ std::vector<std::size_t> registered_sweeps(const Estimate& estimate) {
 std::vector<Metric> end_pose_metrics() {
   return {
       {{"translation_error_end_m", Unit::m,
-        "translation error of the motion from the sixth registered sweep to the last sweep; without sweeps, from the "
-        "first pose to the last",
+        "translation error of the motion from the sixth registered sweep to the last sweep that the IMU covers; "
+        "without "
+        "sweeps, from the first pose to the last",
         Sense::lower, Place::headline},
        Kind::slam,
        translation_error_end},
       {{"rotation_error_end_rad", Unit::rad,
-        "rotation error of the motion from the sixth registered sweep to the last sweep, up to pi", Sense::lower,
-        Place::headline},
+        "rotation error of the motion from the sixth registered sweep to the last sweep that the IMU covers, up to pi",
+        Sense::lower, Place::headline},
        Kind::slam,
        rotation_error_end},
       {{"pose_nees", Unit::number, "normalised squared error (NEES) of the last sweep's pose, per degree of freedom",

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <optional>
 
 #include "scenarios/scoring/beside_truth.hpp"
 #include "scenarios/scoring/families.hpp"
@@ -12,7 +13,8 @@ namespace {
 constexpr float kToleranceM = 0.25f;     // Deschenes et al.: map points farther from the surface are outliers
 constexpr float kFineToleranceM = 0.1f;  // stricter tolerance for a sharp map
 constexpr double kOutliersMax = 0.15;    // Deschenes et al.: a larger share of outliers is a failed map
-constexpr float kSurfaceCellM = 0.1f;    // each cell of the seen surface counts once
+constexpr double kCoverageMin = 0.5;     // a map of less than half of what was seen is a failed map
+constexpr float kSurfaceCellM = 0.1f;    // each cell of the seen surface counts once, however often it was hit
 constexpr float kErrorLimitM = 0.5f;     // the distance of outliers is limited to this
 constexpr float kSamePointM = 1e-3f;     // points in one cell of this size are duplicates
 constexpr double kSeenRangeM = 100.0;    // hits farther from the start are not expected in maps
@@ -88,15 +90,21 @@ bool unique_share(const ScoredEstimate& scored, double& value) {
   return true;
 }
 
-bool map_coverage(const ScoredEstimate& scored, double& value) {
-  if (scored.estimate().map.empty() || scored.truth().lidars.empty()) return false;
+// Returns the share of the seen surface that the map covers; empty without a map or without the true hits.
+std::optional<double> covered_share(const ScoredEstimate& scored) {
+  if (scored.estimate().map.empty() || scored.truth().lidars.empty()) return std::nullopt;
   const std::vector<Eigen::Vector3f> surface = seen_surface(scored.truth());
-  if (surface.empty()) return false;
+  if (surface.empty()) return std::nullopt;
   const Nearness map(scored.once(map_in_world), kToleranceM);
   const auto covered =
       std::count_if(surface.begin(), surface.end(), [&](const Eigen::Vector3f& p) { return map.has_neighbour(p); });
-  value = static_cast<double>(covered) / static_cast<double>(surface.size());
-  return true;
+  return static_cast<double>(covered) / static_cast<double>(surface.size());
+}
+
+bool map_coverage(const ScoredEstimate& scored, double& value) {
+  const std::optional<double>& share = scored.once(covered_share);
+  if (share) value = *share;
+  return share.has_value();
 }
 
 // Computes 1 for a failed map, else 0. A method without a map counts as failed. A trajectory without sweeps comes from
@@ -104,9 +112,10 @@ bool map_coverage(const ScoredEstimate& scored, double& value) {
 bool failed(const ScoredEstimate& scored, double& value) {
   const Estimate& estimate = scored.estimate();
   if (scored.surface() == nullptr || (estimate.sweeps.empty() && estimate.map.empty())) return false;
-  double share = 0.0;
+  double share = 0.0, coverage = 1.0;
   const bool has_map = overlap(scored, share);
-  value = has_map && 1.0 - share <= kOutliersMax ? 0.0 : 1.0;
+  (void)map_coverage(scored, coverage);
+  value = has_map && 1.0 - share <= kOutliersMax && coverage >= kCoverageMin ? 0.0 : 1.0;
   return true;
 }
 
@@ -137,7 +146,9 @@ std::vector<Metric> map_metrics() {
        Kind::slam,
        unique_share},
       {{"map_failed", Unit::verdict,
-        "1 if more than 15 % of the map is off the surface, or if there were sweeps but no map; otherwise 0",
+        "1 if more than 15 % of the map is off the surface, if the map covers less than half of the visible surface, "
+        "or "
+        "if there were sweeps but no map; otherwise 0",
         Sense::lower, Place::held},
        Kind::slam,
        failed},

@@ -101,6 +101,7 @@ MotionSummary summarise_motion(const sim::Sensors& sensors, const sim::Truth& tr
     }
     for (std::size_t j = 0; j < 3; ++j) out.axis_clipped_samples[j] += (clipped >> j) & 1u;
     if (axes >= 2) ++out.several_axes_samples;
+    if (clipping.cross_axes(i) != 0) ++out.cross_axis_samples;
     if (accel_clipped(primary, truth.imus.front(), i)) ++out.accel_clipped_samples;
   }
   return out;

@@ -40,6 +40,8 @@ std::vector<MetricInfo> motion_quantities() {
       {"motion_clip_depth_max_rad_s", Unit::rad_s, "largest saturation deficit of a gyro axis"},
       {"motion_clip_length_max_s", Unit::s, "longest segment of clipped samples"},
       {"motion_several_axes_share", Unit::share, "share of the clipped samples with at least two clipped axes"},
+      {"motion_cross_axis_share", Unit::share,
+       "share of the clipped samples in which an axis that is not clipped has a cross-axis error"},
       {"motion_accel_clipped_share", Unit::share, "share of the samples in motion with a clipped accelerometer axis"},
   };
 }

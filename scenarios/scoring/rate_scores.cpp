@@ -80,9 +80,10 @@ bool in_contact(const ScoredEstimate& scored, std::int64_t time_ns) {
   return false;
 }
 
-// Squared errors of clipped axes, divided by their reported variances: for all samples, in flight, and in contact.
+// Squared errors divided by their reported variances: of clipped axes, for all samples, in flight, and in contact; and
+// of axes with a cross-axis error.
 struct NormalisedErrors {
-  std::vector<double> all, flight, impact;
+  std::vector<double> all, flight, impact, cross_axis;
 };
 
 NormalisedErrors normalised_rate_errors(const ScoredEstimate& scored) {
@@ -92,8 +93,9 @@ NormalisedErrors normalised_rate_errors(const ScoredEstimate& scored) {
     const Eigen::Vector3d error = pair.error_rad_s();
     std::vector<double>& part = in_contact(scored, pair.estimate->time_ns) ? normalised.impact : normalised.flight;
     for (int j = 0; j < 3; ++j) {
-      if (!(pair.clipped_axes() & (1u << j))) continue;
       const double square = squared_over(error[j], pair.estimate->covariance_rad2_s2(j, j));
+      if (pair.cross_axes() & (1u << j)) normalised.cross_axis.push_back(square);
+      if (!(pair.clipped_axes() & (1u << j))) continue;
       normalised.all.push_back(square);
       part.push_back(square);
     }
@@ -111,6 +113,10 @@ bool coverage_3sigma_flight(const ScoredEstimate& scored, double& value) {
 
 bool coverage_3sigma_impact(const ScoredEstimate& scored, double& value) {
   return share_within_3sigma(scored.once(normalised_rate_errors).impact, value);
+}
+
+bool coverage_3sigma_cross_axis(const ScoredEstimate& scored, double& value) {
+  return share_within_3sigma(scored.once(normalised_rate_errors).cross_axis, value);
 }
 
 bool mean_of(const std::vector<double>& values, double& value) {
@@ -165,6 +171,11 @@ std::vector<Metric> rate_metrics() {
         Place::detail, kNormal3Sigma, Compared::by_difference},
        Kind::rate,
        coverage_3sigma_impact},
+      {{"rate_coverage_3sigma_cross_axis", Unit::share,
+        "rate_coverage_3sigma over axes that are not clipped but have a cross-axis error of a clipped axis",
+        Sense::two_sided, Place::detail, kNormal3Sigma, Compared::by_difference},
+       Kind::rate,
+       coverage_3sigma_cross_axis},
       {{"rate_nees_flight", Unit::number,
         "mean squared rate error over reported variance, over clipped axes without contact; 1 for an honest covariance",
         Sense::two_sided, Place::held, 1.0},

@@ -186,7 +186,8 @@ Gate load_gate(const DataRoot& data, const std::string& name, std::span<const Me
 
 std::string to_yaml(const Gate& gate) {
   return "# SPDX-License-Identifier: BSD-3-Clause\n"
-         "# Limits of the comparison of a run with the accepted run, draw by draw. scenarios/sweep/gate.hpp defines each "
+         "# Limits of the comparison of a run with the accepted run, draw by draw. scenarios/sweep/gate.hpp defines "
+         "each "
          "number.\n"
          "suite: " +
          gate.suite + "\nrisk: " + number_text(gate.policy.risk) + "\nmargin: " + number_text(gate.policy.margin) +
@@ -196,7 +197,9 @@ std::string to_yaml(const Gate& gate) {
 }
 
 std::string to_csv(const GateRun& run) {
-  std::string text = "# Accepted run, written by 'tumble gate SUITE --accept': status and metrics of each method, one column per seed.\n";
+  std::string text =
+      "# Accepted run, written by 'tumble gate SUITE --accept': status and metrics of each method, one column per "
+      "seed.\n";
   text += "scenario,kind,method,metric";
   for (const std::uint64_t seed : run.seeds) text += "," + std::to_string(seed);
   text += "\n";

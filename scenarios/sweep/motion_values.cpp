@@ -39,6 +39,7 @@ DrawValues motion_values(const std::string& scenario, std::uint64_t seed, const 
                  {"motion_clip_depth_max_rad_s", motion.clip_depth_max_rad_s},
                  {"motion_clip_length_max_s", motion.clip_length_max_s},
                  {"motion_several_axes_share", share(motion.several_axes_samples, motion.clipped_samples)},
+                 {"motion_cross_axis_share", share(motion.cross_axis_samples, motion.clipped_samples)},
                  {"motion_accel_clipped_share", share(motion.accel_clipped_samples, motion.samples)}};
   return draw;
 }

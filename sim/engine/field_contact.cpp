@@ -25,7 +25,7 @@ class Cell {
         b_m(strut.at_m(over.last) - corner_m),
         dx_(field.cell_x_m),
         dy_(field.cell_y_m),
-        foot_m_(-field.base_m),
+        foot_m_(-field.common_position_m),
         reach_m_(strut.reach_m),
         heights_m_{field.height_m(row, column), field.height_m(row, column + 1), field.height_m(row + 1, column + 1),
                    field.height_m(row + 1, column)} {}
@@ -124,7 +124,7 @@ std::optional<int> field_contacts(const mjModel& model, const mjData& data, int 
   if (turned(data, field_geom)) return std::nullopt;
   const Field field(model, field_geom);
   const Strut strut(model, data, field_geom, capsule);
-  if (!strut.finite() || strut.lowest_m(2) <= -field.base_m) return std::nullopt;
+  if (!strut.finite() || strut.lowest_m(2) <= -field.common_position_m) return std::nullopt;
 
   Touched touched(strut, Vector3d::Map(data.geom_xpos + 3 * field_geom), contacts);
   const Cells rows(strut.lowest_m(1), strut.highest_m(1), field.half_y_m, field.cell_y_m, field.rows - 1);

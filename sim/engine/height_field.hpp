@@ -15,7 +15,7 @@ namespace tumble::sim::engine {
 struct Field {
   const float* heights;
   int rows, columns;
-  double half_x_m, half_y_m, scale_m, base_m, cell_x_m, cell_y_m;
+  double half_x_m, half_y_m, scale_m, common_position_m, cell_x_m, cell_y_m;
 
   Field(const mjModel& model, int geom) {
     const int id = model.geom_dataid[geom];
@@ -26,7 +26,7 @@ struct Field {
     half_x_m = size[0];
     half_y_m = size[1];
     scale_m = size[2];
-    base_m = size[3];
+    common_position_m = size[3];
     cell_x_m = 2.0 * half_x_m / (columns - 1);
     cell_y_m = 2.0 * half_y_m / (rows - 1);
   }

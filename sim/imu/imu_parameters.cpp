@@ -51,6 +51,8 @@ constexpr std::string_view kUpdateDoc =
 constexpr std::string_view kHandoverDoc =
     "range of the precise part of each axis (back below 0.9 of it); the coarse part is used beyond; 0: always coarse";
 constexpr std::string_view kPreciseNoiseDoc = "density of the white noise of the precise part";
+constexpr std::string_view kStartDelayDoc =
+    "time before the first reading, for a device that starts after the recording; 0: off";
 constexpr std::string_view kPreciseQuantumDoc = "resolution of the precise part; 0: off";
 
 constexpr std::array kParameters = {
@@ -122,6 +124,10 @@ constexpr std::array kParameters = {
               "standard deviation of the time stamp, truncated at 3 of them; below a sixth of the period; 0: off"},
     Parameter{"dropout_share", 0.0, 0.0, 0.5, "1", "share of lost samples; 0: off"},
     Parameter{"dropout_mean_samples", 1.0, 1.0, 1e4, "1", "mean length of a run of lost samples"},
+    Parameter{"start_delay_s", 0.0, 0.0, 60.0, "s", kStartDelayDoc},
+    Parameter{
+        "glitch_share", 0.0, 0.0, 0.5, "1",
+        "share of samples in which one axis has a wild reading, uniform within 1.5 times the stated range; 0: off"},
     Parameter{"magnetometer", 0.0, 0.0, 1.0, "1", "1: the magnetic field is recorded with every sample"},
     Parameter{"mag_range_t", 1e-3, 1e-6, 1.0, "T", "range stated by the data sheet"},
     Parameter{"mag_rail_t", 0.0, 0.0, 1.0, "T", "level at which the output stops; 0: no saturation"},

@@ -6,6 +6,7 @@
 #include <sstream>
 #include <string>
 
+#include "sim/imu/glitches.hpp"
 #include "sim/imu/imu_chain.hpp"
 #include "sim/imu/magnetometer.hpp"
 #include "sim/imu/time_stamps.hpp"
@@ -41,6 +42,7 @@ class Device {
         gyro_(sensor.values, "gyro", "rad_s", rate_hz, steps, seed, sensor.name + ".gyro"),
         accel_(sensor.values, "accel", "m_s2", rate_hz, steps, seed, sensor.name + ".accel"),
         stamps_(sensor.values, "sensors." + sensor.name, record.period_ns, Stream(seed, sensor.name + ".time")),
+        glitches_(sensor.values, Stream(seed, sensor.name + ".glitch")),
         g_sensitivity_(sensor.values.at("gyro_g_sensitivity_s_m")),
         g_sensitivity_drawn_(draw_g_sensitivity(sensor, seed)),
         flagged_(sensor.values.at("clip_flags") > 0.5) {
@@ -59,8 +61,9 @@ class Device {
   /// Ends a window; returns false if the sample of the window is lost.
   bool take(const Ideal& exact, std::int64_t end_ns) {
     std::uint8_t flags = 0;
-    const TriadReading gyro = gyro_.take(exact.rate_rad_s, 0, flags);
-    const TriadReading accel = accel_.take(exact.force_m_s2, 3, flags);
+    TriadReading gyro = gyro_.take(exact.rate_rad_s, 0, flags);
+    TriadReading accel = accel_.take(exact.force_m_s2, 3, flags);
+    glitches_.spoil(gyro, accel);
     const std::optional<std::int64_t> time_ns = stamps_.stamp(end_ns);
     if (!time_ns) return false;
     record_.time_ns.push_back(*time_ns);
@@ -91,6 +94,7 @@ class Device {
   ImuTruth& truth_;
   TriadChain gyro_, accel_;
   TimeStamps stamps_;
+  Glitches glitches_;
   double g_sensitivity_;
   std::optional<Eigen::Matrix3d> g_sensitivity_drawn_;  ///< empty if it has no spread
   bool flagged_;

@@ -9,6 +9,7 @@ namespace tumble::sim {
 
 TimeStamps::TimeStamps(const Values& values, const std::string& place, std::int64_t period_ns, const Stream& stream)
     : offset_ns_(std::llround(values.at("time_offset_s") * 1e9)),
+      start_ns_(std::llround(values.at("start_delay_s") * 1e9)),
       jitter_ns_(values.at("time_jitter_s") * 1e9),
       stream_(stream) {
   if (6.0 * jitter_ns_ >= static_cast<double>(period_ns)) {
@@ -33,7 +34,7 @@ bool TimeStamps::lost() {
 
 std::optional<std::int64_t> TimeStamps::stamp(std::int64_t window_end_ns) {
   const double jitter_ns = jitter_ns_ > 0.0 ? jitter_ns_ * std::clamp(stream_.normal(), -3.0, 3.0) : 0.0;
-  if (lost()) return std::nullopt;
+  if (lost() || window_end_ns <= start_ns_) return std::nullopt;
   return window_end_ns + offset_ns_ + std::llround(jitter_ns);
 }
 

@@ -13,10 +13,11 @@ namespace tumble::sim {
 /// Converts the true end of each averaging window to the host's time stamp, or to no stamp if the sample is lost.
 /// Stamps have a constant offset and white jitter. The jitter is normal, truncated at three standard deviations, and
 /// small against the period, so that stamps always increase. Lost samples form runs of geometric length (Gilbert's
-/// model), independent of the signal. The model excludes a clock with a rate error, and samples in the wrong order.
+/// model), independent of the signal. The device delivers no sample until its start delay is over. The model excludes a
+/// clock with a rate error, and samples in the wrong order.
 class TimeStamps {
  public:
-  /// Reads the parameters time_offset_s, time_jitter_s, dropout_share and dropout_mean_samples. Throws
+  /// Reads the parameters time_offset_s, time_jitter_s, dropout_share, dropout_mean_samples and start_delay_s. Throws
   /// InvalidSituation, with a message that starts with `place`, if six times the jitter reaches the period.
   TimeStamps(const Values& values, const std::string& place, std::int64_t period_ns, const Stream& stream);
   /// Returns the stamp of a window; must be called once for each window.
@@ -25,7 +26,7 @@ class TimeStamps {
  private:
   bool lost();
 
-  std::int64_t offset_ns_;
+  std::int64_t offset_ns_, start_ns_;
   double jitter_ns_;
   double loss_starts_ = 0.0, loss_ends_ = 1.0;
   bool losing_ = false;

@@ -28,6 +28,13 @@ constexpr Parameter kSteepness{"detection_steepness",
                                "k of the share of returns kept, s^k / (1 + s^k), with the signal s = (reflectivity "
                                "cos(incidence) / detection_reflectivity) (detection_range_m / range)^2"};
 constexpr Parameter kDropout{"dropout_share", 0.0, 0.0, 1.0, "1", "share of returns lost independent of their signal"};
+constexpr Parameter kSweepDropout{"sweep_dropout_share", 0.0, 0.0, 0.9, "1", "share of lost sweeps; 0: off"};
+constexpr Parameter kStartDelay{"start_delay_s",
+                                0.0,
+                                0.0,
+                                60.0,
+                                "s",
+                                "time before the first sweep, for a device that starts after the recording; 0: off"};
 constexpr Parameter kIntensityQuantum{
     "intensity_quantum", 1.0 / 255.0, 0.0, 1.0, "1", "resolution of the reported intensity; 0: off"};
 constexpr Parameter kBeamRays{
@@ -84,6 +91,8 @@ constexpr std::array kSpinning = {
     kReferenceReflectivity,
     kSteepness,
     kDropout,
+    kSweepDropout,
+    kStartDelay,
     kIntensityQuantum,
     kBeamRays,
     divergence("divergence_horizontal_rad", 3.0e-3),
@@ -116,6 +125,8 @@ constexpr std::array kRosette = {
     kReferenceReflectivity,
     kSteepness,
     kDropout,
+    kSweepDropout,
+    kStartDelay,
     kIntensityQuantum,
     kBeamRays,
     divergence("divergence_horizontal_rad", 0.03 * kDegree_rad),

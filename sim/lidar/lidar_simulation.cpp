@@ -6,10 +6,12 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <vector>
 
 #include "sim/lidar/sweep_caster.hpp"
+#include "sim/random/stream.hpp"
 
 namespace tumble::sim {
 
@@ -51,6 +53,25 @@ std::int64_t whole_sweeps(const MotionTrack& motion, std::int64_t sweep_period_n
   return static_cast<std::int64_t>(motion.p_WB_m.size()) * motion.period_ns / sweep_period_ns;
 }
 
+/// Decides for each sweep in turn whether the device delivers it: a sweep may start before the device or be lost.
+class Delivery {
+ public:
+  Delivery(const SensorSpec& sensor, std::uint64_t seed)
+      : start_ns_(std::llround(sensor.values.at("start_delay_s") * 1e9)),
+        lost_share_(sensor.values.at("sweep_dropout_share")),
+        stream_(seed, sensor.name + ".sweeps") {}
+
+  bool delivers(std::int64_t sweep_start_ns) {
+    const bool lost = lost_share_ > 0.0 && stream_.uniform() < lost_share_;
+    return !lost && sweep_start_ns >= start_ns_;
+  }
+
+ private:
+  std::int64_t start_ns_;
+  double lost_share_;
+  Stream stream_;
+};
+
 }  // namespace
 
 void simulate_lidar(const engine::World& world, const SensorSpec& sensor, const Eigen::Isometry3d& T_BL,
@@ -75,6 +96,7 @@ void simulate_lidar(const engine::World& world, const SensorSpec& sensor, const 
   const auto allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
   threads = std::clamp(threads, 1, static_cast<int>(allowed));  // oneTBB prints a warning for larger numbers
   const std::int64_t at_once = 2 * threads;
+  Delivery delivery(sensor, seed);
   std::vector<SweepPoints> done(static_cast<std::size_t>(at_once));
   tbb::task_arena arena(threads);
   for (std::int64_t first = 0; first < sweeps; first += at_once) {
@@ -84,6 +106,7 @@ void simulate_lidar(const engine::World& world, const SensorSpec& sensor, const 
                         [&](std::int64_t i) { caster.cast_sweep(first + i, done[static_cast<std::size_t>(i)]); });
     });
     for (std::int64_t i = 0; i < count; ++i) {
+      if (!delivery.delivers((first + i) * period_ns)) continue;
       append_sweep(done[static_cast<std::size_t>(i)], record, truth);
       record.sweep_start_ns.push_back((first + i) * period_ns);
       record.sweep_first.push_back(record.position_L_m.size());

@@ -24,6 +24,8 @@ inline constexpr std::array kSeriesParameters = {
               "standard deviation of the time stamp, truncated at 3 of them; below a sixth of the period; 0: off"},
     Parameter{"dropout_share", 0.0, 0.0, 0.5, "1", "share of lost samples; 0: off"},
     Parameter{"dropout_mean_samples", 1.0, 1.0, 1e4, "1", "mean length of a run of lost samples"},
+    Parameter{"start_delay_s", 0.0, 0.0, 60.0, "s",
+              "time before the first reading, for a device that starts after the recording; 0: off"},
 };
 
 /// Errors of readings, relative to the mean of the quantity over the averaging window; an error of 0 is off.

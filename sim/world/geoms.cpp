@@ -35,7 +35,7 @@ mjsGeom* add_surface(mjSpec* spec, engine::World& world, const std::string& name
 }
 
 mjsGeom* add_height_field(mjSpec* spec, engine::World& world, const std::string& name, const HeightGrid& grid,
-                          double base_m, double least_span_m, const Colour& colour) {
+                          double common_position_m, double least_span_m, const Colour& colour) {
   const auto [low, high] = std::minmax_element(grid.heights_m.begin(), grid.heights_m.end());
   const double low_m = *low, span_m = std::max(*high - *low, least_span_m);
   std::vector<float> unit(grid.heights_m.size());
@@ -48,7 +48,7 @@ mjsGeom* add_height_field(mjSpec* spec, engine::World& world, const std::string&
   field->size[0] = grid.half_x_m;
   field->size[1] = grid.half_y_m;
   field->size[2] = span_m;
-  field->size[3] = base_m;
+  field->size[3] = common_position_m;
   mjs_setFloat(field->userdata, unit.data(), static_cast<int>(unit.size()));
   mjsGeom* geom = add_surface(spec, world, name, mjGEOM_HFIELD, {0, 0, low_m}, {0, 0, 0}, 0.0, colour);
   mjs_setString(geom->hfieldname, name.c_str());

@@ -27,10 +27,10 @@ struct HeightGrid {
   std::span<const double> heights_m;  ///< rows * columns values
 };
 
-/// Adds a height field as the surface `name`, solid down to `base_m` below the lowest node of the field. MuJoCo
-/// requires a field with some relief, so the height range of the field is at least `least_span_m`.
+/// Adds a height field as the surface `name`, solid down to `common_position_m` below the lowest node of the field.
+/// MuJoCo requires a field with some relief, so the height range of the field is at least `least_span_m`.
 mjsGeom* add_height_field(mjSpec* spec, engine::World& world, const std::string& name, const HeightGrid& grid,
-                          double base_m, double least_span_m, const Colour& colour);
+                          double common_position_m, double least_span_m, const Colour& colour);
 
 /// Adds a flat mark on the floor for pictures only; the mark has no contact and is not a surface.
 void add_mark(mjSpec* spec, const engine::FrictionPatch& patch, const Colour& colour);

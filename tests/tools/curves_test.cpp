@@ -148,7 +148,8 @@ TEST_F(CurvesTest, OfBinnedMetricsStandAtTheBinsAndInNoTable) {
   // a bin without samples stays a gap
   const Figure figure = curve_figure(*curve);
   const auto ticks = nlohmann::json::parse(figure.layout)["xaxis"]["ticktext"];
-  EXPECT_THAT(ticks.get<std::vector<std::string>>(), testing::IsSupersetOf({"0.055 – 0.105", labels[0], labels[2]}));
+  EXPECT_THAT(ticks.get<std::vector<std::string>>(),
+              testing::IsSupersetOf(std::vector<std::string>{"0.055 – 0.105", labels[0], labels[2]}));
   const auto traces = nlohmann::json::parse(figure.traces);
   const auto line = std::find_if(traces.begin(), traces.end(), [](const auto& trace) {
     return trace.value("mode", "") == "lines+markers" && !trace.contains("yaxis");

@@ -247,12 +247,12 @@ const char* dash_of_round(std::size_t round) {
 void Palette::add(const std::string& method, std::optional<std::size_t> wanted) {
   const std::string name = method.substr(method.rfind('/') + 1);
   if (indices_.contains(name)) return;
-  const auto is_taken = [&](std::size_t index) {
+  const auto is_occupied = [&](std::size_t index) {
     return std::any_of(indices_.begin(), indices_.end(), [&](const auto& each) { return each.second == index; });
   };
   std::size_t index = wanted.value_or(0);
-  if (is_taken(index)) {
-    for (index = 0; is_taken(index); ++index) continue;
+  if (is_occupied(index)) {
+    for (index = 0; is_occupied(index); ++index) continue;
   }
   indices_.emplace(name, index);
 }

@@ -28,14 +28,15 @@ Marginal marginal(const Conditional& conditional, const BorderMatrix& border_cov
   return System::marginal(conditional, border_covariance);
 }
 
-// Transforms each column of (R37) as the gradients in rate_smoother.md (R27).
+// Eliminates a block from the derivatives of the gradients by the sensor errors, column by column: rate_smoother.md
+// (R27).
 void eliminate_errors(const Block& block, ErrorMatrix& errors, ErrorMatrix* next, BorderErrors& border) {
   errors = (block.diagonal.lazyProduct(errors)).eval();
   border.noalias() -= block.border.transpose().lazyProduct(errors);
   if (next != nullptr) next->noalias() -= block.coupling.transpose().lazyProduct(errors);
 }
 
-// rate_smoother.md (R37)
+// Computes the derivatives of a block's unknowns by the sensor errors: rate_smoother.md (R37).
 ErrorMatrix back_substitute_errors(const Block& block, const ErrorMatrix& errors, const ErrorMatrix* next_moved,
                                    const BorderErrors& border_moved) {
   ErrorMatrix right = errors - block.border.lazyProduct(border_moved);
@@ -43,7 +44,7 @@ ErrorMatrix back_substitute_errors(const Block& block, const ErrorMatrix& errors
   return block.diagonal.transpose().lazyProduct(right);
 }
 
-// Computes the block of rate_smoother.md (R35) that belongs to the rates.
+// Computes the 3x3 covariance of a sample's rate: rate_smoother.md (R35).
 Eigen::Matrix3d rate_covariance(const Conditional& conditional, const BorderMatrix& border_covariance) {
   const Eigen::Matrix<double, 3, kBorder> rows = conditional.by_border.topRows<3>();
   const Eigen::Matrix<double, 3, kBorder> cross = rows.lazyProduct(border_covariance);

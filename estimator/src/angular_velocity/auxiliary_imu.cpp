@@ -24,7 +24,8 @@ struct Between {
 
 Between between(const Vector3d& value, const Vector3d& change, const ImuNeighbours& near, double noise, double error,
                 const AuxiliaryImu& auxiliary_imu) {
-  // the variance covers an interpolation error of up to share (1 - share) of the change, and the clock error
+  // The variance covers two errors: interpolation, up to share (1 - share) of the change between readings, and clock
+  // error.
   const double crooked = near.share * (1.0 - near.share) + auxiliary_imu.clock_error_s / near.length_s;
   const double scaled = auxiliary_imu.share_error * value.norm();
   return {value, (Vector3d::Constant(noise * noise + error * error + scaled * scaled) + (crooked * change).cwiseAbs2())
@@ -40,14 +41,15 @@ bool AuxiliaryReading::same(const AuxiliaryReading& other) const {
   const auto equal = [](const Vector3d& a, const Vector3d& b) {
     return ((a.array() == b.array()) || (a.array().isNaN() && b.array().isNaN())).all();
   };
-  if (rate_by_elements != other.rate_by_elements || force_by_elements != other.force_by_elements) return false;
+  if (rate_along_elements != other.rate_along_elements || force_along_elements != other.force_along_elements)
+    return false;
   return equal(rate_rad_s, other.rate_rad_s) && equal(force_m_s2, other.force_m_s2) &&
          equal(rate_sigma_rad_s, other.rate_sigma_rad_s) && equal(force_sigma_m_s2, other.force_sigma_m_s2);
 }
 
 Status align(const AuxiliaryImu& auxiliary_imu, std::span<const ImuSample> samples, std::span<const Clipping> clippings,
              std::span<const ImuSample> primary, double gap_max_s, std::vector<AuxiliaryReading>& out) {
-  // a gap is not an error of an auxiliary IMU; its readings are then empty
+  // An auxiliary IMU may have gaps. During a gap, the reading of the auxiliary IMU is empty.
   const Status status = check_samples(samples, std::numeric_limits<double>::infinity());
   if (!status.ok()) return status;
   if (clippings.size() != samples.size()) {
@@ -69,12 +71,12 @@ Status align(const AuxiliaryImu& auxiliary_imu, std::span<const ImuSample> sampl
         between(here.specific_force_m_s2, b.specific_force_m_s2 - a.specific_force_m_s2, near,
                 auxiliary_imu.accel_noise_density * root_rate, auxiliary_imu.accel_error_m_s2, auxiliary_imu);
     const Clipping &c = clippings[near.before], &d = clippings[near.after];
-    // a reading with zero weight is not used
+    // interpolation omits a reading with zero weight
     const bool left = near.share<1.0, right = near.share> 0.0;
     const unsigned gyro = (left ? c.gyro | c.missing_gyro : 0u) | (right ? d.gyro | d.missing_gyro : 0u);
     const unsigned accel = (left ? c.accel : 0u) | (right ? d.accel : 0u);
-    out[k].rate_by_elements = gyro != 0;
-    out[k].force_by_elements = accel != 0;
+    out[k].rate_along_elements = gyro != 0;
+    out[k].force_along_elements = accel != 0;
     const Vector3d rates = gyro != 0 ? auxiliary_imu.gyro_elements.rows * rate.value : rate.value;
     const Vector3d forces = accel != 0 ? auxiliary_imu.accel_elements.rows * force.value : force.value;
     for (int j = 0; j < 3; ++j) {

@@ -11,13 +11,15 @@
 
 namespace tumble {
 
-RailPlanes KnownRails::planes_in_use(Triad triad) const {
+RailPlanes SaturationLevels::planes_in_use(Triad triad) const {
   const RailPlanes& known = triad == Triad::gyro ? planes : accel_planes;
-  return (triad == Triad::gyro ? upright : accel_upright) ? without_plateaus(known, upright_rails, triad) : known;
+  return (triad == Triad::gyro ? upright : accel_clips_after_compensation)
+             ? without_plateaus(known, upright_rails, triad)
+             : known;
 }
 
-ElementRows KnownRails::rows(Triad triad, double unknown_sigma) const {
-  if (triad == Triad::gyro ? upright : accel_upright) return {};
+SensingDirections SaturationLevels::rows(Triad triad, double unknown_sigma) const {
+  if (triad == Triad::gyro ? upright : accel_clips_after_compensation) return {};
   return element_rows(planes_in_use(triad), unknown_sigma);
 }
 
@@ -33,7 +35,7 @@ std::uint8_t clip_flags(const Clipping& clipping) {
   return static_cast<std::uint8_t>(clipping.gyro | clipping.missing_gyro | clipping.accel << kAccelFirst);
 }
 
-std::uint8_t CertainRails::flags(const ImuSample& sample, const Clipping& judged) const {
+std::uint8_t ConfirmedSaturation::flags(const ImuSample& sample, const Clipping& judged) const {
   const auto certain = [](double reading, double range, const std::optional<RailPlane>& plane) {
     return range > 0.0 ? std::abs(reading) >= kStatedRailMin * range : plane.has_value();
   };
@@ -68,7 +70,8 @@ ClippingFinder::Found ClippingFinder::find(std::span<const ImuSample> samples) c
   upright_rails_.classify_all(samples, out.rails.upright_rails, out.clippings);
   if (!tilted_) return out;
   out.rails.planes = find_planes(samples, Triad::gyro, out.rails.upright_rails, out.rails.upright);
-  out.rails.accel_planes = find_planes(samples, Triad::accelerometer, out.rails.upright_rails, out.rails.accel_upright);
+  out.rails.accel_planes =
+      find_planes(samples, Triad::accelerometer, out.rails.upright_rails, out.rails.accel_clips_after_compensation);
   for (const Triad triad : {Triad::gyro, Triad::accelerometer}) {
     const RailPlanes planes = out.rails.planes_in_use(triad);
     if (!planes.any()) continue;

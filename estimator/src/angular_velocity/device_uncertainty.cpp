@@ -13,12 +13,12 @@ namespace {
 using Matrix = SensorErrors::Matrix;
 using Vector = SensorErrors::Vector;
 
-// Weight of the readings' likelihood when deciding whether errors exist, ten times the weight for the errors' values.
-// With full weight and an uncertain calibration, half of the devices that match their data sheet would be classified as
-// uncalibrated.
+// Weight of the readings' likelihood in the decision between a device that matches its data sheet and an uncalibrated
+// device. The weight of the decision is ten times kEvidenceWeight, the weight in estimates of sensor errors. With full
+// weight and an uncertain calibration, the decision would classify half of the matching devices as uncalibrated.
 constexpr double kOddsEvidenceWeight = 0.3;
 
-// Computes I + share U L U with symmetrised L.
+// Computes I + share U L U, with the information matrix L made symmetric.
 void set_system(const SensorErrorEvidence& evidence, const Vector& deviation, double share, Matrix& system) {
   for (int j = 0; j < SensorErrors::kSize; ++j) {
     for (int i = 0; i < SensorErrors::kSize; ++i) {
@@ -28,7 +28,7 @@ void set_system(const SensorErrorEvidence& evidence, const Vector& deviation, do
   }
 }
 
-// rate_stream.md (R102); the result is NaN if the information is indefinite
+// Computes the log odds of a device: rate_stream.md (R102). If the information matrix is indefinite, the result is NaN.
 double log_odds(const SensorErrorEvidence& evidence, const Vector& deviation, Matrix& system) {
   set_system(evidence, deviation, kOddsEvidenceWeight, system);
   const Eigen::LLT<Eigen::Ref<Matrix>> factor(system);
@@ -37,13 +37,14 @@ double log_odds(const SensorErrorEvidence& evidence, const Vector& deviation, Ma
   return 0.5 * z.dot(factor.solve(z)) - system.diagonal().array().log().sum();
 }
 
-// rate_stream.md (R102): cov_i + m_i m_i' of one device; returns false if the information is indefinite
+// Computes the second moment cov_i + m_i m_i' of one device: rate_stream.md (R102). If the information matrix is
+// indefinite, returns false.
 bool about_corrected(const SensorErrorEvidence& evidence, const Vector& deviation, DeviceUncertainty::Work& work) {
   constexpr int kRest = SensorErrors::kSize - SensorErrors::kGSensitivity;
   constexpr double kEvidenceWeight = DeviceUncertainty::kEvidenceWeight;
   set_system(evidence, deviation, kEvidenceWeight, work.system);
-  // scale and misalignment are not corrected, because errors of the flight model look like scale and misalignment
-  // errors
+  // The correction of sensor errors leaves scale and misalignment unchanged, because errors of the flight model look
+  // like scale and misalignment errors.
   Vector mean = Vector::Zero();
   const Eigen::Matrix<double, kRest, kRest> rest = work.system.bottomRightCorner<kRest, kRest>();
   mean.tail<kRest>() = rest.llt().solve(kEvidenceWeight * deviation.cwiseProduct(evidence.gradient).tail<kRest>());
@@ -51,7 +52,7 @@ bool about_corrected(const SensorErrorEvidence& evidence, const Vector& deviatio
   const Eigen::LLT<Eigen::Ref<Matrix>> factor(work.system);
   if (factor.info() != Eigen::Success) return false;
   for (int j = 0; j < SensorErrors::kSize;
-       ++j) {  // column by column, because Eigen would use the stack for all at once
+       ++j) {  // column by column, because a product of all columns would use more stack
     const Vector column = factor.solve(deviation[j] * Vector::Unit(j));
     work.about_corrected.col(j) = deviation.cwiseProduct(column) + mean[j] * mean;
   }
@@ -60,8 +61,8 @@ bool about_corrected(const SensorErrorEvidence& evidence, const Vector& deviatio
 
 }  // namespace
 
-DeviceUncertainty::DeviceUncertainty(const SensorErrorSizes& sizes, double uncalibrated)
-    : sheet_(error_deviations(sizes, 0.0)), unknown_(error_deviations(sizes, 1.0)), uncalibrated_(uncalibrated) {}
+DeviceUncertainty::DeviceUncertainty(const SensorErrorPriors& sizes, double uncalibrated)
+    : sheet_(prior_deviations(sizes, 0.0)), unknown_(prior_deviations(sizes, 1.0)), uncalibrated_(uncalibrated) {}
 
 void DeviceUncertainty::reset(Posterior& posterior) const {
   posterior.unlike = uncalibrated_;

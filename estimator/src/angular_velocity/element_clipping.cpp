@@ -11,17 +11,16 @@ namespace tumble {
 
 namespace {
 
-// Cross-axis sensitivities with a standard deviation below kDeterminedSlopeSigma are known. Sensitivities whose
-// magnitude is below kNil, up to their uncertainty, are zero.
+// A cross-axis sensitivity with a standard deviation below kDeterminedSlopeSigma counts as known. A cross-axis
+// sensitivity counts as zero if its magnitude is below kNil within its uncertainty.
 constexpr double kDeterminedSlopeSigma = 2e-3, kNil = 3e-3;
-// Maximum relative difference between the positive and the negative saturation level if the device clips its digital
-// output, for which both levels are equal.
+// Maximum relative difference between positive and negative saturation level of a device that clips its digital output.
 constexpr double kLopsidedShare = 1e-4;
-// Remaining tilt if the device clips its output, and minimum standard deviation of a cross-axis sensitivity (residual
-// misalignment).
+// `kUprightSigma` is the standard deviation of a saturation plane's tilt if the device clips its digital output.
+// `kSlopeSigmaMin` is the minimum standard deviation of a cross-axis sensitivity, due to residual misalignment.
 constexpr double kUprightSigma = 1e-5, kSlopeSigmaMin = 3e-4;
-// Maximum distance from the saturation level, as a fraction of the preceding step, of a sample that was saturated for a
-// part of its window.
+// Maximum distance of a partly saturated sample from the saturation level, as a fraction of the preceding step between
+// samples.
 constexpr double kEdgeOfStep = 0.5;
 
 // Returns the sign of the saturation level at which element j is saturated.
@@ -29,16 +28,16 @@ int side(const ImuSample& sample, Triad triad, std::size_t j) {
   return reading_of(sample, triad)[static_cast<Eigen::Index>(j)] < 0.0 ? -1 : 1;
 }
 
-// Returns whether sensing element j of a sample is saturated, by its saturation plane, rails.md (R55), or by the
-// device's flag.
+// Returns whether sensing element j of a sample is saturated. The criteria are the saturation plane of the element,
+// rails.md (R55), and the device's flag.
 bool at_rail(const ImuSample& sample, Triad triad, const RailPlane& rail, std::size_t j) {
   const Eigen::Vector3d& reading = reading_of(sample, triad);
   return (sample.device_clip_flags >> (first_channel(triad) + j) & 1u) != 0 || rail.holds(reading, -1) ||
          rail.holds(reading, 1);
 }
 
-// Returns whether a sample between a clipped sample and `outside` was saturated for a part of its window. rails.md
-// (R54) defines the distances from the saturation level.
+// Returns whether a sample between a clipped sample and the sample `outside` was saturated for a part of its window.
+// The criterion is the distance of the readings from the saturation level, rails.md (R54).
 bool meets(const RailPlane& rail, Triad triad, const ImuSample& now, const ImuSample* outside, int sign) {
   const double depth = rail.short_of(reading_of(now, triad), sign);
   if (depth > kBesideRail * rail.distance_rad_s) return false;
@@ -47,15 +46,15 @@ bool meets(const RailPlane& rail, Triad triad, const ImuSample& now, const ImuSa
   return depth < kEdgeOfStep * (before - depth);
 }
 
-// Returns whether the positive and the negative saturation level differ, because the device subtracts the element's
-// offset after clipping.
+// Returns whether the positive and the negative saturation level differ. The levels differ if the device subtracts the
+// element's offset after clipping.
 bool lopsided(const RailPlane& rail) {
   return rail.seen(-1) && rail.seen(1) &&
          std::abs(rail.offset_rad_s) > kLopsidedShare * rail.distance_rad_s + 4.0 * std::sqrt(rail.covariance(3, 3));
 }
 
-// Returns two finders: one with the stated range, by default the range of the axis-aligned saturation levels, and one
-// without.
+// Returns two plane finders. The first finder uses the stated range, or the range of the axis-aligned saturation levels
+// if no range is stated. The second finder searches without a range.
 std::array<RailPlaneFinder, 2> stated_and_not(RailPlaneFinder::Params params, const std::optional<double>& stated) {
   RailPlaneFinder::Params unstated = params;
   unstated.stated_rad_s = std::nullopt;
@@ -84,7 +83,7 @@ bool are_upright(std::span<const Eigen::Vector3d> readings, const RailPlanes& pl
     const double plateau = rails.channels[first_channel(triad) + j].rail;
     if (rail && lopsided(*rail)) return false;
     if (rail && plateau > 0.0) {
-      // on a tilted plane, most clipped samples would not be equal
+      // on a tilted saturation plane, most clipped samples would have different readings
       const auto equal = std::count_if(readings.begin(), readings.end(), [&](const Eigen::Vector3d& y) {
         return std::abs(std::abs(y[static_cast<Eigen::Index>(j)]) - plateau) <= kEqualShare * plateau;
       });
@@ -160,7 +159,7 @@ void mark_subsample_saturation(const RailPlanes& planes, const RailDetector& rai
   }
 }
 
-// Uses the covariance of rails.md (R59).
+// Computes cross-axis sensitivities with the covariance of the saturation planes: rails.md (R59).
 std::optional<EstimatedSlopes> estimated_slopes(const RailPlanes& planes, bool upright, int element,
                                                 const Eigen::Matrix2d& before) {
   if (upright) {

@@ -13,11 +13,11 @@ namespace tumble {
 
 namespace {
 
-// Minimum duration of flight for a half-scale gyro. Hand-held motion can look like flight at twice the rate for 0.05 s;
-// real flights last longer.
+// Minimum duration of flight for the detection of a half-scale gyro. With doubled rates, hand-held motion can look like
+// flight for 0.05 s. Real flights last longer.
 constexpr double kHalfScaleRun_s = 0.08;
-constexpr double kAcross = 0.05;    // of the lever arm squared: minimum across an axis for recovering its rate
-constexpr double kBelowRail = 0.1;  // tolerance by which a recovered rate may be below the saturation level
+constexpr double kAcross = 0.05;    // minimum squared lever arm across a saturated axis, as a fraction
+constexpr double kBelowRail = 0.1;  // fraction of the saturation level by which a recovered rate may be below the level
 
 struct Axes {
   std::array<int, 3> axis;
@@ -33,7 +33,7 @@ constexpr Axes kAsRead{{0, 1, 2}, {1, 1, 1}}, kXFlipped{{0, 1, 2}, {-1, 1, 1}}, 
     kYZSwapped{{0, 2, 1}, {1, 1, 1}}, kZXSwapped{{2, 1, 0}, {1, 1, 1}}, kTwice{{0, 1, 2}, {2, 2, 2}},
     kHalf{{0, 1, 2}, {0.5, 0.5, 0.5}};
 
-/// Conversion of readings under an alternative sign, axis order or scale.
+/// Conversion of readings under a hypothesis about sign, axis order or scale of a sensor.
 struct Sense {
   Axes force, rate;
   const char* name;
@@ -59,8 +59,9 @@ constexpr std::array<Sense, FlightSense::kSenses> kSensors = {{
     {kAsRead, kTwice, "seconds of flight as a gyro reads it that reads half the rate"},
 }};
 
-/// Converts a reading to that of the alternative sensor: imu_merge.md (I32). `known` is true if the rate of a saturated
-/// axis follows from |w x t|^2 = -f t and is beyond the saturation level.
+/// Converts a reading to the reading of a sensor with the hypothetical sign, axis order or scale: imu_merge.md (I32).
+/// `known` is true if the centripetal equation |w x t|^2 = -f t determines the rate of a saturated axis, beyond the
+/// saturation level.
 FlightSense::Reading as_read(const FlightSense::Reading& reading, const Sense& sense, const Eigen::Vector3d& t) {
   FlightSense::Reading out = reading;
   out.rate_rad_s = sense.rate.of(reading.rate_rad_s);
@@ -83,7 +84,8 @@ FlightSense::Reading as_read(const FlightSense::Reading& reading, const Sense& s
   return out;
 }
 
-/// imu_merge.md (I31). Returns whether the middle one of three readings is flight under an alternative.
+/// Returns whether the middle reading of three agrees with flight under a hypothesis about the sensor: imu_merge.md
+/// (I31).
 bool flies(const Sense& sense, const std::array<FlightSense::Reading, 3>& readings, const FlightSense::Params& params) {
   const Eigen::Vector3d& t = params.lever_arm_m;
   const FlightSense::Reading first = as_read(readings[0], sense, t), middle = as_read(readings[1], sense, t),
@@ -96,8 +98,8 @@ bool flies(const Sense& sense, const std::array<FlightSense::Reading, 3>& readin
   return size >= params.force_min_m_s2 && (middle.force_m_s2 - expected).norm() <= params.share * size;
 }
 
-/// Returns whether an alternative is tested. For a body that may be hand-held, only the clearest alternatives are
-/// tested.
+/// Returns whether the body's motion allows the test of a hypothesis about the sensor. For a body that may be
+/// hand-held, FlightSense tests only the clearest hypotheses.
 bool is_tested(std::size_t sense, FlightSense::Body body) {
   constexpr std::size_t kSound = 0, kFlippedForce = 1;
   return body == FlightSense::Body::thrown || sense == kSound || sense == kFlippedForce ||
@@ -142,7 +144,7 @@ FlightSense::Reading FlightSense::reading_of(const ImuSample& mean, double rate_
   return out;
 }
 
-/// Classifies the reading before `now`, whose angular acceleration follows from its neighbours.
+/// Classifies the reading before `now`. The neighbouring readings determine the angular acceleration at that reading.
 void FlightSense::take(const Reading& now, State& state) const {
   const auto [first, middle] = state.before;
   state.before = {middle, now};
@@ -158,9 +160,16 @@ void FlightSense::take(const Reading& now, State& state) const {
       continue;
     }
     state.run_s[sense] += 0.5 * dt_s;
-    if (state.run_s[sense] >= (sense == kHalfScaleGyro ? std::max(kHalfScaleRun_s, params_.run_s) : params_.run_s))
-      state.flown_s[sense] += 0.5 * dt_s;
+    if (state.run_s[sense] < (sense == kHalfScaleGyro ? std::max(kHalfScaleRun_s, params_.run_s) : params_.run_s))
+      continue;
+    state.flown_s[sense] += 0.5 * dt_s;
+    if (sense != 0) state.flown_ns = now.time_ns;
   }
+}
+
+Status FlightSense::present(const State& state) const {
+  const bool old = check_follows(state.last_time_ns, state.flown_ns, kMemory_s).trouble == Trouble::gap;
+  return old ? Status{} : verdict(state);
 }
 
 Status FlightSense::verdict(const State& state) const {

@@ -12,22 +12,25 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Standard deviation of the time of a reading, in samples. In a stream, the time is anywhere within the preceding
-// sample: 1/sqrt(12). In a recording, the clock is known and the standard deviation is smaller.
+// Standard deviation of the time of a reading, in sample periods. In a stream, the time of a reading is uniformly
+// distributed over the preceding sample period, with standard deviation 1/sqrt(12). In a recording, the standard
+// deviation is smaller, because the clock of the sensor is estimated.
 constexpr double kTaken = 0.29, kTakenByClock = 0.1;
 
-// A reading, and the stamp of a sample whose window would have its middle at the middle of the reading's window.
+// A gyro reading and its time stamp. The stamp belongs to a sample whose averaging window has the same middle as the
+// reading's averaging window.
 struct OwnReading {
   double time_s = 0.0;
   Vector3d rate_rad_s = Vector3d::Zero();
-  bool read = false;  ///< on all axes
+  bool read = false;  ///< all axes are measured
 };
 
 Vector3d slope(const OwnReading& a, const OwnReading& b) {
   return (b.rate_rad_s - a.rate_rad_s) / (b.time_s - a.time_s);
 }
 
-// Interpolates between a and b, using z before and c after them if usable.
+// Interpolates the rate between the readings a and b. If the reading z before a and the reading c after b are usable,
+// they provide the slopes at a and b.
 std::optional<InterpolatedRate> between(const OwnReading& z, const OwnReading& a, const OwnReading& b,
                                         const OwnReading& c, double time_s, double moment_s) {
   const double span_s = b.time_s - a.time_s, u = (time_s - a.time_s) / span_s, v = 1.0 - u;
@@ -38,14 +41,14 @@ std::optional<InterpolatedRate> between(const OwnReading& z, const OwnReading& a
   InterpolatedRate out;
   out.rate_rad_s = v * v * (1.0 + 2.0 * u) * a.rate_rad_s + u * u * (3.0 - 2.0 * u) * b.rate_rad_s +
                    span_s * u * v * (v * slope_a - u * slope_b);
-  // the uncertainty comes from the times of the two readings, and from the curvature that the mean over a window
-  // removes
+  // The variance of an interpolated rate has two sources: the uncertain times of both readings, and the curvature that
+  // averaging over a window removes.
   const Vector3d moment = moment_s * chord, bend = span_s / 24.0 * (slope_b - slope_a);
   out.variance_rad2_s2 = moment.cwiseAbs2() + bend.cwiseAbs2();
   return out;
 }
 
-// Returns the first sample from i on with a new reading, or the window's size.
+// Returns the first sample at or after index i with a new reading, or the window's size.
 std::size_t new_reading(std::span<const RateStreamKnot> window, std::size_t i) {
   while (i < window.size() && window[i].repeats) ++i;
   return i;

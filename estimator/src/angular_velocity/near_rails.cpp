@@ -10,13 +10,13 @@ namespace tumble {
 
 namespace {
 
-// Number of neighbouring readings whose steps count, for readings close to a saturation level. A gyro's filter rounds
-// the edges of a plateau. The readings of one hand-held wand were up to 2 % below the saturation level while the rate
-// was beyond the level.
+// `kReach` is the number of neighbouring readings whose steps widen the test for readings near a saturation level.
+// `kRoundShare` is the fraction of the saturation level by which a gyro's filter can lower the edges of a plateau. On
+// one hand-held wand, the readings were up to 2 % below the saturation level while the rate exceeded the level.
 constexpr std::size_t kReach = 2;
 constexpr double kRoundShare = 0.03;
 
-// distinct readings in time order
+// readings without repetitions, in time order
 using Rates = std::span<const Eigen::Vector3d>;
 
 double largest_step(Rates readings, std::size_t at, std::size_t reach, Eigen::Index axis) {
@@ -27,7 +27,7 @@ double largest_step(Rates readings, std::size_t at, std::size_t reach, Eigen::In
   return out;
 }
 
-// rails.md (R76)
+// Returns the axes that may be partly saturated, as a bit mask: rails.md (R76).
 std::uint8_t may_meet(Rates readings, std::size_t at, const RailPlanes& planes) {
   const Eigen::Vector3d& reading = readings[at];
   std::uint8_t out = 0;

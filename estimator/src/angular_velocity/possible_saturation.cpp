@@ -10,16 +10,17 @@ namespace tumble {
 
 namespace {
 
-// kUnseenTilt: maximum tilt between the saturation planes of elements, in addition to kBesideRail. kUnseenOfStep:
-// deficit of a few samples at a saturation level, as a fraction of the step to their neighbour.
+// `kUnseenTilt` is the maximum tilt between the saturation planes of two elements, in addition to kBesideRail.
+// `kUnseenOfStep` is the saturation deficit of a few samples at a saturation level, as a fraction of the step to the
+// neighbouring reading.
 constexpr double kUnseenTilt = 0.06, kUnseenOfStep = 0.5;
 
-// kTopShare: readings within this fraction of a segment's largest reading are at the top of the segment. The fraction
-// is the effect of a tilt of 0.06 (kUnseenTilt) and a rate on the other axes of a sixth of the saturation level.
-// kElementsApart: maximum difference between elements in standard deviations.
+// `kTopShare` is the maximum distance from a segment's largest reading at the top of the segment, as a fraction of the
+// reading. `kTopShare` covers the tilt kUnseenTilt if the rate on the other axes is a sixth of the saturation level.
+// `kElementsApart` is the maximum difference between the saturation levels of two elements, in standard deviations.
 constexpr double kTopShare = 0.01, kElementsApart = 3.0;
 
-// Lowest known level, or 0.
+// Returns the lowest known saturation level, or 0.
 double lowest_rail(const RailPlanes& planes) {
   double rail = 0.0;
   for (const auto& element : planes.element) {
@@ -28,21 +29,22 @@ double lowest_rail(const RailPlanes& planes) {
   return rail;
 }
 
-// Returns the height of a motion above a top of `count` samples. The steps before and after the top are extrapolated
-// until they meet: rails.md (R74).
+// Returns how far a motion may rise above a flat maximum of `count` readings. The result is the height at which
+// straight lines with the slopes before and after the maximum meet: rails.md (R74).
 double hidden_rise(double count, double entered, double left) {
   const double both = std::max(0.0, entered) + std::max(0.0, left);
   return both > 0.0 ? count * std::max(0.0, entered) * std::max(0.0, left) / both : 0.0;
 }
 
-// Returns the rate on the axes other than `axis`. At a saturation level, the tilt multiplies this rate in the reading.
+// Returns the rate on the axes other than `axis`. At a saturation level, the reading changes by the tilt of the
+// saturation plane times the rate on the other axes.
 double beside_of(const Eigen::Vector3d& rate_rad_s, Eigen::Index axis) {
   return std::hypot(rate_rad_s[(axis + 1) % 3], rate_rad_s[(axis + 2) % 3]);
 }
 
 }  // namespace
 
-// rails.md (R75)
+// Stores the smallest saturation level that the readings allow: rails.md (R75).
 void LeastRails::add(const Eigen::Vector3d& rate_rad_s) {
   for (Eigen::Index j = 0; j < 3; ++j) {
     double& least = rad_s_[rate_rad_s[j] < 0.0 ? 0 : 1][j];

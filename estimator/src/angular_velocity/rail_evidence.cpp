@@ -16,34 +16,36 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// Prior fraction of segments with a constant rate (spins, turntables). The prior fraction limits the log-likelihood of
-// a segment of any length.
+// Prior fraction of segments with a constant rate (spins, turntables). The prior fraction limits the log-likelihood
+// ratio of long segments.
 constexpr double kConstantShare = 0.05;
-// Minimum expected curvature of a rounded maximum within a segment, in standard deviations. Below this curvature, a
-// flat segment does not indicate saturation.
+// Minimum ratio of `bend` to `flat` in SegmentShape. If `bend / flat` is smaller, a flat segment does not indicate
+// saturation.
 constexpr double kBend = 3.0;
-// Range of possible constant rates, as a fraction of the largest reading.
+// Range of possible constant rates, as a fraction of the largest reading of the axis.
 constexpr double kLevelShare = 0.2;
-// Window length for the noise estimate from residuals of a parabola, and the quantile of the windows that is used.
+// The noise estimate uses the residuals of a parabola in windows of kNoiseWindow readings. `kNoiseQuantile` is the
+// quantile of the windows that determines the noise.
 constexpr std::size_t kNoiseWindow = 9;
 constexpr double kNoiseQuantile = 0.2;
-// Maximum log-likelihood from the smoothness of the other axes at the end of a segment.
+// Maximum log-likelihood of a kink at the end of a segment, if the other axes move smoothly there.
 constexpr double kKinkAlone = 2.5;
-// Minimum motion of the other axes about the end of a segment, in standard deviations, for the test of smoothness.
+// Minimum change of the other axes around the end of a segment, in standard deviations, for the test of a kink.
 constexpr double kMoving = 10.0;
-// Log likelihood above which a segment with less scatter than noise counts, whatever its ends look like.
+// If a segment scatters less than noise and the log-likelihood of this scatter exceeds kThinAlone, the test ignores the
+// ends of the segment.
 constexpr double kThinAlone = 8.0;
-// Degrees of freedom of a segment's scatter that are lost to the fitted mean and slope and to the two partly saturated
-// ends.
+// Degrees of freedom that the scatter of a segment loses: two to the fitted straight line and two to the partly
+// saturated ends.
 constexpr std::size_t kThinTaken = 4;
-// A reading within kAtRail standard deviations of a facet is on the facet, up to the fraction kAtRailShareMax of the
-// saturation level.
+// A reading within kAtRail standard deviations of a saturation plane is at the saturation level. The tolerance of this
+// test is at most the fraction kAtRailShareMax of the saturation level.
 constexpr double kAtRail = 4.0, kAtRailShareMax = 0.006;
-// kBeyond: log-likelihood of each sample beyond the facet against the facet. kStray: fraction of samples that may be
-// beyond.
+// `kBeyond` is the penalty on the log odds of a saturation plane for each reading beyond the plane. `kStray` is the
+// fraction of readings that may be beyond the plane without a penalty.
 constexpr double kBeyond = 5.0, kStray = 0.02;
 
-// Returns the noise of a reading from the root mean square of third differences, rails.md (R56).
+// Returns the noise of a reading, from the root mean square of third differences: rails.md (R56).
 double window_noise(std::span<const Vector3d> window, int axis) {
   double squares = 0.0;
   const std::size_t count = window.size() - 3;
@@ -60,16 +62,17 @@ struct Segment {
   std::size_t size() const { return last - first + 1; }
 };
 
-// Returns the run of neighbours that starts with inlier `at`. On return, `at` is the first inlier after the run.
+// Returns the segment of neighbouring inliers that starts at `at`. On return, `at` is the first inlier after the
+// segment.
 Segment next_segment(std::span<const std::size_t> inliers, std::size_t& at) {
   Segment out{inliers[at], inliers[at]};
   for (++at; at < inliers.size() && inliers[at] == out.last + 1; ++at) ++out.last;
   return out;
 }
 
-// Returns a log likelihood ratio: whether the scatter of the segment's inside about a straight line is below the noise,
-// rails.md (R65). Sensor noise is part of a rate, but not of a saturation level that clips after the noise is added.
-// The ratio is zero if quantisation hides the noise.
+// Returns a log-likelihood ratio that is positive if the readings of a segment scatter less than noise about a straight
+// line: rails.md (R65). Readings of a rate contain sensor noise. Readings at a saturation level contain no noise if the
+// device clips after the noise is added. If quantisation hides the noise, the log-likelihood ratio is zero.
 double thinness(const DistinctReadings& readings, const RailFacet& facet, const Segment& s) {
   if (s.size() <= kThinTaken) return 0.0;
   const std::size_t first = s.first + 1, count = s.size() - 2;
@@ -90,21 +93,23 @@ double thinness(const DistinctReadings& readings, const RailFacet& facet, const 
   const double least = std::max(digit, kEqualShare * facet.level);
   const double noise = std::hypot(readings.noise[facet.axis], digit);
   const double scatter = std::max(least, std::sqrt(squares / free));
-  // Gaussian likelihoods of the scatter with its own and with the noise's standard deviation
+  // log ratio of two Gaussian likelihoods, with the standard deviations of the scatter and of the noise
   return scatter < noise ? free * (std::log(noise / scatter) - 0.5 * (1.0 - std::pow(scatter / noise, 2))) : 0.0;
 }
 
-// Curvature of a segment, and the curvature of a rounded maximum between the segment's neighbours.
+// `bend` is the height that a rounded maximum would have within a segment. `flat` is the spread of the segment's
+// readings.
 struct SegmentShape {
   double bend = 0.0, flat = 0.0;
   bool bends() const { return bend >= kBend * flat; }
 };
 
-// Returns the shape of a segment. The result is empty for a single reading, and close to both ends of the recording.
+// Computes the shape of a segment. The result is empty for a single reading, and for a segment close to either end of
+// the recording.
 std::optional<SegmentShape> shape_of(const DistinctReadings& readings, const RailFacet& facet, const Segment& s) {
   const std::vector<Vector3d>& rates = readings.rates;
   const auto value = [&](std::size_t k) { return facet.sign * facet.row.dot(rates[k]); };
-  // distance from the saturation level of the second neighbour outside of either end
+  // smallest distance from the saturation level of the second reading outside the segment
   double depth = std::numeric_limits<double>::max();
   if (s.first >= 2) depth = std::min(depth, facet.level - value(s.first - 2));
   if (s.last + 2 < rates.size()) depth = std::min(depth, facet.level - value(s.last + 2));
@@ -114,13 +119,13 @@ std::optional<SegmentShape> shape_of(const DistinctReadings& readings, const Rai
     low = std::min(low, value(k));
     high = std::max(high, value(k));
   }
-  // curvature within the segment of a parabola through both neighbours: rails.md (R61)
+  // height, within the segment, of a parabola through the neighbours of the segment: rails.md (R61)
   const double n = static_cast<double>(s.size()), inside = (n - 1.0) / (n + 3.0);
   return SegmentShape{depth * inside * inside, std::max(high - low, 2.0 * facet.deviation)};
 }
 
-// Returns the log-likelihood of a kink at one end of a segment, rails.md (R64). The test compares second differences of
-// the clipped axis with those of the other axes, on which an impact would also cause a kink.
+// Returns the log-likelihood of a kink at one end of a segment: rails.md (R64). The test compares the second difference
+// of the clipped axis with the second differences of the other axes. An impact would cause a kink on all axes.
 double kink_evidence(const DistinctReadings& readings, const RailFacet& facet, const Segment& s, bool after) {
   const std::vector<Vector3d>& rates = readings.rates;
   if (s.size() < 3 || (after ? s.last + 3 >= rates.size() : s.first < 3)) return 0.0;
@@ -156,7 +161,7 @@ DistinctReadings distinct_readings(std::span<const Vector3d> readings, std::vect
     out.peak = out.peak.cwiseMax(y.cwiseAbs());
     for (int j = 0; j < 3 && !out.rates.empty(); ++j) {
       const double change = std::abs(y[j] - out.rates.back()[j]);
-      // rounding errors of floating-point sums are not a quantum
+      // the rounding error of a floating-point sum is not a quantum of the sensor
       if (change > 1e-9 * (1.0 + std::abs(y[j]))) out.digit[j] = std::min(out.digit[j], change);
     }
     out.rates.push_back(y);
@@ -190,29 +195,30 @@ double segment_evidence(const DistinctReadings& readings, const Eigen::Matrix2d&
     const Segment s = next_segment(inliers, at);
     const std::optional<SegmentShape> shape = shape_of(readings, facet, s);
     if (!shape) continue;
-    // scatter below the gyro's noise cannot come from a rate
+    // no motion has less scatter than the gyro's noise
     const double thin = thinness(readings, facet, s);
     if (!shape->bends() && thin < kThinAlone) continue;
     ++facet.segments;
     odds += std::max(0.0, thin);
     if (!shape->bends()) continue;
-    // flatness of the segment, and recurrence of its mean reading: rails.md (R62), (R63)
+    // The log odds increase with the flatness of a segment (R62). The log odds also increase if segments have similar
+    // mean readings (R63): rails.md.
     const double flatness = static_cast<double>(s.size() - 1) * std::log(shape->bend / shape->flat);
     odds += std::min(flatness, -std::log(kConstantShare)) + of_level;
     for (const bool after : {false, true}) odds += kink_evidence(readings, facet, s, after);
     H += information_of(readings, facet, s);
   }
-  // no reading is beyond a saturation level
+  // no reading should be beyond a saturation level
   const auto beyond = std::count_if(inliers.begin(), inliers.end(), [&](std::size_t k) {
     return facet.sign * facet.row.dot(readings.rates[k]) > facet.level + facet.tolerance;
   });
   odds -= kBeyond * std::max(0.0, static_cast<double>(beyond) - kStray * static_cast<double>(inliers.size()));
   if (facet.segments == 0) return -std::numeric_limits<double>::infinity();
-  // a reading that is closer to the level than noise, or than the facet's error at other readings, is not
-  // distinguishable from the level
+  // A reading counts as saturated if its distance from the level is within the noise, or within the error of the plane
+  // at other readings.
   facet.tolerance = std::max(facet.tolerance, std::min(kAtRail * noise, kAtRailShareMax * facet.level));
-  // Occam factor for the free choice of saturation level and cross-axis sensitivities, prior over posterior volume:
-  // rails.md (R66)
+  // The Occam factor accounts for the free choice of saturation level and cross-axis sensitivities, as the ratio of
+  // prior to posterior volume: rails.md (R66).
   const Eigen::Matrix3d posterior_covariance = H.inverse();
   const double of_slopes =
       0.5 * std::log(std::max(1.0, 1.0 / (posterior_covariance.topLeftCorner<2, 2>().determinant() *

@@ -27,20 +27,21 @@ using rails::Gate;
 using rails::others;
 using rails::Side;
 
-// Initial standard deviations of the robust fit, as fractions of the slab. The small value suits a thin plane with a
-// few samples below the plane, and the large value a thick plane.
+// Initial standard deviations of the robust fit, as fractions of the slab thickness. The small initial value suits a
+// thin plane with a few readings below the plane. The large initial value suits a thick plane.
 constexpr double kStarts[] = {0.5, 0.02};
-// Usual relative difference between the saturation levels of one device's sensing elements. The reading of another axis
-// exceeds a saturation level by at most this fraction.
+// Usual relative difference between the saturation levels of one device's sensing elements. No reading of another axis
+// exceeds the saturation level by a larger fraction.
 constexpr double kSiblingShare = 0.04;
-// Changes of a saturation level's log odds: near the level of another sensing element, near a stated range, near the
-// level of the opposite sign, and for impossible levels.
+// These values change the log odds of a saturation level. `kNearSibling` applies near the level of another sensing
+// element. `kNearStated` applies near a stated range. `kOtherSignAgrees` applies near the level of the opposite sign.
+// `kImpossible` applies to impossible levels.
 constexpr double kNearSibling = 5.0, kNearStated = 3.0, kOtherSignAgrees = 5.0, kImpossible = -100.0;
-// kNearKnown: log odds of a saturation level near that of an earlier run. kKnownShare: maximum distance between old and
-// new level as a fraction of the level. kFarFromKnown: minimum log odds of other levels, since the device may be a
-// different one.
+// `kNearKnown` increases the log odds of a saturation level near the level of an earlier run. `kKnownShare` is the
+// maximum difference between the levels of two runs, as a fraction of the level. `kFarFromKnown` is the minimum log
+// odds of a level far from the earlier level, since the device may have been replaced.
 constexpr double kNearKnown = 6.0, kKnownShare = 0.003, kFarFromKnown = -3.0;
-// Change of slopes between runs.
+// Standard deviation of the change of a cross-axis sensitivity between two runs.
 constexpr double kKnownSlopeSigma = 2e-3;
 
 double log_normal_ratio(double value, double sigma) {
@@ -76,7 +77,7 @@ double level_log_odds(const RailPlaneFinder::Params& params, const DistinctReadi
   return odds;
 }
 
-// Combines the planes of the two signs of one sensing element, rails.md (R53). One of the two may be missing.
+// Combines the planes of both signs of one sensing element: rails.md (R53). One of the planes may be missing.
 RailPlane joined(const RailPlaneFinder::Params& params, const DistinctReadings& readings, const Side* minus,
                  const Side* plus) {
   Eigen::Matrix4d H = Eigen::Matrix4d::Zero();
@@ -94,7 +95,7 @@ RailPlane joined(const RailPlaneFinder::Params& params, const DistinctReadings& 
     for (const Vector3d& y : readings.rates) {
       if (!(side->sign * gate.row.dot(y) >= gate.from)) continue;
       if (!(rails::highest_value(y, axis, side->sign, gate.steepest) >= gate.near_from)) continue;
-      // rails.md (R59): y_j = sign * r + b - slopes . others
+      // linear model of the saturation plane: y_j = sign * r + b - slopes . others, rails.md (R59)
       Eigen::Vector4d A;
       A << -others(y, axis), side->sign, 1.0;
       H += weight * A * A.transpose();
@@ -108,8 +109,8 @@ RailPlane joined(const RailPlaneFinder::Params& params, const DistinctReadings& 
     out.tolerance_rad_s = std::max(out.tolerance_rad_s, side->facet.tolerance);
     out.log_odds = std::max(out.log_odds, side->log_odds);
   }
-  // the system is badly conditioned if two sensing elements that always clip together leave a cross-axis sensitivity
-  // undetermined
+  // If two sensing elements always clip together, one cross-axis sensitivity is undetermined. The linear system is then
+  // badly conditioned.
   const Eigen::LDLT<Eigen::Matrix4d> factor(H);
   out.covariance = factor.solve(Eigen::Matrix4d::Identity());
   const Eigen::Vector4d x = factor.solve(g);
@@ -133,7 +134,7 @@ struct SideSearch {
   const DistinctReadings& readings;
   RailPlaneFinder::Workspace& workspace;
 
-  // Returns the best facet near the known cross-axis sensitivities, by the log odds of rails.md (R60).
+  // Returns the plane with the highest log odds, rails.md (R60), near the known cross-axis sensitivities.
   Side about(int axis, int sign, const RailPlanes& known, const FacetPrior& prior, double range) const {
     Side side{axis, sign, {}, {}};
     const auto extreme = rails::find_extreme(params, readings, axis, sign, prior, range, workspace);
@@ -151,9 +152,9 @@ struct SideSearch {
     return side;
   }
 
-  // Searches the plane of one sign of a sensing element. The search starts near the element's sensing direction if
-  // known. If the direction is unknown, the search starts near zero cross-axis sensitivities or near those of an
-  // earlier run.
+  // Searches the saturation plane of one sign of a sensing element. The search starts near the element's sensing
+  // direction if the direction is known. If the direction is unknown, the search starts near zero cross-axis
+  // sensitivities or near the sensitivities of an earlier run.
   Side look(int axis, int sign, const RailPlanes& known) const {
     const auto element = static_cast<std::size_t>(axis);
     if (const auto& rail = known.element[element]) {
@@ -166,7 +167,7 @@ struct SideSearch {
     const Side side = about(axis, sign, known, {Vector2d::Zero(), unknown}, params.slope_max);
     const auto& earlier = params.known.element[element];
     if (!earlier) return side;
-    // the device is that of the earlier run, or a different device
+    // the device may be the device of the earlier run or a different device
     const Matrix2d changed =
         earlier->covariance.topLeftCorner<2, 2>() + kKnownSlopeSigma * kKnownSlopeSigma * Matrix2d::Identity();
     const double range = std::min(params.slope_max, 3.0 * std::sqrt(changed.trace()));
@@ -174,8 +175,8 @@ struct SideSearch {
     return same.log_odds > side.log_odds ? same : side;
   }
 
-  // Searches for the plane of side `i` of a sensing element, given the planes in `found`. Returns whether `pair`
-  // contains side `i`. `kept` is true if the side was accepted in the last search.
+  // Searches the saturation plane of sign `i` of a sensing element, given the planes in `found`. Returns whether `pair`
+  // contains a plane of this sign. `kept` is true if the previous search accepted the plane of this sign.
   bool add(int axis, std::size_t i, bool kept, const RailPlanes& found, Pair& pair) const {
     const int sign = i == 0 ? -1 : 1;
     const Side side = look(axis, sign, found);
@@ -185,13 +186,13 @@ struct SideSearch {
     }
     const auto& rail = found.element[static_cast<std::size_t>(axis)];
     if (rail || !(side.log_odds > -std::numeric_limits<double>::infinity())) return false;
-    // the two signs of one sensing element may be accepted together although neither sign is accepted alone
+    // the test may accept both signs of a sensing element together, although the test rejects each sign alone
     Pair alone;
     alone[i] = side;
     RailPlanes supposed = found;
     supposed.element[static_cast<std::size_t>(axis)] = joined(params, readings, alone);
     const Side other = look(axis, -sign, supposed);
-    // the prior odds count once: rails.md (R68)
+    // the prior odds of the saturation level count once for both signs: rails.md (R68)
     if (side.log_odds + other.log_odds - params.log_odds_before < params.log_odds_min) return false;
     pair[i] = side;
     pair[1 - i] = other;
@@ -229,7 +230,8 @@ RailPlanes RailPlaneFinder::find(std::span<const Vector3d> readings_rad_s, const
     return with_known(found, readings.rates);
   const SideSearch search{params_, readings, workspace};
   std::array<Pair, 3> sides;
-  // each accepted plane changes the odds of the remaining planes, so repeat until nothing is added
+  // Each accepted plane changes the odds of the planes that are still missing. The loop therefore repeats until no
+  // plane is added.
   for (bool added = true; added;) {
     added = false;
     for (int axis = 0; axis < 3; ++axis) {

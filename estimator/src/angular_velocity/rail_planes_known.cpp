@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Multiple of the tolerance beyond which readings contradict a plane.
+// A reading contradicts a saturation plane if it is beyond the plane by more than this multiple of the tolerance.
 constexpr double kBeyondTolerance = 4.0;
 constexpr int kContradicting = 2;
 // Maximum relative difference between saturation levels of one device in two runs.
@@ -18,7 +18,7 @@ constexpr double kSameShare = 0.003;
 
 }  // namespace
 
-// Adds saturation planes from an earlier run that were not observed in the current readings.
+// Adds saturation planes of an earlier run, for planes that the current readings do not show.
 RailPlanes RailPlaneFinder::with_known(const RailPlanes& found, std::span<const Vector3d> readings_rad_s) const {
   RailPlanes out = found;
   for (std::size_t j = 0; j < 3; ++j) {
@@ -27,7 +27,7 @@ RailPlanes RailPlaneFinder::with_known(const RailPlanes& found, std::span<const 
     if (!earlier) continue;
     if (!rail && !earlier->contradicted_by(readings_rad_s)) rail = earlier;
     for (const int sign : {-1, 1}) {
-      // the saturation levels are close enough to belong to one device
+      // the saturation levels of both runs are close enough to belong to one device
       if (!rail || rail->seen(sign) || !earlier->seen(sign)) continue;
       const double apart = std::abs(rail->distance_rad_s - earlier->distance_rad_s);
       const std::size_t i = sign > 0 ? 1 : 0;
@@ -47,8 +47,8 @@ bool RailPlane::contradicted_by(std::span<const Vector3d> readings_rad_s) const 
   return beyond >= kContradicting;
 }
 
-ElementRows element_rows(const RailPlanes& planes, double unknown_sigma) {
-  ElementRows out;
+SensingDirections element_rows(const RailPlanes& planes, double unknown_sigma) {
+  SensingDirections out;
   for (std::size_t j = 0; j < 3; ++j) {
     const auto i = static_cast<Eigen::Index>(j);
     const std::optional<RailPlane>& plane = planes.element[j];
@@ -58,7 +58,7 @@ ElementRows element_rows(const RailPlanes& planes, double unknown_sigma) {
   return out;
 }
 
-// rails.md (R54), (R55)
+// Classifies which sensing elements are saturated: rails.md (R54), (R55).
 ElementClipping classify(const ImuSample& sample, const RailPlanes& planes) {
   ElementClipping out;
   for (std::size_t j = 0; j < 3; ++j) {

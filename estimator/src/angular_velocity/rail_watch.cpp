@@ -15,16 +15,17 @@ namespace {
 
 using Eigen::Vector3d;
 
-// kNearShare: readings above this fraction of an axis's largest reading may be saturated. kKeepShare: readings above
-// this fraction are stored. kBeside: number of neighbours that are stored to judge a segment.
+// A reading above the fraction `kNearShare` of an axis' largest reading may be saturated. `RailWatch` stores readings
+// above the fraction `kKeepShare` of the largest reading. `RailWatch` also stores `kBeside` neighbours of a segment.
 constexpr double kNearShare = 0.9, kKeepShare = 0.85;
 constexpr std::size_t kBeside = 4;
-// Number of latest and of first readings that are always stored. The first readings determine the noise.
+// `RailWatch` always stores the first and the latest readings of a run. The first readings determine the gyro's noise.
 constexpr std::size_t kLatest = 48;
-// A new search follows when readings near the extremes have grown by the fraction 1 / kMore, and by at least two.
+// RailWatch searches again when the number of readings near the extremes has grown by the fraction 1 / kMore, and by at
+// least two readings.
 constexpr std::size_t kMore = 8;
-// Readings below this fraction of the lowest possible saturation level are not near a level. The fraction for an
-// accelerometer excludes gravity.
+// A reading below this fraction of the lowest possible saturation level is not near a saturation level. The larger
+// fraction for an accelerometer excludes gravity.
 constexpr double kLowShare[] = {0.5, 0.9};
 
 std::array<std::optional<double>, 6> rails_of(const RailDetector& upright_rails, const RailDetector::State& state) {
@@ -60,8 +61,8 @@ bool RailWatch::is_near(const Vector3d& reading, Triad triad, const Memory& memo
   return false;
 }
 
-// Stores a reading. If the memory is full, store() drops readings far from the extremes, and if necessary the oldest
-// readings except for the first ones.
+// Stores a reading. If the memory is full, store() first removes readings far from the extremes. If necessary, store()
+// then removes the oldest readings, except for the first readings of the run.
 void RailWatch::store(const Vector3d& reading, Triad triad, Memory& memory) const {
   std::vector<Vector3d>& readings = memory.readings;
   if (readings.size() == readings_max_) {
@@ -116,7 +117,7 @@ bool RailWatch::observe(const Vector3d& reading, Triad triad, State& state) cons
   const RailPlanes planes = search(triad, state);
   const bool upright = are_upright(memory.readings, planes, state.known.upright_rails, triad);
   RailPlanes& known = triad == Triad::gyro ? state.known.planes : state.known.accel_planes;
-  bool& known_upright = triad == Triad::gyro ? state.known.upright : state.known.accel_upright;
+  bool& known_upright = triad == Triad::gyro ? state.known.upright : state.known.accel_clips_after_compensation;
   const bool changed = planes != known || upright != known_upright;
   known = planes;
   known_upright = upright;

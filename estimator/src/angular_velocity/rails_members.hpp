@@ -18,7 +18,7 @@ void members(Self& s, Visitor& visit) {
   visit("rest.weight", s.weight);
   visit("rest.first_ns", s.first_ns);
   visit("rest.last_mean_ns", s.last_mean_ns);
-  visit("rest.quiet_ns", s.quiet_ns);
+  visit("rest.within_bias_since_ns", s.within_bias_since_ns);
   visit("rest.rests", s.rests);
   visit("rest.pending_rate_rad_s", s.pending_rate_rad_s);
   visit("rest.pending_force_m_s2", s.pending_force_m_s2);
@@ -94,19 +94,19 @@ void members(Self& s, Visitor& visit) {
   visit("planes", s.element);
 }
 
-template <StateOf<ElementRows> Self, class Visitor>
+template <StateOf<SensingDirections> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("elements.rows", s.rows);
   visit("elements.slope_sigma", s.slope_sigma);
 }
 
-template <StateOf<KnownRails> Self, class Visitor>
+template <StateOf<SaturationLevels> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("rails.upright_rails", s.upright_rails);
   visit("rails.planes", s.planes);
   visit("rails.accel_planes", s.accel_planes);
   visit("rails.upright", s.upright);
-  visit("rails.accel_upright", s.accel_upright);
+  visit("rails.accel_clips_after_compensation", s.accel_clips_after_compensation);
 }
 
 template <StateOf<RailWatch::Memory> Self, class Visitor>

@@ -12,16 +12,16 @@ namespace tumble {
 
 namespace {
 
-// Alternative initial contact thresholds, as multiples of the parameter. The alternatives are tried if the fraction of
-// clipped samples in flight is below a limit.
+// Alternative initial contact thresholds, as multiples of the parameter. The smoother tries the alternatives if the
+// fraction of clipped samples in flight is below kFlightShareExpected.
 constexpr double kRestartThresholds[] = {16.0, 0.25};
 constexpr double kFlightShareExpected = 0.5;
 
-// Convergence criterion: the last step changes no combination of unknowns by more than this many standard deviations,
-// rate_smoother.md (R30). A nearly unknown rate may still change by a large amount.
+// Convergence criterion: the last step changes no linear combination of unknowns by more than this many standard
+// deviations, rate_smoother.md (R30). An almost unobservable rate may still change by a large amount.
 constexpr double kStepDeviations = 0.1;
 
-// rate_smoother.md (R16) to (R19); the jump is the smaller jump of (R17).
+// Computes the flight weight and contact force of each sample: rate_smoother.md (R16) to (R19).
 void weigh_all(const RateModel& model, std::span<const RateObservation> observations, const RigConstants& rig,
                const RigConstants::Matrix& rig_covariance, double widen, std::span<RateEstimate> estimates) {
   double before = std::numeric_limits<double>::max();
@@ -31,7 +31,7 @@ void weigh_all(const RateModel& model, std::span<const RateObservation> observat
       const double dt_s = seconds(observations[k + 1].sample.time_ns - observations[k].sample.time_ns);
       after = model.jump(estimates[k].knot, estimates[k + 1].knot, dt_s);
     }
-    // if the gyro measures all axes, no unknown could explain a residual
+    // if the gyro measures all axes, no unobserved rate can explain a residual
     const int clipped = observations[k].unseen();
     model.weigh(observations[k], rig, rig_covariance, clipped != 0 ? widen : 1.0, std::min(before, after),
                 estimates[k]);
@@ -81,9 +81,9 @@ bool descend(const RateSmoother::Params& params, const RateModel& model, std::sp
   return true;
 }
 
-// Measures how well free flight explains the rates that the gyro does not measure. The measure is the part of the
-// robust cost that differs between local minima, rate_smoother.md (R31). `share` receives the fraction of the
-// unmeasured samples that count as flight.
+// Returns how well free flight explains the rates that the gyro does not measure: rate_smoother.md (R31). The sum over
+// the samples is larger for a better local minimum. `share` receives the fraction of samples with an unmeasured rate
+// that count as flight.
 double explained(std::span<const RateObservation> observations, std::span<const RateEstimate> estimates,
                  double& share) {
   double sum = 0.0, unseen = 0.0, flight = 0.0;
@@ -99,7 +99,7 @@ double explained(std::span<const RateObservation> observations, std::span<const 
 
 }  // namespace
 
-// Eliminates the system of rate_smoother.md (R26), starting with the first sample.
+// Eliminates the samples from the normal equations, starting with the first sample: rate_smoother.md (R26).
 bool RateIteration::factorise(const RateModel& model, std::span<const RateEstimate> estimates,
                               const RigConstants& rig) {
   corner_ = {};
@@ -118,7 +118,7 @@ bool RateIteration::factorise(const RateModel& model, std::span<const RateEstima
   return arrow::solve_corner(corner_, rig_step_, rig_covariance_);
 }
 
-// Computes g' H^-1 g, block by block: rate_smoother.md (R30). After elimination, blocks contain L^-1 g.
+// Computes g' H^-1 g, block by block: rate_smoother.md (R30). After elimination, the blocks contain L^-1 g.
 double RateIteration::decrement() const {
   double sum = rig_step_.dot(corner_.gradient);
   for (const arrow::Block& block : blocks_) sum += block.gradient.squaredNorm();
@@ -143,7 +143,8 @@ double RateIteration::apply(const RateModel& model, double step_max, std::span<R
   return largest;
 }
 
-// rate_smoother.md (R37), (R38), (R39)
+// Computes the derivatives of the solution by the sensor errors, and the information about the sensor errors:
+// rate_smoother.md (R37), (R38), (R39).
 RateIteration::Moved RateIteration::moved_by_errors(const RateModel& model, std::span<const RateEstimate> estimates,
                                                     const RigConstants& rig) const {
   Moved out;
@@ -154,7 +155,7 @@ RateIteration::Moved RateIteration::moved_by_errors(const RateModel& model, std:
     model.add_errors(observations_[k], estimates[k], rig, errors, border, out.evidence);
     const bool last = k + 1 == blocks_.size();
     arrow::eliminate_errors(blocks_[k], errors, last ? nullptr : &out.of_sample[k + 1], border);
-    // subtracts the part of the errors that the sample explains by its own unknowns
+    // subtracts the part of the sensor errors that the unknowns of the sample explain
     out.evidence.information.noalias() -= errors.transpose() * errors;
     out.evidence.gradient.noalias() += errors.transpose() * blocks_[k].gradient;
   }

@@ -14,8 +14,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-// Returns S_i v for each matrix of RigConstants::inertia_basis, as columns. The formulas are explicit, because the
-// function is called for each sample.
+// Returns the products S_i v with the matrices S_i of RigConstants::inertia_basis, as columns. Explicit formulas reduce
+// the cost, because each sample calls this function.
 Eigen::Matrix<double, 3, 5> basis_times(const Vector3d& v) {
   constexpr double kHalf = 0.5 * std::numbers::sqrt2, kSixth = std::numbers::inv_sqrt3 * kHalf;
   Eigen::Matrix<double, 3, 5> out;
@@ -30,8 +30,8 @@ struct Jerk {
   Vector3d Jw, Ja, value;
 };
 
-// Computes the jerk j from the time derivative of J alpha + w x J w = 0: J j = -(alpha x J w + w x J alpha),
-// rate_smoother.md (R11).
+// Computes the angular jerk j from the time derivative of Euler's equation J alpha + w x J w = 0. The jerk satisfies J
+// j = -(alpha x J w + w x J alpha): rate_smoother.md (R11).
 Jerk jerk_of(const RateKnot& knot, const RigConstants& rig) {
   const Vector3d &w = knot.rate_rad_s, &alpha = knot.acceleration_rad_s2;
   Jerk out;
@@ -43,7 +43,7 @@ Jerk jerk_of(const RateKnot& knot, const RigConstants& rig) {
   return out;
 }
 
-// Derivatives of the jerk. The derivatives are separate, because most calls need only the jerk.
+// Derivatives of the angular jerk. The derivatives are separate from the jerk, because most calls need only the jerk.
 struct JerkDerivatives {
   Matrix3d by_rate, by_acceleration;
   Eigen::Matrix<double, 3, 5> by_inertia;
@@ -61,7 +61,7 @@ JerkDerivatives derivatives_of(const Jerk& jerk, const RateKnot& knot) {
   return out;
 }
 
-// Propagates the knot back by `delay_s` with Euler's equation without torque: rate_smoother.md (R12).
+// Propagates the knot back in time by `delay_s`, with Euler's equation without torque: rate_smoother.md (R12).
 RateKnot earlier_by(double delay_s, const RateKnot& knot, const Jerk& jerk) {
   const double half = 0.5 * delay_s * delay_s;
   return {knot.rate_rad_s - delay_s * knot.acceleration_rad_s2 + half * jerk.value,
@@ -70,7 +70,7 @@ RateKnot earlier_by(double delay_s, const RateKnot& knot, const Jerk& jerk) {
 
 }  // namespace
 
-// rate_smoother.md (R6), at an earlier knot (R7)
+// Residual of the gyro, rate_smoother.md (R6). The state may refer to an earlier time: rate_smoother.md (R7).
 RateFactor gyro_factor(const RateKnot& knot, const RigConstants& rig, const Vector3d& reading_rad_s) {
   RateFactor f;
   f.residual = knot.rate_rad_s + rig.gyro_bias_rad_s - reading_rad_s;
@@ -80,14 +80,14 @@ RateFactor gyro_factor(const RateKnot& knot, const RigConstants& rig, const Vect
   return f;
 }
 
-// rate_smoother.md (R8), by rails.md (R52)
+// Residual of each gyro element along its sensing direction: rate_smoother.md (R8), rails.md (R52).
 RateFactor element_factor(const RateKnot& knot, const RigConstants& rig, const Vector3d& reading_rad_s) {
   const Vector3d off = knot.rate_rad_s + rig.gyro_bias_rad_s - reading_rad_s;
   RateFactor f;
   f.by_knot.setZero();
   f.jacobian_calibration.setZero();
   for (int j = 0; j < 3; ++j) {
-    const Vector3d row = rig.element_row(j);
+    const Vector3d row = rig.sensing_direction(j);
     f.residual[j] = row.dot(off);
     f.by_knot.row(j).head<3>() = row;
     f.jacobian_calibration.row(j).segment<3>(3) = row;
@@ -97,12 +97,12 @@ RateFactor element_factor(const RateKnot& knot, const RigConstants& rig, const V
   return f;
 }
 
-// rate_smoother.md (R10)
+// Residual of the specific force in flight: rate_smoother.md (R10).
 RateFactor flight_factor(const RateKnot& knot, const RigConstants& rig, const Vector3d& reading_m_s2) {
   const Vector3d &w = knot.rate_rad_s, &alpha = knot.acceleration_rad_s2, &t = rig.lever_arm_m;
   RateFactor f;
   f.residual = alpha.cross(t) + w.cross(w.cross(t)) + rig.accel_bias_m_s2 - reading_m_s2;
-  // rate_smoother.md (R10): w x (w x t) = w (w.t) - t (w.w)
+  // derivative of w x (w x t) = w (w.t) - t (w.w) by the rate: rate_smoother.md (R10)
   f.by_knot << w * t.transpose() + w.dot(t) * Matrix3d::Identity() - 2.0 * t * w.transpose(), -so3::hat(t);
   f.jacobian_calibration.setZero();
   f.jacobian_calibration.middleCols<3>(0) =
@@ -111,7 +111,7 @@ RateFactor flight_factor(const RateKnot& knot, const RigConstants& rig, const Ve
   return f;
 }
 
-// rate_smoother.md (R12)
+// Residual of the specific force in flight, for a delayed accelerometer: rate_smoother.md (R12).
 RateFactor late_flight_factor(const RateKnot& knot, const RigConstants& rig, const Vector3d& reading_m_s2,
                               double delay_s, Vector3d* by_delay) {
   const Jerk jerk = jerk_of(knot, rig);
@@ -130,7 +130,7 @@ RateFactor late_flight_factor(const RateKnot& knot, const RigConstants& rig, con
   return f;
 }
 
-// rate_smoother.md (R12), derivatives by the calibration only
+// Flight residual of a delayed accelerometer, with the derivatives by the calibration only: rate_smoother.md (R12).
 RateFactor late_flight_by_rig(const RateKnot& knot, const RigConstants& rig, const Vector3d& reading_m_s2,
                               double delay_s) {
   RateFactor f = flight_factor(earlier_by(delay_s, knot, jerk_of(knot, rig)), rig, reading_m_s2);
@@ -138,7 +138,7 @@ RateFactor late_flight_by_rig(const RateKnot& knot, const RigConstants& rig, con
   return f;
 }
 
-// rate_smoother.md (R13)
+// Second time derivative of the specific force in flight: rate_smoother.md (R13).
 Vector3d flight_curvature(const RateKnot& knot, const RigConstants& rig) {
   const Vector3d &w = knot.rate_rad_s, &alpha = knot.acceleration_rad_s2, &t = rig.lever_arm_m;
   const Jerk jerk = jerk_of(knot, rig);
@@ -147,7 +147,7 @@ Vector3d flight_curvature(const RateKnot& knot, const RigConstants& rig) {
   return snap.cross(t) + j.cross(w.cross(t)) + 2.0 * alpha.cross(alpha.cross(t)) + w.cross(j.cross(t));
 }
 
-// rate_smoother.md (R14)
+// Residual of Euler's equation without torque: rate_smoother.md (R14).
 RateFactor euler_factor(const RateKnot& knot, const RigConstants& rig) {
   const Vector3d &w = knot.rate_rad_s, &alpha = knot.acceleration_rad_s2;
   const Matrix3d J = rig.inertia_matrix();

@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kVarianceUnknown = 100.0;  // of a clipped axis at the start of the iteration, (rad/s)^2
+constexpr double kVarianceUnknown = 100.0;  // variance of a clipped axis at the start of the iteration, (rad/s)^2
 
 }  // namespace
 
@@ -35,7 +35,7 @@ std::vector<RateEstimate> first_guess(std::span<const RateObservation> observati
   std::vector<WnojSmoother::Measurement> readings(observations.size());
   for (std::size_t k = 0; k < observations.size(); ++k) {
     const RateObservation& o = observations[k];
-    (void)saave.step(o.sample, state, recovered);  // no error is possible: the samples were checked
+    (void)saave.step(o.sample, state, recovered);  // step() cannot fail, because the samples were checked
     readings[k] = {o.sample.time_ns, o.sample.angular_velocity_rad_s, Vector3d::Constant(measured)};
     for (int j = 0; j < 3; ++j) {
       if ((o.clipping.missing_gyro >> j & 1u) != 0) readings[k].variance_rad2_s2[j] = kVarianceUnknown;

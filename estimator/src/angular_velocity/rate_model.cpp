@@ -46,14 +46,15 @@ RigConstants::Matrix covariance_of(const RateModelParams& p) {
   return variance.cwiseAbs2().asDiagonal();
 }
 
-// Standard deviation of the additional saturation deficit of a partly clipped reading due to an impact within the
-// window, rad/s.
+// An impact within the window adds this standard deviation [rad/s] to the saturation deficit of a partly clipped
+// reading.
 constexpr double kSubsampleInContact = 0.25;
 
-// First constants on which a factor depends: lever arm and accelerometer bias in flight, inertia in Euler's equation.
+// Index of the first calibration constant in a part: lever arm and accelerometer bias (flight), inertia (Euler's
+// equation).
 constexpr int kLever = 0, kAccelBias = 6, kInertia = 9;
 
-// Returns the contribution of the calibration's uncertainty to a residual's covariance.
+// Returns the contribution of the uncertain calibration to the covariance of the flight residual.
 Eigen::Matrix3d flight_spread(const RateFactor& f, const RigConstants::Matrix& rig) {
   const Eigen::Matrix3d T = f.jacobian_calibration.middleCols<3>(kLever),
                         B = f.jacobian_calibration.middleCols<3>(kAccelBias);
@@ -73,15 +74,16 @@ Eigen::Matrix3d euler_spread(const RateFactor& f, const RigConstants::Matrix& ri
   return IC.lazyProduct(I.transpose());
 }
 
-// Returns the squared residual normalised by its covariance, from the sensor and from the uncertain calibration:
-// rate_smoother.md (R16).
+// Returns the squared residual normalised by its covariance. The covariance contains sensor noise and the uncertain
+// calibration: rate_smoother.md (R16).
 double normalised(const RateFactor& f, Eigen::Matrix3d spread, double sigma, const Vector3d& more = Vector3d::Zero()) {
   spread.diagonal().array() += sigma * sigma;
   spread.diagonal() += more;
   return f.residual.dot(spread.inverse() * f.residual);
 }
 
-// Mahalanobis distance of one part of the constants, divided by the root of its size: rate_smoother.md (R32)
+// Mahalanobis distance of one part of the calibration, divided by the square root of its number of constants:
+// rate_smoother.md (R32).
 template <int kFirst, int kCount>
 double mahalanobis(const RigConstants::Vector& moved, const RigConstants::Matrix& covariance) {
   const Eigen::Matrix<double, kCount, 1> part = moved.segment<kCount>(kFirst);
@@ -89,8 +91,8 @@ double mahalanobis(const RigConstants::Vector& moved, const RigConstants::Matrix
   return std::sqrt(part.dot(spread.llt().solve(part)) / kCount);
 }
 
-// Adds the part of a factor that depends on the sample only. Returns A' * information, with A the derivative by the
-// sample.
+// Adds the part of a factor that depends only on the unknowns of the sample. Returns A' * information, with the
+// derivative A of the residual by the unknowns of the sample.
 Eigen::Matrix<double, 6, 3> add_to_knot(const RateFactor& f, const Eigen::Matrix3d& information, double time_scale_s,
                                         arrow::Block& block) {
   Eigen::Matrix<double, 3, 6> A = f.by_knot;
@@ -101,7 +103,7 @@ Eigen::Matrix<double, 6, 3> add_to_knot(const RateFactor& f, const Eigen::Matrix
   return At;
 }
 
-// Adds the part of a factor that depends on kCount constants from kFirst on.
+// Adds the part of a factor that depends on kCount calibration constants, starting with constant kFirst.
 template <int kFirst, int kCount>
 void add_to_rig(const RateFactor& f, const Eigen::Matrix3d& information, const Eigen::Matrix<double, 6, 3>& At,
                 arrow::Block& block, arrow::Corner& corner) {
@@ -130,7 +132,7 @@ void add_euler(const RateFactor& f, const Eigen::Matrix3d& information, double t
   add_to_rig<kInertia, 5>(f, information, At, block, corner);
 }
 
-// Reduces the information of a residual by an additional covariance: rate_stream.md (R92).
+// Reduces the information of a residual by an additional covariance of the residual: rate_stream.md (R92).
 Eigen::Matrix3d with_spread(const Eigen::Matrix3d& information, const Eigen::Matrix3d& spread) {
   return (Eigen::Matrix3d::Identity() + information * spread).inverse() * information;
 }
@@ -141,7 +143,7 @@ RateModel::RateModel(const RateModelParams& params, double period_s) : params_(p
   check(params);
   require_within("period_s", period_s, 1e-6, 10.0);
   const double bandwidth_hz = 1.0 / period_s;
-  gyro_sigma_rad_s_ = params.gyro_noise_density * std::sqrt(bandwidth_hz);  // rate_smoother.md (R6)
+  gyro_sigma_rad_s_ = params.gyro_noise_density * std::sqrt(bandwidth_hz);  // gyro noise: rate_smoother.md (R6)
   accel_noise_m_s2_ = params.accel_noise_density * std::sqrt(bandwidth_hz);
   accel_sigma_m_s2_ = std::hypot(params.expert.flight.sigma_m_s2, accel_noise_m_s2_);
   share_ = std::min(1.0, period_s / params.expert.model_error_s);
@@ -165,10 +167,10 @@ void RateModel::weigh(const RateObservation& observation, const RigConstants& ri
                     normalised(euler, euler_spread(euler, rig_covariance), params_.expert.flight.euler_sigma_rad_s2) +
                     jump;
   const double threshold = widen * params_.expert.flight.threshold;
-  // Geman-McClure, rate_smoother.md (R18): the gradient of an outlier decreases with the cube of its size
+  // Geman-McClure weight: the gradient of an outlier decreases with the cube of the residual, rate_smoother.md (R18)
   const double ratio = 1.0 / (1.0 + r2 / (threshold * threshold));
   estimate.flight_weight = ratio * ratio;
-  // the residual is model minus reading: rate_smoother.md (R19)
+  // contact force, as a fraction of the flight residual (model minus reading): rate_smoother.md (R19)
   estimate.contact_m_s2 = (estimate.flight_weight - 1.0) * flight.residual;
 }
 
@@ -177,13 +179,13 @@ double RateModel::accel_sigma_m_s2(const RateObservation& observation) const {
                     params_.expert.readings.accel_scale_error * observation.sample.specific_force_m_s2.norm());
 }
 
-// Returns the variance for sums over samples: errors that last longer than a sample do not average out.
+// Returns the accelerometer variance for sums over samples. Errors that last longer than a sample do not average out.
 double RateModel::accel_variance_together(const RateObservation& observation) const {
   const double single = accel_sigma_m_s2(observation), noise2 = accel_noise_m_s2_ * accel_noise_m_s2_;
   return share_ < 1.0 ? noise2 + (single * single - noise2) / share_ : single * single;
 }
 
-// Returns the step normalised by its covariance in flight: rate_smoother.md (R17), (R4).
+// Returns the squared change between two samples, normalised by its covariance in flight: rate_smoother.md (R17), (R4).
 double RateModel::jump(const RateKnot& from, const RateKnot& to, double dt_s) const {
   const Vector3d e0 = from.rate_rad_s + dt_s * from.acceleration_rad_s2 - to.rate_rad_s;
   const Vector3d e1 = dt_s * (from.acceleration_rad_s2 - to.acceleration_rad_s2);
@@ -194,7 +196,7 @@ double RateModel::jump(const RateKnot& from, const RateKnot& to, double dt_s) co
 double RateModel::gyro_information(const RateObservation& observation, const RateEstimate& estimate, int axis) const {
   if (observation.gyro_repeats) return 0.0;
   if (observation.gyro_age_s > 0.0) {
-    // change of the rate by contact since the reading was taken: rate_smoother.md (R7)
+    // change of the rate by contact between reading and sample: rate_smoother.md (R7)
     const double change = params_.expert.contact.gain_rad_m * estimate.contact_m_s2.norm() * observation.gyro_age_s;
     const double lost = (observation.read_in_part() >> axis & 1u) != 0 ? observation.lost_sigma_rad_s[axis] : 0.0;
     return 1.0 / (gyro_sigma_rad_s_ * gyro_sigma_rad_s_ + change * change + lost * lost);
@@ -204,8 +206,8 @@ double RateModel::gyro_information(const RateObservation& observation, const Rat
   return 1.0 / (lost * lost + impact * impact);
 }
 
-// In contact, the force has a prior with its current magnitude as standard deviation: rate_smoother.md (R20). Smaller
-// forces are thus more probable explanations of an unmeasured rate.
+// In contact, the prior of the contact force has the current force as standard deviation: rate_smoother.md (R20). A
+// small force is then a more probable explanation of an unmeasured rate than a large force.
 RateModel::ForceFactor RateModel::force_factor(const RateObservation& observation, const RateEstimate& estimate,
                                                const RigConstants& rig) const {
   const double flight2 = accel_variance_together(observation);
@@ -279,7 +281,7 @@ void RateModel::add_sample(const RateObservation& observation, const RateEstimat
   }
 }
 
-// A force through one point of the body has no torque about its own direction: rate_smoother.md (R21).
+// A force through one point of the body has no torque about the direction of the force: rate_smoother.md (R21).
 Eigen::Matrix3d RateModel::euler_information(const RateEstimate& estimate) const {
   const double flight = params_.expert.flight.euler_sigma_rad_s2 * params_.expert.flight.euler_sigma_rad_s2;
   const double force = estimate.contact_m_s2.norm(), lever = params_.expert.contact.lever_rad_m * force;
@@ -293,11 +295,11 @@ Eigen::Matrix3d RateModel::euler_information(const RateEstimate& estimate) const
 void RateModel::add_step(const RateEstimate& from, const RateEstimate& to, double dt_s, arrow::Block& block,
                          arrow::Block& next) const {
   const double h = time_scale_s_, ratio = dt_s / h;
-  // within one step of model_error_s, a contact may change the angular acceleration by gain * force; in shorter steps
-  // the change is proportionally smaller: rate_smoother.md (R5)
+  // Within model_error_s, a contact may change the angular acceleration by gain * force. In a shorter time, the
+  // possible change is proportionally smaller: rate_smoother.md (R5).
   const double change = params_.expert.contact.gain_rad_m * std::max(from.contact_m_s2.norm(), to.contact_m_s2.norm());
   const double psd = params_.expert.flight.jerk_psd_rad2_s5 + share_ * change * change / dt_s;
-  // inverse of Q = psd [dt^3/3, dt^2 h/2; dt^2 h/2, dt h^2] of the scaled state: rate_smoother.md (R4)
+  // inverse of the scaled motion covariance Q = psd [dt^3/3, dt^2 h/2; dt^2 h/2, dt h^2]: rate_smoother.md (R4)
   const double a = 12.0 / (psd * dt_s * dt_s * dt_s), b = -6.0 / (psd * dt_s * dt_s * h),
                c = 4.0 / (psd * dt_s * h * h);
   for (int j = 0; j < 3; ++j) {
@@ -305,7 +307,7 @@ void RateModel::add_step(const RateEstimate& from, const RateEstimate& to, doubl
     const double e1 = (from.knot.acceleration_rad_s2[j] - to.knot.acceleration_rad_s2[j]) * h;
     const double g0 = a * e0 + b * e1, g1 = b * e0 + c * e1;
     const int i = 3 + j;
-    // F = [1, ratio; 0, 1]
+    // transition matrix F = [1, ratio; 0, 1]
     block.diagonal(j, j) += a;
     block.diagonal(j, i) += ratio * a + b;
     block.diagonal(i, j) += ratio * a + b;
@@ -338,7 +340,7 @@ double RateModel::calibration_mahalanobis(const RigConstants& rig) const {
   return std::max({lever, gyro, accel, inertia});
 }
 
-// Inverts scaled(): converts the scaled state of rate_smoother.md (R1) to physical units.
+// Converts the scaled state of rate_smoother.md (R1) to physical units, as the inverse of scaled().
 Eigen::Matrix<double, 6, 1> RateModel::unscaled(const arrow::StateVector& step) const {
   Eigen::Matrix<double, 6, 1> out = step;
   out.tail<3>() /= time_scale_s_;
@@ -354,7 +356,7 @@ arrow::StateVector RateModel::scaled(const Eigen::Matrix<double, 6, 1>& differen
 RateSource rate_source(const RateObservation& o, const RateEstimate& e, const Eigen::Matrix3d& covariance,
                        double sigma) {
   const int clipped = o.clipping.gyro | o.clipping.missing_gyro;
-  // a reading that may be saturated is not called clipped, but is not called measured either
+  // a reading that may be saturated counts as a bound only, neither as clipped nor as measured
   if (clipped == 0) return o.may_hide() == 0 ? RateSource::measured : RateSource::bounded_only;
   if (e.flight_weight >= 0.5) return RateSource::recovered_flight;
   double largest = 0.0;

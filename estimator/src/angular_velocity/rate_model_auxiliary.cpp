@@ -10,7 +10,7 @@ namespace tumble {
 namespace {
 
 using Eigen::Vector3d;
-using AuxiliaryRow = Eigen::Matrix<double, 1, 6>;  // by rate and scaled acceleration
+using AuxiliaryRow = Eigen::Matrix<double, 1, 6>;  // derivative of a residual by rate and scaled acceleration
 
 void add_row(const AuxiliaryRow& row, double residual, double sigma, arrow::Block& block) {
   const double information = 1.0 / (sigma * sigma);
@@ -18,8 +18,8 @@ void add_row(const AuxiliaryRow& row, double residual, double sigma, arrow::Bloc
   block.gradient.noalias() -= information * residual * row.transpose();
 }
 
-// Returns whether an axis of an auxiliary IMU depends only on unclipped components of the primary IMU's force. The
-// saturation deficit of element i changes the reading along column i of the inverse of the sensing directions.
+// Returns whether an axis of an auxiliary IMU depends only on unclipped components of the primary IMU's specific force.
+// The saturation deficit of element i acts along column i of the inverse of the sensing directions.
 bool sees_free_axes(const Eigen::RowVector3d& axis, const RateObservation& observation) {
   constexpr double kSlight = 0.02;
   if (observation.clipping.accel == 0) return true;
@@ -31,14 +31,15 @@ bool sees_free_axes(const Eigen::RowVector3d& axis, const RateObservation& obser
   return true;
 }
 
-// Maps the primary IMU's force to the axes or sensing elements of the auxiliary IMU.
-Eigen::Matrix3d seen_by(const Eigen::Matrix3d& R_CI, const ElementRows& elements, bool by_elements) {
+// Returns the matrix that converts the primary IMU's specific force to the axes or sensing elements of an auxiliary
+// IMU.
+Eigen::Matrix3d seen_by(const Eigen::Matrix3d& R_CI, const SensingDirections& elements, bool by_elements) {
   return by_elements ? Eigen::Matrix3d(elements.rows * R_CI) : R_CI;
 }
 
-// Returns the standard deviation of an unsaturated element's reading due to its uncertain sensing direction. The
-// saturation deficit of another element is at most `most`.
-double unknown_row(const ElementRows& elements, bool by_elements, int j, double most) {
+// Returns the standard deviation of an unsaturated element's reading that is due to the element's uncertain sensing
+// direction. `most` is the maximum saturation deficit of the other elements.
+double unknown_row(const SensingDirections& elements, bool by_elements, int j, double most) {
   return by_elements ? elements.slope_sigma[j] * most : 0.0;
 }
 
@@ -50,20 +51,20 @@ void RateModel::add_auxiliary_imus(const RateObservation& observation, const Rat
     const AuxiliaryImu& mount = params_.auxiliary_imus[i];
     const AuxiliaryReading& reading = observation.auxiliary_imus[i];
     const Eigen::Matrix3d R_CI = mount.T_IC.linear().transpose();
-    // the lever arm from the primary IMU replaces the lever arm from the centre of mass, rate_smoother.md (R15)
+    // the lever arm starts at the primary IMU, not at the centre of mass: rate_smoother.md (R15)
     const RateFactor rotation =
         flight_factor(estimate.knot, {.lever_arm_m = mount.T_IC.translation()}, Vector3d::Zero());
     const Vector3d force = observation.sample.specific_force_m_s2 - rig.accel_bias_m_s2 + rotation.residual;
     const double misplaced =
         mount.position_error_m * (estimate.knot.rate_rad_s.squaredNorm() + estimate.knot.acceleration_rad_s2.norm());
-    const Eigen::Matrix3d gyro = seen_by(R_CI, mount.gyro_elements, reading.rate_by_elements);
-    const Eigen::Matrix3d accel = seen_by(R_CI, mount.accel_elements, reading.force_by_elements);
+    const Eigen::Matrix3d gyro = seen_by(R_CI, mount.gyro_elements, reading.rate_along_elements);
+    const Eigen::Matrix3d accel = seen_by(R_CI, mount.accel_elements, reading.force_along_elements);
     for (int j = 0; j < 3; ++j) {
       if (std::isfinite(reading.rate_rad_s[j])) {
         AuxiliaryRow row = AuxiliaryRow::Zero();
         row.head<3>() = gyro.row(j);
         const double unknown =
-            unknown_row(mount.gyro_elements, reading.rate_by_elements, j, estimate.knot.rate_rad_s.norm());
+            unknown_row(mount.gyro_elements, reading.rate_along_elements, j, estimate.knot.rate_rad_s.norm());
         add_row(row, gyro.row(j).dot(estimate.knot.rate_rad_s) - reading.rate_rad_s[j],
                 std::hypot(reading.rate_sigma_rad_s[j], unknown), block);
       }
@@ -71,7 +72,7 @@ void RateModel::add_auxiliary_imus(const RateObservation& observation, const Rat
       if (!std::isfinite(reading.force_m_s2[j]) || !sees_free_axes(axis, observation)) continue;
       AuxiliaryRow row = axis * rotation.by_knot;
       row.tail<3>() /= time_scale_s_;
-      const double unknown = unknown_row(mount.accel_elements, reading.force_by_elements, j, force.norm());
+      const double unknown = unknown_row(mount.accel_elements, reading.force_along_elements, j, force.norm());
       const double lasting =
           std::sqrt((misplaced * misplaced + unknown * unknown) / share_ + accel_variance_together(observation));
       const double sigma = std::hypot(reading.force_sigma_m_s2[j], lasting);

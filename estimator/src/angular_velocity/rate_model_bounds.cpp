@@ -16,10 +16,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-// initial precision of a lower bound, (rad/s)^-2
+// initial precision of the lower bound that a clipped reading provides, (rad/s)^-2
 constexpr double kStartPrecision = 0.25;
 
-// Parameters of the search for a sample of flight between impacts: Newton steps, longest step [rad/s], and the maximum
+// Parameters of the search for flight between two impacts: number of Newton steps, longest step [rad/s], and maximum
 // remaining force as a fraction of the reading.
 constexpr int kSeekIterations = 6;
 constexpr double kSeekStep = 3.0, kGentleShare = 0.25;
@@ -32,9 +32,9 @@ void RateModel::seek_flight(const RateObservation& observation, const RigConstan
   const Vector3d reading = corrected_rate(observation, estimate);
   RateEstimate flown = estimate;
   const Eigen::Matrix3d J = rig.inertia_matrix();
-  // the saturation deficit of a sensing element changes the readings of all axes: columns of M^-1 in rails.md (R51)
+  // the saturation deficit of one sensing element changes the readings of all axes, by a column of M^-1: rails.md (R51)
   Eigen::Matrix3d rows;
-  for (int j = 0; j < 3; ++j) rows.row(j) = rig.element_row(j);
+  for (int j = 0; j < 3; ++j) rows.row(j) = rig.sensing_direction(j);
   const Eigen::Matrix3d hides = rows.inverse();
   RateFactor flight;
   for (int iteration = 0; iteration <= kSeekIterations; ++iteration) {
@@ -92,7 +92,8 @@ void RateModel::update_bounds(const RateObservation& observation, const RigConst
     for (int i = 0; i < 3; ++i) jacobian_calibration += row[i] * conditional.by_border.row(i);
     const Eigen::Matrix<double, 1, RigConstants::kSize> cross = jacobian_calibration.lazyProduct(rig_covariance);
     const Vector3d by_state = conditional.state.topLeftCorner<3, 3>().lazyProduct(row);
-    // mirrored so that the bound is below the marginal: rate_smoother.md (R22); variance as in (R35)
+    // The sign of the residual makes each bound a lower bound: rate_smoother.md (R22). The variance of the residual
+    // follows from the covariance (R35).
     const NormalMoments marginal{sign * off.residual[j], row.dot(by_state) + cross.dot(jacobian_calibration)};
     const NormalSite site =
         refined_bound(marginal, {estimate.bound_precision[j], sign * estimate.bound_shift[j]}, 0.0,
@@ -113,7 +114,7 @@ void mark_subsample_saturation(const RailDetector& rails, const RailDetector::St
     const double reading = now.sample.angular_velocity_rad_s[j], sign = std::copysign(1.0, reading);
     const double neighbour = free_neighbour(std::abs(reading), *rail, j, before, after,
                                             [&](const Vector3d& beside) { return sign * beside[j]; });
-    if (neighbour > std::abs(reading)) continue;  // a dip within a plateau: its hidden depth is unknown
+    if (neighbour > std::abs(reading)) continue;  // a dip within a plateau: the saturation deficit is unknown
     const SubsampleSaturation loss = subsample_saturation(std::abs(reading), neighbour, *rail, noise_rad_s);
     if (!loss.saturated) continue;
     now.subsample_saturated = static_cast<std::uint8_t>(now.subsample_saturated | 1u << j);

@@ -11,9 +11,9 @@ namespace {
 
 constexpr int kGyroBias = 3;
 
-// Adds one component m_j . (rate - age acceleration + bias - reading), with the given information and gradient. `age`
-// is in units of the acceleration's time scale. With `rig_spread`, the component does not update m_j and has a
-// correspondingly reduced weight: rate_smoother.md (R8), rate_stream.md (R92).
+// Adds one component m_j' (rate - age acceleration + bias - reading), with the given information and gradient. The unit
+// of `age` is the time scale of the acceleration. With `rig_spread`, the component does not update the sensing
+// direction m_j, and has a correspondingly smaller weight: rate_smoother.md (R8), rate_stream.md (R92).
 void add_row(const RateFactor& gyro, int j, double age, double information, double pull,
              const RigConstants::Matrix* rig_spread, arrow::Block& block, arrow::Corner& corner) {
   const int first = RigConstants::kElements + 2 * j;
@@ -79,7 +79,7 @@ Eigen::Vector3d RateModel::read_accel_elements(const RateObservation& observatio
   Eigen::Vector3d unknown = Eigen::Vector3d::Zero();
   const unsigned clipped = observation.clipping.accel;
   if (clipped == 0) return unknown;
-  const ElementRows& elements = observation.accel_rows;
+  const SensingDirections& elements = observation.accel_rows;
   if (elements.tilted()) {
     flight.residual = elements.rows * flight.residual;
     flight.by_knot = (elements.rows * flight.by_knot).eval();
@@ -88,7 +88,8 @@ Eigen::Vector3d RateModel::read_accel_elements(const RateObservation& observatio
   double hidden2 = 0.0;
   for (int j = 0; j < 3; ++j) {
     if ((clipped >> j & 1u) == 0) continue;
-    // residual = model - reading; the true value is beyond the reading, on the side of its sign: rate_smoother.md (R9)
+    // The residual is model minus reading. The true value exceeds the reading in magnitude, with equal sign:
+    // rate_smoother.md (R9).
     if (flight.residual[j] * observation.sample.specific_force_m_s2[j] < 0.0) continue;
     hidden2 += flight.residual[j] * flight.residual[j];
     flight.residual[j] = 0.0;

@@ -9,8 +9,9 @@ using Eigen::Vector3d;
 
 namespace {
 
-// Weight below which a sample does not update the calibration, although the sample still affects a clipped rate. The
-// remaining gradient of a contact is small for the rate, but large for uncertain constants.
+// A sample with a flight weight below kRigWeightMin does not update the calibration, although the sample still affects
+// a clipped rate. In contact, the force residual changes the rate little, but could change uncertain calibration
+// constants by much.
 constexpr double kRigWeightMin = 0.05;
 
 }  // namespace
@@ -19,16 +20,16 @@ bool RateModel::is_uninformative(const RateEstimate& estimate) {
   return estimate.flight_weight < kRigWeightMin;
 }
 
-// Limits the force of a sample in contact to its effect on unmeasured rates.
+// Restricts the effect of a contact force to unmeasured rates. The contact force then does not affect the calibration.
 void RateModel::keep_from_rig(const RateObservation& o, RateFactor& flight) {
   flight.jacobian_calibration.setZero();
   for (int j = 0; j < 3; ++j) {
-    // a measured rate would pass the gradient on to the gyro's bias
+    // a measured rate would pass the gradient of the force on to the gyro's bias
     if ((o.unseen() >> j & 1u) == 0) flight.by_knot.col(j).setZero();
   }
 }
 
-// Returns the rate to which a reading refers: rate_smoother.md (R7).
+// Returns the rate and acceleration at the time of the gyro's reading: rate_smoother.md (R7).
 RateKnot RateModel::at_reading(const RateObservation& observation, const RateEstimate& estimate) const {
   const RateKnot& knot = estimate.knot;
   return {knot.rate_rad_s - observation.gyro_age_s * knot.acceleration_rad_s2, knot.acceleration_rad_s2};
@@ -48,7 +49,8 @@ RateFactor RateModel::flight(const RateObservation& observation, const RateKnot&
   if (exact_ && delay_s == 0.0 && by_delay == nullptr) return flight_factor(knot, rig, reading);
   const Vector3d force = reading - params_.errors.accel * reading;
   RateFactor out = late_flight_factor(knot, rig, force, delay_s, by_delay);
-  // the curvature term is small, so its derivatives are neglected: rate_smoother.md (R13)
+  // The curvature term is small. The code therefore neglects the derivatives of the curvature term: rate_smoother.md
+  // (R13).
   out.residual += 0.5 * params_.errors.accel_filter_time_variance_s2 * flight_curvature(knot, rig);
   return out;
 }
@@ -63,7 +65,8 @@ RateFactor RateModel::flight_by_rig(const RateObservation& observation, const Ra
   return out;
 }
 
-// rate_smoother.md (R36), and the sums over samples of (R38)
+// Adds the derivatives of the gradients by the sensor errors, rate_smoother.md (R36), and the sums over the samples in
+// (R38).
 void RateModel::add_errors(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
                            arrow::ErrorMatrix& block, arrow::BorderErrors& border, SensorErrorEvidence& evidence,
                            bool rig_spread) const {
@@ -104,14 +107,14 @@ void RateModel::add_errors(const RateObservation& observation, const RateEstimat
   }
 
   if (rig_spread || is_uninformative(estimate)) return;
-  if (observation.clipping.accel != 0 && observation.accel_rows.tilted()) return;  // tilted rows mix the axes
+  if (observation.clipping.accel != 0 && observation.accel_rows.tilted()) return;  // tilted elements mix the axes
   auto [flight, information] = force_factor(observation, estimate, rig);
   Vector3d by_delay;
   (void)this->flight(observation, estimate.knot, rig, &by_delay);
   const Vector3d curvature = flight_curvature(estimate.knot, rig);
   flight.by_knot.rightCols<3>() /= time_scale_s_;
   for (int j = 0; j < 3; ++j) {
-    if (flight.by_knot.row(j).isZero()) continue;  // a satisfied bound
+    if (flight.by_knot.row(j).isZero()) continue;  // the lower bound of the element is satisfied
     Row by_errors = Row::Zero();
     by_errors.segment<3>(SensorErrors::kAccel + 3 * j) = force.transpose();
     by_errors[SensorErrors::kDelay] = by_delay[j];
@@ -124,7 +127,7 @@ void RateModel::add_errors(const RateObservation& observation, const RateEstimat
   }
 }
 
-// rate_smoother.md (R49)
+// Computes the reported covariance of a rate: rate_smoother.md (R49).
 Eigen::Matrix3d RateModel::reported(const Eigen::Matrix3d& covariance, const RateObservation& observation,
                                     const RateEstimate& estimate) const {
   const double factor = 1.0 + (params_.expert.contact.sigma_factor - 1.0) * (1.0 - estimate.flight_weight);
@@ -136,7 +139,7 @@ Eigen::Matrix3d RateModel::reported(const Eigen::Matrix3d& covariance, const Rat
   const Vector3d late = params_.expert.readings.gyro_time_sigma_s * estimate.knot.acceleration_rad_s2;
   Eigen::Matrix3d timed = covariance + late * late.transpose();
   if (observation.by_elements()) {
-    // in contact, the acceleration within a window depends on the force, also on measured axes
+    // In contact, the contact force changes the rate within a window. The change also affects measured axes.
     const double struck =
         params_.expert.readings.gyro_time_sigma_s * params_.expert.contact.gain_rad_m * estimate.contact_m_s2.norm();
     timed.diagonal().array() += struck * struck;

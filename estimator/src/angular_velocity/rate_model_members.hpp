@@ -45,8 +45,8 @@ void members(Self& s, Visitor& visit) {
   visit.with_nan("auxiliary.force_m_s2", s.force_m_s2);
   visit.with_nan("auxiliary.rate_sigma_rad_s", s.rate_sigma_rad_s);
   visit.with_nan("auxiliary.force_sigma_m_s2", s.force_sigma_m_s2);
-  visit("auxiliary.rate_by_elements", s.rate_by_elements);
-  visit("auxiliary.force_by_elements", s.force_by_elements);
+  visit("auxiliary.rate_along_elements", s.rate_along_elements);
+  visit("auxiliary.force_along_elements", s.force_along_elements);
 }
 
 template <StateOf<RateObservation> Self, class Visitor>

@@ -18,18 +18,18 @@ double median_force(std::span<const ImuSample> samples) {
   return force[force.size() / 2];
 }
 
-void report_rails(const ClippingFinder& finder, const KnownRails& rails, RateReport& health) {
+void report_rails(const ClippingFinder& finder, const SaturationLevels& rails, RateReport& health) {
   const RailPlanes planes = rails.planes_in_use(), accel_planes = rails.planes_in_use(Triad::accelerometer);
   health.planes = rails.planes;
   health.accel_planes = accel_planes;
-  health.rails_axis_aligned = rails.upright;
+  health.clips_after_compensation = rails.upright;
   for (int c = 0; c < 6; ++c) {
     const auto channel = static_cast<std::size_t>(c);
     health.rail[channel] = finder.upright_rails().rail(rails.upright_rails, c);
     const auto& plane = (c < 3 ? planes : accel_planes).element[static_cast<std::size_t>(c % 3)];
     if (plane) health.rail[channel] = plane->distance_rad_s;
     health.rail_observed[channel] = plane || rails.upright_rails.channels[channel].rail > 0.0;
-    health.rail_disagrees[channel] = finder.upright_rails().disagrees(rails.upright_rails, c);
+    health.contradicts_stated_range[channel] = finder.upright_rails().disagrees(rails.upright_rails, c);
   }
 }
 
@@ -41,9 +41,10 @@ void suspect_units(std::span<const ImuSample> samples, double rate_max_rad_s, Ra
   health.force_unit_suspect = force > 0.5 && force < 2.0;
 }
 
-// Marks axes that were saturated for a part of their window, and axes that may be at an unknown saturation level.
+// Marks axes that were saturated for a part of their window. Also marks axes that may be at an unknown saturation
+// level.
 void mark_possibly_clipped(const RailPlaneFinder::Params& expected, const ClippingFinder& finder,
-                           const KnownRails& rails, const RailPlanes& planes, double noise_rad_s,
+                           const SaturationLevels& rails, const RailPlanes& planes, double noise_rad_s,
                            std::span<const ImuSample> samples, std::span<RateObservation> observations) {
   const std::vector<Neighbours> beside = other_readings(samples, Triad::gyro);
   LeastRails least;
@@ -86,7 +87,7 @@ RateReadings read_samples(const RateSmoother::Params& params, const ClippingFind
   RateReadings out{std::vector<RateObservation>(samples.size()), params.model, found.rails.planes_in_use(), {}};
   const double period_s = median_period_s(samples);
   out.known.calibration = with_planes(RateModel(params.model, period_s), out.planes, found.rails.upright);
-  const ElementRows accel_rows = found.rails.rows(Triad::accelerometer, params.model.element_sigma);
+  const SensingDirections accel_rows = found.rails.rows(Triad::accelerometer, params.model.element_sigma);
   for (std::size_t k = 0; k < samples.size(); ++k) {
     RateObservation& o = out.observations[k];
     o = {samples[k], found.clippings[k], rest[k]};

@@ -12,7 +12,8 @@ namespace tumble {
 
 namespace {
 
-// Shifts the accelerometer's readings by `shift` samples; at the ends, the last available reading is repeated.
+// Shifts the accelerometer's readings by `shift` samples. At the ends of the recording, the last available reading
+// repeats.
 void shift_force(std::span<const ImuSample> samples, std::span<const Clipping> clippings, std::ptrdiff_t shift,
                  std::span<const double> accel_age_s, std::span<RateObservation> observations) {
   const auto last = static_cast<std::ptrdiff_t>(samples.size()) - 1;
@@ -25,16 +26,16 @@ void shift_force(std::span<const ImuSample> samples, std::span<const Clipping> c
   }
 }
 
-// Returns the standard deviations stated in the data sheet, without the values of an uncalibrated device.
-SensorErrorSizes as_stated(SensorErrorSizes sizes) {
+// Returns the standard deviations of the data sheet, without the larger standard deviations of an uncalibrated device.
+SensorErrorPriors as_stated(SensorErrorPriors sizes) {
   sizes.gyro_uncalibrated = sizes.accel_uncalibrated = sizes.g_sensitivity_uncalibrated_s_m =
       sizes.delay_uncalibrated_s = 0.0;
   return sizes;
 }
 
-// Returns whether a device with the stated errors `given` may have the errors `found`. Larger errors are due to the
-// flight model.
-bool plausible(const SensorErrors& found, const SensorErrors& given, const SensorErrorSizes& sizes) {
+// Returns whether a device with the stated errors `given` may have the errors `found`. Errors beyond kDeviations come
+// from the flight model, not from the device.
+bool plausible(const SensorErrors& found, const SensorErrors& given, const SensorErrorPriors& sizes) {
   constexpr double kDeviations = 6.0;
   const SensorErrors errors = SensorErrors::from(found.vector() - given.vector());
   const double delay_s = kDeviations * std::max(sizes.delay_s, sizes.delay_uncalibrated_s);
@@ -49,7 +50,7 @@ bool is_conclusive(const TriadDelay& guess) {
   return guess.sigma_s > 0.0 || guess.delay_s != 0.0;
 }
 
-// Returns whether the estimated errors differ enough from the corrected errors to require another optimisation.
+// Returns whether estimated and corrected sensor errors differ enough to require another optimisation.
 bool far_apart(const SensorErrors& a, const SensorErrors& b) {
   constexpr double kMatrix = 1e-3, kGSensitivity_s_m = 3e-5, kDelay_s = 3e-4, kFilterTimeVariance_s2 = 3e-6;
   return (a.gyro - b.gyro).cwiseAbs().maxCoeff() > kMatrix || (a.accel - b.accel).cwiseAbs().maxCoeff() > kMatrix ||
@@ -58,10 +59,12 @@ bool far_apart(const SensorErrors& a, const SensorErrors& b) {
          std::abs(a.accel_filter_time_variance_s2 - b.accel_filter_time_variance_s2) > kFilterTimeVariance_s2;
 }
 
-// Mahalanobis distance of three constants that one device in a thousand exceeds, with all causes included.
+// One device in a thousand exceeds this Mahalanobis distance of three calibration constants from a prior with all
+// causes.
 constexpr double kMahalanobisOfDevice = 2.33;
 
-// Fixes the calibration at its prior, except for the sensing directions of the gyro, which contact does not affect.
+// Fixes the calibration at its prior, except for the sensing directions of the gyro. Contact does not affect the
+// sensing directions.
 RateModelParams fixed_at_prior(const RateModelParams& params, const RateModel& model) {
   constexpr int kFirst = RigConstants::kElements, kCount = RigConstants::kSize - kFirst;
   RateModelParams out = params;
@@ -71,8 +74,8 @@ RateModelParams fixed_at_prior(const RateModelParams& params, const RateModel& m
   return out;
 }
 
-// Returns the distance of the constants from their prior, rate_smoother.md (R32), including changes due to sensor
-// errors.
+// Returns the Mahalanobis distance of the calibration from its prior, rate_smoother.md (R32). The prior includes the
+// effect of the sensor errors on the calibration.
 double mahalanobis_of(const RateModelParams& known, const RateModel& model, double period_s,
                       std::span<const RateObservation> observations, const RateSolution& solution) {
   RateIteration again(observations);
@@ -85,8 +88,8 @@ double mahalanobis_of(const RateModelParams& known, const RateModel& model, doub
   return RateModel(wider, period_s).calibration_mahalanobis(solution.rig);
 }
 
-// Runs the optimisation. Repeats it with a fixed calibration if contact was mistaken for flight with another
-// calibration.
+// Runs the optimisation. If the result mistakes contact for flight with a wrong calibration, repeats the optimisation
+// with a fixed calibration.
 Status descend_at_prior(const RateSmoother::Params& params, const RateModelParams& known, double period_s,
                         std::span<const RateObservation> observations, bool struck, RateFit& fit, RateReport& health) {
   fit.model = RateModel(known, period_s);
@@ -108,17 +111,20 @@ Status descend_at_prior(const RateSmoother::Params& params, const RateModelParam
     return {Trouble::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
   }
   health.calibration_mahalanobis = mahalanobis;
-  // a fixed calibration is still uncertain, so the rates keep the calibration's uncertainty
+  // A fixed calibration is still uncertain. The covariance of the rates therefore includes the calibration's
+  // uncertainty.
   constexpr int kOpen = RigConstants::kElements;
   fit.solution.rig_covariance.topLeftCorner<kOpen, kOpen>() =
       health.calibration.covariance.topLeftCorner<kOpen, kOpen>();
   return {};
 }
 
-// A guessed delay further from the assumed one, in standard deviations, becomes the initial value.
+// If the guessed delay differs from the assumed delay by more than kGuessFar standard deviations, the guess becomes the
+// initial value.
 constexpr double kGuessFar = 2.0;
 
-// Adds the information from impacts, which the flight model does not use, to rate_smoother.md (R38).
+// Adds the delay estimated from impacts to the information about the sensor errors, rate_smoother.md (R38). The flight
+// model does not use impacts.
 void add_guess(const TriadDelay& guess, SensorErrorEvidence& evidence) {
   if (!(guess.sigma_s > 0.0)) return;
   const double information = 1.0 / (guess.sigma_s * guess.sigma_s);
@@ -126,22 +132,22 @@ void add_guess(const TriadDelay& guess, SensorErrorEvidence& evidence) {
   evidence.gradient[SensorErrors::kDelay] += information * (guess.delay_s - evidence.about.accel_delay_s);
 }
 
-// Odds of a device that matches its data sheet below which the readings clearly contradict the data sheet. Above
-// kPlainOdds, the mixture over sizes includes the uncertainty.
+// If the odds of a device that matches its data sheet are below kPlainOdds, the readings clearly contradict the data
+// sheet. Above kPlainOdds, the mixture of a matching and an uncalibrated device accounts for the uncertainty.
 constexpr double kPlainOdds = 0.05;
 
-// Returns whether a device clearly contradicts its data sheet in scale or in sampling. A device that contradicts one of
-// the two is reliable in neither. The test is naive Bayes over scale and sampling, each relative to its prior.
-// `triads_asynchronous`: the triads are known to be asynchronous.
-bool off_sheet(const SensorErrorFit& device, const SensorErrorSizes& sizes, bool triads_asynchronous) {
+// Returns whether a device clearly contradicts its data sheet in scale or in sampling. If the scale of a device
+// contradicts the data sheet, the stated sampling is also unreliable, and vice versa. The test combines the evidence
+// from scale and sampling by naive Bayes. `triads_asynchronous`: gyro and accelerometer are known to be asynchronous.
+bool off_sheet(const SensorErrorFit& device, const SensorErrorPriors& sizes, bool triads_asynchronous) {
   const SensorErrorFit before = fit_sensor_errors({}, sizes);
   const auto odds = [](double p) { return std::max(p, 1e-12) / std::max(1.0 - p, 1e-12); };
-  const double of_scale = odds(device.in_sheet_probability) / odds(before.in_sheet_probability);
+  const double of_scale = odds(device.data_sheet_probability) / odds(before.data_sheet_probability);
   return triads_asynchronous || of_scale * odds(device.synchronous_probability) < kPlainOdds;
 }
 
-// Returns the standard deviations of a device without a data sheet.
-SensorErrorSizes unstated(SensorErrorSizes sizes) {
+// Returns the standard deviations of the sensor errors of a device without a data sheet.
+SensorErrorPriors unstated(SensorErrorPriors sizes) {
   sizes.gyro = std::max(sizes.gyro, sizes.gyro_uncalibrated);
   sizes.accel = std::max(sizes.accel, sizes.accel_uncalibrated);
   sizes.g_sensitivity_s_m = std::max(sizes.g_sensitivity_s_m, sizes.g_sensitivity_uncalibrated_s_m);
@@ -149,15 +155,16 @@ SensorErrorSizes unstated(SensorErrorSizes sizes) {
   return sizes;
 }
 
-// Expresses the estimate of an earlier run relative to the errors that the caller states now.
+// Expresses the sensor errors estimated in an earlier run relative to the errors that the caller states now.
 SensorErrorEvidence calibration_evidence_about(const SensorErrors& given, KnownSensorErrors learnt,
-                                               const SensorErrorSizes& sizes) {
+                                               const SensorErrorPriors& sizes) {
   learnt.errors = SensorErrors::from(learnt.errors.vector() - given.vector());
   return calibration_evidence(learnt, sizes);
 }
 
-// Fits sensor errors relative to the stated sensor errors. `learnt` is also relative to the stated errors.
-SensorErrorFit fit_about(const SensorErrors& given, SensorErrorEvidence evidence, const SensorErrorSizes& sizes,
+// Fits sensor errors relative to the errors that the caller states. `learnt`, the estimate of an earlier run, is also
+// relative to the stated errors.
+SensorErrorFit fit_about(const SensorErrors& given, SensorErrorEvidence evidence, const SensorErrorPriors& sizes,
                          const SensorErrorEvidence& learnt) {
   evidence.about = SensorErrors::from(evidence.about.vector() - given.vector());
   SensorErrorFit out = fit_sensor_errors(evidence, sizes, learnt);
@@ -167,19 +174,20 @@ SensorErrorFit fit_about(const SensorErrors& given, SensorErrorEvidence evidence
 
 struct Rounds {
   const RateSmoother::Params& params;
-  const RateModelParams& known;  ///< its errors: those stated for the device
+  const RateModelParams& known;  ///< with the sensor errors stated for the device
   std::span<const ImuSample> samples;
   std::span<const Clipping> clippings;
   double period_s = 0.0;
   bool estimated = false;
-  bool triads_asynchronous = false;  ///< readings of a triad repeat, so the triads are asynchronous
+  bool triads_asynchronous = false;  ///< a triad repeats readings, so gyro and accelerometer are asynchronous
   TriadDelay guess = {};             ///< empty if the data sheet states the delay
-  std::vector<double> age_s = {};    ///< of the accelerometer's readings in the log
-  SensorErrorSizes sizes = {};       ///< those stated, except for the sampling of asynchronous triads
+  std::vector<double> age_s = {};    ///< age of the accelerometer's readings in the log
+  SensorErrorPriors sizes = {};      ///< stated sizes, except for the sampling of asynchronous triads
 
-  const SensorErrorSizes& stated() const { return known.expert.error_sizes; }
+  const SensorErrorPriors& stated() const { return known.expert.error_sizes; }
   bool delay_open() const { return estimated && stated().delay_uncalibrated_s > stated().delay_s; }
-  /// A body with impacts and flight is not hand-held, so sensor errors may change its calibration.
+  /// Returns whether the body has impacts and flight. Such a body is not hand-held, so sensor errors may change its
+  /// calibration.
   bool struck() const { return guess.sigma_s > 0.0; }
 };
 
@@ -198,8 +206,8 @@ Rounds rounds_of(const RateSmoother::Params& params, const RateModelParams& know
   return out;
 }
 
-// Initial values of the optimisations: the assumed errors, and an alternative delay, which is used if the assumed delay
-// requires a fixed calibration.
+// Initial values of the optimisations. The first start uses the assumed sensor errors. If the assumed delay requires a
+// fixed calibration, the second start uses another delay.
 struct Start {
   SensorErrors errors;
   double other_delay_s = 0.0;
@@ -225,12 +233,12 @@ Status descend_corrected(const Rounds& rounds, const SensorErrors& errors, std::
   return descend_at_prior(rounds.params, corrected, rounds.period_s, observations, rounds.struck(), fit, health);
 }
 
-// Computes the information about the errors, relative to the errors that were corrected: fit.moved.
+// Computes the information about the sensor errors, relative to the corrected errors: fit.moved.
 Status take_evidence(const Rounds& rounds, const SensorErrors& errors, RateFit& fit, const RateReport& health) {
   const RateSolution& solution = fit.solution;
   fit.moved = solution.iteration.moved_by_errors(fit.model, solution.estimates, solution.rig);
   if (rounds.estimated) {
-    // without convergence, the remaining gradient must not count as information about errors
+    // If the optimisation has not converged, the remaining gradient must not count as information about sensor errors.
     RateIteration again = solution.iteration;
     if (!again.factorise(fit.model, solution.estimates, solution.rig)) {
       return {Trouble::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
@@ -243,13 +251,13 @@ Status take_evidence(const Rounds& rounds, const SensorErrors& errors, RateFit& 
 }
 
 struct RoundsState {
-  SensorErrors errors;  ///< corrected in the last descent
+  SensorErrors errors;  ///< errors corrected in the last optimisation
   SensorErrorEvidence learnt;
   SensorErrorFit found;
-  bool is_plausible = true;  ///< plausible for a device
+  bool is_plausible = true;  ///< a device may have these errors
 };
 
-// Repeats the optimisation until the estimated errors equal the corrected ones.
+// Repeats the optimisation until the estimated sensor errors equal the corrected sensor errors.
 Status descend_rounds(const Rounds& rounds, std::span<RateObservation> observations, RateFit& fit, RateReport& health,
                       RoundsState& rounds_state) {
   const SensorErrors& given = rounds.known.errors;
@@ -258,43 +266,45 @@ Status descend_rounds(const Rounds& rounds, std::span<RateObservation> observati
   if (has_calibration) rounds_state.learnt = calibration_evidence_about(given, *learnt, rounds.stated());
   Start start = start_from(has_calibration ? learnt->errors : given, rounds);
   rounds_state.errors = start.errors;
-  for (health.error_rounds = 1;; ++health.error_rounds) {
+  health.error_rounds = 0;
+  for (int round = 1;; ++round) {  // counts from the last restart, and the report counts all rounds
+    ++health.error_rounds;
     if (Status status = descend_corrected(rounds, rounds_state.errors, observations, fit, health); !status.ok())
       return status;
     if (health.calibration_at_prior && has_calibration) {
-      // it may be another device
+      // the device may differ from the device of the earlier run
       has_calibration = false;
       rounds_state.learnt = {};
       start = start_from(given, rounds);
       rounds_state.errors = start.errors;
-      health.error_rounds = 0;
+      round = 0;
       continue;
     }
-    const bool first = health.error_rounds == 1 && rounds.estimated;
+    const bool first = round == 1 && rounds.estimated;
     if (health.calibration_at_prior && first && rounds_state.errors.accel_delay_s != start.other_delay_s) {
       rounds_state.errors.accel_delay_s = start.other_delay_s;
-      health.error_rounds = 0;
+      round = 0;
       continue;
     }
     if (Status status = take_evidence(rounds, rounds_state.errors, fit, health); !status.ok()) return status;
     rounds_state.found = fit_about(given, fit.moved.evidence, rounds.sizes, rounds_state.learnt);
     rounds_state.is_plausible = plausible(rounds_state.found.known.errors, given, rounds.stated());
-    if (health.calibration_at_prior || !rounds_state.is_plausible ||
-        health.error_rounds >= rounds.params.expert.error_rounds_max)
+    if (health.calibration_at_prior || !rounds_state.is_plausible || round >= rounds.params.expert.error_rounds_max)
       return {};
     if (!far_apart(rounds_state.found.known.errors, rounds_state.errors)) return {};
     rounds_state.errors = rounds_state.found.known.errors;
   }
 }
 
-// Enlarges the covariance of a device that clearly contradicts its data sheet to that of an uncalibrated device. Only
-// errors that the readings clearly determine are corrected. Returns the sizes in use.
-SensorErrorSizes leave_open(const Rounds& rounds, const RateFit& fit, RoundsState& rounds_state, RateReport& health) {
+// If a device clearly contradicts its data sheet, enlarges the covariance of the sensor errors to the covariance of an
+// uncalibrated device. The correction keeps only sensor errors that the readings clearly determine. Returns the
+// standard deviations of the sensor errors that are in use.
+SensorErrorPriors leave_open(const Rounds& rounds, const RateFit& fit, RoundsState& rounds_state, RateReport& health) {
   const bool open =
       rounds.delay_open() && (off_sheet(rounds_state.found, rounds.stated(), rounds.triads_asynchronous) ||
                               health.calibration_mahalanobis > rounds.params.calibration_mahalanobis_max);
   if (!open) return rounds.sizes;
-  const SensorErrorSizes sizes = unstated(rounds.sizes);
+  const SensorErrorPriors sizes = unstated(rounds.sizes);
   health.common_delay_sigma_s = std::sqrt(0.5) * sizes.delay_s;
   KnownSensorErrors& found = rounds_state.found.known;
   const KnownSensorErrors unknown =
@@ -304,7 +314,7 @@ SensorErrorSizes leave_open(const Rounds& rounds, const RateFit& fit, RoundsStat
   return sizes;
 }
 
-// Changes the fit to first order, as if readings were corrected by an additional `step`.
+// Changes the fit to first order, as if the readings were corrected by an additional `step` of the sensor errors.
 void apply_correction(const SensorErrors::Vector& step, RateFit& fit) {
   for (std::size_t k = 0; k < fit.solution.estimates.size(); ++k) {
     const Eigen::Matrix<double, 6, 1> moved = fit.model.unscaled(fit.moved.of_sample[k] * step);
@@ -322,13 +332,13 @@ Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& kno
   const Rounds rounds = rounds_of(params, known, samples, clippings, observations, health);
   RoundsState rounds_state;
   if (Status status = descend_rounds(rounds, observations, fit, health, rounds_state); !status.ok()) return status;
-  health.in_sheet_probability = rounds_state.found.in_sheet_probability;
+  health.data_sheet_probability = rounds_state.found.data_sheet_probability;
   health.synchronous_probability = rounds.triads_asynchronous ? 0.0 : rounds_state.found.synchronous_probability;
-  const SensorErrorSizes sizes = leave_open(rounds, fit, rounds_state, health);
-  const SensorErrorSizes stated = as_stated(rounds.stated());
+  const SensorErrorPriors sizes = leave_open(rounds, fit, rounds_state, health);
+  const SensorErrorPriors stated = as_stated(rounds.stated());
   if (health.calibration_at_prior || !rounds_state.is_plausible || !rounds.estimated) {
-    // without flight, the run contains no information about the device beyond the prior, and all errors remain
-    // uncertain
+    // Without flight, the run contains no information about the device beyond the prior. All sensor errors then remain
+    // uncertain.
     rounds_state.found = fit_sensor_errors({}, rounds.estimated ? sizes : stated);
     rounds_state.found.known.errors = rounds_state.errors;
   } else {
@@ -337,10 +347,10 @@ Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& kno
   health.sensor_errors = rounds_state.found.known;
   if (health.calibration_at_prior) return {};
   health.calibration.constants = fit.solution.rig;
-  // sensor errors remain part of the device: the next run is affected by equal errors and includes their uncertainty
-  // again
-  const SensorErrors::Matrix of_device = fit_sensor_errors({}, stated).known.covariance;
-  health.calibration.covariance += fit.moved.of_rig * of_device * fit.moved.of_rig.transpose();
+  // Sensor errors belong to the device. The next run is affected by the same sensor errors, and includes their
+  // uncertainty again.
+  const SensorErrors::Matrix device_covariance = fit_sensor_errors({}, stated).known.covariance;
+  health.calibration.covariance += fit.moved.of_rig * device_covariance * fit.moved.of_rig.transpose();
   return {};
 }
 

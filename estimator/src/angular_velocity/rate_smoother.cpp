@@ -6,6 +6,7 @@
 #include "rate_readings.hpp"
 #include "rate_rounds.hpp"
 #include "rate_states.hpp"
+#include "tumble/angular_velocity/detail/gyro_offset.hpp"
 #include "tumble/angular_velocity/detail/recording_check.hpp"
 
 namespace tumble {
@@ -26,6 +27,14 @@ Status check_auxiliary_imus(const RateModelParams& params,
   return {};
 }
 
+/// Returns the parameters with a large zero offset of the gyro as nominal bias, unless a bias is stated.
+RateSmootherParams with_offset(const RateSmootherParams& params, std::span<const ImuSample> samples) {
+  RateSmootherParams out = params;
+  Eigen::Vector3d& nominal = out.model.nominal.gyro_bias_rad_s;
+  if (nominal.isZero(0.0) && !out.model.calibration) nominal = GyroOffset().find(samples);
+  return out;
+}
+
 }  // namespace
 
 RateSmoother::RateSmoother(const Params& params)
@@ -34,7 +43,7 @@ RateSmoother::RateSmoother(const Params& params)
       rests_(params.expert.rests) {
   require_fields(params);
   if (params.calibrated_errors) require_known(*params.calibrated_errors);
-  (void)RateModel(params.model, 0.01);  // throws for invalid parameters
+  (void)RateModel(params.model, 0.01);  // the constructor throws for invalid parameters
 }
 
 Status RateSmoother::estimate(std::span<const ImuSample> samples,
@@ -45,13 +54,15 @@ Status RateSmoother::estimate(std::span<const ImuSample> samples,
 
   RateReport health;
   const ClippingFinder::Found found = rails_.find(samples);
-  RateReadings readings = read_samples(params_, rails_, found, rests_.find(samples), samples, auxiliary_imus, health);
+  const Params params = with_offset(params_, samples);
+  const std::vector<bool> rests = rests_.find(samples, params.model.nominal.gyro_bias_rad_s);
+  RateReadings readings = read_samples(params, rails_, found, rests, samples, auxiliary_imus, health);
   RateFit fit(readings.observations, RateModel(readings.known, median_period_s(samples)));
-  if (Status status = fit_rounds(params_, readings.known, samples, found.clippings, readings.observations, fit, health);
+  if (Status status = fit_rounds(params, readings.known, samples, found.clippings, readings.observations, fit, health);
       !status.ok()) {
     return status;
   }
-  out = rate_states(params_, samples, readings, fit, health);
+  out = rate_states(params, samples, readings, fit, health);
   report = std::move(health);
   return {};
 }

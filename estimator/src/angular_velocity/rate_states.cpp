@@ -14,10 +14,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Maximum shared delay in standard deviations; 3 % of normal values are beyond.
+// Maximum common delay of gyro and accelerometer, in standard deviations.
 constexpr double kSharedReach = 2.0;
 
-// Rates of a slow gyro at the time of each sample, where it measures all axes.
+// Interpolates the readings of a slow gyro at the time of each sample, if the gyro measures all axes.
 std::vector<std::optional<InterpolatedRate>> read_in_time(std::span<const ImuSample> samples,
                                                           const RateReadings& readings) {
   std::vector<std::uint8_t> hidden(samples.size());
@@ -28,8 +28,8 @@ std::vector<std::optional<InterpolatedRate>> read_in_time(std::span<const ImuSam
   return rates_between_readings(samples, hidden, readings.gyro_repeated);
 }
 
-// Returns the contribution of the sensor errors' uncertainty to a rate, limited to the largest rate: rate_smoother.md
-// (R44).
+// Returns the covariance of a rate that is due to the uncertain sensor errors, limited to the largest rate:
+// rate_smoother.md (R44).
 Eigen::Matrix3d open_of_errors(const arrow::ErrorMatrix& moved, const SensorErrors::Matrix& covariance,
                                double rate_max_rad_s) {
   const Eigen::Matrix<double, 3, SensorErrors::kSize> rates = moved.topRows<3>(), spread = rates * covariance;
@@ -38,8 +38,8 @@ Eigen::Matrix3d open_of_errors(const arrow::ErrorMatrix& moved, const SensorErro
   return std::min(1.0, most / std::max(out.trace(), 1e-300)) * out;
 }
 
-// Returns the maximum change of the rate between two samples in addition to the angular acceleration. The maximum comes
-// from unsaturated readings if available, and from the contact force if not.
+// Returns how fast the rate may change between two samples. If the readings are unsaturated, the result is the change
+// of the estimated rate per time. If a reading may be saturated, the result follows from the contact force.
 double change_rad_s2(const RateModelParams& params, std::span<const RateObservation> observations,
                      std::span<const RateEstimate> estimates, std::size_t k) {
   const RateObservation &from = observations[k], &to = observations[k + 1];
@@ -51,8 +51,9 @@ double change_rad_s2(const RateModelParams& params, std::span<const RateObservat
   return (estimates[k + 1].knot.rate_rad_s - estimates[k].knot.rate_rad_s).norm() / dt_s;
 }
 
-// Returns the effect on a rate of a delay common to both triads: the largest change of the rate within the delay. An
-// impact in the next sample's window may belong to the current sample.
+// Returns the covariance of a rate that is due to an unknown delay of gyro and accelerometer together. The standard
+// deviation is the largest change of the rate within the delay. An impact in the next sample's window may belong to the
+// current sample.
 Eigen::Matrix3d of_common_delay(double variance_s2, const RateModelParams& params,
                                 std::span<const RateObservation> observations, std::span<const RateEstimate> estimates,
                                 std::size_t k) {
@@ -68,8 +69,8 @@ Eigen::Matrix3d of_common_delay(double variance_s2, const RateModelParams& param
   return variance_s2 * (alpha * alpha.transpose() + change * change * Eigen::Matrix3d::Identity());
 }
 
-// Returns the rate some time after a sample, by a cubic between the surrounding knots, with its covariance. The
-// covariance is at most the mean of the knots' covariances.
+// Returns the rate at some time after a sample, with its covariance. The rate is a cubic between the two surrounding
+// knots. The covariance is at most the mean of the covariances of both knots.
 RateState state_later(std::span<const RateObservation> observations, std::span<const RateEstimate> estimates,
                       std::span<const Eigen::Matrix3d> covariances, std::size_t k, double late_s) {
   RateState out;
@@ -124,9 +125,9 @@ std::vector<RateState> rate_states(const RateSmoother::Params& params, std::span
   const SensorErrors& errors = health.sensor_errors.errors;
   const double gyro_late_s = std::max(0.0, -errors.accel_delay_s);
   const std::vector<Eigen::Matrix3d> covariances = rate_covariances(params, readings, fit, health);
-  // equal readings identify clipped output exactly
+  // if saturation planes are axis-aligned, equal readings identify saturation without the planes
   const std::vector<std::uint8_t> near =
-      may_meet_rails(samples, health.rails_axis_aligned ? RailPlanes{} : readings.planes);
+      may_meet_rails(samples, health.clips_after_compensation ? RailPlanes{} : readings.planes);
   const std::vector<std::optional<InterpolatedRate>> own = read_in_time(samples, readings);
   std::vector<RateState> states(samples.size());
   std::size_t in_flight = 0;
@@ -135,7 +136,8 @@ std::vector<RateState> rate_states(const RateSmoother::Params& params, std::span
     const RateEstimate& estimate = solution.estimates[k];
     RateState& state = states[k];
     state = state_later(observations, solution.estimates, covariances, k, gyro_late_s);
-    // flight is smoother than readings; in any other motion, readings are better than white jerk between knots
+    // In flight, the motion is smoother than the gyro's readings. In other motion, interpolated readings are more
+    // accurate than the model of white jerk between samples.
     const bool by_readings = estimate.flight_weight < 0.5 && !o.at_rest && gyro_late_s == 0.0;
     if (by_readings && !own.empty() && own[k]) {
       const Vector3d g_sensitivity = errors.g_sensitivity_s_m * samples[k].specific_force_m_s2;

@@ -36,7 +36,8 @@ void clamp_to_bounds(const RateObservation& o, Vector3d& rate) {
   }
 }
 
-// Adds the prior at a point that differs from the prior's linearisation point: rate_stream.md (R91).
+// Adds the prior from marginalised samples at a point that differs from the prior's linearisation point: rate_stream.md
+// (R91).
 void add_prior(const RateStream::State& state, const RateModel& model, const RateKnot& knot, arrow::Block& block,
                arrow::Corner& corner) {
   Eigen::Matrix<double, 6, 1> moved;
@@ -73,8 +74,8 @@ RateStream::RateStream(const Params& params)
   require_within("lag_s", params.lag_s, 2.0 * params.period_s, params.lag_max_s());
   capacity_ = static_cast<std::size_t>(std::lround(params.lag_s / params.period_s)) + 1;
   prior_delay_s_ = corrected_for(params).errors.accel_delay_s;
-  const SensorErrorSizes& sizes = params.model.expert.error_sizes;
-  delay_open_ =
+  const SensorErrorPriors& sizes = params.model.expert.error_sizes;
+  delay_is_estimated_ =
       !params.calibrated_errors && sizes.delay_uncalibrated_s > sizes.delay_s && params.expert.uncalibrated > 0.0;
   samples_per_step_ =
       std::clamp(static_cast<std::size_t>(params.step_s / params.period_s + 1e-6), std::size_t{1}, capacity_);
@@ -124,7 +125,7 @@ Status RateStream::push(const ImuSample& sample, std::span<const AuxiliaryReadin
   return {};
 }
 
-// Makes room for one more sample before a step, by removing all leaving samples from the window together.
+// Removes all samples that leave the window together, so that the window has room for another sample.
 void RateStream::marginalise_leaving(State& state) const {
   state.waiting = 0;
   std::size_t count = 0;
@@ -135,8 +136,8 @@ void RateStream::marginalise_leaving(State& state) const {
   state.window.erase(state.window.begin(), state.window.begin() + static_cast<std::ptrdiff_t>(count));
 }
 
-// Computes the provisional covariance of the newest sample: from its reading, or from the motion possible since the
-// previous sample.
+// Computes the provisional covariance of the newest sample. The covariance follows from the sample's reading, or from
+// the motion that is possible since the previous sample.
 void RateStream::predict_covariance(State& state) const {
   Knot& newest = state.window.back();
   const Knot& before = state.window[state.window.size() - std::min<std::size_t>(2, state.window.size())];
@@ -147,20 +148,21 @@ void RateStream::predict_covariance(State& state) const {
   newest.covariance_rad2_s2 += sigma.cwiseAbs2().asDiagonal();
 }
 
-// rate_stream.md (R90); the final weight by rate_smoother.md (R16) to (R19), short flights by rate_stream.md (R92).
+// Marginalises the oldest sample: rate_stream.md (R90). The final flight weight of the sample follows from
+// rate_smoother.md (R16) to (R19). A sample in a short flight has a reduced weight: rate_stream.md (R92).
 void RateStream::marginalise(std::size_t first, State& state) const {
   Knot& oldest = state.window[first];
   const Knot& next = state.window[first + 1];
   arrow::Block block, after;
   arrow::Corner corner;
   add_prior(state, model_, oldest.estimate.knot, block, corner);
-  // a sample that leaves cannot be weighed again, so the sample must be flight under the current calibration, not under
-  // a possible one
+  // The weight of a marginalised sample is final. The weight therefore assumes the current calibration, without the
+  // calibration's uncertainty.
   const double after_it = model_.jump(oldest.estimate.knot, next.estimate.knot, seconds_between(oldest, next));
   const double jump = std::min(jump_before(oldest, state), after_it);
   model_.weigh(oldest.observation, state.rig, RigConstants::Matrix::Zero(), 1.0, jump, oldest.estimate);
-  // the 20 calibration constants can explain any short contact as flight, so flights update the calibration only after
-  // more samples
+  // The 20 calibration constants can explain any short contact as flight. A flight therefore updates the calibration
+  // only after a minimum number of samples.
   std::size_t run = state.flight_run;
   const auto needed = static_cast<std::size_t>(params_.expert.flight_run_min);
   const auto flies = [](const Knot& knot) { return knot.estimate.flight_weight >= 0.5; };
@@ -180,7 +182,8 @@ void RateStream::marginalise(std::size_t first, State& state) const {
     state.prior_corner = corner;
     store_errors(block, errors, state);
   } else {
-    // the prior from marginalised samples is unusable: restart from the prior calibration
+    // If the prior from marginalised samples is unusable, the stream restarts from the initial prior of the
+    // calibration.
     reset_prior(state);
     ++state.failures;
   }
@@ -189,13 +192,14 @@ void RateStream::marginalise(std::size_t first, State& state) const {
   state.prior_knot = next.estimate.knot;
   state.prior_rig = state.rig;
   if (model_.calibration_mahalanobis(state.rig) > params_.calibration_mahalanobis_max) {
-    // contact was mistaken for flight with another calibration: reset calibration and motion
+    // If the calibration is implausible, the stream mistook contact for flight. The reset discards calibration and
+    // motion.
     reset_rig(state);
     ++state.rig_resets;
   }
 }
 
-// Returns the jump from the sample that left last to the oldest sample in the window.
+// Returns the normalised change of state between the last marginalised sample and the oldest sample in the window.
 double RateStream::jump_before(const Knot& oldest, const State& state) const {
   if (!state.left) return std::numeric_limits<double>::max();
   return model_.jump(*state.left, oldest.estimate.knot, seconds(oldest.observation.sample.time_ns - state.left_ns));
@@ -209,7 +213,8 @@ void RateStream::append(const ImuSample& sample, std::span<const AuxiliaryReadin
   knot.by_upright_rails = rails_.upright_rails().classify(sample, state.rails.known.upright_rails);
   repeat_detector_.observe(sample, (knot.by_upright_rails.gyro | knot.by_upright_rails.missing_gyro) != 0,
                            state.repeat_state);
-  knot.observation = {sample, knot.by_upright_rails, rests_.observe(sample, state.rests)};
+  knot.observation = {sample, knot.by_upright_rails,
+                      rests_.observe(sample, state.rests, params_.model.nominal.gyro_bias_rad_s)};
   knot.read = {sample.specific_force_m_s2, static_cast<std::uint8_t>(sample.device_clip_flags & kClipAccel),
                knot.by_upright_rails.accel};
   std::copy(auxiliary_imus.begin(), auxiliary_imus.end(), knot.observation.auxiliary_imus.begin());
@@ -217,7 +222,7 @@ void RateStream::append(const ImuSample& sample, std::span<const AuxiliaryReadin
   knot.repeats = repeated.repeats && !knot.observation.at_rest;
   if (!knot.observation.at_rest) knot.repeated = repeated;
   knot.estimate.knot.rate_rad_s = sample.angular_velocity_rad_s;
-  // until the first step
+  // initial covariance, valid until the first step
   knot.covariance_rad2_s2 = std::pow(params_.model.rate_max_rad_s, 2) * Eigen::Matrix3d::Identity();
   state.window.push_back(knot);
   state.window.back().approach_rad_s = approach(state.window);
@@ -226,13 +231,14 @@ void RateStream::append(const ImuSample& sample, std::span<const AuxiliaryReadin
   if (knot.by_upright_rails.missing_gyro == 0) state.least.add(sample.angular_velocity_rad_s);
   if (changed) classify_again(state);
   judge_from(changed ? 0 : paired, state);
-  count_strokes(state);
+  accumulate_impacts(state);
   state.extremes[0] = state.extremes[0].cwiseMin(sample.angular_velocity_rad_s);
   state.extremes[1] = state.extremes[1].cwiseMax(sample.angular_velocity_rad_s);
   mark_possible_rails(state);
 }
 
-// Initialises clipped axes of a new sample by the prediction or by the centripetal force, whichever fits flight better.
+// Initialises the clipped axes of a new sample. The initial rate is the prediction, or the rate from the centripetal
+// force, whichever agrees better with flight.
 void RateStream::guess(Knot& knot, const Knot& previous, const State& state) const {
   const double dt_s = seconds_between(previous, knot);
   const RateKnot& before = previous.estimate.knot;
@@ -266,7 +272,7 @@ void RateStream::guess(Knot& knot, const Knot& previous, const State& state) con
   centripetal.estimate.knot.rate_rad_s = rate.cwiseMin(largest).cwiseMax(-largest);
   model_.weigh(knot.observation, state.rig, state.rig_covariance, 1.0, 0.0, knot.estimate);
   model_.weigh(knot.observation, state.rig, state.rig_covariance, 1.0, 0.0, centripetal.estimate);
-  // the previous sample may be part of an impact, while flight rotates without torque
+  // The previous sample may be part of an impact. Between impacts, the body rotates without torque.
   model_.seek_flight(knot.observation, state.rig, centripetal.estimate);
   model_.weigh(knot.observation, state.rig, state.rig_covariance, 1.0, 0.0, centripetal.estimate);
   if (centripetal.estimate.flight_weight > knot.estimate.flight_weight) knot.estimate = centripetal.estimate;
@@ -294,7 +300,7 @@ void RateStream::weigh(State& state) const {
   }
 }
 
-// Applies rate_smoother.md (R26) to (R35) to the window.
+// Makes a Gauss-Newton step over the window: rate_smoother.md (R26) to (R35).
 bool RateStream::step(State& state) const {
   const std::size_t count = state.window.size();
   std::vector<arrow::Block>& blocks = state.work;
@@ -331,7 +337,7 @@ bool RateStream::step(State& state) const {
     const double share = std::min(1.0, params_.expert.step_max_rad_s / std::max(1e-300, physical.head<3>().norm()));
     knot.estimate.knot.rate_rad_s += share * physical.head<3>();
     knot.estimate.knot.acceleration_rad_s2 += share * physical.tail<3>();
-    knot.covariance_rad2_s2 = arrow::rate_covariance(conditional, rig_spread) + of_device(k, state);
+    knot.covariance_rad2_s2 = arrow::rate_covariance(conditional, rig_spread) + device_covariance(k, state);
     if (knot.estimate.soft_bounds) {
       model_.update_bounds(knot.observation, state.rig, conditional, rig_covariance, params_.expert.bound_damping,
                            knot.estimate);
@@ -341,7 +347,7 @@ bool RateStream::step(State& state) const {
   return true;
 }
 
-// rate_stream.md (R97)
+// Returns the inflated covariance of the calibration: rate_stream.md (R97).
 RigConstants::Matrix RateStream::inflated(const State& state) const {
   if (params_.model.calibration) return state.rig_covariance;
   const double samples = static_cast<double>(state.calibration_samples) * model_.distinct_reading_share() /
@@ -349,7 +355,8 @@ RigConstants::Matrix RateStream::inflated(const State& state) const {
   const double largest = std::sqrt(1.0 + params_.expert.inflation.covariance / (1.0 + samples));
   RigConstants::Vector factor;
   for (int i = 0; i < RigConstants::kSize; ++i) {
-    // the prior is the upper limit of the variance; the gyro's bias comes from rest, not from flight
+    // The inflated variance of a calibration constant is at most its prior variance. The gyro's bias is not inflated,
+    // because rest determines the bias, not flight.
     const bool of_gyro = i >= 3 && i < 6;
     const double before = std::sqrt(model_.prior_covariance()(i, i) / state.rig_covariance(i, i));
     factor[i] = of_gyro ? 1.0 : std::clamp(before, 1.0, largest);

@@ -12,18 +12,19 @@ namespace tumble {
 namespace {
 
 constexpr int kBeside = StrokeSums::kMostSamples;
-// Time constant of the impact statistics, in intervals.
+// Time constant of the impact statistics, as a number of intervals between readings.
 constexpr double kMemory = 2000.0;
-// Time between two evaluations, and minimum change of the delay that is applied.
+// `kUpdateEvery_ns` is the time between two estimates of the delay. `kMoved_s` is the minimum change of the delay that
+// the stream applies.
 constexpr TimeNs kUpdateEvery_ns = 50'000'000;
 constexpr double kMoved_s = 3e-4;
-// kPlainOdds: odds of triads as synchronous as the data sheet states, below which impacts clearly contradict the data
-// sheet. kGuessFar: distance in standard deviations above which a guess replaces the current delay.
+// If the odds of synchronous triads are below `kPlainOdds`, impacts clearly contradict the data sheet. A guessed delay
+// replaces the current delay if their difference exceeds `kGuessFar` standard deviations.
 constexpr double kPlainOdds = 0.05, kGuessFar = 3.0;
-// Minimum number of intervals, and minimum gain of the correlation over that at the stated delay. The first impacts of
-// a tumble correlate by chance.
+// `kIntervalsMin` is the minimum number of intervals. `kGainMin` is the minimum difference between the correlations at
+// the estimated and at the stated delay. The first impacts of a tumble correlate by chance.
 constexpr double kIntervalsMin = 150.0, kGainMin = 0.06;
-// Maximum delay in standard deviations of an uncalibrated device.
+// Maximum delay, in standard deviations of an uncalibrated device.
 constexpr double kReach = 3.0;
 
 double seconds_from(const RateStream::Knot& a, const RateStream::Knot& b) {
@@ -35,8 +36,8 @@ bool repeats_readings(const RateStream::State& state) {
          state.repeat_state.of(Triad::accelerometer).is_slower_than_log();
 }
 
-// Integral of the force's norm around a sample of the window. The norm is linear between readings, and constant beyond
-// the readings.
+// Integral of the norm of the specific force around a sample of the window. Between readings, the norm is linear.
+// Before the first and after the last reading, the norm is constant.
 class ForceAbout {
  public:
   ForceAbout(const std::vector<RateStream::Knot>& window, std::size_t middle, std::size_t first) {
@@ -68,8 +69,8 @@ std::ptrdiff_t RateStream::force_shift(const State& state) const {
   return std::lround(state.device.front().delay.in_use_s / params_.period_s);
 }
 
-// Sets the force at the time of sample k, or the closest available force, and the force's remaining delay.
-// rate_stream.md (R105)
+// Stores the specific force at the time of sample k, or the closest force in the window. Also stores the force's
+// remaining delay: rate_stream.md (R105).
 void RateStream::pair_force(std::size_t k, State& state) const {
   Knot& knot = state.window[k];
   const auto last = static_cast<std::ptrdiff_t>(state.window.size()) - 1;
@@ -84,7 +85,7 @@ void RateStream::pair_force(std::size_t k, State& state) const {
   o.accel_age_s = (state.device.front().delay.in_use_s - prior_delay_s_) - seconds_from(knot, source);
 }
 
-// Updates samples whose force has arrived with a new sample, or for which a closer force has arrived.
+// Updates samples for which the newest sample provides a force closer in time.
 std::size_t RateStream::pair_newest(State& state) const {
   const std::size_t newest = state.window.size() - 1;
   if (state.device.front().delay.in_use_s == prior_delay_s_ && force_shift(state) == 0) return newest;
@@ -94,10 +95,10 @@ std::size_t RateStream::pair_newest(State& state) const {
   return first;
 }
 
-// Adds the interval between two readings that are as old in the window as the maximum delay, when their clipping is
-// known. rate_stream.md (R104)
-void RateStream::count_strokes(State& state) const {
-  if (!delay_open_ || state.window.size() < ForceAbout::kReadings) return;
+// Adds the interval between two consecutive readings to the impact statistics: rate_stream.md (R104). The interval is
+// old enough that its clipping, and forces up to the maximum delay, are known.
+void RateStream::accumulate_impacts(State& state) const {
+  if (!delay_is_estimated_ || state.window.size() < ForceAbout::kReadings) return;
   const std::size_t first = state.window.size() - ForceAbout::kReadings, after = first + kBeside + 1;
   const Knot &a = state.window[after - 1], &b = state.window[after];
   const Eigen::Vector3d &begin = a.observation.sample.angular_velocity_rad_s,
@@ -116,24 +117,24 @@ void RateStream::count_strokes(State& state) const {
   strokes.add((end - begin).norm() / span_s, mean);
 }
 
-// Returns the delay from impacts. The result is empty for a log with repeated readings, since repetitions would count
-// as readings.
+// Returns the delay estimated from impacts. The result is empty if the log repeats readings, since each repetition
+// would count as a reading.
 TriadDelay RateStream::guessed_delay(const State& state) const {
   const StrokeSums& strokes = state.device.front().delay.strokes;
   if (repeats_readings(state) || strokes.intervals < kIntervalsMin) return {};
   return strokes.estimate_delay(params_.period_s, params_.period_s);
 }
 
-// Decides before a step whether to change the delay. rate_stream.md (R106)
+// Before a step, decides whether to change the delay: rate_stream.md (R106).
 void RateStream::seek_delay(State& state) const {
   RateStreamDelay& delay = state.device.front().delay;
   const TimeNs now_ns = state.window.back().observation.sample.time_ns;
-  if (!delay_open_ || (delay.updated_ns && now_ns - *delay.updated_ns < kUpdateEvery_ns)) return;
+  if (!delay_is_estimated_ || (delay.updated_ns && now_ns - *delay.updated_ns < kUpdateEvery_ns)) return;
   delay.updated_ns = now_ns;
-  if (delay.found && repeats_readings(state)) return take_delay(prior_delay_s_, false, state);
+  if (delay.found && repeats_readings(state)) return apply_delay(prior_delay_s_, false, state);
   const auto correlates = [&](double at_s) { return delay.strokes.correlation_at(at_s, params_.period_s); };
   if (delay.found && correlates(prior_delay_s_) - correlates(delay.in_use_s) > kGainMin)
-    return take_delay(prior_delay_s_, false, state);
+    return apply_delay(prior_delay_s_, false, state);
   if (const TriadDelay guess = guessed_delay(state); guess.sigma_s > 0.0) {
     const bool gains =
         correlates(guess.delay_s) - correlates(prior_delay_s_) > kGainMin &&
@@ -141,14 +142,14 @@ void RateStream::seek_delay(State& state) const {
     const bool plain = gains && device_.odds_of_sheet(guess.delay_s - prior_delay_s_, guess.sigma_s) < kPlainOdds;
     const bool far = std::abs(guess.delay_s - delay.in_use_s) > kGuessFar * guess.sigma_s;
     delay.guess = guess;
-    if (plain && (!delay.found || far)) return take_delay(guess.delay_s, true, state);
-    if (!plain && delay.found) return take_delay(prior_delay_s_, false, state);
+    if (plain && (!delay.found || far)) return apply_delay(guess.delay_s, true, state);
+    if (!plain && delay.found) return apply_delay(prior_delay_s_, false, state);
   }
   if (delay.found && std::abs(delay.estimated_s - delay.in_use_s) > kMoved_s) refine_delay(state);
 }
 
-// Applies another delay. The calibration estimated with the previous delay is invalid, and the window restarts.
-void RateStream::take_delay(double delay_s, bool found, State& state) const {
+// Applies a different delay. The window restarts, and the calibration estimated with the previous delay is discarded.
+void RateStream::apply_delay(double delay_s, bool found, State& state) const {
   RateStreamDelay& delay = state.device.front().delay;
   delay.in_use_s = delay.estimated_s = delay_s;
   delay.found = found;
@@ -164,8 +165,8 @@ void RateStream::take_delay(double delay_s, bool found, State& state) const {
   }
 }
 
-// Applies a small change of the delay. The prior from marginalised samples changes to first order. rate_stream.md
-// (R107)
+// Applies a small change of the delay. The prior from marginalised samples changes to first order: rate_stream.md
+// (R107).
 void RateStream::refine_delay(State& state) const {
   RateStreamDevice& device = state.device.front();
   const std::ptrdiff_t before = force_shift(state);

@@ -12,10 +12,12 @@ namespace {
 
 using Eigen::Matrix3d;
 
-// Time between two evaluations of the errors, because systems of 29 unknowns cost more than a step.
+// Time between two estimates of the sensor errors. Each estimate of the sensor errors solves a system of 29 unknowns,
+// which costs more than a step of the stream.
 constexpr TimeNs kUpdateEvery_ns = 50'000'000;
 
-// Computes rate_smoother.md (R44), limited to the largest rate.
+// Returns the covariance of a rate that is due to the uncertain sensor errors, limited to the largest rate:
+// rate_smoother.md (R44).
 Matrix3d considered(const arrow::ErrorMatrix& moved, const SensorErrors::Matrix& covariance, double rate_max_rad_s) {
   const Eigen::Matrix<double, 3, SensorErrors::kSize> rates = moved.topRows<3>(),
                                                       spread = rates.lazyProduct(covariance);
@@ -29,7 +31,8 @@ bool moves(const RateStream::Knot& knot) {
 
 }  // namespace
 
-// rate_stream.md (R100): the Schur complement of a leaving sample, with errors as the last unknowns
+// Updates the information about the sensor errors when a sample leaves the window. The update is the Schur complement
+// with the sensor errors as the last unknowns: rate_stream.md (R100).
 void RateStream::store_errors(const arrow::Block& block, arrow::ErrorMatrix& errors, State& state) const {
   RateStreamDevice& device = state.device.front();
   device.prior.setZero();
@@ -38,7 +41,7 @@ void RateStream::store_errors(const arrow::Block& block, arrow::ErrorMatrix& err
   device.evidence.gradient.noalias() += errors.transpose().lazyProduct(block.gradient);
 }
 
-// Deletes all information of samples that left, except for the calibration.
+// Deletes all information from marginalised samples, except for the calibration.
 void RateStream::reset_prior(State& state) const {
   state.prior = {};
   state.prior_corner = {};
@@ -50,7 +53,7 @@ void RateStream::reset_prior(State& state) const {
   device.evidence.gradient.setZero();
 }
 
-// Resets the calibration to its prior, and deletes information about the motion before the window.
+// Resets the calibration to its prior. Deletes the information about the motion before the window.
 void RateStream::reset_rig(State& state) const {
   state.rig = state.prior_rig = model_.prior_constants();
   state.rig_covariance = model_.prior_covariance();
@@ -66,8 +69,8 @@ KnownSensorErrors RateStream::sensor_errors(const State& state) const {
   return out;
 }
 
-// Applies rate_stream.md (R101) to the window with eliminated blocks, before the window's estimates and the calibration
-// change.
+// Computes the derivatives by the sensor errors: rate_stream.md (R101). Before the call, the blocks of the window must
+// be eliminated. Since the elimination, the estimates of the window and the calibration must not have changed.
 void RateStream::consider_errors(const arrow::BorderVector& rig_step, State& state) const {
   RateStreamDevice& device = state.device.front();
   const std::size_t count = state.window.size();
@@ -102,7 +105,7 @@ void RateStream::consider_errors(const arrow::BorderVector& rig_step, State& sta
   RateStreamDelay& delay = device.delay;
   if (delay.found) {
     if (const TriadDelay& guess = delay.guess; guess.sigma_s > 0.0) {
-      // information from impacts has full weight
+      // Information from impacts has full weight. The division cancels the evidence weight.
       const double information = 1.0 / (DeviceUncertainty::kEvidenceWeight * guess.sigma_s * guess.sigma_s);
       window_evidence.information(SensorErrors::kDelay, SensorErrors::kDelay) += information;
       window_evidence.gradient[SensorErrors::kDelay] += information * (guess.delay_s - delay.in_use_s);
@@ -113,8 +116,9 @@ void RateStream::consider_errors(const arrow::BorderVector& rig_step, State& sta
   device_.update(window_evidence, posterior_work, device.posterior, delay.found);
 }
 
-// Returns the uncertainty of a sample's rate due to sensor errors and a delay common to both triads.
-Matrix3d RateStream::of_device(std::size_t k, const State& state) const {
+// Returns the covariance of a sample's rate that is due to sensor errors and to a delay common to gyro and
+// accelerometer.
+Matrix3d RateStream::device_covariance(std::size_t k, const State& state) const {
   const Knot& knot = state.window[k];
   if (!moves(knot)) return Matrix3d::Zero();
   const RateStreamDevice& device = state.device.front();

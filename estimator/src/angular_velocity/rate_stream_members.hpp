@@ -52,6 +52,7 @@ void members(Self& s, Visitor& visit) {
   visit("sense.readings", s.readings, 0.0, 2.0);
   visit("sense.run_s", s.run_s);
   visit("sense.flown_s", s.flown_s);
+  visit("sense.flown_ns", s.flown_ns);
   visit("sense.last_time_ns", s.last_time_ns);
   visit("sense.started", s.started);
 }

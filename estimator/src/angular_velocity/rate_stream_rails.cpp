@@ -16,25 +16,28 @@ namespace {
 
 using Eigen::Vector3d;
 
-// kOpen: standard deviations by which the cross-axis sensitivities of a plane may be wrong. kPossibleMin: minimum
-// number of readings within kBesideRail of an axis's largest reading that may be at one tilted level. kKink: a rounded
-// maximum of n readings is at most (n/(n - 1))^2 <= 2.25 times as high as its readings show. A motion that is cut off
-// exceeds kKink times this height and kPossibleNoise standard deviations of the noise.
+// `kOpen` limits the errors of a plane's cross-axis sensitivities, in standard deviations. A tilted saturation level
+// needs at least `kPossibleMin` readings within kBesideRail of the axis' largest reading. A rounded maximum of n
+// readings has an extrapolated height of at most (n/(n - 1))^2 <= 2.25 times the measured height. If saturation cuts
+// off a motion, the extrapolated height exceeds `kKink` times the measured height. The extrapolated height also exceeds
+// `kPossibleNoise` standard deviations of the noise.
 constexpr double kOpen = 3.0, kKink = 4.0, kPossibleNoise = 5.0;
 constexpr std::ptrdiff_t kPossibleMin = 3;
 
-// Maximum difference between elements' saturation levels, as a fraction (3 % on the wand of RepoIMU).
+// Maximum relative difference between the saturation levels of two sensing elements. On the wand of RepoIMU, the
+// difference is 3 %.
 constexpr double kApart = 0.05;
 
-// Returns whether the largest reading of an element may be its saturation level, compared with the other elements.
+// Returns whether the largest reading of a sensing element may be its saturation level. The criterion is the distance
+// to the saturation levels of the other sensing elements.
 bool may_be_rail(const RailPlanes& planes, double peak_rad_s) {
   return std::all_of(planes.element.begin(), planes.element.end(), [&](const auto& element) {
     return !element || peak_rad_s >= (1.0 - kApart) * element->distance_rad_s;
   });
 }
 
-// Returns the first sample of the reading that precedes the reading of sample k. The result is empty if that sample is
-// not in the window.
+// Returns the first sample of the reading that precedes the reading of sample k. The result is empty if that first
+// sample is not in the window.
 std::optional<std::size_t> reading_before(std::size_t k, const std::vector<RateStream::Knot>& window) {
   while (k > 0 && window[k].repeats) --k;
   if (k == 0) return std::nullopt;
@@ -43,8 +46,8 @@ std::optional<std::size_t> reading_before(std::size_t k, const std::vector<RateS
   return k;
 }
 
-// Returns the first sample of the reading that follows the reading of sample k. Before the next reading arrives,
-// returns the window's size.
+// Returns the first sample of the reading that follows the reading of sample k. If no new reading has arrived, the
+// result is the window's size.
 std::size_t reading_after(std::size_t k, const std::vector<RateStream::Knot>& window) {
   const std::size_t size = window.size();
   if (k >= size) return size;
@@ -53,12 +56,13 @@ std::size_t reading_after(std::size_t k, const std::vector<RateStream::Knot>& wi
   return k;
 }
 
-// Samples with the gyro readings before and after the reading of a sample, or null.
+// The samples with the gyro readings before and after a sample's own reading. A pointer is null if there is no sample.
 struct Beside {
   const ImuSample *before = nullptr, *after = nullptr;
 };
 
-// Returns the neighbours of sample k by the gyro's readings. All samples of a repeated reading have equal neighbours.
+// Returns the samples with the gyro readings before and after the reading of sample k. The result is equal for all
+// samples that repeat one reading.
 Beside readings_beside(std::size_t k, const RateStream::State& state) {
   const std::optional<std::size_t> before = reading_before(k, state.window);
   const std::size_t after = reading_after(k, state.window);
@@ -84,14 +88,13 @@ void RateStream::classify_again(State& state) const {
   for (std::size_t k = 0; force_shift(state) != 0 && k < state.window.size(); ++k) pair_force(k, state);
 }
 
-// Classifies samples of the window again with the current saturation levels. The update starts with the changed sample
-// and the samples with the previous reading, whose classification depends on their neighbours. A newly clipped sample
-// is initialised again.
+// Classifies samples of the window again with the current saturation levels. The update starts at the previous reading,
+// because the classification of a reading depends on its neighbours. A newly clipped sample gets a new initial rate.
 void RateStream::judge_from(std::size_t changed, State& state) const {
   const std::size_t first = reading_before(changed, state.window).value_or(0);
-  const KnownRails& rails = state.rails.known;
+  const SaturationLevels& rails = state.rails.known;
   const RailPlanes planes = rails.planes_in_use(), accel_planes = rails.planes_in_use(Triad::accelerometer);
-  const ElementRows accel_rows = rails.rows(Triad::accelerometer, params_.model.element_sigma);
+  const SensingDirections accel_rows = rails.rows(Triad::accelerometer, params_.model.element_sigma);
   const double noise = model_.gyro_sigma_rad_s();
   for (std::size_t k = first; k < state.window.size(); ++k) {
     Knot& knot = state.window[k];
@@ -124,9 +127,9 @@ void RateStream::judge_from(std::size_t changed, State& state) const {
   }
 }
 
-// Returns whether a reading may be saturated, because a known saturation level is within reach of its uncertain
-// cross-axis sensitivities. Without a known level, the largest reading so far is used if this reading is close to the
-// saturation levels of the other sensing elements. rate_stream.md (R93)
+// Returns whether a reading may be saturated: rate_stream.md (R93). If the saturation level is known, the reading must
+// be at the level within the uncertainty of the saturation plane. If the saturation level is unknown, the test uses the
+// largest reading so far. The largest reading must be close to the saturation levels of the other sensing elements.
 bool RateStream::may_clip(const ImuSample& sample, int axis, int sign, const State& state) const {
   const Vector3d& y = sample.angular_velocity_rad_s;
   const RailPlanes planes = state.rails.known.planes_in_use();
@@ -142,7 +145,7 @@ bool RateStream::may_clip(const ImuSample& sample, int axis, int sign, const Sta
   return high && std::abs(y[axis]) >= (1.0 - kBesideRail) * extreme;
 }
 
-// Computes the possible deficit of a single sample of the window, near a saturation level of the other elements.
+// Computes the possible saturation deficit of a single sample near the saturation level of another sensing element.
 void RateStream::mark_undetected_clipping(std::size_t k, State& state) const {
   RateObservation& now = state.window[k].observation;
   now.lone = 0;
@@ -152,7 +155,8 @@ void RateStream::mark_undetected_clipping(std::size_t k, State& state) const {
                               after);
 }
 
-// Clears suspicions in the window that a larger reading refutes, or for which a saturation level is now known.
+// Clears the suspect marks in the window that a larger reading refutes. Also clears marks for which a saturation level
+// is now known.
 void RateStream::clear_suspects(State& state) const {
   for (std::size_t k = 0; k < state.window.size(); ++k) {
     if (state.window[k].observation.may_hide() == 0) continue;
@@ -161,7 +165,7 @@ void RateStream::clear_suspects(State& state) const {
   }
 }
 
-// Marks runs of three or more unflagged readings that may be saturated. The marks are computed again with each sample.
+// Marks runs of three or more unflagged readings that may be saturated. Each new sample repeats the marking.
 void RateStream::mark_possible_rails(State& state) const {
   const unsigned stood = state.window.front().observation.suspect;
   clear_suspects(state);
@@ -171,7 +175,7 @@ void RateStream::mark_possible_rails(State& state) const {
       const int sign = state.window[k].observation.sample.angular_velocity_rad_s[j] < 0.0 ? -1 : 1;
       std::size_t end = k;
       while (end < state.window.size() && may_clip(state.window[end].observation.sample, j, sign, state)) ++end;
-      // the remaining part of a run that was suspect before a part of the run left
+      // the first samples of this suspect run have already left the window
       const bool goes_on = k == 0 && end > k && (stood >> j & 1u) != 0;
       const auto readings = std::count_if(state.window.begin() + static_cast<std::ptrdiff_t>(k),
                                           state.window.begin() + static_cast<std::ptrdiff_t>(end),
@@ -183,7 +187,7 @@ void RateStream::mark_possible_rails(State& state) const {
 }
 
 // Returns the larger of the reading's slopes before and after a run of suspect readings, per sample. Each slope is the
-// smaller of two steps, because an impact is a single step.
+// smaller of two steps between readings, because an impact causes only a single step.
 double RateStream::run_slope(int axis, std::size_t first, std::size_t last, const State& state) {
   const auto size = [&](std::size_t k) {
     return std::abs(state.window[k].observation.sample.angular_velocity_rad_s[axis]);
@@ -197,8 +201,8 @@ double RateStream::run_slope(int axis, std::size_t first, std::size_t last, cons
   return std::max({in, out, 0.0});
 }
 
-// Marks one run of suspect readings. A smooth motion that is cut off would have continued with the slopes at its ends.
-// (R94)
+// Marks one run of suspect readings. A smooth motion that saturation cuts off would have continued with the slopes at
+// the ends of the run: rate_stream.md (R94).
 void RateStream::mark_suspect_run(int axis, std::size_t first, std::size_t last, State& state) const {
   const auto size = [&](std::size_t k) {
     return std::abs(state.window[k].observation.sample.angular_velocity_rad_s[axis]);
@@ -219,13 +223,13 @@ void RateStream::mark_suspect_run(int axis, std::size_t first, std::size_t last,
     if (((observation.clipping.gyro | observation.clipping.missing_gyro) & bit) != 0) continue;
     observation.lone = static_cast<std::uint8_t>(observation.lone & ~bit);
     observation.suspect = static_cast<std::uint8_t>(observation.suspect | bit);
-    // all readings of the run are cut off together, so they count as one reading
+    // saturation cuts off all readings of the run together, so the run counts as one reading
     observation.lost_sigma_rad_s[axis] = std::hypot(noise, std::sqrt(samples) * cut);
   }
 }
 
-// Returns the growth of the gyro's reading at the newest sample, per sample of the log. Two steps are used, because an
-// impact is a single step, and a spin after an impact is not saturation.
+// Returns the growth of the gyro's reading before the newest sample, per sample. The growth is the smaller of two
+// steps, because an impact causes a single step, and a spin after an impact is not saturation.
 Vector3d RateStream::approach(const std::vector<Knot>& window) {
   const std::optional<std::size_t> one = reading_before(window.size() - 1, window);
   const std::optional<std::size_t> two = one ? reading_before(*one, window) : std::nullopt;
@@ -239,7 +243,8 @@ Vector3d RateStream::approach(const std::vector<Knot>& window) {
   return now.cwiseMin(before).cwiseMax(0.0);
 }
 
-// Stores the entry slope of a run that continues in the window after the run's first reading left.
+// Stores the slope before a run of clipped readings. The slope is needed while the run continues after its first
+// reading left the window.
 void RateStream::store_entry(const Knot& leaving, const Knot& next, State& state) {
   const auto hidden = [](const Knot& knot, int j) {
     return ((knot.observation.clipping.gyro | knot.observation.read_in_part()) >> j & 1) != 0;
@@ -251,9 +256,10 @@ void RateStream::store_entry(const Knot& leaving, const Knot& next, State& state
   }
 }
 
-// Adds the planes' information about the clipped elements. The information is added in each step, because it improves.
+// Adds the saturation planes' information about the directions of clipped elements. Each step adds the information
+// again, because the planes improve.
 void RateStream::add_rails(const State& state, arrow::Corner& corner) const {
-  const KnownRails& rails = state.rails.known;
+  const SaturationLevels& rails = state.rails.known;
   const RailPlanes planes = rails.planes_in_use();
   for (int j = 0; j < 3; ++j) {
     const Eigen::Index first = RigConstants::kElements + 2 * j;

@@ -8,7 +8,7 @@
 
 namespace tumble {
 
-// Returns whether a sample is part of a flight long enough to update the calibration, within the window.
+// Returns whether a sample belongs to a flight that is long enough, within the window, to update the calibration.
 bool RateStream::in_long_flight(std::size_t at, const State& state) const {
   const std::vector<Knot>& window = state.window;
   const auto needed = static_cast<std::size_t>(params_.expert.flight_run_min);
@@ -20,8 +20,8 @@ bool RateStream::in_long_flight(std::size_t at, const State& state) const {
   return last - first + 1 + (first > 0 ? 0 : state.flight_run) >= needed;
 }
 
-// Returns the saturation deficit of a sample in a run of clipped readings by the slopes at the run's ends. A flight
-// also ends the run, since the force then determines the rate. rate_stream.md (R99)
+// Returns the saturation deficit of a sample according to the slopes at the ends of a run of clipped readings:
+// rate_stream.md (R99). The start of a flight also ends the run, since the specific force then determines the rate.
 double RateStream::hidden_by_slopes(std::size_t at, int axis, const State& state) const {
   const std::vector<Knot>& window = state.window;
   const auto hidden = [&](std::size_t k) {
@@ -34,14 +34,15 @@ double RateStream::hidden_by_slopes(std::size_t at, int axis, const State& state
   const bool from_flight = state.flight_run >= static_cast<std::size_t>(params_.expert.flight_run_min);
   const double before =
       static_cast<double>(at - first) + 0.5 + (first > 0 || from_flight ? 0.0 : state.entry_samples[axis]);
-  // the remaining part of a run that has not ended is assumed at least as long as the past part
+  // the remaining part of an unfinished run is assumed to be at least as long as its past part
   const double left = static_cast<double>(last - at) + 0.5,
                after = last + 1 < window.size() ? left : std::max(before, left);
   const double slope = run_slope(axis, first, last, state);
   return slope * before * after / (before + after);
 }
 
-// rate_stream.md (R98), (R99)
+// Returns the covariance of a clipped rate in contact, with the minimum standard deviations of rate_stream.md (R98),
+// (R99).
 Eigen::Matrix3d RateStream::suspect_covariance(std::size_t at, const State& state) const {
   const Knot& knot = state.window[at];
   Eigen::Matrix3d out = knot.covariance_rad2_s2;
@@ -60,8 +61,8 @@ Eigen::Matrix3d RateStream::suspect_covariance(std::size_t at, const State& stat
   return out;
 }
 
-// Returns whether the readings of a rate may be partly saturated: the reading of the sample, and for repeated readings
-// the neighbouring ones.
+// Returns whether the readings that determine a rate may be partly saturated. The rate depends on the reading of its
+// sample. If the log repeats readings, the rate also depends on the neighbouring readings.
 bool RateStream::near_rails(std::size_t at, const State& state) const {
   const std::vector<Knot>& window = state.window;
   if (window[at].near != 0) return true;
@@ -73,9 +74,9 @@ bool RateStream::near_rails(std::size_t at, const State& state) const {
   return (window[next].near | after.clipping.gyro | after.may_hide()) != 0;
 }
 
-// If the gyro is later than the accelerometer, move_later() evaluates the rate some time after the sample. The rate is
-// a cubic between knots, as in RateSmoother. Beyond the newest knot, the acceleration is assumed constant, with
-// uncertainty. rate_stream.md (R108)
+// Evaluates the rate some time after the sample, for a gyro that is delayed relative to the accelerometer:
+// rate_stream.md (R108). Between knots, the rate is a cubic. After the newest knot, the angular acceleration is assumed
+// to be constant, and the covariance contains the error of this assumption.
 void RateStream::move_later(std::size_t at, double late_s, const State& state, RateState& out) const {
   const auto reported = [&](std::size_t k) {
     const Knot& knot = state.window[k];

@@ -9,7 +9,7 @@ namespace tumble {
 
 Status RateStream::health(const State& state) const {
   const Status of_axes = frozen_.verdict(state.frozen);
-  return of_axes.ok() ? sense_.verdict(state.sense) : of_axes;
+  return of_axes.ok() ? sense_.present(state.sense) : of_axes;
 }
 
 Status RateStream::check_state(const State& state) const {

@@ -27,7 +27,7 @@ bool RestDetector::observe(const ImuSample& sample, State& state, const Eigen::V
   }
   state.pending_rate_rad_s += sample.angular_velocity_rad_s;
   state.pending_force_m_s2 += sample.specific_force_m_s2;
-  // a reading ends with the sample closest to its nominal length
+  // an averaged reading ends at the sample that makes its length closest to nominal
   const double half_s = 0.5 * seconds(sample.time_ns - state.last_ns);
   const bool whole = !state.started || seconds(sample.time_ns - state.last_reading_ns) >= params_.reading_s - half_s;
   state.started = true;
@@ -40,7 +40,7 @@ bool RestDetector::observe(const ImuSample& sample, State& state, const Eigen::V
                       sample.time_ns, bias_rad_s, state);
 }
 
-/// attitude.md (A15).
+/// Adds an averaged reading to the current run and tests for rest: attitude.md (A15).
 bool RestDetector::observe_mean(const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& force_m_s2, TimeNs from_ns,
                                 TimeNs to_ns, const Eigen::Vector3d& bias_rad_s, State& state) const {
   const double step_s = seconds(to_ns - state.last_mean_ns);
@@ -56,7 +56,7 @@ bool RestDetector::observe_mean(const Eigen::Vector3d& rate_rad_s, const Eigen::
   if ((rate_rad_s - bias_rad_s).cwiseAbs().maxCoeff() > params_.rate_max_rad_s + params_.rate_spread_rad_s ||
       force < params_.force_min_m_s2 || force > params_.force_max_m_s2) {
     state.weight = 0.0;
-    state.quiet_ns = 0;
+    state.within_bias_since_ns = 0;
     return false;
   }
   if (state.weight == 0.0) {
@@ -64,7 +64,7 @@ bool RestDetector::observe_mean(const Eigen::Vector3d& rate_rad_s, const Eigen::
     state.rate_sum_rad_s.setZero();
     state.force_sum_m_s2.setZero();
   } else if (seconds(to_ns - state.first_ns) > params_.memory_s) {
-    // exponential weights, which the sums reach after one time constant
+    // exponential weights limit the memory of the sums to one time constant
     const double keep = 1.0 - std::min(1.0, step_s / params_.memory_s);
     state.weight *= keep;
     state.rate_sum_rad_s *= keep;
@@ -75,16 +75,16 @@ bool RestDetector::observe_mean(const Eigen::Vector3d& rate_rad_s, const Eigen::
   state.weight += 1.0;
   const bool is_bias =
       (state.rate_sum_rad_s / state.weight - bias_rad_s).cwiseAbs().maxCoeff() <= params_.rate_max_rad_s;
-  state.quiet_ns = is_bias ? to_ns - state.first_ns : 0;
-  state.rests = is_bias && seconds(state.quiet_ns) >= params_.rest_s;
+  state.within_bias_since_ns = is_bias ? to_ns - state.first_ns : 0;
+  state.rests = is_bias && seconds(state.within_bias_since_ns) >= params_.rest_s;
   return state.rests;
 }
 
-std::vector<bool> RestDetector::find(std::span<const ImuSample> samples) const {
+std::vector<bool> RestDetector::find(std::span<const ImuSample> samples, const Eigen::Vector3d& bias_rad_s) const {
   std::vector<bool> rest(samples.size(), false);
   State state;
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    if (!observe(samples[k], state)) continue;
+    if (!observe(samples[k], state, bias_rad_s)) continue;
     // all samples of the run so far are rest
     for (std::size_t i = k + 1; i-- > 0 && samples[i].time_ns >= state.first_ns && !rest[i];) rest[i] = true;
   }

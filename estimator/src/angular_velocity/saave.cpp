@@ -18,8 +18,8 @@ std::uint8_t axes_beyond(const Eigen::Vector3d& rate, double bound) {
   return axes;
 }
 
-// Returns |w|^2 from the specific force along the vector from the IMU to the axis; NaN if the IMU is on the axis.
-// saave.md (S1), (S2)
+// Returns the squared rate |w|^2 from the component of the specific force that points from the IMU to the rotation
+// axis: saave.md (S1), (S2). The result is NaN if the IMU is on the axis.
 double squared_rate(const Eigen::Vector3d& lever_arm, const Eigen::Vector3d& axis, const Eigen::Vector3d& force) {
   const Eigen::Vector3d to_axis = lever_arm.dot(axis) * axis - lever_arm;
   const double r = to_axis.norm();
@@ -47,14 +47,15 @@ Status Saave::step(const ImuSample& sample, State& state, Recovered& out) const 
   out.clipped_axes = axes_beyond(reading, params_.saturation_point_rad_s);
   out.accepted = true;
   if (out.clipped_axes != 0) {
-    // as published, at most one axis is recovered: the first clipped axis in x, y, z order; saave.md (S3)
+    // As in the publication, the method recovers at most one axis. The method selects the first clipped axis in the
+    // order x, y, z: saave.md (S3).
     int j = 0;
     while ((out.clipped_axes >> j & 1u) == 0) ++j;
     Eigen::Vector3d unclipped = reading;
     unclipped[j] = 0.0;
     const double others = unclipped.squaredNorm();
     const double squared = squared_rate(params_.lever_arm_m, state.axis, sample.specific_force_m_s2);
-    // a comparison that rejects NaN (IMU on the axis)
+    // this comparison also rejects NaN, which indicates an IMU on the rotation axis
     out.accepted = squared > others;
     if (out.accepted) {
       const double magnitude = std::max(std::sqrt(squared - others), std::abs(reading[j]));

@@ -14,11 +14,11 @@ namespace {
 
 using sample_hold::kMoving_rad_s, sample_hold::kRepeatsMin, sample_hold::kMovingMin, sample_hold::kMovingMax;
 
-// Clocks that are tried: periods around the mean period (as a fraction of it), and phases. The search is repeated
-// around the best clock.
+// The search tests clocks with kPeriods periods and kPhases phases. The periods cover the fraction kPeriodShare around
+// the mean period. A finer search of kFine steps follows around the best clock.
 constexpr int kPeriods = 100, kPhases = 24, kFine = 10;
 constexpr double kPeriodShare = 0.03;
-// Window of an accelerometer as a fraction of its period: the middle between no window and the whole period.
+// Averaging window of an accelerometer as a fraction of its period. The true fraction is between 0 and 1.
 constexpr double kForceWindow = 0.5;
 
 struct Clock {
@@ -27,14 +27,14 @@ struct Clock {
   double age(double sample) const { return sample - phase - period * reading(sample); }
 };
 
-// Returns the number of samples that a clock does not explain. Counting stops at `most` + 1.
+// Returns the number of samples that contradict a clock. Counting stops at `most` + 1.
 std::size_t misses_of(const Clock& clock, std::span<const std::size_t> moving, const std::vector<bool>& repeats,
                       std::size_t most) {
   std::size_t misses = 0;
   double last_at = -1.0, last = 0.0;
   for (const std::size_t k : moving) {
     const auto at = static_cast<double>(k);
-    // in continuous motion, the clock was evaluated at the previous sample
+    // in continuous motion, the previous iteration evaluated the clock at the previous sample
     const double before = at - 1.0 == last_at ? last : clock.reading(at - 1.0);
     last = clock.reading(at);
     last_at = at;
@@ -43,18 +43,18 @@ std::size_t misses_of(const Clock& clock, std::span<const std::size_t> moving, c
   return misses;
 }
 
-// Longest run of adjacent phases on the circle with which a period explains most samples.
+// Longest run of adjacent phases, on the circle of phases, for which a period explains the most samples.
 struct Phases {
   std::size_t misses = 0;
   double first = 0.0;
   int count = 0;
 };
 
-// Finds the best phases of a period. The search stops early for a period that leaves more than `most` samples
-// unexplained, as most periods do.
+// Finds the best phases of a period. The search stops early if the period leaves more than `most` samples unexplained.
+// Most periods stop the search early.
 Phases best_phases(double period, std::span<const std::size_t> moving, const std::vector<bool>& repeats,
                    std::size_t most) {
-  // keep the phase at the middle of the motion while the period changes
+  // a change of the period does not change the phase at the middle of the motion
   const auto middle = static_cast<double>(moving[moving.size() / 2]);
   std::array<std::size_t, kPhases> misses;
   Phases out{most + 1};
@@ -63,7 +63,7 @@ Phases best_phases(double period, std::span<const std::size_t> moving, const std
     misses[p] = misses_of(clock, moving, repeats, std::min(most, out.misses));
     out.misses = std::min(out.misses, misses[p]);
   }
-  // twice around the circle, so that a run may cross its end
+  // two turns around the circle of phases also find a run that crosses phase 0
   int run = 0;
   for (int p = 0; p < 2 * kPhases; ++p) {
     run = misses[static_cast<std::size_t>(p % kPhases)] == out.misses ? std::min(run + 1, kPhases) : 0;
@@ -74,8 +74,8 @@ Phases best_phases(double period, std::span<const std::size_t> moving, const std
   return out;
 }
 
-// Returns the middle one of the best clocks around `first`. Equally good clocks fill an area in period and phase. At
-// the middle of this area of clocks, most phases are adjacent.
+// Returns the middle clock of the best clocks around `first`. Equally good clocks cover an area in period and phase. In
+// the middle of this area, the run of adjacent phases is longest.
 Clock best_clock(const Clock& first, double reach, int periods, std::span<const std::size_t> moving,
                  const std::vector<bool>& repeats, double& found) {
   Phases best{moving.size()};

@@ -17,7 +17,8 @@ using Vector = SensorErrors::Vector;
 using Matrix = SensorErrors::Matrix;
 using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
-// A prior size of the errors between data sheet (0) and uncalibrated (1), and its prior probability.
+// `share`: prior size of the sensor errors, from 0 (data sheet) to 1 (uncalibrated). `probability`: prior probability
+// of this size.
 struct Size {
   double share, probability;
 };
@@ -26,7 +27,7 @@ constexpr std::array<Size, 3> kCrossSizes = {{{0.0, 0.5}, {0.5, 0.2}, {1.0, 0.3}
 constexpr std::array<Size, 2> kGSensitivitySizes = {{{0.0, 0.6}, {1.0, 0.4}}};
 constexpr std::array<Size, 2> kDelaySizes = {{{0.0, 0.6}, {1.0, 0.4}}};
 
-// minimum standard deviation, so that each prior can be inverted
+// minimum standard deviation, which makes each prior covariance invertible
 constexpr double kLeast = 1e-9;
 
 double between(double sheet, double unknown, double share) {
@@ -37,7 +38,7 @@ struct Shares {
   double scale = 1.0, cross = 1.0, g_sensitivity = 1.0, delay = 1.0;
 };
 
-Vector deviations(const SensorErrorSizes& s, const Shares& shares) {
+Vector deviations(const SensorErrorPriors& s, const Shares& shares) {
   Vector out;
   const double delay = between(s.delay_s, s.delay_uncalibrated_s, shares.delay);
   out << Eigen::Matrix<double, 9, 1>::Constant(between(s.gyro, s.gyro_uncalibrated, shares.cross)),
@@ -52,11 +53,11 @@ Vector deviations(const SensorErrorSizes& s, const Shares& shares) {
   return out;
 }
 
-// Probability of the data sheet's values below which the readings clearly contradict the data sheet.
+// If the probability of the data sheet's values is below kPlain, the readings clearly contradict the data sheet.
 constexpr double kPlain = 0.05;
 
-// Weight of the information about the errors' values in the covariance. Sample errors are correlated, because errors of
-// the flight model last longer than a sample. The likelihood of the kind of device has full weight.
+// Weight of the readings' information in the covariance of the sensor errors. The weight is below 1, because errors of
+// the flight model last longer than a sample. The likelihood of a size of the sensor errors has full weight.
 constexpr double kEvidenceWeight = 0.03;
 
 struct Hypothesis {
@@ -66,8 +67,8 @@ struct Hypothesis {
   Matrix covariance;
 };
 
-// Computes the posterior in units of the prior's standard deviations, h = gamma + information * errors:
-// rate_smoother.md (R40), (R41), (R43).
+// Computes the posterior of the sensor errors, in units of the prior's standard deviations: rate_smoother.md (R40),
+// (R41), (R43). The input is h = gamma + information * errors.
 Hypothesis posterior(const Matrix& information, const Matrix& learnt, const Vector& h, const Vector& deviation,
                      double log_prior) {
   constexpr int kRest = SensorErrors::kSize - SensorErrors::kGSensitivity;
@@ -81,8 +82,8 @@ Hypothesis posterior(const Matrix& information, const Matrix& learnt, const Vect
   Vector sharpened = scaled_h;
   all.solve_vector(sharpened);
   out.log_odds = log_prior + 0.5 * scaled_h.dot(sharpened) - all.half_log_determinant();
-  // scale and misalignment are not corrected, because errors of the flight model look like scale and misalignment
-  // errors
+  // The correction of sensor errors leaves scale and misalignment unchanged, because errors of the flight model look
+  // like scale and misalignment errors.
   Vector mean = Vector::Zero();
   mean.tail<kRest>() = scaled_h.tail<kRest>();
   dense::Cholesky(sharp.bottomRightCorner<kRest, kRest>()).solve_vector(mean.tail<kRest>());
@@ -91,7 +92,7 @@ Hypothesis posterior(const Matrix& information, const Matrix& learnt, const Vect
   return out;
 }
 
-Matrix evidence_of(const Matrix& information, const SensorErrorSizes& sizes) {
+Matrix evidence_of(const Matrix& information, const SensorErrorPriors& sizes) {
   const Vector unit = deviations(sizes, {});
   const Matrix scaled = unit.asDiagonal() * (0.5 * (information + information.transpose())) * unit.asDiagonal();
   Vector values;
@@ -128,13 +129,13 @@ void require_known(const KnownSensorErrors& learnt) {
   require_within("learnt errors' covariance, least pivot", pivots.minCoeff(), -1e-9 * pivots.maxCoeff(), 1.0);
 }
 
-Vector error_deviations(const SensorErrorSizes& sizes, double share) {
+Vector prior_deviations(const SensorErrorPriors& sizes, double share) {
   return deviations(sizes, {share, share, share, share});
 }
 
 void discount_unobservable(double share, SensorErrorEvidence& evidence) {
   if (share >= 1.0) return;
-  // orthonormal columns
+  // orthonormal directions in which the readings do not determine the sensor errors
   Eigen::Matrix<double, SensorErrors::kSize, 5> unobservable = Eigen::Matrix<double, SensorErrors::kSize, 5>::Zero();
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
@@ -142,7 +143,8 @@ void discount_unobservable(double share, SensorErrorEvidence& evidence) {
     unobservable(3 * j + k, 2 + i) = unobservable(SensorErrors::kAccel + 3 * j + k, 2 + i) = 0.5;
     unobservable(3 * k + j, 2 + i) = unobservable(SensorErrors::kAccel + 3 * k + j, 2 + i) = -0.5;
   }
-  // applies (I - d U U') on both sides by the few columns of U, because a stream's thread may have a small stack
+  // Multiplies by (I - d U U') on both sides. Products with the few columns of U need little memory, because a stream's
+  // thread may have a small stack.
   Eigen::Matrix<double, 5, SensorErrors::kSize> said = unobservable.transpose().lazyProduct(evidence.information);
   evidence.information.noalias() -= (1.0 - share) * unobservable.lazyProduct(said);
   said = unobservable.transpose().lazyProduct(evidence.information.transpose());
@@ -151,7 +153,7 @@ void discount_unobservable(double share, SensorErrorEvidence& evidence) {
   evidence.gradient.noalias() -= (1.0 - share) * unobservable.lazyProduct(pulled);
 }
 
-SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const SensorErrorSizes& sizes,
+SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const SensorErrorPriors& sizes,
                                  const SensorErrorEvidence& learnt) {
   const Matrix information = evidence_of(evidence.information, sizes);
   const Vector h = evidence.gradient + information * evidence.about.vector() + learnt.gradient +
@@ -180,10 +182,10 @@ SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const Sens
   SensorErrorFit out{{}, 0.0, 0.0};
   for (Hypothesis& one : all) {
     one.log_odds /= sum;
-    if (one.shares.scale == 0.0) out.in_sheet_probability += one.log_odds;
+    if (one.shares.scale == 0.0) out.data_sheet_probability += one.log_odds;
     if (one.shares.delay == 0.0) out.synchronous_probability += one.log_odds;
   }
-  // the data sheet determines the corrections until readings clearly contradict it
+  // the corrections follow the data sheet until the readings clearly contradict the data sheet
   Vector mean = Vector::Zero();
   double kept = 0.0;
   for (const Hypothesis& one : all) {
@@ -192,7 +194,7 @@ SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const Sens
     kept += one.log_odds;
   }
   mean /= std::max(kept, 1e-300);
-  // deviations are relative to the mean in use: rate_smoother.md (R42)
+  // the covariance is about the mean that is in use: rate_smoother.md (R42)
   for (const Hypothesis& one : all) {
     const Vector off = one.mean - mean;
     out.known.covariance += one.log_odds * (one.covariance + off * off.transpose());
@@ -201,15 +203,15 @@ SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const Sens
   return out;
 }
 
-// rate_smoother.md (R43)
-SensorErrorEvidence calibration_evidence(const KnownSensorErrors& learnt, const SensorErrorSizes& sizes) {
+// Converts the sensor errors of an earlier run to information: rate_smoother.md (R43).
+SensorErrorEvidence calibration_evidence(const KnownSensorErrors& learnt, const SensorErrorPriors& sizes) {
   const Vector unit = deviations(sizes, {});
   const Matrix symmetric = 0.5 * (learnt.covariance + learnt.covariance.transpose());
   const Matrix scaled = unit.cwiseInverse().asDiagonal() * symmetric * unit.cwiseInverse().asDiagonal();
   Vector values;
   Matrix vectors;
   dense::decompose(scaled, values, vectors);
-  // directions with their prior variance contain no information
+  // a direction with its prior variance contains no information from the earlier run
   const Vector precision_ratio = values.cwiseMax(1e-12).cwiseInverse();
   const Vector of_mean = (precision_ratio.array() > 1.0).select(precision_ratio, Vector::Zero());
   const auto in_units = [&](const Vector& kept_values) -> Matrix {

@@ -8,16 +8,17 @@ namespace tumble {
 
 namespace {
 
-// Parameters of impacts: minimum rate of a moving body, minimum correlation, and standard deviation of the best delay
-// as a fraction of the slower triad's period.
+// `kStruckRate_rad_s` is the minimum rate of a moving body. `kCorrelationMin` is the minimum correlation for an
+// accepted delay. `kStruckSigma` is the standard deviation of the delay, as a fraction of the slower triad's period.
 constexpr double kStruckRate_rad_s = 1.0, kCorrelationMin = 0.6, kStruckSigma = 0.15;
 constexpr double kStruckMin = 30.0;
-// Minimum force of an impact, maximum force of free flight, and minimum fraction of intervals with impact or flight. A
-// body with impacts that never flies is hand-held.
+// `kStroke_m_s2` is the minimum specific force of an impact. `kFlying_m_s2` is the maximum specific force of free
+// flight. `kFlyingShareMin` is the minimum fraction of intervals in flight. A body with impacts that never flies is
+// hand-held.
 constexpr double kStroke_m_s2 = 30.0, kFlying_m_s2 = 5.0, kFlyingShareMin = 0.1;
 constexpr double kStrokesMin = 10.0;
 
-// Returns the correlation of the two quantities in rate_smoother.md (R45).
+// Returns the correlation between the change of rate and the mean specific force: rate_smoother.md (R45).
 double correlation(const StrokeSums& sums, int i) {
   const double n = sums.intervals, x = sums.turn, xx = sums.turn_squared;
   const double y = sums.force[i], yy = sums.force_squared[i], xy = sums.product[i];
@@ -25,7 +26,7 @@ double correlation(const StrokeSums& sums, int i) {
   return spread > 0.0 ? (n * xy - x * y) / std::sqrt(spread) : 0.0;
 }
 
-// Returns the correlation if the body has both impacts and flight, and 0 if not.
+// Returns the correlation. If the body has no impacts or no flight, returns 0.
 double score(const StrokeSums& sums, int i) {
   if (sums.strokes[i] < kStrokesMin || sums.flying[i] < kFlyingShareMin * sums.intervals) return 0.0;
   return correlation(sums, i);

@@ -8,22 +8,23 @@ namespace tumble {
 
 namespace {
 
-// Maximum hidden fraction of the window. Beyond this fraction, the unsaturated part does not determine the slope.
+// Maximum saturated fraction of the window. Above kShareMax, the unsaturated part does not determine the slope.
 constexpr double kShareMax = 0.85;
-// Standard deviation of the saturation deficit, as a fraction of the deficit and of the distance from the level (up to
-// 1 rad/s).
+// The standard deviation of the saturation deficit has two parts. `kOfLoss` is the part as a fraction of the deficit.
+// `kOfDepth` is the part as a fraction of the distance from the saturation level, up to `kDepthMax` (1 rad/s).
 constexpr double kOfLoss = 0.5, kOfDepth = 0.25, kDepthMax = 1.0;
 
 }  // namespace
 
-// Assumes a rate of constant slope that passes the saturation level: rails.md (R69), (R70).
+// Computes the saturation deficit for a rate that crosses the saturation level with constant slope: rails.md (R69),
+// (R70).
 SubsampleSaturation subsample_saturation(double reading_rad_s, double neighbour_rad_s, double rail_rad_s,
                                          double noise_rad_s) {
   const double depth = rail_rad_s - reading_rad_s, slope = reading_rad_s - neighbour_rad_s;
-  // a mean of clipped values is exactly at the saturation level; noise before clipping lowers the mean by less than a
-  // tenth of the noise
+  // A mean of clipped values is exactly at the saturation level. Noise that is added before clipping lowers the mean by
+  // less than a tenth of the noise.
   if (!(depth > 0.1 * noise_rad_s)) return {};
-  // a constant rate does not cross the saturation level; a slightly tilted plane looks like a decreasing plateau
+  // A constant rate does not cross the saturation level. On a slightly tilted plane, a plateau decreases slowly.
   if (!(slope > noise_rad_s)) return {};
   double share = 0.0;  // rails.md (R71)
   if (slope > 2.0 * depth) {
@@ -32,7 +33,7 @@ SubsampleSaturation subsample_saturation(double reading_rad_s, double neighbour_
     share = (1.0 - root) / (1.0 + ratio);
   }
   if (share > kShareMax) return {};
-  // rails.md (R72), (R73)
+  // saturation deficit and its standard deviation: rails.md (R72), (R73)
   const double free = 1.0 - share, lost = share * share / (free * free) * depth;
   return {true, lost, std::hypot(2.0 * noise_rad_s, kOfLoss * lost + kOfDepth * std::min(depth, kDepthMax))};
 }

@@ -19,21 +19,21 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-using Unknown = Eigen::Matrix<double, 6, 1>;  // lever arm, bias
+using Unknown = Eigen::Matrix<double, 6, 1>;  // unknowns: lever arm, accelerometer bias
 
 constexpr int kDelayMost = StrokeSums::kMostSamples;  // largest delay, in samples
-constexpr int kPerSample = 4;  // delays per sample on the coarse grid; as many again around the best
+constexpr int kPerSample = 4;  // delays per sample on the coarse grid, and on the finer grid around the best delay
 constexpr double kRateMin_rad_s = 2.0;
 constexpr std::size_t kSamplesMin = 20, kSamplesMax = 2000;
 constexpr double kLeverSigma_m = 0.02, kBiasSigma_m_s2 = 0.3;
-// Readings closer in time than this are one reading with jitter.
+// Two readings closer in time than kApart_s count as one reading with jitter.
 constexpr double kApart_s = 1e-4;
-// Kernel widths from the first iteration to the last [m/s^2].
+// Kernel widths of the robust cost, from the first to the last iteration [m/s^2].
 constexpr double kScales_m_s2[] = {3.0, 1.5, 0.8, 0.4, 0.25, 0.2};
-// Minimum gain of the robust cost (at most 1 per sample) that is not due to chance.
+// Minimum decrease of the robust cost (at most 1 per sample) that is not due to chance.
 constexpr double kGainMin = 0.4;
 
-// Distinct readings of a triad, at their true times.
+// Distinct readings of one triad, with their true times.
 struct TriadReadings {
   std::vector<double> time_s;
   std::vector<Vector3d> value;
@@ -68,8 +68,8 @@ struct Instant {
   Matrix3d by_lever;  ///< [alpha]x + [w]x [w]x
 };
 
-// Interpolates four readings around a time by a cubic. `from` is the index of the last reading before the time, and is
-// advanced.
+// Interpolates the force at a time, by a cubic through four readings. `from` is the index of the last reading before
+// the time, and advances.
 bool force_at(const TriadReadings& force, double time_s, std::size_t& from, Vector3d& out) {
   while (from + 2 < force.size() && force.time_s[from + 1] <= time_s) ++from;
   if (from < 1 || from + 2 >= force.size() || force.time_s[from] > time_s) return false;
@@ -90,7 +90,7 @@ std::vector<Instant> instants_of(const TriadReadings& gyro) {
   for (std::size_t k = 1; k + 1 < gyro.size() && out.size() < kSamplesMax; ++k) {
     const Vector3d &before = gyro.value[k - 1], &w = gyro.value[k], &after = gyro.value[k + 1];
     if (w.norm() < kRateMin_rad_s || gyro.clipped[k - 1] || gyro.clipped[k] || gyro.clipped[k + 1]) continue;
-    // slope of the parabola through three readings
+    // angular acceleration: slope of a parabola through three readings
     const double left = gyro.time_s[k] - gyro.time_s[k - 1], right = gyro.time_s[k + 1] - gyro.time_s[k];
     const Vector3d alpha = (left / right * (after - w) + right / left * (w - before)) / (left + right);
     out.push_back({gyro.time_s[k], so3::hat(alpha) + so3::hat(w) * so3::hat(w)});
@@ -98,7 +98,8 @@ std::vector<Instant> instants_of(const TriadReadings& gyro) {
   return out;
 }
 
-// Returns the robust cost of a delay, minimised over lever arm and bias: residuals of rate_smoother.md (R10).
+// Returns the robust cost of a delay, minimised over lever arm and bias. The residuals are the flight residuals of
+// rate_smoother.md (R10).
 double cost(const TriadReadings& accel, std::span<const Instant> instants, const Vector3d& lever_arm_m,
             double delay_s) {
   Unknown prior, at, information;
@@ -131,8 +132,8 @@ double cost(const TriadReadings& accel, std::span<const Instant> instants, const
   return sum;
 }
 
-// Integral of the force's norm from the first reading on. The norm is linear between readings and constant beyond the
-// ends.
+// Integral of the norm of the specific force, starting at the first reading. Between readings, the norm is linear.
+// After the last reading, the norm is constant.
 class ForceIntegral {
  public:
   explicit ForceIntegral(const TriadReadings& force)
@@ -142,7 +143,7 @@ class ForceIntegral {
       if (k > 0) sum_[k] = sum_[k - 1] + 0.5 * (norm_[k] + norm_[k - 1]) * (time_s_[k] - time_s_[k - 1]);
     }
   }
-  // `from`: as in force_at()
+  // `from` has the same meaning as in force_at()
   double to(double time_s, std::size_t& from) const {
     if (time_s <= time_s_.front()) return norm_.front() * (time_s - time_s_.front());
     if (time_s >= time_s_.back()) return sum_.back() + norm_.back() * (time_s - time_s_.back());
@@ -157,7 +158,7 @@ class ForceIntegral {
   std::vector<double> norm_, sum_;
 };
 
-// Estimates the delay from impacts, rate_smoother.md (R45). sigma_s is 0 without information.
+// Estimates the delay from impacts: rate_smoother.md (R45). If there are too few impacts, `sigma_s` is 0.
 TriadDelay struck(const TriadReadings& gyro, const TriadReadings& accel, double period_s) {
   if (accel.size() < 4) return {};
   const ForceIntegral force(accel);
@@ -182,7 +183,7 @@ TriadDelay struck(const TriadReadings& gyro, const TriadReadings& accel, double 
   return sums.estimate_delay(period_s, std::max(mean_period(gyro), mean_period(accel)));
 }
 
-// From flight; 0 without information.
+// Estimates the delay from flight. If there is too little flight, returns 0.
 double flown_s(const TriadReadings& gyro, const TriadReadings& accel, const Vector3d& lever_arm_m, double period_s) {
   const std::vector<Instant> turning = instants_of(gyro);
   if (turning.size() < kSamplesMin) return 0.0;

@@ -9,7 +9,8 @@ namespace tumble {
 
 namespace {
 
-// Returns phi(z) / Phi(z) of the normal distribution, by its asymptotic series where phi and Phi underflow.
+// Returns the ratio phi(z) / Phi(z) of the normal density to the normal distribution. If phi and Phi underflow, returns
+// the asymptotic series.
 double density_over_share(double z) {
   if (z < -8.0) return -z / (1.0 - 1.0 / (z * z) + 3.0 / (z * z * z * z));
   const double density = std::exp(-0.5 * z * z) * std::numbers::inv_sqrtpi / std::numbers::sqrt2;
@@ -18,7 +19,7 @@ double density_over_share(double z) {
 
 }  // namespace
 
-// rate_smoother.md (R23), (R24)
+// Computes mean and variance of a normal variable with a soft lower bound: rate_smoother.md (R23), (R24).
 NormalMoments truncated_below(const NormalMoments& from, double bound, double softness2) {
   const double spread2 = from.variance + softness2, spread = std::sqrt(spread2);
   const double z = (from.mean - bound) / spread, r = density_over_share(z);
@@ -26,7 +27,8 @@ NormalMoments truncated_below(const NormalMoments& from, double bound, double so
           from.variance - from.variance * from.variance * r * (z + r) / spread2};
 }
 
-// Computes the marginal without its Gaussian factor (cavity) and the new factor (site): rate_smoother.md (R22), (R25).
+// Updates the Gaussian factor (site) that approximates a lower bound: rate_smoother.md (R22), (R25). The update first
+// removes the old factor from the marginal (cavity).
 NormalSite refined_bound(const NormalMoments& marginal, const NormalSite& now, double bound, double softness2,
                          double widest2, double share) {
   const double precision = std::max(1.0 / marginal.variance - now.precision, 1.0 / widest2);

@@ -11,24 +11,24 @@ namespace {
 constexpr double kVarianceMin = 1e-18;
 constexpr double kVarianceMax = 1e18;
 
-// One eliminated knot of one axis: R x_k + S x_{k+1} = z with noise of unit variance, R upper triangular. The state x
-// is (rate, acceleration * time_scale), so that rate and scaled acceleration have similar magnitudes for any sample
-// rate. saave.md (S6)
+// Eliminated knot of one axis: R x_k + S x_{k+1} = z with noise of unit variance and upper triangular R, saave.md (S6).
+// The state x is (rate, acceleration * time_scale). The time scale gives both components similar magnitudes at any
+// sample rate.
 struct EliminatedKnot {
   Eigen::Matrix2d R, S;
   Eigen::Vector2d z;
 };
 
-// Information about the current knot from all earlier knots: R x = z, R upper triangular.
+// Information about the current knot from all earlier knots: R x = z with upper triangular R.
 struct Carried {
   Eigen::Matrix2d R = Eigen::Matrix2d::Zero();
   Eigen::Vector2d z = Eigen::Vector2d::Zero();
 };
 
-// columns 0-1: knot k, 2-3: knot k+1, 4: right-hand side
+// columns 0 and 1: knot k; columns 2 and 3: knot k+1; column 4: right-hand side
 using Stack = Eigen::Matrix<double, 5, 5>;
 
-// Householder triangularisation of the first four columns, in place
+// Triangularises the first four columns in place by Householder reflections.
 void triangularise(Stack& a) {
   for (int c = 0; c < 4; ++c) {
     const int n = 5 - c;
@@ -47,8 +47,8 @@ void triangularise(Stack& a) {
 
 EliminatedKnot eliminate(Carried& carried, double rate, double deviation, double dt_s, double psd,
                          double time_scale_s) {
-  // square root of Q^-1 for the scaled state: Q = L L', L lower triangular, so L^-1 (F x_k - x_{k+1}) is white;
-  // saave.md (S5)
+  // The square root of Q^-1 for the scaled state follows from Q = L L' with lower triangular L. The vector L^-1 (F x_k
+  // - x_{k+1}) is then white noise: saave.md (S5).
   const double ratio = dt_s / time_scale_s;
   const double unit = std::sqrt(psd * dt_s) * dt_s;
   const double l11 = unit / std::sqrt(3.0);
@@ -119,8 +119,8 @@ void smooth_axis(std::span<const WnojSmoother::Measurement> measurements, int ax
   }
   measure(carried, measurements.back().rate_rad_s[axis], std::sqrt(measurements.back().variance_rad2_s2[axis]));
 
-  // x_k = R^-1 (z - S x_{k+1}), covariance R^-1 (1 + S P S') R^-T: sums of positive terms without cancellation;
-  // saave.md (S7)
+  // The solution is x_k = R^-1 (z - S x_{k+1}), with covariance R^-1 (1 + S P S') R^-T: saave.md (S7). The covariance
+  // is a sum of positive terms, without cancellation.
   Eigen::Matrix2d R_inv = carried.R.triangularView<Eigen::Upper>().solve(Eigen::Matrix2d::Identity());
   Eigen::Vector2d x = R_inv * carried.z;
   Eigen::Matrix2d P = R_inv * R_inv.transpose();

@@ -3,7 +3,7 @@
 
 namespace tumble {
 
-// explicit instantiation for all files that solve the equations of hand-held motion
+// explicit instantiation that all files of the hand-held motion smoother share
 template struct ArrowSystem<carried::kState, carried::kBorder>;
 
 }  // namespace tumble

@@ -8,7 +8,7 @@
 
 namespace tumble {
 
-void CarriedElements::mark_suspect(std::span<const ImuSample> samples, std::span<const std::uint8_t> axes) {
+void ClippedReadings::mark_suspect(std::span<const ImuSample> samples, std::span<const std::uint8_t> axes) {
   for (std::size_t k = 0; k < axes.size(); ++k) {
     for (int j = 0; j < 3; ++j) {
       std::int8_t& sign = signs[k].gyro[static_cast<std::size_t>(j)];
@@ -17,14 +17,14 @@ void CarriedElements::mark_suspect(std::span<const ImuSample> samples, std::span
   }
 }
 
-void CarriedElements::mark_near(std::span<RateState> rates) const {
+void ClippedReadings::mark_partly_saturated(std::span<RateState> rates) const {
   for (std::size_t k = 0; k < rates.size(); ++k) {
     if (near[k] != 0 && rates[k].source == RateSource::measured) rates[k].source = RateSource::bounded_only;
   }
 }
 
-CarriedElements carried_elements(std::span<const ImuSample> samples, const ClippingFinder::Found& found) {
-  CarriedElements out;
+ClippedReadings carried_elements(std::span<const ImuSample> samples, const ClippingFinder::Found& found) {
+  ClippedReadings out;
   out.signs.resize(samples.size());
   for (std::size_t k = 0; k < samples.size(); ++k) out.signs[k] = clip_signs(samples[k], found.clippings[k]);
   out.near = may_meet_rails(samples, found.rails.upright ? RailPlanes{} : found.rails.planes_in_use());

@@ -13,8 +13,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-// Variance of a second difference as a multiple of q P^3 (density q of the jerk, period P); and the time range of the
-// difference, in periods.
+// `kSecondDifference` is the variance of a second difference of readings, as a multiple of q P^3. The jerk density is
+// q, and the period is P. `kJerkReach` is the time span of the second difference, in periods.
 constexpr double kSecondDifference = 11.0 / 20.0, kJerkReach = 1.5;
 
 bool is_free(const GyroReadings& rates, std::size_t k, Eigen::Index axis) {
@@ -28,8 +28,8 @@ struct Reach {
         last(std::min(nodes, static_cast<std::size_t>(std::max(0.0, std::floor(to_s / node_s) + 1.0)))) {}
 };
 
-// Estimates the jerk from three consecutive unsaturated readings, per sensing element. The second difference of means
-// over contiguous windows has the variance 11/20 q P^3, plus six times that of the noise: carried.md (C24)
+// Estimates the jerk of each sensing element from three consecutive unsaturated readings: carried.md (C24). The second
+// difference of means over contiguous windows has the variance 11/20 q P^3, plus six times the noise variance.
 void add_bends(const GyroReadings& rates, const Eigen::Matrix3d& rows, double noise_rad_s, double node_s,
                std::vector<double>& densities) {
   const double period_s = rates.windows.period_s, reach_s = kJerkReach * std::max(period_s, node_s);
@@ -54,8 +54,8 @@ void add_bends(const GyroReadings& rates, const Eigen::Matrix3d& rows, double no
     densities[i] = counts[i] > 0.0 ? std::max(0.0, densities[i] / counts[i]) : 0.0;
 }
 
-// Computes the slope of the rate of sensing element `axis` between two consecutive unsaturated readings, and the
-// slope's time. Returns false if the readings are not consecutive.
+// Computes the slope between two consecutive unsaturated readings of sensing element `axis`, and the time of the slope.
+// Returns false if the readings are not consecutive.
 bool slope_of(const GyroReadings& rates, const Eigen::Matrix3d& rows, std::size_t k, Eigen::Index axis, double& slope,
               double& at_s) {
   if (!is_free(rates, k, axis) || !is_free(rates, k + 1, axis)) return false;
@@ -67,13 +67,13 @@ bool slope_of(const GyroReadings& rates, const Eigen::Matrix3d& rows, std::size_
   return true;
 }
 
-// Estimates the jerk across a clipped segment of a sensing element. White jerk of density q changes the angular
-// acceleration by q T within the time T (mean square). The curvature of adjacent unsaturated readings says little about
-// a motion that reverses beyond the saturation level: carried.md (C25)
+// Estimates the jerk across a clipped segment of a sensing element: carried.md (C25). White jerk of density q changes
+// the angular acceleration by a mean square of q T within the time T. A motion that reverses beyond the saturation
+// level has a larger jerk than the adjacent unsaturated readings show.
 void add_across(const GyroReadings& rates, const Eigen::Matrix3d& rows, double noise_rad_s, double node_s,
                 std::vector<double>& densities) {
   const std::size_t count = rates.samples.size();
-  const double noise = 2.0 * noise_rad_s / rates.windows.period_s;  // of the difference of two slopes
+  const double noise = 2.0 * noise_rad_s / rates.windows.period_s;  // noise of the difference of two slopes
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     for (std::size_t begin = 2; begin + 2 < count;) {
       if (is_free(rates, begin, axis)) {

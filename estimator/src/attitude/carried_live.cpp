@@ -7,7 +7,7 @@ namespace tumble {
 
 namespace {
 
-/// Returns the gyro's sensing directions, where planes are known.
+/// Returns the gyro's sensing directions. An element without a known saturation plane has the direction of its axis.
 Eigen::Matrix3d rows_of(const RailPlanes& planes) {
   Eigen::Matrix3d out = Eigen::Matrix3d::Identity();
   for (int j = 0; j < 3; ++j) {
@@ -47,8 +47,8 @@ Status CarriedLive::push(const ImuSample& sample, State& state, std::optional<Ra
   return status;
 }
 
-/// Classifies the newest sample of the window with its neighbour `next`, and all samples if the saturation levels have
-/// changed.
+/// Classifies the newest sample of the window with its neighbour `next`. If the saturation levels have changed,
+/// classifies all samples of the window.
 void CarriedLive::judge_window(const ImuSample& next, State& state) const {
   const std::vector<CarriedStream::Reading>& window = state.stream.readings;
   RailDetector::State& upright_rails = state.rails.known.upright_rails;

@@ -16,13 +16,13 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using so3::hat;
 
-using GyroRow = Eigen::Matrix<double, 1, 6>;          // by rate and angular acceleration
-using BorderRow = Eigen::Matrix<double, 1, kBorder>;  // by the constants
-using ForceState = Eigen::Matrix<double, 3, 12>;      // by attitude, rate, and both accelerations
+using GyroRow = Eigen::Matrix<double, 1, 6>;          // derivative by rate and angular acceleration
+using BorderRow = Eigen::Matrix<double, 1, kBorder>;  // derivative by the calibration constants
+using ForceState = Eigen::Matrix<double, 3, 12>;      // derivative by attitude, rate, and both accelerations
 using ForceBorder = Eigen::Matrix<double, 3, kBorder>;
 
-// carried.md (C14): the slope h = -d/du log Phi(u) is the hazard phi/Phi. In the tail, where phi and Phi underflow, the
-// asymptotic series is used.
+// Returns the hazard phi(u)/Phi(u), which is the slope of log Phi(u): carried.md (C14). In the tail, phi and Phi
+// underflow, so the function uses the asymptotic series.
 double hazard(double u) {
   if (u < -12.0) return -u - 1.0 / u * (1.0 - 2.0 / (u * u));
   const double density = std::exp(-0.5 * u * u) / std::sqrt(2.0 * std::numbers::pi);
@@ -44,7 +44,8 @@ void add_gyro_row(const GyroRow& state, const BorderRow& border, double weight, 
   corner.gradient.noalias() -= slope * border.transpose();
 }
 
-// Derivatives of one sensing element's rate, and of the rate's time derivative, by the node's errors.
+// Derivatives of one sensing element's rate by the errors of the node's state (`value`). `slope` contains the
+// derivatives of the rate's time derivative.
 struct GyroRows {
   GyroRow value = GyroRow::Zero(), slope = GyroRow::Zero();
   BorderRow border = BorderRow::Zero();
@@ -63,8 +64,8 @@ GyroRows gyro_rows(const Eigen::RowVector3d& m, const Node& node, const Constant
   return rows;
 }
 
-// Returns the total saturation deficit of clipped elements, and the deviation of unusable elements from their readings,
-// at the current estimate.
+// Returns how much the estimated rate differs from the readings of the hidden sensing elements. For a clipped element,
+// the difference is the saturation deficit. The result is the sum over all elements but `except`.
 double deficit(const NodeReadings& readings, const std::array<GyroRows, 3>& rows, int except) {
   double sum = 0.0;
   for (int i = 0; i < 3; ++i) {
@@ -78,8 +79,8 @@ double deficit(const NodeReadings& readings, const std::array<GyroRows, 3>& rows
   return sum;
 }
 
-// replaces n readings at times t by two independent readings, of the value at their mean time and of the slope:
-// carried.md (C13)
+// Replaces n readings at times t by two independent readings: the value at the mean time, and the slope, carried.md
+// (C13).
 double add_free(const ElementSums& e, const GyroRows& rows, double information, System::Block& block,
                 System::Corner& corner) {
   const double mean_t = e.t_s / e.n;
@@ -98,7 +99,7 @@ double add_free(const ElementSums& e, const GyroRows& rows, double information, 
   return cost;
 }
 
-// carried.md (C14)
+// Adds the lower bound from the readings of a saturated sensing element: carried.md (C14).
 double add_bound(const ElementSums& e, const GyroRows& rows, double sigma, double share, System::Block& block,
                  System::Corner& corner) {
   const GyroRow row = rows.value + e.clipped_t_s * rows.slope;
@@ -108,14 +109,15 @@ double add_bound(const ElementSums& e, const GyroRows& rows, double sigma, doubl
   return minus_two_log_phi(u);
 }
 
-// Adds a scalar information `w` that three entries at `i`, whose current values are `value`, are zero.
+// Adds the information `w` that the three states with first index `i`, currently `value`, are zero.
 double add_zero(const Vector3d& value, double w, int i, System::Block& block) {
   block.diagonal.diagonal().segment<3>(i).array() += w;
   block.gradient.segment<3>(i) -= w * value;
   return w * value.squaredNorm();
 }
 
-// Adds the information of `N` channels of both nodes, equal on each axis, with the first channel at `first`.
+// Adds information about `N` states of a node and of the next node. The information is equal for each axis, and `first`
+// is the index of the first state.
 template <int N>
 double add_chain(const Eigen::Matrix<double, 2 * N, 2 * N>& information, double scale, int first,
                  const Eigen::Matrix<double, 3, 2 * N>& values, System::Block& block, System::Block& next) {
@@ -136,7 +138,7 @@ double add_chain(const Eigen::Matrix<double, 2 * N, 2 * N>& information, double 
 
 }  // namespace
 
-// carried.md (C1)
+// Applies a step of the solver to the states of the node: carried.md (C1).
 void Node::move(const System::StateVector& step) {
   q_WI = (q_WI * so3::exp(step.segment<3>(kPhi))).normalized();
   w_WI_I_rad_s += step.segment<3>(kRate);
@@ -162,7 +164,7 @@ double add_gyro(const NodeReadings& readings, const Matrix3d& rows, const Readin
     const ElementSums& e = readings.gyro[static_cast<std::size_t>(i)];
     const GyroRows& element = elements[static_cast<std::size_t>(i)];
     if (e.n > 0.0) {
-      // all readings of the node share one error, so the error does not average out
+      // All readings of the node have the same tilt error. The error therefore does not average out.
       const double tilt = noise.tilt_share * deficit(readings, elements, i);
       cost += add_free(e, element, 1.0 / (variance + e.n * (tilt * tilt + e.open * e.open)), block, corner);
     }
@@ -174,7 +176,7 @@ double add_gyro(const NodeReadings& readings, const Matrix3d& rows, const Readin
   return cost;
 }
 
-// carried.md (C16)
+// Adds the residual of the specific force: carried.md (C16).
 double add_force(const NodeReadings& readings, const Vector3d& g_W_m_s2, const ReadingNoise& noise, const Node& node,
                  const Constants& constants, System::Block& block, System::Corner& corner) {
   if (!(readings.force_n > 0.0)) return 0.0;
@@ -230,7 +232,7 @@ double add_rest(const ReadingNoise& noise, const Node& node, System::Block& bloc
          add_zero(node.a_W_m_s2, 1.0 / (noise.rest_m_s2 * noise.rest_m_s2), kHand, block);
 }
 
-// carried.md (C3)
+// Returns the rotation vector between two nodes: carried.md (C3).
 Vector3d turned(const Node& from, const Node& to, double h) {
   const Vector3d& w0 = from.w_WI_I_rad_s;
   const Vector3d& w1 = to.w_WI_I_rad_s;
@@ -241,18 +243,18 @@ Vector3d turned(const Node& from, const Node& to, double h) {
 Motion::Motion(const Params& params) : params_(params) {
   const double h = params.step_s;
   const double q = params.jerk_rad_s3_sqrts * params.jerk_rad_s3_sqrts;
-  // white jerk, carried.md (C2): covariance Q of rate and angular acceleration after the step, conditional on their
-  // values before the step
+  // White jerk gives rate and angular acceleration after the step the covariance Q, conditional on their values before
+  // the step: carried.md (C2).
   Eigen::Matrix2d Q;
   Q << h * h * h / 3.0, h * h / 2.0, h * h / 2.0, h;
   Eigen::Matrix<double, 2, 4> J;
   J << -1.0, -h, 1.0, 0.0, 0.0, -1.0, 0.0, 1.0;
   jerk_ = J.transpose() * (q * Q).inverse() * J;
-  // variance of the angle conditional on rate and angular acceleration at both ends, remainder of a quintic: carried.md
-  // (C4)
+  // Variance of the rotation angle, conditional on rate and angular acceleration at both ends of the step. The variance
+  // is the remainder of a quintic: carried.md (C4).
   phi_variance_ = q * std::pow(h, 5) / 720.0 + 1e-12;
 
-  // the held point: carried.md (C6), (C7), (C8)
+  // motion of the point that the hand holds: carried.md (C6), (C7), (C8)
   const double decay = std::exp(-h / params.hand_tau_s);
   const double density = (1.0 - decay * decay) * params.hand_m_s2 * params.hand_m_s2 / h;
   Eigen::Matrix<double, 1, 6> row;
@@ -265,7 +267,7 @@ Motion::Motion(const Params& params) : params_(params) {
   kinematics_ += row.transpose() * row / (density * std::pow(h, 5) / 120.0 + 1e-10);
 }
 
-// carried.md (C4), (C5)
+// Adds the residual of the attitude between two nodes: carried.md (C4), (C5).
 double Motion::add_attitude(const Node& from, const Node& to, double jerk, System::Block& block,
                             System::Block& next) const {
   const double h = params_.step_s;
@@ -292,7 +294,7 @@ double Motion::add_attitude(const Node& from, const Node& to, double jerk, Syste
   return w * error.squaredNorm();
 }
 
-// carried.md (C2), (C4), (C6), (C7), (C8)
+// Adds the motion between two nodes: carried.md (C2), (C4), (C6), (C7), (C8).
 double Motion::add_step(const Node& from, const Node& to, double hand, System::Block& block, System::Block& next,
                         double jerk) const {
   double cost = add_attitude(from, to, jerk, block, next);
@@ -306,7 +308,7 @@ double Motion::add_step(const Node& from, const Node& to, double hand, System::B
   return cost;
 }
 
-// carried.md (C9)
+// Adds the weak priors of velocity and position: carried.md (C9).
 double Motion::add_bounds(const Node& node, System::Block& block) const {
   const double velocity = params_.velocity_m_s * params_.velocity_m_s * params_.velocity_tau_s;
   const double position = params_.position_m * params_.position_m * params_.position_tau_s;

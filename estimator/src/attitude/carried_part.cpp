@@ -13,7 +13,7 @@ namespace tumble::carried {
 
 namespace {
 
-constexpr double kCostChange = 0.2;  // convergence bound of the cost, corresponding to odds of 1.1
+constexpr double kCostChange = 0.2;  // convergence limit of the cost: a change by 0.2 corresponds to odds of 1.1
 constexpr int kStepsMax = 30;        // maximum number of iterations
 
 Message message(const Node& about, const System::Block& block) {
@@ -53,10 +53,10 @@ Problem::Problem(const Problem& whole, const Part& part)
             whole.hand_.begin() + static_cast<std::ptrdiff_t>(part.last + 1)),
       blocks_(nodes_.size()) {}
 
-// Computes the Schur complements of carried.md (C17), from both ends.
+// Computes the Schur complements for the nodes outside each part, from both ends of the recording: carried.md (C17).
 bool Problem::condense_rest(std::span<Part> parts) const {
   System::Corner unused;
-  // from the left: the prior of a node from all earlier nodes
+  // from the left: the prior that all earlier nodes provide for a node
   System::Block here, next;
   motion_.add_first(nodes_[0], here);
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
@@ -70,7 +70,7 @@ bool Problem::condense_rest(std::span<Part> parts) const {
     here = next;
     here.border.setZero();
   }
-  // from the right
+  // from the right: the prior that all later nodes provide for a node
   here = {};
   for (std::size_t i = nodes_.size(); i-- > 0;) {
     for (Part& part : parts)

@@ -11,13 +11,13 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kRotationMax_rad = 0.8;  // largest step of an attitude; the linearisation is invalid beyond
-constexpr double kConverged = 1e-3;       // convergence bound of attitudes [rad] and, times ten, of rates [rad/s]
-constexpr int kFollowFirst = 3;           // iterations before the held point's power is estimated
-constexpr int kFollowLast = 8;            // iterations after which the power is fixed, so that the iteration converges
-constexpr double kHandMean_s = 0.25;      // averaging time of the held point's acceleration
+constexpr double kRotationMax_rad = 0.8;  // largest step of an attitude; for larger steps, the linearisation is invalid
+constexpr double kConverged = 1e-3;       // convergence limit of attitudes [rad] and, times ten, of rates [rad/s]
+constexpr int kFollowFirst = 3;           // iterations before the estimate of the hand's acceleration density
+constexpr int kFollowLast = 8;            // iterations after which the hand's density is fixed, for convergence
+constexpr double kHandMean_s = 0.25;      // averaging time of the hand's acceleration
 constexpr int kHalvings = 4;              // maximum number of times that a step is halved if the cost increases
-constexpr double kRises = 0.2;            // tolerated increase of the cost: odds of 1.1, which no covariance shows
+constexpr double kRises = 0.2;            // tolerated increase of the cost, corresponding to odds of 1.1
 constexpr Trouble kLost = Trouble::diverged;
 
 }  // namespace
@@ -50,9 +50,9 @@ ReadingNoise reading_noise(const CarriedSmoother::Params& p, double period_s) {
 
 namespace {
 
-// Returns the noise for the covariances. A lower bound contains no information about how far the rate is beyond the
-// bound. The mean over a window P differs from the rate at the window's centre: white jerk of density q causes the
-// variance q P^3/320, carried.md (C26).
+// Returns the reading noise for the computation of covariances. A lower bound contains no information about how far the
+// rate is beyond the bound. The mean over a window P differs from the rate at the window's centre. White jerk of
+// density q causes the variance q P^3/320 of this difference: carried.md (C26).
 ReadingNoise stated_noise(const CarriedSmoother::Params& params, ReadingNoise noise, double period_s) {
   noise.bound = 0.0;
   noise.window_rad_s = params.jerk_rad_s3_sqrts * std::sqrt(period_s * period_s * period_s / 320.0);
@@ -87,7 +87,7 @@ double add_node(const NodeReadings& readings, const Eigen::Matrix3d& rows, const
   return cost;
 }
 
-// carried.md (C1)
+// Adds the prior of the calibration constants: carried.md (C1).
 double add_constants_prior(const CarriedSmoother::Params& params, const Constants& constants, System::Corner& corner) {
   double cost = 0.0;
   const auto prior = [&](const Vector3d& value, double sigma, int at) {
@@ -129,7 +129,7 @@ double Problem::linearise() {
   return cost;
 }
 
-// carried.md (C17), (C18)
+// Eliminates the nodes from the normal equations and solves for the calibration constants: carried.md (C17), (C18).
 bool Problem::eliminate(System::BorderVector& step) {
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
     System::Block* const next = i + 1 < blocks_.size() ? &blocks_[i + 1] : nullptr;
@@ -138,10 +138,10 @@ bool Problem::eliminate(System::BorderVector& step) {
   return System::solve_corner(corner_, step, constants_covariance_);
 }
 
-// carried.md (C19)
+// Makes one Gauss-Newton step: carried.md (C19).
 bool Problem::step(double& largest) {
   if (!eliminate(border_step_)) return false;
-  // the solver's steps overwrite the gradients, which are no longer needed
+  // the steps overwrite the gradients, because the solver no longer needs the gradients
   steps_.resize(blocks_.size());
   double turn = 0.0;
   largest = 0.0;
@@ -160,13 +160,14 @@ bool Problem::step(double& largest) {
   return true;
 }
 
-// Applies a fraction of the last step, starting from the current nodes.
+// Moves the nodes from their current states by a fraction of the last step.
 void Problem::go(double share) {
   for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_[i].move(share * steps_[i]);
   constants_.move(share * border_step_);
 }
 
-// Adapts the density of the held point's acceleration to its recent power, with a lower limit: carried.md (C10)
+// Adapts the acceleration density of the held point (the point in the hand) to its recent power. The density has a
+// lower limit: carried.md (C10).
 void Problem::adapt_process_noise() {
   const std::size_t count = nodes_.size();
   const double assumed = 3.0 * params_.hand_m_s2 * params_.hand_m_s2;
@@ -189,14 +190,14 @@ void Problem::restore(Answer answer) {
   covariances_ = std::move(answer.covariances);
 }
 
-// carried.md (C19), (C20)
+// Iterates Gauss-Newton steps until the solution converges: carried.md (C19), (C20).
 Status Problem::solve(CarriedSmoother::Report& report) {
   std::optional<Iterate> before;
   report.converged = false;
   for (int k = 0; k < params_.expert.iterations_max; ++k) {
     if (k >= kFollowFirst && k <= kFollowLast && params_.expert.hand.hand_noise_adaptation > 0.0) {
       adapt_process_noise();
-      before.reset();  // costs for different densities are not comparable
+      before.reset();  // costs for different process noise are not comparable
     }
     report.cost = linearise();
     if (before && !descend_from(*before, report.cost)) break;
@@ -208,7 +209,7 @@ Status Problem::solve(CarriedSmoother::Report& report) {
     if (report.converged && k > kFollowFirst) break;
   }
   if (before && !report.converged) {
-    // the cost after the last step is not yet checked
+    // checks the cost after the last step
     report.cost = linearise();
     (void)descend_from(*before, report.cost);
   }
@@ -217,8 +218,8 @@ Status Problem::solve(CarriedSmoother::Report& report) {
   return {};
 }
 
-// Tries shorter steps if the last step increased the cost. Returns false if no step decreases the cost; the nodes are
-// then restored and linearised again.
+// If the last step increased the cost, tries shorter steps. If no shorter step decreases the cost, restores the nodes,
+// linearises again, and returns false.
 bool Problem::descend_from(const Iterate& before, double& cost) {
   const auto goes_down = [&] { return cost < before.cost + kRises; };
   for (int k = 0; k < kHalvings && !goes_down(); ++k) {
@@ -234,8 +235,8 @@ bool Problem::descend_from(const Iterate& before, double& cost) {
   return false;
 }
 
-// carried.md (C21), (C22), with the jerk of (C23). Lower bounds give no information about the distance beyond the
-// bound.
+// Computes the covariances of the nodes, carried.md (C21), (C22), with the inflated jerk density (C23). Lower bounds
+// contribute no information about how far a rate is beyond its bound.
 Status Problem::covariances(CarriedSmoother::Report& report) {
   for (std::size_t i = 0; i < jerk_.size(); ++i)
     jerk_[i] = std::max(params_.expert.jerk_inflation, jerk_seen_[i] / params_.jerk_rad_s3_sqrts);
@@ -258,8 +259,9 @@ Status Problem::covariances(CarriedSmoother::Report& report) {
   return {};
 }
 
-// carried.md (C30): the mean over a window T of a process with standard deviation s and correlation time tau has the
-// variance s^2 2 tau/T (1 - tau/T (1 - exp(-T/tau)))
+// Compares the held point's mean acceleration over windows with the model: carried.md (C30). Over a window T, the mean
+// of a process with standard deviation s and correlation time tau has the variance s^2 2 tau/T (1 - tau/T (1 -
+// exp(-T/tau))).
 double Problem::hand_mahalanobis() const {
   const auto window = static_cast<std::size_t>(std::max(1.0, kHandMean_s / params_.expert.node_s));
   const double span = static_cast<double>(window) * params_.expert.node_s,

@@ -45,17 +45,17 @@ double since_s(std::span<const ImuSample> samples, std::size_t from, std::size_t
   return seconds(samples[to].time_ns - samples[from].time_ns);
 }
 
-// Agreement with a regular clock above which equal readings are repetitions.
+// If equal readings agree with a regular clock by at least this fraction, the equal readings are repetitions.
 constexpr double kMinClockAgreement = 0.9;
-// Window length in nodes above which windows may be partly saturated. The windows of 20 ms of pendulums were partly
-// saturated, and the windows of 10 ms of hand-held wands were not (measured).
+// Window length, in node intervals, above which a window may be partly saturated. In recordings, 20 ms windows
+// (pendulums) were partly saturated, and 10 ms windows (hand-held wands) were not.
 constexpr double kLongWindow = 1.5;
 
 TimeNs nanoseconds(double s) {
   return static_cast<TimeNs>(std::llround(1e9 * s));
 }
 
-/// Returns the median step. With fewer than two samples, returns `otherwise_s`.
+/// Returns the median time step. With fewer than two samples, returns `otherwise_s`.
 double median_step_or(std::span<const ImuSample> samples, double otherwise_s) {
   if (samples.size() < 2) return otherwise_s;
   std::vector<double> periods(samples.size() - 1);
@@ -89,7 +89,7 @@ void add_gyro_reading(double z, double t, int sign, ElementSums& e) {
   e.zt += z * t;
 }
 
-/// Fills the clipped segment [begin, end) of one element, whose readings are `raw`.
+/// Fills the clipped segment [begin, end) of one sensing element, given its readings `raw`.
 void fill_segment(std::span<const ImuSample> samples, const std::vector<double>& raw, std::size_t begin,
                   std::size_t end, int sign, std::vector<double>& filled) {
   if (begin < 2 || end + 1 >= raw.size()) return;
@@ -106,8 +106,7 @@ void fill_segment(std::span<const ImuSample> samples, const std::vector<double>&
   }
 }
 
-/// A segment from `begin` on, in which an element is at one saturation level or unusable. An unsaturated segment has
-/// sign 0.
+/// Segment in which a sensing element is at one saturation level or unusable. An unsaturated segment has sign 0.
 struct HiddenSegment {
   std::size_t end = 0;
   int sign = 0;
@@ -125,12 +124,14 @@ HiddenSegment hidden_segment(std::span<const ClipSigns> signs, std::size_t eleme
     if (sign == 0 || (sign != ClipSigns::kMissing && out.sign != 0 && sign != out.sign)) break;
     if (sign != ClipSigns::kMissing) out.sign = sign;
   }
-  // with only unusable readings, the rate is assumed beyond the saturation level on the side of the previous reading
+  // If all readings are unusable, the rate is assumed to be beyond the saturation level with the sign of the previous
+  // reading.
   if (out.sign == 0) out.sign = raw[begin == 0 ? begin : begin - 1] < 0.0 ? -1 : 1;
   return out;
 }
 
-// Computes ends and centres of windows for readings every `period_s`. A window after a drop-out has the usual length.
+// Computes ends and centres of the averaging windows for readings every `period_s`. After a drop-out, the window has
+// its usual length.
 Windows windows_of(std::span<const ImuSample> samples, TimeNs origin_ns, double period_s) {
   Windows out;
   out.period_s = period_s;
@@ -152,9 +153,9 @@ void place(double node_s, std::size_t nodes, Windows& windows) {
   }
 }
 
-// Corrects window centres of a slow accelerometer, which averages over an unknown part of its period. Window centres
-// are moved to the middle of the possible range. The force's change over the remaining range is added as uncertainty:
-// carried.md (C12)
+// Corrects the window centres of a slow accelerometer, which averages over an unknown part of its period: carried.md
+// (C12). The corrected centre is the middle of the possible range. The change of force over the range adds to the
+// uncertainty.
 std::vector<double> open_forces(OwnReadings& forces, double log_period_s) {
   const std::vector<ImuSample>& samples = forces.samples;
   std::vector<double> out(samples.size(), 0.0);
@@ -168,7 +169,7 @@ std::vector<double> open_forces(OwnReadings& forces, double log_period_s) {
   return out;
 }
 
-// Corrects unsaturated readings next to clipped readings for subsample saturation by rails.md (R69) to (R73).
+// Corrects the unsaturated readings next to clipped readings for subsample saturation: rails.md (R69) to (R73).
 void whole_windows(double noise_rad_s, const Eigen::Matrix3d& rows, GyroReadings& rates) {
   const std::size_t count = rates.samples.size();
   const auto along = [&](std::size_t k, Eigen::Index j) {
@@ -194,7 +195,7 @@ void whole_windows(double noise_rad_s, const Eigen::Matrix3d& rows, GyroReadings
   for (std::size_t k = 0; k < count; ++k) rates.samples[k].angular_velocity_rad_s += inverse * lost[k];
 }
 
-// carried.md (C15): replaces readings with correlated errors by equivalent ones with independent errors
+// Replaces readings with correlated errors by equivalent readings with independent errors: carried.md (C15).
 void recovered_readings(const CarriedSmoother::Params& params, const ClippedElements& clipped, GyroReadings& rates) {
   const double nodes = std::sqrt(2.0 * params.expert.readings.recovered_tau_s / params.expert.node_s);
   for (std::size_t k = 0; k < clipped.recovered_rad2_s2.size(); ++k) {
@@ -218,7 +219,7 @@ OwnReadings own_readings(std::span<const ImuSample> samples, const ClippedElemen
     }
     ImuSample own = samples[k];
     if (repeated) own.time_ns -= nanoseconds(repeated->age_s[k]);
-    // an inaccurate clock may put two readings into one step
+    // if the clock is inaccurate, one time step may contain two readings
     if (repeated && !out.samples.empty())
       own.time_ns = std::max(own.time_ns, out.samples.back().time_ns + nanoseconds(0.5 * period_s));
     out.samples.push_back(own);
@@ -336,7 +337,7 @@ Status start_nodes(const CarriedSmoother::Params& params, const Eigen::Matrix3d&
     const double off = std::abs(windows.centre_s[k] - static_cast<double>(i) * params.expert.node_s);
     if (off < nearest[i]) nearest[i] = off, nodes[i].q_WI = state.q_WI;
   }
-  // samples without a reading are between two samples with a reading, or beyond the last reading
+  // a sample without a reading is between two samples with readings, or after the last reading
   std::size_t before = 0;
   for (std::size_t i = 1; i < count; ++i) {
     if (!(readings[i] > 0.0)) continue;

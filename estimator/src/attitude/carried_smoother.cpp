@@ -37,7 +37,7 @@ Status check(const CarriedSmoother::Params& params, std::span<const ImuSample> s
   return check_samples(samples, params.expert.gap_max_s);
 }
 
-// Returns the sensing elements that are saturated in the reading's window, completely or partly.
+// Returns the sensing elements that are completely or partly saturated in the window of a reading.
 std::uint8_t clipped_axes(const carried::GyroReadings& rates, std::size_t k) {
   const std::size_t reading = rates.of_sample[k];
   std::uint8_t axes = 0;
@@ -54,9 +54,9 @@ RateSource source(const RateState& rate, double recovered_sigma) {
   return variance < recovered_sigma * recovered_sigma ? RateSource::recovered_contact : RateSource::bounded_only;
 }
 
-/// Adds the effect of the gyro's scale error for a body that is not hand-held and rotates on in one direction. The
-/// error grows with the rotation since the last rest or with the rotation until the next rest. The smaller rotation
-/// counts. carried.md (C27).
+/// Adds the effect of the gyro's scale error on the attitude: carried.md (C27). The effect applies to a body that is
+/// not hand-held and continues to rotate in one direction. The error grows with the rotation since the last rest, or
+/// with the rotation until the next rest, whichever is smaller.
 void widen_by_rotation(const CarriedSmoother::Params& params, const carried::Collected& collected,
                        const std::vector<RateState>& rates, std::vector<AttitudeState>& attitudes) {
   const double share = params.expert.readings.recovered_scale_share;
@@ -110,8 +110,8 @@ Status CarriedSmoother::estimate(std::span<const ImuSample> samples, const Clipp
     const double at = static_cast<double>(i) * params_.expert.node_s;
     const double centre = collected.samples.centre_s[k] - at, end = collected.samples.end_s[k] - at;
     rates[k].time_ns = attitudes[k].time_ns = samples[k].time_ns;
-    // a reading is the mean over its window, so the rate refers to the window's centre; the attitude refers to the
-    // stamp
+    // The rate refers to the centre of the reading's window, because the reading is the mean over the window. The
+    // attitude refers to the time stamp.
     rates[k].w_WI_I_rad_s = node.w_WI_I_rad_s + centre * node.angular_acceleration_rad_s2;
     rates[k].covariance_rad2_s2 = covariance.block<3, 3>(carried::kRate, carried::kRate);
     rates[k].clipped_axes = clipped_axes(collected.rates, k);

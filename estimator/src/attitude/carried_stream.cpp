@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr double kRotationMax_rad = 0.8;
-constexpr int kFirstNodes = 100;  // the first nodes, whose attitude still converges
+constexpr int kFirstNodes = 100;  // number of first nodes, during which the attitude still converges
 
 System::BorderVector moved(const carried::Constants& from, const carried::Constants& to) {
   System::BorderVector out;
@@ -51,7 +51,8 @@ CarriedStream::CarriedStream(const Params& params)
   require_within("window_s", params.window_s, params.lag_s + 4.0 * params.body.expert.node_s, 20.0);
   nodes_max_ = static_cast<std::size_t>(std::lround(params.window_s / params.body.expert.node_s)) + 1;
   delay_ = static_cast<std::size_t>(std::lround(params.lag_s / params.period_s));
-  // room for up to twice the nominal sample rate; at higher rates, the oldest readings are dropped
+  // The buffer can store readings of twice the nominal sample rate. At higher rates, the stream drops the oldest
+  // readings.
   readings_max_ = 2 * static_cast<std::size_t>(std::ceil(params.window_s / params.period_s)) + 4;
 }
 
@@ -81,7 +82,7 @@ Status CarriedStream::check_reading(const Reading& reading, const Reading* befor
     const Status status = check_follows(time_ns, before->sample.time_ns, params_.body.expert.gap_max_s);
     if (!status.ok()) return status;
   }
-  // unsigned, because the difference of two 64-bit stamps may overflow a signed integer
+  // The type is unsigned, because the difference of two 64-bit time stamps may overflow a signed integer.
   const std::uint64_t since_ns = static_cast<std::uint64_t>(time_ns) - static_cast<std::uint64_t>(start_ns);
   if (time_ns < start_ns || since_ns > static_cast<std::uint64_t>(std::numeric_limits<TimeNs>::max()))
     return {Trouble::time_order, "carried.start_ns", double(start_ns), double(time_ns)};
@@ -131,18 +132,19 @@ Status CarriedStream::push(const ImuSample& sample, const ClippedElements& known
   if (!(determinant > carried::kRowsMin)) return {Trouble::degenerate, "rows", determinant, carried::kRowsMin};
 
   append(sample, repeated, state);
-  if (read_again(known, state)) rebuild(state);
+  if (reclassify(known, state)) rebuild(state);
   const Reading& latest = state.readings.back();
   const auto end = [&] { return state.first_node + static_cast<std::int64_t>(state.window.size()); };
   const bool begun = latest.node >= end();
-  while (latest.node > end()) {  // nodes without samples
+  while (latest.node > end()) {  // creates nodes without samples
     extend(state);
     predict_newest(state);
   }
   if (begun) extend(state);
   add(latest, state);
   if (begun) predict_newest(state);
-  // while the gyro is unsaturated, the nodes are already accurate: occasional steps update attitude and constants
+  // While the gyro is unsaturated, the predicted nodes are already accurate. Occasional steps then update attitude and
+  // calibration constants.
   const bool due =
       begun && (latest.node % carried::kFreeNodes == 0 || latest.node < kFirstNodes || anything_clips(state));
   const bool factorised = due && step(state);
@@ -160,7 +162,7 @@ void CarriedStream::extend(State& state) const {
   state.window.emplace_back();
 }
 
-// Updates the newest node with its readings.
+// Initialises the newest node by its prediction and its readings.
 void CarriedStream::predict_newest(State& state) const {
   Knot& newest = state.window.back();
   if (state.window.size() == 1) {
@@ -170,7 +172,7 @@ void CarriedStream::predict_newest(State& state) const {
   }
 }
 
-// Adds a sample to the window. A window after a drop-out has the usual length.
+// Adds a sample to the window. After a drop-out, the averaging window of a reading has its usual length.
 void CarriedStream::append(const ImuSample& sample, const RepeatDetector::State& repeated, State& state) const {
   Reading reading;
   reading.sample = sample;
@@ -192,8 +194,8 @@ void CarriedStream::append(const ImuSample& sample, const RepeatDetector::State&
   ++state.samples;
 }
 
-// Updates clip signs and sensing directions. Returns whether samples in the window have changed.
-bool CarriedStream::read_again(const ClippedElements& known, State& state) const {
+// Updates saturation signs and sensing directions. Returns whether samples in the window have changed.
+bool CarriedStream::reclassify(const ClippedElements& known, State& state) const {
   bool changed = state.rows != known.rows;
   state.rows = known.rows;
   const std::size_t count = std::min(known.signs.size(), state.readings.size());
@@ -206,15 +208,15 @@ bool CarriedStream::read_again(const ClippedElements& known, State& state) const
   return changed;
 }
 
-// push() adds the newest reading.
+// Rebuilds the readings of all nodes, except for the newest reading, which push() adds.
 void CarriedStream::rebuild(State& state) const {
   for (Knot& knot : state.window) knot.readings = {};
   for (const Reading& reading : std::span(state.readings).first(state.readings.size() - 1)) add(reading, state);
 }
 
-// Adds an IMU reading to the nodes of the stream's window. Repetitions are skipped. The window of a slow sensor's
-// reading has the length of the sensor's period and ended at an unknown time since the previous sample. For an
-// accelerometer, the length of the window is unknown as well, as in carried.md (C12): rate_stream.md (R95).
+// Adds an IMU reading to the nodes of the window, unless the reading is a repetition. The reading of a slow sensor
+// averages over a window with the length of the sensor's period. The window ended at an unknown time since the previous
+// sample: rate_stream.md (R95). For an accelerometer, the length of the window is also unknown: carried.md (C12).
 void CarriedStream::add(const Reading& reading, State& state) const {
   const double node_s = params_.body.expert.node_s;
   const auto readings_at = [&](std::int64_t node) -> carried::NodeReadings* {
@@ -251,7 +253,7 @@ void CarriedStream::add(const Reading& reading, State& state) const {
   if (carried::NodeReadings* const own = readings_at(reading.node)) own->rest = own->rest || reading.rest;
 }
 
-// Returns the noise of readings with the gyro's own period, if the log repeats readings.
+// Returns the noise of the readings. If the log repeats readings, the noise refers to the gyro's own period.
 carried::ReadingNoise CarriedStream::noise_of(const State& state) const {
   const RepeatedReading& gyro = state.readings.back().gyro;
   return gyro.is_slower_than_log() ? carried::reading_noise(params_.body, gyro.period_samples * params_.period_s)
@@ -267,8 +269,8 @@ Node CarriedStream::begin(const State& state) const {
   return out;
 }
 
-// Predicts a new node from the previous node. The readings of unsaturated sensing elements give their rate. The rate of
-// clipped elements is beyond the saturation level.
+// Predicts a new node from the previous node. Unsaturated sensing elements provide their component of the rate. For
+// clipped elements, the predicted rate is beyond the saturation level.
 void CarriedStream::predict(const Node& before, const Eigen::Matrix3d& rows, Knot& knot) const {
   const double h = params_.body.expert.node_s;
   Node& node = knot.node;
@@ -290,13 +292,13 @@ void CarriedStream::predict(const Node& before, const Eigen::Matrix3d& rows, Kno
   if (knot.readings.force_n > 0.0) node.a_W_m_s2 = node.q_WI * knot.readings.force_m_s2 + g_W_m_s2_;
 }
 
-// carried.md (C41)
+// Returns the density of the held point's acceleration: carried.md (C41).
 double CarriedStream::hand(const State& state) const {
   return std::max(params_.body.expert.hand.hand_floor,
-                  1.0 + params_.body.expert.hand.hand_noise_adaptation * (state.hand_power - 1.0));
+                  1.0 + params_.body.expert.hand.hand_noise_adaptation * (state.acceleration_power_ratio - 1.0));
 }
 
-// As rate_stream.md (R91).
+// Adds the prior from marginalised nodes: rate_stream.md (R91).
 void CarriedStream::add_prior(const State& state, System::Block& block, System::Corner& corner) const {
   if (state.first_node == 0) {
     (void)motion_.add_first(state.window.front().node, block);
@@ -312,8 +314,8 @@ void CarriedStream::add_prior(const State& state, System::Block& block, System::
   corner.gradient += state.prior_corner.gradient - state.prior_corner.matrix * c - state.prior.border.transpose() * x;
 }
 
-// Marginalises the oldest node: carried.md (C17), as rate_stream.md (R90). The held point's power is that of carried.md
-// (C41).
+// Marginalises the oldest node, carried.md (C17), in the form of rate_stream.md (R90). The density of the held point's
+// acceleration follows from carried.md (C41).
 void CarriedStream::marginalise_oldest(State& state) const {
   keep_rates_of_oldest(state);
   const Knot& oldest = state.window[0];
@@ -328,7 +330,7 @@ void CarriedStream::marginalise_oldest(State& state) const {
     state.prior = after;
     state.prior_corner = corner;
   } else {
-    // the prior from marginalised nodes is unusable: restart from the initial prior
+    // if the prior from marginalised nodes is unusable, the stream restarts from the initial prior
     state.prior = {};
     state.prior_corner = {};
     (void)motion_.add_first(next, state.prior);
@@ -339,13 +341,14 @@ void CarriedStream::marginalise_oldest(State& state) const {
   state.prior_constants = state.constants;
   const double assumed = 3.0 * params_.body.hand_m_s2 * params_.body.hand_m_s2;
   const double share = std::min(1.0, 2.0 * params_.body.expert.node_s / params_.body.expert.hand.hand_window_s);
-  state.hand_power += share * (oldest.node.a_W_m_s2.squaredNorm() / assumed - state.hand_power);
+  state.acceleration_power_ratio +=
+      share * (oldest.node.a_W_m_s2.squaredNorm() / assumed - state.acceleration_power_ratio);
   ++state.first_node;
   state.window.erase(state.window.begin());
   prune_output_samples(state);
 }
 
-// Deletes readings whose node has left the window and whose rate was reported.
+// Deletes readings whose node has left the window and whose rate has been reported.
 void CarriedStream::prune_output_samples(State& state) const {
   std::size_t gone = 0;
   const std::size_t given = first_unreported(state);
@@ -353,7 +356,7 @@ void CarriedStream::prune_output_samples(State& state) const {
   state.readings.erase(state.readings.begin(), state.readings.begin() + static_cast<std::ptrdiff_t>(gone));
 }
 
-// carried.md (C17), (C18)
+// Eliminates the nodes of the window and solves for the calibration constants: carried.md (C17), (C18).
 bool CarriedStream::factorise(const carried::Motion& motion, const carried::ReadingNoise& noise, State& state,
                               System::BorderVector& step) const {
   const std::size_t count = state.window.size();
@@ -376,7 +379,7 @@ bool CarriedStream::factorise(const carried::Motion& motion, const carried::Read
   return System::solve_corner(corner, step, state.constants_covariance);
 }
 
-// carried.md (C19)
+// Makes one Gauss-Newton step over the window: carried.md (C19).
 bool CarriedStream::step(State& state) const {
   System::BorderVector border;
   if (!factorise(motion_, noise_of(state), state, border)) return false;

@@ -95,7 +95,7 @@ void members(Self& s, Visitor& visit) {
   visit("carried.prior_corner", s.prior_corner);
   visit("carried.prior_node", s.prior_node);
   visit("carried.prior_constants", s.prior_constants);
-  visit("carried.hand_power", s.hand_power);
+  visit("carried.acceleration_power_ratio", s.acceleration_power_ratio);
   visit("carried.rests", s.rests);
   visit("carried.reported_node", s.reported_node);
   visit("carried.reported_covariance_rad2_s2", s.reported_covariance_rad2_s2);
@@ -103,7 +103,7 @@ void members(Self& s, Visitor& visit) {
   visit("carried.samples", s.samples);
   visit("carried.failures", s.failures);
   visit("carried.hidden_s", s.hidden_s);
-  visit("carried.hidden_rad", s.hidden_rad);
+  visit("carried.clipped_angle_sigma_rad", s.clipped_angle_sigma_rad);
   visit("carried.revolutions_open", s.revolutions_open);
   visit.scratch(s.work);
 }

@@ -17,7 +17,7 @@ using carried::System;
 namespace {
 
 constexpr double kUnknown_rad2_s2 = 1e6;  // variance if the equations cannot be solved
-constexpr double kNear_s = 0.1;           // near clipped nodes, covariances use the inflated jerk
+constexpr double kNear_s = 0.1;           // distance from clipped nodes within which covariances use the inflated jerk
 
 std::uint8_t clipped_axes(const ClipSigns& signs) {
   std::uint8_t axes = 0;
@@ -28,8 +28,8 @@ std::uint8_t clipped_axes(const ClipSigns& signs) {
 
 }  // namespace
 
-// Returns the rate of reading `at`. A node's covariance is reused until the next step of the window. `factorised` has
-// the meaning that publish() defines.
+// Returns the rate at reading `at`. Until the next step of the window, readings of one node reuse the node's
+// covariance. publish() defines `factorised`.
 RateState CarriedStream::give(std::size_t at, bool due, bool factorised, State& state) const {
   const Reading& reading = state.readings[at];
   if (reading.smoothed) return *reading.smoothed;
@@ -43,13 +43,13 @@ RateState CarriedStream::give(std::size_t at, bool due, bool factorised, State& 
   return rate;
 }
 
-// Returns the first unreported reading, excluding the reading that is being processed.
+// Returns the first unreported reading. The result excludes the reading that the stream is processing.
 std::size_t CarriedStream::first_unreported(const State& state) const {
   return state.readings.size() - std::min(state.readings.size(), delay_ + 1);
 }
 
-// Stores the current rate of the oldest node. With samples sparser than stated, a node may leave before its rate is
-// reported.
+// Stores the current rate of the oldest node. If samples are sparser than stated, a node may leave the window before
+// its rate is reported.
 void CarriedStream::keep_rates_of_oldest(State& state) const {
   const std::size_t first = first_unreported(state);
   for (std::size_t k = first; k < state.readings.size() && state.readings[k].node <= state.first_node; ++k) {
@@ -77,29 +77,31 @@ RateState CarriedStream::to_rate(const Reading& reading, const State& state, con
   return out;
 }
 
-// Counts the segment of the reported reading `at` if it may contain an additional revolution: carried.md (C43).
+// Counts the clipped segment around the reported reading `at` if the segment may contain an additional revolution:
+// carried.md (C43).
 void CarriedStream::count_revolutions(std::size_t at, const RateState& rate, State& state) const {
   const Reading& reading = state.readings[at];
   const double since_s = at > 0 ? reading.end_s - state.readings[at - 1].end_s : params_.period_s;
   const auto open = [&](Eigen::Index j) {
-    return state.hidden_rad[j] > carried::kAngleShare * std::numbers::pi &&
+    return state.clipped_angle_sigma_rad[j] > carried::kAngleShare * std::numbers::pi &&
            carried::revolution_cost(state.hidden_s[j], params_.body.jerk_rad_s3_sqrts) < 2.0 * carried::kLogOdds;
   };
   for (Eigen::Index j = 0; j < 3; ++j) {
     if (reading.signs.gyro[static_cast<std::size_t>(j)] == 0) {
-      state.hidden_s[j] = state.hidden_rad[j] = 0.0;
+      state.hidden_s[j] = state.clipped_angle_sigma_rad[j] = 0.0;
       continue;
     }
     const Eigen::RowVector3d m = state.rows.row(j);
     const bool before = open(j);
     state.hidden_s[j] += since_s;
-    state.hidden_rad[j] += since_s * std::sqrt(std::max(0.0, m.dot(rate.covariance_rad2_s2 * m.transpose())));
+    state.clipped_angle_sigma_rad[j] +=
+        since_s * std::sqrt(std::max(0.0, m.dot(rate.covariance_rad2_s2 * m.transpose())));
     if (!before && open(j)) ++state.revolutions_open;
   }
 }
 
-// Reports the rates of the readings [first, last] with their covariances. Near clipped nodes, the covariances are those
-// of carried.md (C23), (C42). `factorised`: the buffer contains the equations with the assumed jerk.
+// Reports the rates of the readings [first, last] with their covariances. Near clipped nodes, the covariances follow
+// from carried.md (C23), (C42). If `factorised`, the buffer contains the equations with the assumed jerk density.
 void CarriedStream::publish(std::size_t first, std::size_t last, bool factorised, State& state,
                             std::span<RateState> out) const {
   const auto of = [&](std::size_t k) {
@@ -112,7 +114,7 @@ void CarriedStream::publish(std::size_t first, std::size_t last, bool factorised
   for (std::size_t i = from; i < to; ++i) clipped = clipped || carried::clips(state.window[i].readings);
   System::BorderVector unused;
   carried::ReadingNoise noise = noise_of(state);
-  // a lower bound contains no information about how far a rate or a force is beyond the bound: carried.md (C42)
+  // a lower bound does not limit how far a rate or a force is beyond the bound: carried.md (C42)
   if (clipped) noise.bound = noise.force_bound = 0.0;
   const bool known = (factorised && !clipped) || factorise(clipped ? inflated_ : motion_, noise, state, unused);
   System::Conditional here, next;

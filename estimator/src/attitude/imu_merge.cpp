@@ -18,15 +18,15 @@ namespace {
 constexpr double kBiasSigma_rad_s = 0.01, kScaleSigma = 0.01;
 constexpr double kRotating_rad_s2 = 1.0;  // minimum angular acceleration for estimating a time offset
 constexpr double kCertainDeviations = 4.0;
-constexpr int kRecovering = 3;     // minimum number of units for recovering the rate from accelerometers
-constexpr double kUnharmed = 0.8;  // errors are estimated up to this fraction of the accelerometer's range
+constexpr int kRecovering = 3;     // minimum number of units for recovering a rate from accelerometers
+constexpr double kUnharmed = 0.8;  // fraction of the accelerometer's range up to which errors are estimated
 constexpr int kOffset = ImuMerge::kErrors - 1;
-constexpr double kArmSquareMin_m2_s3 = 1.0;  // 1 m/s^2 for a second: a bias of 0.05 changes the result by 0.05
+constexpr double kArmSquareMin_m2_s3 = 1.0;  // 1 m/s^2 for a second: a bias of 0.05 m/s^2 changes the result by 0.05
 constexpr double kRepeated_s = 0.03;
 constexpr double kWindowMax_s = 0.05;  // maximum window for a central difference
 
-constexpr double kSuspect_s = 0.04;         // impacts come in groups, and a filter's response outlasts the impact
-constexpr double kAccelerationShare = 0.3;  // uncertainty of an acceleration, of its change between samples
+constexpr double kSuspect_s = 0.04;         // impacts come in groups, and filters prolong an impact
+constexpr double kAccelerationShare = 0.3;  // uncertainty of an acceleration, relative to its change per sample
 
 }  // namespace
 
@@ -37,7 +37,7 @@ ForceErrors::Params ImuMerge::force_params(const Params& p) {
   return out;
 }
 
-/// Uses positions relative to the mean position of the units.
+/// Returns the parameters of RateRecovery, with positions relative to the mean position of the units.
 RateRecovery::Params ImuMerge::recovery_params(const Params& p) {
   RateRecovery::Params out;
   out.count = p.count;
@@ -92,7 +92,7 @@ Status ImuMerge::step(std::span<const ImuSample> samples, State& state, std::opt
   return {};
 }
 
-/// Adds finite readings to the windows of their units, with the flags of saturated axes.
+/// Adds finite readings to the averaging windows of their units, with the flags of saturated axes.
 void ImuMerge::gather(std::span<const ImuSample> samples, double dt_s, State& state) const {
   const double weight_s = state.samples > 0 ? dt_s : params_.window_s;
   for (std::size_t k = 0; k < samples.size(); ++k) {
@@ -113,7 +113,7 @@ void ImuMerge::gather(std::span<const ImuSample> samples, double dt_s, State& st
   state.window_s += dt_s;
 }
 
-/// Completes the windows and starts the next.
+/// Completes the averaging windows, merges the units, and starts the next windows.
 ImuSample ImuMerge::merge(State& state) const {
   const auto count = static_cast<std::size_t>(params_.count);
   const double h = state.window_s;
@@ -132,7 +132,7 @@ ImuSample ImuMerge::merge(State& state) const {
     raw_forces[k] = R_CI * readings[k].specific_force_m_s2;
   }
   watch_repeats(finite, raw_rates, raw_forces, h, time_ns, state);
-  const double since_s = 0.5 * (h + state.length_s);  // between the middles of the last two windows
+  const double since_s = 0.5 * (h + state.length_s);  // time between the middles of the last two windows
   for (std::size_t k = 0; k < count; ++k) {
     const Unit& unit = state.units[k];
     present[k] = finite[k] && !unit.left_out_for_long();
@@ -140,7 +140,7 @@ ImuSample ImuMerge::merge(State& state) const {
     forces[k] = raw_forces[k];
     const double offset_s = unit.offset_s();
     const bool late = offset_s * offset_s > kCertainDeviations * kCertainDeviations * unit.P(kOffset, kOffset);
-    if (finite[k] && state.windows > 0 && late) {  // imu_merge.md (I4)
+    if (finite[k] && state.windows > 0 && late) {  // delay of the unit: imu_merge.md (I4)
       rates[k] -= offset_s / since_s * (raw_rates[k] - unit.last_rate_rad_s);
       forces[k] -= offset_s / since_s * (raw_forces[k] - unit.last_force_m_s2);
     }
@@ -163,7 +163,7 @@ ImuSample ImuMerge::merge(State& state) const {
   if (std::count(present.begin(), present.end(), true) >= kRecovering) {
     recover(readings, present, h, state, merged);
   } else {
-    state.recovery.running = false;  // a prediction across silence is not valid
+    state.recovery.running = false;  // no prediction is valid across a gap in the data
   }
   const auto suspect = [](const Unit& unit) { return unit.suspect_s > 0.0; };
   if (2 * std::count_if(state.units.begin(), state.units.begin() + params_.count, suspect) > params_.count) {
@@ -173,10 +173,10 @@ ImuSample ImuMerge::merge(State& state) const {
   return merged;
 }
 
-/// Selects unsaturated units whose rate and force agree with the median: imu_merge.md (I5).
+/// Selects the unsaturated units whose rate and specific force agree with the median: imu_merge.md (I5).
 ImuMerge::Flags ImuMerge::choose(const Readings& readings, const Flags& present, const Vectors& rates,
                                  const Vectors& forces, double h, State& state) const {
-  // at different positions, forces differ due to the rotation; the tolerance must cover the difference
+  // Rotation causes different forces at different positions. The tolerance must cover this difference.
   const Eigen::Vector3d middle_rate = median(rates, present), middle_force = median(forces, present);
   const auto units = std::count(present.begin(), present.end(), true);
   const double rate_tolerance =
@@ -187,14 +187,16 @@ ImuMerge::Flags ImuMerge::choose(const Readings& readings, const Flags& present,
     const double turned = (params_.T_CI[i].translation() - p_C_m_).norm() * middle_rate.squaredNorm() * 2.0;
     const bool agrees = units < 3 || ((rates[i] - middle_rate).norm() < rate_tolerance &&
                                       (forces[i] - middle_force).norm() < params_.expert.outliers.force_m_s2 + turned);
-    // with three or more units, a clipped gyro provides a lower bound, and its accelerometer is needed
+    // With three or more units, a clipped gyro provides a lower bound of the rate. The unit's accelerometer is then
+    // needed.
     const int clipping = units < kRecovering ? kClipAccel | kClipGyro : kClipAccel;
     used[i] = agrees && (readings[i].device_clip_flags & clipping) == 0;
   }
   const auto kept = std::count(used.begin(), used.end(), true);
-  // without a majority all units are used; of one or two units, only unsaturated units are used
+  // Without a majority, the selection contains all present units. With one or two units, the selection contains only
+  // unsaturated units.
   if (units < kRecovering ? kept == 0 : 2 * kept <= units && kept < units) used = present;
-  const bool apart = state.windows > 0 && h > 0.0;  // whether a previous window allows derivatives
+  const bool apart = state.windows > 0 && h > 0.0;  // true if a previous window allows derivatives
   if (units >= kRecovering && apart && middle_rate.cwiseAbs().maxCoeff() < params_.gyro_range_rad_s) {
     exclude_subsample_saturated(readings, present, forces, middle_rate, h, state, used);
   }
@@ -226,19 +228,19 @@ ImuSample ImuMerge::mean_of_used(const Vectors& rates, const Vectors& forces, co
   return merged;
 }
 
-/// imu_merge.md (I8).
+/// Returns the ratio between measured and modelled forces due to the lever arms: imu_merge.md (I8).
 std::optional<double> ImuMerge::arm_share(const State& state) {
   if (state.arm_square_m2_s3 < kArmSquareMin_m2_s3) return std::nullopt;
   return state.lever_arm_correlation / state.arm_square_m2_s3;
 }
 
-/// Updates the error estimates with the means over the windows, and starts the next windows.
+/// Updates the error estimates with the means over the averaging windows, and starts the next windows.
 void ImuMerge::close_windows(const Flags& present, const Vectors& rates, const Vectors& forces, bool all_used,
                              const ImuSample& merged, State& state) const {
   const double length_s = state.windows > 0 ? state.window_s : params_.window_s;
   const bool follows = state.windows > 1 && length_s < kWindowMax_s;
-  // a unit with a repeated reading may be frozen and does not update the errors; if all units repeat, the rate is
-  // constant
+  // A unit with a repeated reading may be frozen, and therefore does not update the errors. If all units repeat their
+  // readings, the rate is constant.
   const auto end = state.units.begin() + params_.count;
   const auto some_repeat = [&](Hold Unit::*hold) {
     const auto holding = std::count_if(state.units.begin(), end,
@@ -254,7 +256,7 @@ void ImuMerge::close_windows(const Flags& present, const Vectors& rates, const V
     if (unit.window.readings > 0) {
       unit.last_rate_rad_s = rates[k];
       unit.last_force_m_s2 = forces[k];
-    } else {  // use the value predicted from the others, since its last reading belongs to an earlier motion
+    } else {  // use the prediction from the other units, since the unit's last reading is outdated
       const Eigen::Vector3d& rate = merged.angular_velocity_rad_s;
       unit.last_rate_rad_s = rate;
       unit.last_force_m_s2 =
@@ -270,10 +272,11 @@ void ImuMerge::close_windows(const Flags& present, const Vectors& rates, const V
   ++state.windows;
 }
 
-/// Excludes units that may be saturated for less than a sample by an impact. On a rigid body, one unit predicts the
-/// force on another unit along the connecting line, without the angular acceleration. Units that disagree with the
-/// accepted unit are excluded: imu_merge.md (I6). If no two units agree, a common angular acceleration that started
-/// within the window is tested before any exclusion: (I7).
+/// Excludes units whose accelerometer may be saturated by an impact for less than a sample: imu_merge.md (I6). On a
+/// rigid body, the force of one unit predicts the force component of another unit along their connecting line. This
+/// prediction does not need the angular acceleration. Units that disagree with the unit of most agreement are excluded.
+/// If no two units agree, the function first adds a common angular acceleration that may have started within the
+/// window: (I7).
 void ImuMerge::exclude_subsample_saturated(const Readings& samples, const Flags& present, const Vectors& forces,
                                            const Eigen::Vector3d& rate, double h, State& state, Flags& used) const {
   const double since_s = 0.5 * (h + state.length_s);
@@ -328,8 +331,8 @@ void ImuMerge::recover(const Readings& readings, const Flags& present, double h,
   recovery_.step({corrected.data(), static_cast<std::size_t>(params_.count)}, h, state.recovery, merged);
 }
 
-/// Updates the errors of a unit's rate over the last window relative to the mean: bias, scale and time offset. The
-/// angular acceleration is a central difference over the adjacent windows. imu_merge.md (I3), (I8).
+/// Updates the rate errors of each unit relative to the mean of all units: bias, scale and time offset, imu_merge.md
+/// (I3), (I8). The angular acceleration is a central difference over the adjacent windows.
 void ImuMerge::calibrate(const Vectors& rates, State& state) const {
   const auto count = static_cast<std::size_t>(params_.count);
   Eigen::Vector3d now = Eigen::Vector3d::Zero(), mean = Eigen::Vector3d::Zero();
@@ -354,7 +357,7 @@ void ImuMerge::calibrate(const Vectors& rates, State& state) const {
   for (std::size_t k = 0; k < count; ++k) {
     const Eigen::Vector3d from_mean_m = params_.T_CI[k].translation() - p_C_m_, by_rotation = by_position * from_mean_m;
     state.senses.add(forces[k] - mean_force, from_mean_m, mean, acceleration, state.length_s);
-    state.lever_arm_correlation += state.length_s * by_rotation.dot(forces[k]);  // the mean of all cancels in the sum
+    state.lever_arm_correlation += state.length_s * by_rotation.dot(forces[k]);  // the mean of all units cancels
     state.arm_square_m2_s3 += state.length_s * by_rotation.squaredNorm();
   }
   if (acceleration.norm() < kRotating_rad_s2) return;

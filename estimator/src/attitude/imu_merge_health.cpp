@@ -5,25 +5,26 @@
 
 #include "tumble/attitude/imu_merge.hpp"
 
-// Detection of faulty units: saturation, freezing, disagreement.
+// This file detects faulty units: saturation, frozen readings, disagreement.
 namespace tumble {
 
 namespace {
 
-constexpr int kBlaming = 3;  // with two units, the wrong one cannot be identified
+constexpr int kBlaming = 3;  // minimum number of units for identifying the faulty unit
 constexpr double kMisfitTau_s = 0.5;
-constexpr double kComparable = 0.8;  // units are compared up to this fraction of the gyro's range
+constexpr double kComparable = 0.8;  // fraction of the gyro's range up to which units are compared
 
 constexpr double kPart = 0.02;  // contribution of a clipped axis above which another axis counts as clipped
 
-/// Returns the rotation of gravity in the body, if the repeated force is mostly gravity.
+/// Returns the rotation across the direction of the repeated force, which is mostly gravity.
 double turned_across(const ImuMerge::Hold& hold) {
   return hold.turned_rad.cross(hold.reading.stableNormalized()).norm();
 }
 
 }  // namespace
 
-/// Returns the flags of the selected units, for all axes of C to which a clipped axis contributes.
+/// Returns the saturation flags of the selected units, for the axes of the common frame C. An axis is flagged if a
+/// clipped axis of a unit contributes to it.
 std::uint8_t ImuMerge::flags_of(const Readings& readings, const Flags& which) const {
   unsigned out = 0;
   for (std::size_t k = 0; k < which.size(); ++k) {
@@ -57,8 +58,8 @@ Eigen::Vector3d ImuMerge::median(const Vectors& values, const Flags& which) {
   return out;
 }
 
-/// Detects triads with repeated readings while the median changes. For forces, rotation of the body is sufficient,
-/// since all units may freeze together.
+/// Detects triads that repeat readings while the median of the units changes. For accelerometers, a rotation of the
+/// body is sufficient, since all units may freeze together.
 void ImuMerge::watch_repeats(const Flags& present, const Vectors& rates, const Vectors& forces, double dt_s,
                              TimeNs time_ns, State& state) const {
   Flags counted = present;
@@ -108,7 +109,7 @@ Status ImuMerge::verdict(const State& state) const {
           params_.expert.frozen.after_s};
 }
 
-/// Detects units that disagree with the other units for long.
+/// Detects units that disagree with the other units for a long time.
 void ImuMerge::watch_misfits(const Flags& present, const Vectors& rates, const Vectors& forces, TimeNs time_ns,
                              State& state) const {
   if (std::count(present.begin(), present.end(), true) < kBlaming) return;
@@ -139,7 +140,7 @@ void ImuMerge::watch_misfits(const Flags& present, const Vectors& rates, const V
     if (unit.misfits_s < params_.expert.disagreeing.after_s) continue;
     unit.disagrees = true;
     unit.disagrees_since_ns = unit.misfits_since_ns;
-    break;  // without it, the median changes
+    break;  // if the faulty unit is removed, the median changes
   }
 }
 

@@ -11,18 +11,19 @@ namespace tumble {
 
 namespace {
 
-constexpr double kStandstillRad2 = 1e-6;  // largest rotation of a gyro that does not move
+constexpr double kStandstillRad2 = 1e-6;  // largest squared rotation of a gyro at rest
 constexpr double kPushed = 0.5;           // difference from gravity that excludes rest, as a fraction of gravity
-constexpr double kPushedLeast_s = 0.2;    // and its minimum duration
-constexpr double kWeightless = 0.05;      // of gravity: minimum force with a direction, for any unit
+constexpr double kPushedLeast_s = 0.2;    // minimum duration of this difference from gravity
+constexpr double kWeightless = 0.05;      // minimum force with a usable direction, as a fraction of gravity
 
 auto least_unexplained(const ImuPlausibility::State& state) {
   return std::min_element(state.unexplained_rad2.begin(), state.unexplained_rad2.end());
 }
 
-// imu_merge.md (I20): |a - b|^2 = |a|^2 + |b|^2 - 2 a b.
+// Returns the scalar product of rotation by gyro and rotation by force, from |a - b|^2 = |a|^2 + |b|^2 - 2 a b:
+// imu_merge.md (I20).
 double together_rad2(const ImuPlausibility::State& state) {
-  return 0.5 * (state.by_force_rad2 + state.by_gyro_rad2 - state.unexplained_rad2.front());
+  return 0.5 * (state.force_rotation_rad2 + state.gyro_rotation_rad2 - state.unexplained_rad2.front());
 }
 
 }  // namespace
@@ -73,7 +74,7 @@ void ImuPlausibility::hold(const Eigen::Vector3d& reading, double dt_s, Hold& ho
   if (froze) hold.frozen_s = std::max(hold.frozen_s, hold.repeated_s);
 }
 
-/// imu_merge.md (I18), (I19).
+/// Adds an averaged reading to the comparison of gyro and force: imu_merge.md (I18), (I19).
 void ImuPlausibility::take(State& state) const {
   const Eigen::Vector3d force = state.average.mean.specific_force_m_s2;
   const Eigen::Vector3d turned = state.average.length_s * state.average.mean.angular_velocity_rad_s;
@@ -81,8 +82,8 @@ void ImuPlausibility::take(State& state) const {
   state.average = {};
   if (std::abs(force.norm() - params_.gravity_m_s2) > kPushed * params_.gravity_m_s2) state.pushed_s += length_s;
   if (state.open) {
-    // forces are at the centres of their averages, so the first and the last rotation count by half; to first order,
-    // the sum equals that of all rotations but the first
+    // Forces refer to the centres of their averages, so the first and the last rotation count by half. To first order,
+    // this sum equals the sum of all rotations except for the first rotation.
     state.turned = (state.turned * so3::exp(turned)).normalized();
     state.length_s += length_s;
     const double start = state.force_start_m_s2.norm();
@@ -106,7 +107,7 @@ void ImuPlausibility::take(State& state) const {
   }
 }
 
-/// Adds a window with constant force to the sums. imu_merge.md (I19), (I22).
+/// Adds a window with constant force to the sums: imu_merge.md (I19), (I22).
 void ImuPlausibility::compare(const Eigen::Vector3d& force_m_s2, State& state) const {
   const auto near_gravity = [&](const Eigen::Vector3d& force) {
     return std::abs(force.norm() - params_.gravity_m_s2) <= params_.near_share * params_.gravity_m_s2;
@@ -120,8 +121,8 @@ void ImuPlausibility::compare(const Eigen::Vector3d& force_m_s2, State& state) c
   state.all_force_rad2 += by_force;
   state.all_gyro_rad2 += by_gyro;
   if (by_force < least) return;
-  state.by_force_rad2 += by_force;
-  state.by_gyro_rad2 += by_gyro;
+  state.force_rotation_rad2 += by_force;
+  state.gyro_rotation_rad2 += by_gyro;
   state.rotated_windows += 1.0;
   const Eigen::Matrix3d back = state.turned.conjugate().toRotationMatrix(), forth = back.transpose();
   for (std::size_t k = 0; k < state.unexplained_rad2.size(); ++k) {
@@ -138,17 +139,18 @@ double ImuPlausibility::force_share(const State& state) const {
 }
 
 bool ImuPlausibility::turned(const State& state) const {
-  return state.by_force_rad2 >= params_.expert.turning.rotation_min_rad2 &&
+  return state.force_rotation_rad2 >= params_.expert.turning.rotation_min_rad2 &&
          state.rotated_windows >= params_.expert.turning.rotated_windows_min;
 }
 
 double ImuPlausibility::unexplained_share(const State& state) const {
-  return turned(state) ? state.unexplained_rad2.front() / std::max(state.by_force_rad2, state.by_gyro_rad2) : 0.0;
+  return turned(state) ? state.unexplained_rad2.front() / std::max(state.force_rotation_rad2, state.gyro_rotation_rad2)
+                       : 0.0;
 }
 
-/// Returns the duration of a frozen reading. A device that never changed counts as frozen only while the body moves.
-/// For a gyro, motion is indicated by an unexplained rotation of the force, or by forces that exclude rest. For an
-/// accelerometer, motion is indicated by the gyro, while the readings are zero for longer than a free fall lasts.
+/// Returns how long a reading has been frozen. A device that never changed counts as frozen only while the body moves.
+/// For a gyro, a rotation of the force or a force that excludes rest indicates motion. For an accelerometer, the gyro
+/// indicates motion, while the accelerometer reads zero for longer than a free fall lasts.
 double ImuPlausibility::frozen_s(const State& state) const {
   const auto never_moved = [&](const Hold& hold) {
     return hold.moved_s == 0.0 && hold.repeated_s >= params_.expert.frozen.repeats_s;
@@ -161,15 +163,16 @@ double ImuPlausibility::frozen_s(const State& state) const {
                    accel ? state.accel.repeated_s : 0.0});
 }
 
-/// imu_merge.md (I20).
+/// Returns the slope of the force's rotation over the gyro's rotation: imu_merge.md (I20).
 double ImuPlausibility::rotation_slope(const State& state) const {
   if (!turned(state)) return 1.0;
-  return together_rad2(state) / std::max(state.by_gyro_rad2, kStandstillRad2);
+  return together_rad2(state) / std::max(state.gyro_rotation_rad2, kStandstillRad2);
 }
 
 double ImuPlausibility::rotation_agreement(const State& state) const {
   if (!turned(state)) return 1.0;
-  return together_rad2(state) / std::sqrt(state.by_force_rad2 * std::max(state.by_gyro_rad2, kStandstillRad2));
+  return together_rad2(state) /
+         std::sqrt(state.force_rotation_rad2 * std::max(state.gyro_rotation_rad2, kStandstillRad2));
 }
 
 double ImuPlausibility::force_rotated_share(const State& state) const {
@@ -177,19 +180,20 @@ double ImuPlausibility::force_rotated_share(const State& state) const {
                                                                         : state.all_force_rad2 / state.all_gyro_rad2;
 }
 
-/// imu_merge.md (I22).
-std::optional<AxisLabels> ImuPlausibility::other_labels(const State& state) const {
+/// Returns the axis labels that explain the readings better than the current labels: imu_merge.md (I22).
+std::optional<AxisLabels> ImuPlausibility::better_axis_labels(const State& state) const {
   if (unexplained_share(state) < params_.expert.naming.unexplained_least) return std::nullopt;
   const auto least = least_unexplained(state);
   if (*least >= params_.expert.naming.unexplained_share_max * state.unexplained_rad2.front()) return std::nullopt;
   return axis_labels()[static_cast<std::size_t>(least - state.unexplained_rad2.begin())];
 }
 
-/// Pushes also rotate the force, and leave an equal residual for any gyro scale: imu_merge.md (I21).
+/// Returns whether another gyro scale explains the readings better than pushes: imu_merge.md (I21). Pushes also rotate
+/// the force, but leave an equal residual for any gyro scale.
 bool ImuPlausibility::explains_more(const State& state) const {
   const double slope = rotation_slope(state), agreement = rotation_agreement(state);
-  const double left = state.by_force_rad2 * (1.0 - agreement * agreement);
-  // pushes often reduce a slope, but rarely invert it or increase it by half
+  const double left = state.force_rotation_rad2 * (1.0 - agreement * agreement);
+  // Pushes often reduce the slope. Pushes rarely invert the slope or increase the slope by half.
   const bool low = slope > 0.0 && slope < 1.0;
   const double most = low ? params_.expert.naming.unexplained_share_max : params_.expert.turning.unexplained_share_max;
   return left < most * state.unexplained_rad2.front();
@@ -209,7 +213,7 @@ Status ImuPlausibility::verdict(const State& state) const {
     return {Trouble::out_of_range, "seconds for which a triad repeats one reading", frozen,
             params_.expert.frozen.repeats_s};
   }
-  if (other_labels(state)) {
+  if (better_axis_labels(state)) {
     const double least = *least_unexplained(state);
     return {
         Trouble::out_of_range,

@@ -18,14 +18,14 @@ namespace tumble {
 namespace {
 
 constexpr double kScaleStep = 0.05;
-constexpr std::size_t kHalf = kAxisLabels, kTwice = kAxisLabels + 1;  // after the labels; then those around 1
+constexpr std::size_t kHalf = kAxisLabels, kTwice = kAxisLabels + 1;  // indices of scales 1/2 and 2
 constexpr std::size_t kLower = kAxisLabels + 2, kUpper = kAxisLabels + 3, kReadings = kAxisLabels + 4;
-constexpr std::size_t kCompared = kLower;  // alternatives that are not close to the unchanged rates
-constexpr double kClearly = 0.4;           // logarithm of a ratio of squares
+constexpr std::size_t kCompared = kLower;  // number of hypotheses that differ clearly from the unchanged rates
+constexpr double kClearly = 0.4;           // logarithm of a ratio of squared residuals
 
 using Readings = std::array<Eigen::Matrix3d, kReadings>;
 
-/// Matrices by which the gyro alternatives multiply the rates: S of imu_merge.md (I27).
+/// Returns the matrices S by which the hypotheses about the gyro multiply the rates: imu_merge.md (I27).
 Readings all_readings() {
   Readings out;
   for (std::size_t k = 0; k < kAxisLabels; ++k) {
@@ -41,12 +41,13 @@ Readings all_readings() {
   return out;
 }
 
-/// Estimate of the scale from a segment: Newton's step from 1, and the curvature of the residual.
+/// Estimate of the gyro's scale from one segment. `step`: Newton step, starting at scale 1. `weight`: curvature of the
+/// residual.
 struct ScaleVote {
   double step, weight;
 };
 
-/// Results of the completed segments, and the current segment.
+/// Results of the completed segments, and the unfinished segment.
 class Segments {
  public:
   Segments(const PivotCheckParams& params, const Readings& readings) : params_(params), readings_(readings) {}
@@ -59,7 +60,7 @@ class Segments {
     rotated_rad_ += dt_s * rate_rad_s.norm();
     if (length_s_ >= params_.segment_s) close();
   }
-  /// Completes the current segment. A segment counts if it has at least half of the full length.
+  /// Completes the unfinished segment. A segment counts if it has at least half of the nominal length.
   void close() {
     if (length_s_ >= 0.5 * params_.segment_s && rotated_rad_ >= params_.rotation_least_rad) take();
     sums_ = {};
@@ -69,7 +70,7 @@ class Segments {
   std::array<double, kCompared> evidence{};
   std::array<std::size_t, kCompared> counted{}, better{}, worse{};
   std::vector<ScaleVote> votes;
-  std::size_t explained = 0;  // by the unchanged rates
+  std::size_t explained = 0;  // number of segments that the unchanged rates explain
 
  private:
   void take() {
@@ -79,9 +80,10 @@ class Segments {
     vote(fits);
   }
 
-  /// imu_merge.md (I28), (I29).
+  /// Compares the residuals of the hypotheses: imu_merge.md (I28), (I29).
   void compare(const std::array<PivotFit, kReadings>& fits) {
-    // a force magnitude that differs from gravity counts as an error, like an unexplained velocity
+    // The residual combines two errors: the unexplained velocity, and the difference between mean force magnitude and
+    // gravity.
     const auto residual = [&](std::size_t k) {
       return std::hypot(fits[k].residual_m_s,
                         length_s_ * (fits[k].gravity_m_s2 - params_.gravity_m_s2) / std::sqrt(12.0));
@@ -99,7 +101,7 @@ class Segments {
     }
   }
 
-  /// imu_merge.md (I30).
+  /// Adds the segment's estimate of the gyro's scale: imu_merge.md (I30).
   void vote(const std::array<PivotFit, kReadings>& fits) {
     const PivotFit& fit = fits[0];
     if (fit.residual_m_s > params_.explains_m_s) return;
@@ -118,8 +120,8 @@ class Segments {
   double length_s_ = 0.0, rotated_rad_ = 0.0;
 };
 
-/// Weighted mean of the segments' scales, with its heteroscedasticity-consistent deviation (White, 1980). imu_merge.md
-/// (I30).
+/// Computes the weighted mean of the segments' scales, with a heteroscedasticity-consistent standard deviation (White,
+/// 1980): imu_merge.md (I30).
 void conclude_scale(const std::vector<ScaleVote>& votes, PivotCheck::Found& found) {
   double weight = 0.0, sum = 0.0, spread = 0.0;
   for (const ScaleVote& vote : votes) weight += vote.weight, sum += vote.weight * vote.step;
@@ -131,7 +133,7 @@ void conclude_scale(const std::vector<ScaleVote>& votes, PivotCheck::Found& foun
     spread += off * off;
   }
   found.scale = 1.0 + step;
-  found.scale_sigma = std::sqrt(2.0 * spread) / weight;  // each moment is in two segments
+  found.scale_sigma = std::sqrt(2.0 * spread) / weight;  // each moment belongs to two segments
 }
 
 }  // namespace
@@ -142,7 +144,7 @@ PivotCheck::PivotCheck(const Params& params) : params_(params) {
 
 PivotCheck::Found PivotCheck::find(std::span<const ImuSample> samples, std::span<const RateState> rates) const {
   static const Readings readings = all_readings();
-  // the two series of segments are offset by half a segment, so that no event is split in both series
+  // The two series of segments are offset by half a segment. No event is then at a segment boundary in both series.
   std::array<Segments, 2> series = {Segments(params_, readings), Segments(params_, readings)};
   double mean_s = 0.0, since_s = 0.0;
   Eigen::Vector3d turned = Eigen::Vector3d::Zero(), gained = Eigen::Vector3d::Zero();
@@ -189,7 +191,7 @@ PivotCheck::Found PivotCheck::find(std::span<const ImuSample> samples, std::span
   return found;
 }
 
-/// imu_merge.md (I29), (I30).
+/// Compares the evidence against the unchanged rates with the limits: imu_merge.md (I29), (I30).
 Status PivotCheck::verdict(const Found& found) const {
   const double least = std::max(params_.evidence_least, params_.evidence_of_each * static_cast<double>(found.counted));
   const auto better = static_cast<double>(found.better), worse = static_cast<double>(found.worse);

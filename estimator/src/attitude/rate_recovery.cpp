@@ -25,14 +25,14 @@ void update(const Row& row, double innovation, double variance, RateRecovery::St
   state.x += scalar_update(row, innovation, variance, state.P);
 }
 
-// Readings of one triad: per axis, or along the sensing directions of its elements while an element clips, by rails.md
-// (R52).
+// Readings of one triad. While a sensing element clips, the readings are along the sensing directions of the elements,
+// rails.md (R52). Without clipping, the readings are along the axes of the unit.
 struct Seen {
   Eigen::Matrix3d rows_C;
   Eigen::Vector3d reading, slope_sigma = Eigen::Vector3d::Zero();
   std::array<bool, 3> railed{};
 
-  // Returns the saturation deficit of the clipped elements for the expected values.
+  // Returns the saturation deficit of the clipped elements, given the expected values.
   double hidden(const Eigen::Vector3d& expected) const {
     double sum2 = 0.0;
     for (int axis = 0; axis < 3; ++axis) {
@@ -44,7 +44,7 @@ struct Seen {
 };
 
 template <typename Railed>
-Seen seen_by(const ElementRows& elements, const Eigen::Matrix3d& R_IC, const Eigen::Vector3d& reading,
+Seen seen_by(const SensingDirections& elements, const Eigen::Matrix3d& R_IC, const Eigen::Vector3d& reading,
              const Railed& railed) {
   Seen out{R_IC, reading};
   bool any = false;
@@ -102,16 +102,16 @@ RateRecovery::Met RateRecovery::met_by(std::span<const ImuSample> units) const {
     }
     clipped += force;
   }
-  // with a correct rate, the remaining units give a better force than the filter, so the force counts as clipped only
-  // if few units remain
+  // With a correct rate, the unsaturated units provide a better specific force than the filter. The merged force
+  // therefore counts as clipped only if few units are unsaturated.
   out.force = clipped > 0 && (out.rate || 2 * clipped > received);
   return out;
 }
 
 void RateRecovery::step(std::span<const ImuSample> units, double dt_s, State& state, ImuSample& merged) const {
   const Met met = met_by(units);
-  // saturation occurs when gravity and rotation add up, so the mean of the remaining units is biased in one direction
-  // of W
+  // Accelerometers saturate when gravity and rotation add up. The mean of the unsaturated units therefore has a bias in
+  // one direction of the world frame W.
   merged.device_clip_flags = met.force ? kClipAccelX | kClipAccelY | kClipAccelZ : 0;
   const bool fast = merged.angular_velocity_rad_s.cwiseAbs().maxCoeff() >= kFast * params_.gyro_range_rad_s;
   if (!fast && !met.rate) {
@@ -132,12 +132,12 @@ void RateRecovery::step(std::span<const ImuSample> units, double dt_s, State& st
   } else if (met.rate) {
     merged.device_clip_flags = static_cast<std::uint8_t>(merged.device_clip_flags | kClipGyro);
   }
-  // the mean was transformed to the mean position with a rate that may be wrong
+  // the mean force was transformed to the mean position with a rate that may be wrong
   if (met.rate || met.force) merged.specific_force_m_s2 = state.x.segment<3>(kForce);
 }
 
 void RateRecovery::start(const ImuSample& merged, State& state) const {
-  // the lever arms keep their estimates when the filter starts again
+  // if the filter restarts, the lever arms keep their estimates
   state.P.topRows<kArms>().setZero();
   state.P.leftCols<kArms>().setZero();
   auto diagonal = state.P.diagonal();
@@ -149,10 +149,10 @@ void RateRecovery::start(const ImuSample& merged, State& state) const {
   state.started = state.running = true;
 }
 
-/// imu_merge.md (I14), (I15).
+/// Predicts rate, angular acceleration and specific force: imu_merge.md (I14), (I15).
 void RateRecovery::predict(double dt_s, State& state) const {
   const Eigen::Vector3d rate = state.x.segment<3>(kRate), force = state.x.segment<3>(kForce);
-  const Eigen::Matrix3d turn = so3::exp(-dt_s * rate).toRotationMatrix();  // a constant force in W rotates in C
+  const Eigen::Matrix3d turn = so3::exp(-dt_s * rate).toRotationMatrix();  // a force that is constant in W rotates in C
   Eigen::Matrix<double, kArms, kArms> F = Eigen::Matrix<double, kArms, kArms>::Identity();
   F.block<3, 3>(kRate, kAcceleration) = dt_s * Eigen::Matrix3d::Identity();
   F.block<3, 3>(kForce, kForce) = turn;
@@ -168,7 +168,7 @@ void RateRecovery::predict(double dt_s, State& state) const {
   diagonal.segment<3>(kForce).array() += squared(params_.force_walk_m_s2_sqrts) * dt_s;
 }
 
-/// imu_merge.md (I16).
+/// Updates the filter with the gyro readings: imu_merge.md (I16).
 void RateRecovery::measure_rates(std::span<const ImuSample> units, double dt_s, State& state) const {
   const double shorter = std::max(1.0, kReading_s / dt_s);
   for (std::size_t k = 0; k < units.size(); ++k) {
@@ -181,7 +181,7 @@ void RateRecovery::measure_rates(std::span<const ImuSample> units, double dt_s, 
       const double reading = seen.reading[axis];
       const double missing = reading - seen.rows_C.row(axis).dot(state.x.segment<3>(kRate));
       if (seen.railed[static_cast<std::size_t>(axis)] && missing * reading < 0.0)
-        continue;  // consistent with saturation
+        continue;  // the prediction is consistent with saturation
       Row row = Row::Zero();
       row.segment<3>(kRate) = seen.rows_C.row(axis);
       const double sigma = params_.noise.rate_rad_s + params_.noise.rate_share * std::abs(reading);
@@ -191,7 +191,7 @@ void RateRecovery::measure_rates(std::span<const ImuSample> units, double dt_s, 
   }
 }
 
-/// imu_merge.md (I17).
+/// Updates the filter with the accelerometer readings: imu_merge.md (I17).
 void RateRecovery::measure_forces(std::span<const ImuSample> units, double dt_s, State& state) const {
   const double shorter = std::max(1.0, kReading_s / dt_s);
   for (std::size_t k = 0; k < units.size(); ++k) {

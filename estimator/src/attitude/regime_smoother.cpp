@@ -11,13 +11,13 @@ namespace tumble {
 
 namespace {
 
-/// Returns whether a reading is clipped or suspect. A partly saturated reading counts as measured.
+/// Returns whether a reading is clipped or suspect (possibly saturated). A partly saturated reading counts as measured.
 bool unread(const RateReport& report, const RateState& rate, std::size_t k) {
   return rate.clipped_axes != 0 || report.suspect_axes[k] != 0;
 }
 
-/// Returns the samples with forces at the times of the rates, because the forces of a slow accelerometer are older.
-/// carried.md (C38)
+/// Returns the samples with the specific forces interpolated at the times of the rates: carried.md (C38). The forces of
+/// a slow accelerometer are older than the rates.
 std::vector<ImuSample> forces_in_time(std::span<const ImuSample> samples) {
   std::vector<ImuSample> out(samples.begin(), samples.end());
   const std::vector<Eigen::Vector3d> forces = forces_between_readings(samples);
@@ -44,11 +44,11 @@ Status RegimeSmoother::estimate(std::span<const ImuSample> samples, std::vector<
 void RegimeSmoother::join(std::span<const ImuSample> samples, std::vector<RateState>& rates, Report& report) const {
   const RigCalibration& rig = report.rate.calibration;
   const Eigen::Matrix3d lever_covariance = rig.covariance.topLeftCorner<3, 3>();
-  std::vector<RegimeShares> shares;
+  std::vector<RegimeProbabilities> shares;
   if (!evidence_.find(forces_in_time(samples), rates, rig.constants.lever_arm_m, lever_covariance, shares).ok()) return;
   report.judged = true;
   const double each = 1.0 / static_cast<double>(shares.size());
-  for (const RegimeShares& share : shares) {
+  for (const RegimeProbabilities& share : shares) {
     report.shares.flight += each * share.flight;
     report.shares.contact += each * share.contact;
     report.shares.carried += each * share.carried;
@@ -59,26 +59,27 @@ void RegimeSmoother::join(std::span<const ImuSample> samples, std::vector<RateSt
 
   ClippingFinder::Params finding;
   finding.upright_rails = params_.rate.rails;
-  CarriedElements known = carried_elements(samples, ClippingFinder(finding).find(samples));
+  ClippedReadings known = carried_elements(samples, ClippingFinder(finding).find(samples));
   known.mark_suspect(samples, report.rate.suspect_axes);
   std::vector<RateState> other;
   std::vector<AttitudeState> attitudes;
   if (!carried_.estimate(samples, known.clipped(), other, attitudes, report.carried).ok()) return;
-  known.mark_near(other);
+  known.mark_partly_saturated(other);
   report.carried_asked = true;
   for (std::size_t k = 0; k < rates.size(); ++k) {
     if (by_segment[k] <= params_.carried_min) continue;
     const bool only_suspect = rates[k].clipped_axes == 0 && rates[k].source != RateSource::measured;
     rates[k] = either(rates[k], other[k], by_segment[k]);
-    // no clipping was detected at this sample, in any kind of motion
+    // in all motion types, no clipping was detected at this sample
     if (only_suspect) rates[k].clipped_axes = 0, rates[k].source = RateSource::bounded_only;
   }
 }
 
-/// Returns the probability of hand-held motion within `near_s` of a sample, restricted to the sample's segment of
-/// clipped or suspect samples. The probability is 0 away from all segments. carried.md (C40)
-std::vector<double> RegimeSmoother::carried_segments(std::span<const RegimeShares> shares, const RateReport& report,
-                                                     std::span<const RateState> rates) const {
+/// Returns the probability of hand-held motion for samples in a segment of clipped or suspect readings: carried.md
+/// (C40). The probability is the smallest value within `near_s` of the sample and within its segment. Outside such
+/// segments, the probability is 0.
+std::vector<double> RegimeSmoother::carried_segments(std::span<const RegimeProbabilities> shares,
+                                                     const RateReport& report, std::span<const RateState> rates) const {
   std::vector<double> out(rates.size(), 0.0);
   const TimeNs near_ns = static_cast<TimeNs>(1e9 * params_.near_s);
   for (std::size_t k = 0; k < rates.size();) {
@@ -90,7 +91,7 @@ std::vector<double> RegimeSmoother::carried_segments(std::span<const RegimeShare
     for (; k < rates.size() && rates[k].time_ns <= rates[last].time_ns + near_ns; ++k)
       if (unread(report, rates[k], k)) last = k;
     const TimeNs from_ns = rates[first].time_ns - near_ns, to_ns = rates[last].time_ns + near_ns;
-    std::size_t i = first, a = first, b = first;  // a to b: samples of the segment within reach of i
+    std::size_t i = first, a = first, b = first;  // a to b: samples of the segment within near_s of sample i
     while (i > 0 && rates[i - 1].time_ns >= from_ns) --i;
     for (; i < rates.size() && rates[i].time_ns <= to_ns; ++i) {
       while (a < last && rates[a].time_ns < rates[i].time_ns - near_ns) ++a;

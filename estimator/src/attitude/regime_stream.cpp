@@ -8,44 +8,45 @@ namespace tumble {
 
 namespace {
 
-constexpr double kTurn_s = 0.01;     // time base of the rates' derivative: model_error_s of the rate model
-constexpr double kResetShare = 0.5;  // fraction of a lag's steps that reset the calibration
+constexpr double kTurn_s = 0.01;     // time base of the angular acceleration, equal to model_error_s of the rate model
+constexpr double kResetShare = 0.5;  // fraction of the steps within a lag that reset the calibration
 
 CarriedStream::Params joined(const RegimeStream::Params& params) {
   CarriedStream::Params out = params.carried;
   out.period_s = params.rate.period_s;
   out.lag_s = params.rate.lag_s;
   out.window_s = std::max(out.window_s, out.lag_s + 4.0 * out.body.expert.node_s);
-  // over a longer gap, samples would leave the window before they are reported: CarriedStream restarts
+  // Across a longer gap, samples would leave the window before CarriedStream reports them. CarriedStream therefore
+  // restarts after such a gap.
   out.body.expert.gap_max_s = std::min(out.body.expert.gap_max_s, out.window_s - out.lag_s);
   return out;
 }
 
-// Clipped, partly saturated, or suspect.
+// Returns whether a reading is clipped, partly saturated, or suspect (possibly saturated).
 bool clips(const RateStream::Knot& knot) {
   return (knot.observation.unseen() | knot.observation.read_in_part()) != 0;
 }
 
-// A run of suspect readings is a lower bound, like a clipped reading.
+// Returns the saturation signs of a sample. A run of suspect readings is a lower bound, like a clipped reading.
 ClipSigns signs_of(const RateObservation& observation) {
   Clipping clipping = observation.clipping;
   clipping.gyro = static_cast<std::uint8_t>(clipping.gyro | observation.read_in_part());
   return clip_signs(observation.sample, clipping);
 }
 
-// The source marks suspect readings. A suspect reading is not called clipped in any kind of motion.
+// Combines the rates of both streams. A suspect reading counts as `bounded_only`, not as clipped, in all motion types.
 RateState joined_rate(const RateState& rate, const RateState& carried, double share) {
   RateState out = either(rate, carried, share);
   out.clipped_axes = rate.clipped_axes;
-  // CarriedStream does not know which readings may be partly saturated
+  // CarriedStream does not detect which readings may be partly saturated
   if (rate.source == RateSource::bounded_only && out.source == RateSource::measured) out.source = rate.source;
   return out;
 }
 
-// Returns the derivative of the rates around sample k, over kTurn_s if there are enough samples. RateStream's own
-// angular acceleration depends on the force to be judged, even if the gyro measures the rate: carried.md (C44)
+// Returns the derivative of the rates around sample k: carried.md (C44). If there are enough samples, the derivative is
+// over kTurn_s. The angular acceleration of RateStream is unsuitable, because it depends on the force that is tested.
 Eigen::Vector3d angular_acceleration(std::span<const RateStream::Knot> window, std::size_t k) {
-  // integer differences keep the precision that seconds since the clock's start would lose
+  // the code subtracts integer time stamps, because seconds since the clock's start would lose precision
   const auto between_s = [&](std::size_t from, std::size_t to) {
     return seconds(window[to].observation.sample.time_ns - window[from].observation.sample.time_ns);
   };
@@ -87,7 +88,7 @@ Status RegimeStream::push(const ImuSample& sample, std::span<const AuxiliaryRead
     share = share_of(*out, state);
   }
   std::optional<RateState> carried;
-  // CarriedStream accepts everything that RateStream accepts, except sensing directions that do not span the axes
+  // CarriedStream accepts all input of RateStream, except for sensing directions that do not span three dimensions
   if (state.shares.carried >= params_.carried_min) {
     if (!state.carrying) {
       carried_.restart(state.carried);
@@ -95,8 +96,10 @@ Status RegimeStream::push(const ImuSample& sample, std::span<const AuxiliaryRead
       ++state.starts;
     }
     const bool wanted = share > params_.carried_min;
+    ImuSample without_offset = sample;
+    without_offset.angular_velocity_rad_s -= params_.rate.model.nominal.gyro_bias_rad_s;
     state.carrying =
-        carried_.push(sample, known_of(state), state.carried, carried, wanted, state.rate.repeat_state).ok();
+        carried_.push(without_offset, known_of(state), state.carried, carried, wanted, state.rate.repeat_state).ok();
   } else {
     state.carrying = false;
   }
@@ -119,10 +122,11 @@ ClippedElements RegimeStream::known_of(State& state) const {
   return out;
 }
 
-RegimeShares RegimeStream::next(const RegimeShares& before, double dt_s, std::span<const RateStream::Knot> window,
-                                std::size_t k, const RigCalibration& rig, bool unstable) const {
+RegimeProbabilities RegimeStream::next(const RegimeProbabilities& before, double dt_s,
+                                       std::span<const RateStream::Knot> window, std::size_t k,
+                                       const RigCalibration& rig, bool unstable) const {
   const RateStream::Knot& knot = window[k];
-  // a rate that was fitted to the force with an invalid calibration agrees with the force in any kind of motion
+  // A rate fitted to the force with an invalid calibration agrees with the force in any kind of motion.
   if (unstable && knot.observation.unseen() != 0) return before;
   RateState rate;
   rate.w_WI_I_rad_s = knot.estimate.knot.rate_rad_s;
@@ -139,14 +143,15 @@ std::size_t RegimeStream::index_of(const RateState& rate, const State& state) co
   return k;
 }
 
-// Returns whether RateStream resets its calibration repeatedly, which indicates that there is no flight. Resets are
-// counted over RateStream's lag, because the steps within the lag determined the reported rate.
+// Returns whether RateStream resets its calibration repeatedly, which indicates that the motion contains no flight. The
+// function counts the resets within RateStream's lag, because the steps within the lag determine the reported rate.
 bool RegimeStream::calibration_is_unstable(const State& state) const {
   const RateStream::Params& rate = params_.rate;
   return state.resets > kResetShare * rate.lag_s / std::max(rate.period_s, rate.step_s);
 }
 
-// Updates the probabilities with the reported sample and its rate: the forward pass of carried.md (C38).
+// Updates the probabilities of the motion types with the reported sample and its rate: forward pass of carried.md
+// (C38).
 void RegimeStream::judge(const RateState& rate, State& state) const {
   const double dt_s = state.reported == 0 ? params_.evidence.memory_s : seconds(rate.time_ns - state.reported_ns);
   state.shares = next(state.shares, dt_s, state.rate.window, index_of(rate, state), rate_.calibration(state.rate),
@@ -161,8 +166,9 @@ void RegimeStream::judge(const RateState& rate, State& state) const {
   state.sum.carried += state.shares.carried;
 }
 
-// Returns the weight of CarriedStream for the reported sample, s of carried.md (C40). The weight is the smallest nearby
-// probability in the segment of clipped samples, within the window. The weight is 0 away from all segments.
+// Returns the weight of CarriedStream for the reported sample: s in carried.md (C40). The weight is the smallest
+// probability of hand-held motion near the sample, within the segment of clipped samples and within the window. Outside
+// such segments, the weight is 0.
 double RegimeStream::share_of(const RateState& rate, State& state) const {
   const auto near_ns = static_cast<TimeNs>(std::llround(1e9 * params_.near_s));
   const std::vector<RateStream::Knot>& window = state.rate.window;
@@ -173,15 +179,15 @@ double RegimeStream::share_of(const RateState& rate, State& state) const {
   const TimeNs next_ns = next_clipped == window.end() ? 0 : next_clipped->observation.sample.time_ns;
   const bool before = next_clipped != window.end() && next_ns - rate.time_ns <= near_ns;
   const bool within = after && before && next_ns - *state.clipped_ns <= near_ns;
-  std::erase_if(state.near, [&](const ReportedShare& reported) {
+  std::erase_if(state.near, [&](const ReportedProbability& reported) {
     return reported.time_ns < rate.time_ns - near_ns || (within && reported.carried >= state.shares.carried);
   });
   if (within) state.near.push_back({rate.time_ns, state.shares.carried});
   if (!after && !before) return 0.0;
   double out = state.near.empty() ? 1.0 : state.near.front().carried;
   if (out < params_.carried_min || !before) return out;
-  // continues into the future with provisional rates
-  RegimeShares shares = state.shares;
+  // continues with the provisional rates of the samples that are not reported yet
+  RegimeProbabilities shares = state.shares;
   const RigCalibration rig = rate_.calibration(state.rate);
   const bool unstable = calibration_is_unstable(state);
   for (std::size_t k = here + 1; k < window.size(); ++k) {

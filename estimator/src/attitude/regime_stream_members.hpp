@@ -9,14 +9,14 @@
 /// not Fields, as state_visitor.hpp describes.
 namespace tumble {
 
-template <StateOf<RegimeShares> Self, class Visitor>
+template <StateOf<RegimeProbabilities> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("shares.flight", s.flight);
   visit("shares.contact", s.contact);
   visit("shares.carried", s.carried);
 }
 
-template <StateOf<RegimeStream::ReportedShare> Self, class Visitor>
+template <StateOf<RegimeStream::ReportedProbability> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("near.time_ns", s.time_ns);
   visit("near.carried", s.carried);

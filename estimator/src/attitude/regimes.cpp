@@ -22,16 +22,16 @@ double log_gaussian(double squared_norm, double variance) {
   return -1.5 * std::log(kTwoPi * variance) - 0.5 * squared_norm / variance;
 }
 
-// carried.md (C35): a vector of length g in unknown direction with Gaussian noise. Averaged over the sphere, the
-// density is N(n; 0) exp(-g^2 / 2v) sinh(x) / x with x = n g / v.
+// Returns the log density of a vector of length g in unknown direction, with Gaussian noise: carried.md (C35). The
+// density averaged over the sphere is N(n; 0) exp(-g^2 / 2v) sinh(x) / x with x = n g / v.
 double log_about_gravity(double n, double g, double variance) {
   const double x = n * g / variance;
   const double log_sinh_x = x < 1e-3 ? 0.0 : x - std::log(2.0 * x) + std::log1p(-std::exp(-2.0 * x));
   return log_gaussian(n * n + g * g, variance) + log_sinh_x;
 }
 
-// hand-held motion is gentle or rough, carried.md (C33): one of kRoughly samples has kRougher times the standard
-// deviation
+// Hand-held motion is gentle or rough: carried.md (C33). One of kRoughly samples has kRougher times the standard
+// deviation.
 constexpr double kRoughly = 3.0, kRougher = 5.0;
 
 double log_carried(double n, double g, double hand_variance, double grip_variance) {
@@ -41,8 +41,8 @@ double log_carried(double n, double g, double hand_variance, double grip_varianc
   return larger + std::log(((kRoughly - 1.0) * std::exp(gentle - larger) + std::exp(rough - larger)) / kRoughly);
 }
 
-// Contact means impacts with forces of any size, or gentle rolling. A single moment of gentle rolling looks hand-held.
-// Only the samples before and after the moment decide: carried.md (C34)
+// `kRolls` is the prior fraction of gentle rolling during contact: carried.md (C34). The other contacts are impacts
+// with forces of any size. A single sample of gentle rolling looks hand-held, so the samples before and after decide.
 constexpr double kRolls = 0.5;
 
 double log_contact(double left, double n, double most, double g, double variance) {
@@ -58,7 +58,7 @@ Vector3d angular_acceleration(std::span<const RateState> rates, std::size_t k) {
   return (rates[b].w_WI_I_rad_s - rates[a].w_WI_I_rad_s) / dt_s;
 }
 
-// Returns the probabilities of no change and of each change, over dt: carried.md (C37).
+// Returns the transition probabilities between the motion types within dt: carried.md (C37).
 Matrix3d changes(const RegimeEvidence::Params& p, double dt_s) {
   const double contacts = 1.0 - std::exp(-p.contacts_hz * dt_s), throws = 0.5 * (1.0 - std::exp(-p.throws_hz * dt_s));
   Matrix3d out;
@@ -74,7 +74,7 @@ RegimeEvidence::RegimeEvidence(const Params& params) : params_(params) {
   require_fields(params);
 }
 
-// carried.md (C31), (C32), (C33), (C34), (C36)
+// Returns the likelihood of a sample for each motion type: carried.md (C31), (C32), (C33), (C34), (C36).
 Vector3d RegimeEvidence::likelihood(double dt_s, const ImuSample& sample, const RateState& rate, const Vector3d& alpha,
                                     const Vector3d& lever_arm_m, double lever_arm_variance_m2) const {
   const Vector3d& w = rate.w_WI_I_rad_s;
@@ -97,10 +97,10 @@ Vector3d RegimeEvidence::likelihood(double dt_s, const ImuSample& sample, const 
   return (logs.array() - logs.maxCoeff()).exp().cwiseMax(1e-300);
 }
 
-// Computes one forward step of carried.md (C38).
-RegimeShares RegimeEvidence::next(const RegimeShares& before, double dt_s, const ImuSample& sample,
-                                  const RateState& rate, const Vector3d& alpha, const Vector3d& lever_arm_m,
-                                  const Matrix3d& lever_arm_covariance_m2) const {
+// Computes one forward step of the motion type probabilities: carried.md (C38).
+RegimeProbabilities RegimeEvidence::next(const RegimeProbabilities& before, double dt_s, const ImuSample& sample,
+                                         const RateState& rate, const Vector3d& alpha, const Vector3d& lever_arm_m,
+                                         const Matrix3d& lever_arm_covariance_m2) const {
   const Vector3d predicted = changes(params_, dt_s) * Vector3d(before.flight, before.contact, before.carried);
   Vector3d after =
       predicted.cwiseProduct(likelihood(dt_s, sample, rate, alpha, lever_arm_m, lever_arm_covariance_m2.trace()));
@@ -108,10 +108,10 @@ RegimeShares RegimeEvidence::next(const RegimeShares& before, double dt_s, const
   return {after[0], after[1], after[2]};
 }
 
-// carried.md (C38)
+// Computes the motion type probabilities of a recording by a forward and a backward pass: carried.md (C38).
 Status RegimeEvidence::find(std::span<const ImuSample> samples, std::span<const RateState> rates,
                             const Vector3d& lever_arm_m, const Matrix3d& lever_arm_covariance_m2,
-                            std::vector<RegimeShares>& out) const {
+                            std::vector<RegimeProbabilities>& out) const {
   out.clear();
   const std::size_t count = samples.size();
   if (count == 0) return {Trouble::empty, "samples", 0.0, 1.0};
@@ -136,17 +136,17 @@ Status RegimeEvidence::find(std::span<const ImuSample> samples, std::span<const 
     out[k] = {both[0], both[1], both[2]};
     if (k == 0) break;
     backward = changes(params_, seconds(samples[k].time_ns - samples[k - 1].time_ns)) *
-               Vector3d(backward.cwiseProduct(likelihood[k]));  // the matrix is symmetric
+               Vector3d(backward.cwiseProduct(likelihood[k]));  // the transition matrix is symmetric
     backward /= backward.sum();
   }
   return {};
 }
 
-// carried.md (C39)
+// Combines two rate estimates by their probability: carried.md (C39).
 RateState either(const RateState& first, const RateState& second, double share) {
   RateState out = share > 0.5 ? second : first;
   const Vector3d apart = second.w_WI_I_rad_s - first.w_WI_I_rad_s;
-  // the distance `apart` between the two estimates adds to the covariance about the more probable one
+  // The difference `apart` of the two estimates adds to the covariance of the more probable estimate.
   out.covariance_rad2_s2 = (1.0 - share) * first.covariance_rad2_s2 + share * second.covariance_rad2_s2 +
                            std::min(share, 1.0 - share) * apart * apart.transpose();
   return out;

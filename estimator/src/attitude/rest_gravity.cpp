@@ -12,18 +12,18 @@ namespace tumble {
 
 namespace {
 
-constexpr double kRested_s = 1.0;   // total rest needed for checking the magnitude
-constexpr double kOtherUnit = 3.0;  // a factor that no scale error or bias of an accelerometer reaches
+constexpr double kRested_s = 1.0;   // total duration of rest that is needed for checking the magnitude of gravity
+constexpr double kOtherUnit = 3.0;  // an error factor that no scale error or bias of an accelerometer reaches
 
-/// Parameters that detect rest without any gravity-like force, for any unit.
+/// Returns parameters that detect rest from any force, also from a force that is far from gravity.
 RestDetector::Params without_force(RestDetector::Params rests) {
   rests.force_max_m_s2 = rests.force_min_m_s2;
   rests.force_min_m_s2 = 0.0;
   return rests;
 }
 
-/// Returns the parameters for readings in mg, cm/s^2 or counts, whose noise is larger in proportion. No robot stands
-/// still in ten times gravity.
+/// Returns parameters for readings in mg, cm/s^2 or counts, whose noise is proportionally larger. No robot stands still
+/// at ten times gravity.
 RestDetector::Params of_larger_numbers(RestDetector::Params rests) {
   constexpr double kLarger = 100.0;
   rests.force_min_m_s2 = kLarger;
@@ -89,7 +89,7 @@ void RestGravity::step(const ImuSample& sample, const RateState& rate, State& st
   state.span_angle_rad = state.variance_rad2 = state.segment_s = state.segment_rad2_s = 0.0;
 }
 
-/// A reading is a mean over its window and refers to the window's middle: imu_merge.md (I25).
+/// Integrates the rotation. A reading is a mean over its window and refers to the window's middle: imu_merge.md (I25).
 void RestGravity::turn(const ImuSample& sample, const RateState& rate, double dt_s, State& state) const {
   const Eigen::Quaterniond half = so3::exp(0.5 * dt_s * rate.w_WI_I_rad_s);
   const Eigen::Vector3d& force = sample.specific_force_m_s2;
@@ -102,12 +102,13 @@ void RestGravity::turn(const ImuSample& sample, const RateState& rate, double dt
   if (at_range || (sample.device_clip_flags & kClipAccel) != 0) state.hidden_m_s += dt_s * peak;
 }
 
-/// Saturation deficits within a segment are correlated: imu_merge.md (I23).
+/// Ends a clipped segment. Saturation deficits within a segment are correlated: imu_merge.md (I23).
 void RestGravity::end_segment(State& state) const {
   state.variance_rad2 += std::max(params_.correlation_s, state.segment_s) * state.segment_rad2_s;
   state.segment_s = state.segment_rad2_s = 0.0;
 }
 
+/// Starts a rest. Compares the directions of gravity at the previous and the new rest with the rotation between them:
 /// imu_merge.md (I23).
 void RestGravity::arrive(State& state) const {
   end_segment(state);
@@ -124,7 +125,7 @@ void RestGravity::arrive(State& state) const {
   state.miss_sigma_rad = sigma_rad;
 }
 
-/// imu_merge.md (I25), (I26).
+/// Compares the mean specific force between two rests with the specific force at the rests: imu_merge.md (I25), (I26).
 void RestGravity::close_velocity(const Eigen::Vector3d& here_m_s2, double sigma_rad, State& state) const {
   const Eigen::Vector3d mean_m_s2 = state.velocity_sum_m_s / state.span_s;
   const double from_start = (mean_m_s2 - state.from_m_s2).norm() / state.from_m_s2.norm();
@@ -137,7 +138,7 @@ void RestGravity::close_velocity(const Eigen::Vector3d& here_m_s2, double sigma_
   state.velocity_allowed_share = allowed;
 }
 
-/// imu_merge.md (I24).
+/// Returns the maximum allowed error of the rotation: imu_merge.md (I24).
 double RestGravity::allowed_rad(double sigma_rad) const {
   return std::min(params_.miss_most_rad, std::max(params_.miss_least_rad, params_.miss_deviations * sigma_rad));
 }
@@ -145,6 +146,13 @@ double RestGravity::allowed_rad(double sigma_rad) const {
 double RestGravity::size_share(const Size& state) const {
   if (state.rest_s >= kRested_s) return state.force_sum_m / state.rest_s / params_.gravity_m_s2;
   return state.weightless_s >= kRested_s ? 0.0 : 1.0;
+}
+
+void RestGravity::limit_memory(Size& state) {
+  constexpr double kMemory_s = 60.0;
+  if (state.rest_s <= kMemory_s) return;
+  state.rest_s *= 0.5;
+  state.force_sum_m *= 0.5;
 }
 
 Status RestGravity::size_verdict(const Size& state) const {

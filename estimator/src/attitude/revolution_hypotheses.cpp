@@ -21,36 +21,37 @@ using Vector9 = Eigen::Matrix<double, 9, 1>;
 using Matrix9 = Eigen::Matrix<double, 9, 9>;
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kAgainst = 3.0;           // segments whose mean is closer to the level, in deviations, are tested
+constexpr double kAgainst = 3.0;           // mean excess over the saturation level below which a segment is tested
 constexpr double kRevolutionCost = 100.0;  // limit of a revolution's jerk cost: ten standard deviations
-constexpr double kAround_s = 0.3;          // duration before and after a segment that is solved with it
-constexpr double kTakeLogOdds = 3.0;       // 1 to 20: stricter for a change, because the cost excludes model errors
-constexpr int kTurnsMax = 2;               // more or less than the descent's solution
+constexpr double kAround_s = 0.3;          // duration before and after a segment that is solved with the segment
+constexpr double kTakeLogOdds = 3.0;       // log odds (20 to 1) for a change; the cost excludes model errors
+constexpr int kTurnsMax = 2;               // maximum number of revolutions more or less than in the optimised solution
 constexpr int kRounds = 3;                 // maximum rounds of tests, with a complete solution after each
 
-/// Nodes [first, last] in which `element` was saturated and had no unsaturated reading.
+/// Range of nodes [first, last] in which the sensing element `element` was saturated and had no unsaturated reading.
 struct Segment {
   std::size_t element = 0, first = 0, last = 0;
 };
 
-/// One number of revolutions: nodes from `from` on, and the cost of these nodes.
+/// Hypothesis about the number of revolutions: nodes, starting with node `from`, and the cost of these nodes.
 struct Hypothesis {
   std::vector<Node> nodes;
   double cost = 0.0;
 };
 
-/// Remaining alternatives of a segment: the probable solutions other than the current one, with their probabilities.
+/// Remaining alternatives of a segment: the probable solutions other than the current solution, with their
+/// probabilities.
 struct Open {
   std::size_t from = 0;
   std::vector<std::pair<double, std::vector<Node>>> others;
 };
 
-/// Returns the cost of an additional revolution within `steps` steps.
+/// Returns the jerk cost of an additional revolution within `steps` node intervals.
 double revolution_cost(const Problem& problem, std::size_t steps) {
   return carried::revolution_cost(static_cast<double>(steps) * problem.node_s(), problem.jerk_rad_s3_sqrts());
 }
 
-/// carried.md (C28)
+/// Returns the segments that may contain an additional revolution: carried.md (C28).
 std::vector<Segment> suspect_segments(const Problem& problem) {
   std::vector<Segment> out;
   const std::size_t count = problem.nodes().size();
@@ -71,7 +72,7 @@ std::vector<Segment> suspect_segments(const Problem& problem) {
         const Eigen::Matrix3d covariance = problem.covariance(i).block<3, 3>(kRate, kRate);
         angle_rad += problem.node_s() * std::sqrt(std::max(0.0, m.dot(covariance * m.transpose())));
       }
-      // a segment at either end of the recording has no later information about revolutions
+      // a segment at either end of the recording has no readings on one side that could determine the revolutions
       if (segment.first == 0 || segment.last + 1 >= count) continue;
       const bool against_rail = beyond_rad_s < kAgainst * problem.rail_sigma_rad_s() * clipped &&
                                 revolution_cost(problem, segment.last + 2 - segment.first) < kRevolutionCost;
@@ -82,7 +83,7 @@ std::vector<Segment> suspect_segments(const Problem& problem) {
 }
 
 /// Returns the nodes of a part with `turns` additional revolutions about `axis` between nodes a and b. The function
-/// adds a smooth bump to the rate, integrates the attitudes, and distributes the remaining error at b evenly.
+/// adds a smooth bump to the rate, integrates the attitudes, and distributes the remaining attitude error at b evenly.
 std::vector<Node> with_more_revolutions(const Problem& part, const Vector3d& axis, double turns, std::size_t a,
                                         std::size_t b) {
   std::vector<Node> nodes(part.nodes().begin(), part.nodes().end());
@@ -98,7 +99,7 @@ std::vector<Node> with_more_revolutions(const Problem& part, const Vector3d& axi
   const Vector3d& g_W = part.gravity_W_m_s2();
   for (std::size_t i = a; i <= b; ++i) {
     nodes[i].q_WI = (nodes[i].q_WI * so3::exp(along(i) * missed)).normalized();
-    // the specific force in the sensor remains unchanged
+    // the specific force in sensor axes remains unchanged
     const Node& before = part.nodes()[i];
     nodes[i].a_W_m_s2 = nodes[i].q_WI * (before.q_WI.conjugate() * (before.a_W_m_s2 - g_W)) + g_W;
   }
@@ -111,7 +112,7 @@ double angle_between(std::span<const Node> from, std::span<const Node> to, const
   return out;
 }
 
-/// Returns the optimised number of revolutions and the possible alternatives.
+/// Returns the optimised solution and the solutions with another possible number of revolutions.
 std::vector<Hypothesis> hypotheses(const Problem& whole, const Segment& segment, const Part& part) {
   const Eigen::RowVector3d m = whole.rows().row(static_cast<Eigen::Index>(segment.element));
   const Vector3d axis = whole.rows().inverse().col(static_cast<Eigen::Index>(segment.element)).normalized();
@@ -121,7 +122,7 @@ std::vector<Hypothesis> hypotheses(const Problem& whole, const Segment& segment,
     Hypothesis found{{}, problem.converge()};
     found.nodes.assign(problem.nodes().begin(), problem.nodes().end());
     if (!std::isfinite(found.cost)) return false;
-    // the test converged to a number of revolutions that another hypothesis already has
+    // discards a solution that converged to the number of revolutions of another hypothesis
     for (const Hypothesis& other : out)
       if (std::abs(angle_between(other.nodes, found.nodes, m, whole.node_s())) < kPi) return false;
     const bool likely = out.empty() || found.cost < out.front().cost + 2.0 * kLogOdds;
@@ -139,13 +140,13 @@ std::vector<Hypothesis> hypotheses(const Problem& whole, const Segment& segment,
       if (!keep(other)) break;
     }
   }
-  // removes alternatives that a better alternative, found later, rules out
+  // removes solutions that are improbable compared with the best solution
   std::erase_if(out, [&](const Hypothesis& each) { return each.cost > out.front().cost + 2.0 * kLogOdds; });
   return out;
 }
 
-/// Result of testing one segment. The result contains the solutions of the part's nodes from `from` on, best first. The
-/// result also states which solution is the current one, if still present, and whether another solution replaces it.
+/// Result of testing one segment: the solutions of the part's nodes, starting with node `from`, best first. The result
+/// also identifies the current solution, if it is still present, and whether another solution replaces it.
 struct TestedSegment {
   std::size_t from = 0;
   std::vector<Hypothesis> found;
@@ -153,7 +154,7 @@ struct TestedSegment {
   bool another = false;
 };
 
-/// Returns the probabilities of carried.md (C29) of all solutions but `standing`.
+/// Returns the probabilities of all solutions except `standing`: carried.md (C29).
 Open shares_of(const TestedSegment& tested, std::optional<std::size_t> standing) {
   Open out{tested.from, {}};
   const double least = tested.found.front().cost;
@@ -166,7 +167,7 @@ Open shares_of(const TestedSegment& tested, std::optional<std::size_t> standing)
   return out;
 }
 
-/// Returns the remaining alternatives after the selected changes were applied, or without them.
+/// Returns the remaining alternatives of all segments. If `taken`, the selected changes have been applied.
 std::vector<Open> left_open(const std::vector<TestedSegment>& tested, bool taken) {
   std::vector<Open> out;
   for (const TestedSegment& each : tested) {
@@ -194,8 +195,8 @@ std::vector<Part> with_surroundings(const Problem& problem, std::span<const Segm
   return out;
 }
 
-/// Tests each part. The optimised solution remains until an alternative is clearly better. If the optimised solution
-/// was ruled out (`fallen`), the best alternative is used.
+/// Tests each part. The optimised solution remains until another solution is clearly better. If the tests ruled out the
+/// optimised solution (`fallen`), the best other solution replaces it.
 std::vector<TestedSegment> test_segments(const Problem& problem, std::span<const Segment> segments,
                                          std::span<const Part> parts, std::vector<bool>& fallen) {
   std::vector<TestedSegment> out;
@@ -240,7 +241,7 @@ void test_revolutions(Problem& problem, CarriedSmoother::Report& report, SolveAg
   std::vector<Part> parts = with_surroundings(problem, segments);
   std::vector<Open> open;
   std::vector<bool> fallen(parts.size(), false);
-  // the information about a part is linearised, so the tests are repeated after a change
+  // The information about the nodes outside a part is linearised. After a change, the tests are therefore repeated.
   for (int round = 0; round < kRounds; ++round) {
     if (!problem.condense_rest(parts)) break;
     const std::vector<TestedSegment> tested = test_segments(problem, segments, parts, fallen);
@@ -263,7 +264,7 @@ void test_revolutions(Problem& problem, CarriedSmoother::Report& report, SolveAg
     report.revolutions_taken += static_cast<int>(taken);
   }
   report.revolutions_open = static_cast<int>(open.size());
-  // carried.md (C29)
+  // remaining alternatives add to the covariance: carried.md (C29)
   for (const Open& segment : open) {
     for (const auto& [share, nodes] : segment.others) {
       for (std::size_t i = 0; i < nodes.size(); ++i) {

@@ -21,8 +21,8 @@ constexpr double kDisplacementSigmaStart_m = 0.1;
 constexpr double kContradicts_sigma2 = 4.0;
 constexpr int kTilt = 0, kBias = 2, kVelocity = 5, kDisplacement = 7, kHeading = 9;
 
-/// Applies a Kalman update by a scalar measurement of state `index` of attitude.md (A4). `innovation` is measurement
-/// minus prediction. The heading's variance is unchanged: attitude.md (A9).
+/// Applies a Kalman update by a scalar measurement of the state `index`: attitude.md (A4). `innovation` is measurement
+/// minus prediction. The update does not change the heading's variance: attitude.md (A9).
 void update(int index, double innovation, double variance, TumbleAttitude::State& state) {
   const double heading = state.covariance(kHeading, kHeading);
   const Eigen::Matrix<double, TumbleAttitude::State::kStates, 1> correction =
@@ -38,7 +38,7 @@ double tilt_variance_rad2(const TumbleAttitude::State& state) {
   return state.covariance.diagonal().segment<2>(kTilt).maxCoeff();
 }
 
-/// Returns the reported tilt variance. During a coarse alignment, the variance is at least its value at the start of
+/// Returns the reported tilt variance. During a coarse alignment, the variance is not below its value at the start of
 /// the alignment.
 double reported_tilt_rad2(const TumbleAttitude::State& state) {
   const double filtered = tilt_variance_rad2(state);
@@ -81,7 +81,7 @@ Status TumbleAttitude::step(const ImuSample& sample, const Eigen::Matrix3d& rate
       state.last_time_ns = sample.time_ns;
       return {};
     }
-    // while readings are averaged, the attitude at the start of the average is extrapolated
+    // while readings are averaged, the attitude is extrapolated from the start of the average
     if (state.average.readings == 0) {
       state.q_taken_WI = state.q_WI;
     } else {
@@ -103,7 +103,7 @@ Status TumbleAttitude::step(const ImuSample& sample, const Eigen::Matrix3d& rate
 Eigen::Matrix3d TumbleAttitude::attitude_covariance_rad2(const State& state) {
   constexpr std::array kAttitude = {kTilt, kTilt + 1, kHeading};
   Eigen::Matrix3d covariance = state.covariance(kAttitude, kAttitude);
-  if (state.alignment.running) {  // until the alignment is complete, later corrections of the filter are not used
+  if (state.alignment.running) {  // until the alignment is complete, it does not use later corrections of the filter
     covariance.topLeftCorner<2, 2>() = reported_tilt_rad2(state) * Eigen::Matrix2d::Identity();
     covariance.topRightCorner<2, 1>().setZero();
     covariance.bottomLeftCorner<1, 2>().setZero();
@@ -122,12 +122,12 @@ void TumbleAttitude::take_average(State& state) const {
   if (state.node_s >= params_.expert.node_s - 0.5 * length_s) end_node(state);
 }
 
-/// attitude.md (A16): returns whether the mean rate of the run agrees with the bias, within the uncertainty of rate and
-/// bias.
+/// Returns whether the mean rate of the run agrees with the bias, within the uncertainties of rate and bias:
+/// attitude.md (A16).
 bool TumbleAttitude::rotates_by_bias_alone(const State& state) const {
   const Eigen::Array3d off_rad_s = (state.rest.mean_rate_rad_s() - state.bias_rad_s).array();
   const Eigen::Array3d variance = state.covariance.diagonal().segment<3>(kBias).array() +
-                                  squared(params_.expert.at_rest.rate_sigma_rad_sqrts);  // of 1 s
+                                  squared(params_.expert.at_rest.rate_sigma_rad_sqrts);  // variance of a mean over 1 s
   return (off_rad_s.square() <= squared(params_.expert.at_rest.rate_sigmas) * variance).all();
 }
 
@@ -139,7 +139,7 @@ void TumbleAttitude::start(State& state) const {
   state.started = true;
 }
 
-/// attitude.md (A5).
+/// Integrates attitude, specific force and squared rotation over one sample: attitude.md (A5).
 void TumbleAttitude::integrate(const ImuSample& sample, double dt_s, State& state) const {
   Eigen::Vector3d rate = sample.angular_velocity_rad_s - state.bias_rad_s;
   if (state.at_rest) rate.setZero();
@@ -154,7 +154,7 @@ void TumbleAttitude::integrate(const ImuSample& sample, double dt_s, State& stat
   state.node_s += dt_s;
 }
 
-/// attitude.md (A17), (A18).
+/// Propagates the attitude and its covariance across a gap in the data: attitude.md (A17), (A18).
 void TumbleAttitude::bridge_gap(const ImuSample& after, const Eigen::Matrix3d& rate_covariance_rad2_s2, double gap_s,
                                 State& state) const {
   if (state.average.readings > 0) take_average(state);
@@ -162,7 +162,7 @@ void TumbleAttitude::bridge_gap(const ImuSample& after, const Eigen::Matrix3d& r
   const Eigen::Vector3d from = state.rate_rad_s;
   Eigen::Vector3d to = after.angular_velocity_rad_s - state.bias_rad_s;
   if (state.at_rest) to.setZero();
-  ImuSample straight = after;  // only gravity: the velocity continues
+  ImuSample straight = after;  // no force but gravity: the velocity remains constant
   straight.angular_velocity_rad_s = 0.5 * (from + to) + state.bias_rad_s;
   const Eigen::Quaterniond q_mid = state.q_WI * so3::exp(0.25 * gap_s * (from + to));
   straight.specific_force_m_s2 = q_mid.conjugate() * Eigen::Vector3d(0.0, 0.0, params_.gravity_m_s2);
@@ -178,10 +178,11 @@ void TumbleAttitude::bridge_gap(const ImuSample& after, const Eigen::Matrix3d& r
     state.covariance.diagonal().segment<2>(kVelocity).array() += squared(gap.velocity_walk_m_s_sqrts) * gap_s;
   }
   predict_node(state);
-  // a gripping sphere has its rolling velocity again, and the change of velocity was not slip
+  // When a sphere grips again, its velocity is the rolling velocity. The change of velocity during the gap was not
+  // slip.
   if (params_.radius_m > 0.0 && !state.slipping) state.v_W_m_s = velocity_of_rotation(state);
-  // the tilt variance is needed before the correction, because the update with one reading is not linear; the axes of
-  // an earlier alignment are lost
+  // The tilt variance must be computed before the correction, because the update with one reading is not linear. The
+  // new alignment replaces an earlier alignment.
   const double tilt = reported_tilt_rad2(state);
   state.alignment = {};
   correct_node(state);
@@ -199,7 +200,7 @@ void TumbleAttitude::end_node(State& state) const {
   clear_node(state);
 }
 
-/// Returns the variance of a body's velocity, one axis, known only from the body's earlier motion and its rotation.
+/// Returns the variance of a body's velocity per axis, derived only from the body's earlier motion and its rotation.
 double TumbleAttitude::own_velocity_m2_s2(double power_m2_s2, const State& state) const {
   if (state.at_rest) return squared(params_.expert.at_rest.velocity_sigma_m_s);
   const double assumed = squared(params_.velocity_m_sqrts) / params_.motion_tau_s;
@@ -207,15 +208,16 @@ double TumbleAttitude::own_velocity_m2_s2(double power_m2_s2, const State& state
   return std::max({assumed, power_m2_s2, turning});
 }
 
-/// Updates an alignment after the node's correction, a rotation of W; attitude.md (A19), (A20).
+/// Updates a coarse alignment after the node's correction `corrected`, a rotation of W: attitude.md (A19), (A20).
 void TumbleAttitude::align(const Eigen::Quaterniond& corrected, State& state) const {
   CoarseAlignment& alignment = state.alignment;
   alignment.force_W_m_s = corrected * alignment.force_W_m_s;
-  // the filter's velocity since the gap relies on a tilt that may be wrong
+  // The alignment does not use the filter's velocity since the gap, because that velocity depends on a tilt that may be
+  // wrong.
   const double velocity = own_velocity_m2_s2(alignment.velocity_m2_s2, state);
   const double variance = alignment.variance_rad2(velocity, params_.gravity_m_s2);
   if (variance > squared(params_.expert.gap.aligned_tilt_rad)) {
-    // for a body that came to rest, only later data count
+    // if the body came to rest, the alignment restarts and uses only later data
     if (state.at_rest && alignment.velocity_m2_s2 > velocity) alignment.begin(velocity, alignment.tilt_rad2());
     return;
   }
@@ -225,8 +227,8 @@ void TumbleAttitude::align(const Eigen::Quaterniond& corrected, State& state) co
   alignment = {};
 }
 
-/// Restarts from an attitude with the variance `tilt_rad2`. Rotates W by `levelling` and resets the velocity to the
-/// value known from the body's motion.
+/// Restarts from an attitude with the tilt variance `tilt_rad2`. Rotates W by `levelling`, and resets the velocity to
+/// the value that follows from the body's motion.
 void TumbleAttitude::restart(const Eigen::Quaterniond& levelling, double tilt_rad2, double velocity_m2_s2,
                              State& state) const {
   state.q_WI = (levelling * state.q_WI).normalized();
@@ -245,7 +247,7 @@ void TumbleAttitude::restart(const Eigen::Quaterniond& levelling, double tilt_ra
   state.displacement_power_m2 = 0.0;
 }
 
-/// attitude.md (A10).
+/// Adds the variance of recovered rates to the attitude: attitude.md (A10).
 void TumbleAttitude::add_recovered(double dt_s, State& state) const {
   if (state.at_rest || state.recovered_rad2_s2.isZero(0.0)) {
     state.recovered_rad.setZero();
@@ -260,7 +262,7 @@ void TumbleAttitude::add_recovered(double dt_s, State& state) const {
   state.recovered_rad2_s2.setZero();
 }
 
-/// attitude.md (A6), (A7), (A8), (A9).
+/// Predicts the states and their covariance over one node interval: attitude.md (A6), (A7), (A8), (A9).
 void TumbleAttitude::predict_node(State& state) const {
   const double h = state.node_s;
   const double keep = std::exp(-h / params_.displacement_tau_s);
@@ -273,8 +275,8 @@ void TumbleAttitude::predict_node(State& state) const {
     F.block<2, 3>(kTilt, kBias) = -state.R_WI_s.topRows<2>();
     F.block<1, 3>(kHeading, kBias) = -state.R_WI_s.row(2);
   }
-  // horizontal part of phi x f; a heading error would rotate accelerations, but the velocity is no reference for the
-  // heading
+  // The derivative is the horizontal part of phi x f. A heading error would also rotate accelerations, but the velocity
+  // is no reference for the heading.
   F(kVelocity, kTilt + 1) = state.f_W_m_s.z();
   F(kVelocity + 1, kTilt) = -state.f_W_m_s.z();
   F.block<2, 2>(kDisplacement, kVelocity) = h * Eigen::Matrix2d::Identity();
@@ -290,7 +292,7 @@ void TumbleAttitude::predict_node(State& state) const {
   state.covariance.diagonal().segment<2>(kVelocity).array() += squared(params_.expert.acceleration_noise_m_s_sqrts) * h;
 }
 
-/// Returns whether the rolling constraint is not usable at the current node.
+/// Returns whether the sphere slips at the current node. The rolling constraint is then unusable.
 bool TumbleAttitude::watch_slip(const Eigen::Vector2d& misfit_m_s, State& state) const {
   const double misfit = misfit_m_s.norm();
   state.slip_s = state.slipping ? state.slip_s + state.node_s : 0.0;
@@ -298,7 +300,7 @@ bool TumbleAttitude::watch_slip(const Eigen::Vector2d& misfit_m_s, State& state)
   if (state.slipping) {
     state.slipping = !state.at_rest && state.fits_s <= params_.expert.rolling.slip_quiet_s;
     if (state.slip_s > params_.expert.rolling.slip_timeout_s) {
-      // after a slip, the integrated velocity is less accurate than rolling
+      // after a slip, the velocity from rolling is more accurate than the integrated velocity
       state.covariance.diagonal().segment<2>(kVelocity).array() += squared(misfit);
       state.slipping = false;
     }
@@ -308,42 +310,43 @@ bool TumbleAttitude::watch_slip(const Eigen::Vector2d& misfit_m_s, State& state)
   return state.slipping;
 }
 
-/// attitude.md (A13): returns the variance of a body's own velocity or displacement, one axis. `power` is the previous
+/// Returns the variance of a body's own velocity or displacement per axis: attitude.md (A13). `power` is the previous
 /// value.
-double TumbleAttitude::own_motion(const Eigen::Vector2d& misfit, int index, double sigma_sqrts, double power,
-                                  const State& state) const {
+double TumbleAttitude::motion_excess(const Eigen::Vector2d& misfit, int index, double sigma_sqrts, double power,
+                                     const State& state) const {
   const double seen = 0.5 * (misfit.squaredNorm() - state.covariance.block<2, 2>(index, index).trace());
   const double remembered = std::exp(-state.node_s / params_.motion_tau_s) * power;
   return std::max({squared(sigma_sqrts) / params_.motion_tau_s, seen, remembered});
 }
 
-/// Corrects a body other than a sphere: velocity while it moves, and displacement about zero. attitude.md (A12), (A14).
+/// Corrects a body other than a sphere: the velocity while the body moves, and the displacement towards zero. The
+/// equations are attitude.md (A12), (A14).
 void TumbleAttitude::correct_body(const Eigen::Vector2d& turned_m_s, State& state) const {
   const double memories = params_.motion_tau_s / state.node_s;
   if (!state.at_rest) {
     const Eigen::Vector2d misfit = turned_m_s - state.v_W_m_s;
     double& power = state.velocity_power_m2_s2;
-    power = own_motion(misfit, kVelocity, params_.velocity_m_sqrts, power, state);
+    power = motion_excess(misfit, kVelocity, params_.velocity_m_sqrts, power, state);
     for (int axis = 0; axis < 2; ++axis) {
       update(kVelocity + axis, turned_m_s[axis] - state.v_W_m_s[axis], power * memories, state);
     }
   }
   double& power = state.displacement_power_m2;
-  power = own_motion(-state.d_W_m, kDisplacement, params_.displacement_m_sqrts, power, state);
+  power = motion_excess(-state.d_W_m, kDisplacement, params_.displacement_m_sqrts, power, state);
   for (int axis = 0; axis < 2; ++axis) {
     update(kDisplacement + axis, -state.d_W_m[axis], power * memories, state);
   }
 }
 
-/// Returns the velocity of the IMU due to the body's rotation about the centre, and of the rolling centre. attitude.md
-/// (A11).
+/// Returns the horizontal velocity of the IMU due to the body's rotation: attitude.md (A11). The velocity is the sum of
+/// the IMU's velocity about the centre and the centre's rolling velocity.
 Eigen::Vector2d TumbleAttitude::velocity_of_rotation(const State& state) const {
   const Eigen::Vector3d w_W = state.q_WI * state.rate_rad_s;
   const Eigen::Vector3d arm_W = state.q_WI * params_.lever_arm_m + params_.radius_m * Eigen::Vector3d::UnitZ();
   return w_W.cross(arm_W).head<2>();
 }
 
-/// Corrects the velocity of a sphere or of a body at rest, and the bias at rest. attitude.md (A11), (A12).
+/// Corrects the velocity of a sphere or of a body at rest, and the gyro bias at rest: attitude.md (A11), (A12).
 void TumbleAttitude::correct_node(State& state) const {
   const double h = state.node_s;
   const Eigen::Vector2d turned = velocity_of_rotation(state);

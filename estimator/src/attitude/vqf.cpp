@@ -14,11 +14,11 @@ namespace tumble {
 namespace {
 
 constexpr double kNoDirection_m_s2 = 1e-6;
-/// The bias variance grows to the square of this rate in the forgetting time (0.1 deg/s, fixed by the publication).
+/// Square root of the bias variance's growth within the forgetting time. The publication fixes the value 0.1 deg/s.
 constexpr double kForgottenSigma_rad_s = 1.7453292519943295e-3;
 
-/// Returns the measurement variance for which the scalar filter of a bias with random walk `growth` converges to the
-/// variance sigma^2.
+/// Returns the measurement variance for a scalar filter of a bias with random walk `growth`. The variance of this
+/// filter converges to sigma^2.
 double steady_noise(double sigma, double growth) {
   const double variance = sigma * sigma;
   return variance * variance / growth + variance;
@@ -65,14 +65,15 @@ void Vqf::detect_rest(const ImuSample& sample, double dt_s, State& state) const 
   state.at_rest = state.rest_s >= params_.rest_time_s && quiet;
 }
 
-/// Corrects q_WN. Returns the unit vector "up" according to the force, in W before the correction.
+/// Corrects the rotation q_WN of the inertial frame. Returns the unit vector "up" according to the force, in W before
+/// the correction.
 Eigen::Vector3d Vqf::level_inertial_frame(const Eigen::Vector3d& f_I_m_s2, double dt_s, State& state) const {
-  // attitude.md (A3)
+  // low-pass filter of the specific force: attitude.md (A3)
   state.f_N_m_s2.advance(state.q_NI * f_I_m_s2, params_.tau_s, dt_s, low_pass_warp(params_.tau_s, dt_s));
   const double length = state.f_N_m_s2.value.norm();
   if (length < kNoDirection_m_s2) return Eigen::Vector3d::UnitZ();
   const Eigen::Vector3d up_W = state.q_WN * (state.f_N_m_s2.value / length);
-  // attitude.md (A2)
+  // levelling of the inertial frame by the filtered force: attitude.md (A2)
   state.q_WN = (levelling(up_W) * state.q_WN).normalized();
   return up_W;
 }
@@ -98,7 +99,8 @@ void Vqf::estimate_bias(const Eigen::Vector3d& up_W, double dt_s, State& state) 
     noise.setConstant(steady_noise(params_.expert.bias_sigma_rest_rad_s, growth));
   } else if (params_.motion_bias_estimation) {
     H = Eigen::Map<const Eigen::Matrix3d>(state.R_WI.value.data());
-    // the levelling's rate is the remaining bias plus the bias removed since the force entered the low-pass
+    // The levelling rate is the sum of two biases: the remaining bias, and the bias removed since the force entered the
+    // low-pass filter.
     const Eigen::Vector2d low_passed = state.bias_W_rad_s.value;
     innovation = Eigen::Vector3d(low_passed.x() - up_W.y() / dt_s, low_passed.y() + up_W.x() / dt_s, 0.0) - H * b;
     const double motion = steady_noise(params_.expert.bias_sigma_motion_rad_s, growth);

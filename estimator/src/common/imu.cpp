@@ -30,11 +30,16 @@ Status check_follows(TimeNs time_ns, TimeNs previous_ns, double gap_max_s) {
   if (time_ns <= previous_ns) {
     return {Trouble::time_order, "time_ns", static_cast<double>(time_ns), static_cast<double>(previous_ns)};
   }
-  // unsigned, because the difference of two 64-bit stamps may overflow a signed integer
+  // The type is unsigned, because the difference of two 64-bit time stamps may overflow a signed integer.
   const std::uint64_t gap_ns = static_cast<std::uint64_t>(time_ns) - static_cast<std::uint64_t>(previous_ns);
   const double gap_s = static_cast<double>(gap_ns) * 1e-9;
   if (gap_s > gap_max_s) return {Trouble::gap, "time_s since the last sample", gap_s, gap_max_s};
   return {};
+}
+
+Status check_stamp(TimeNs stamp_ns, const char* field) {
+  if (stamp_ns >= -kStampMax_ns && stamp_ns <= kStampMax_ns) return {};
+  return {Trouble::out_of_range, field, static_cast<double>(stamp_ns), static_cast<double>(kStampMax_ns)};
 }
 
 Status check_samples(std::span<const ImuSample> samples, double gap_max_s) {

@@ -13,7 +13,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Thresholds. docs/maths/outliers.md, "Thresholds", states the readings from which the thresholds were measured.
+// Thresholds of the outlier test. The section "Thresholds" in docs/maths/outliers.md lists the measurements behind
+// them.
 constexpr double kRateMin_rad_s = 1.0;    // smallest outlier of a gyro
 constexpr double kForceMin_m_s2 = 30.0;   // smallest outlier of an accelerometer
 constexpr double kAgreement = 3.0;        // an outlier is larger than this multiple of the neighbours' difference
@@ -22,15 +23,16 @@ constexpr double kLever_m = 10.0;         // largest force per angular accelerat
 constexpr double kTurnMost_rad_s = 50.0;  // limit of a rate jump that lasts one sample only
 constexpr double kHitMost_m_s = 20.0;     // limit of a velocity jump that lasts one sample only
 constexpr double kNear_s = 0.1;           // neighbours further away than this are not compared
-constexpr double kPeriodsAhead = 4.0;     // a longer step of the stamps is held
+constexpr double kPeriodsAhead = 1.75;    // a longer step of the stamps is held: the next stamp may be earlier
 
-// A reading may be saturated from this fraction of the stated range on, and also if a large reading repeats.
+// A reading may be saturated above this fraction of the stated range. A large reading that repeats may also be
+// saturated.
 constexpr double kAtRange = 0.95;
 constexpr double kRepeats_rad_s = 1.0, kRepeats_m_s2 = 15.0;
 
 constexpr double kUnknown = std::numeric_limits<double>::infinity();
 
-/// One of the two triads.
+/// Gyro or accelerometer.
 struct Triad {
   Vector3d ImuSample::*reading;
   std::uint8_t clip_flags;
@@ -59,13 +61,13 @@ Triad accel_of(const OutlierFilter::Device& device) {
   return {&ImuSample::specific_force_m_s2, kClipAccel, device.accel_range_m_s2, kRepeats_m_s2};
 }
 
-/// Returns the time from an earlier stamp to a later stamp. The difference is unsigned, since the difference of any two
-/// stamps may not fit into a signed integer.
+/// Returns the time between two stamps. The subtraction is unsigned, since the difference of two stamps may not fit
+/// into a signed integer.
 double step_s(const ImuSample& from, const ImuSample& to) {
   return 1e-9 * static_cast<double>(static_cast<std::uint64_t>(to.time_ns) - static_cast<std::uint64_t>(from.time_ns));
 }
 
-/// Consecutive samples, oldest first.
+/// Consecutive samples, starting with the oldest sample.
 struct Sequence {
   std::array<const ImuSample*, 4> samples{};
   std::size_t count = 0;
@@ -81,8 +83,8 @@ Sequence passed_near(const OutlierFilter::State& state) {
   return out;
 }
 
-/// Returns the largest change from one reading to the next: outliers.md (O3). The change is unknown where saturation
-/// may hide it.
+/// Returns the largest change from one reading to the next: outliers.md (O3). If saturation may hide a change, the
+/// result is unknown.
 double largest_step(const Sequence& sequence, const Triad& triad) {
   double out = 0.0;
   for (std::size_t k = 1; k < sequence.count; ++k) {
@@ -92,7 +94,7 @@ double largest_step(const Sequence& sequence, const Triad& triad) {
   return out;
 }
 
-/// Returns the largest change between consecutive steps: outliers.md (O4).
+/// Returns the largest difference between two consecutive steps: outliers.md (O4).
 double largest_bend(const Sequence& sequence, const Triad& triad) {
   double out = 0.0;
   for (std::size_t k = 1; k < sequence.count; ++k) {
@@ -104,7 +106,7 @@ double largest_bend(const Sequence& sequence, const Triad& triad) {
   return out;
 }
 
-/// Returns how far a reading leaves both neighbours in one direction, on the axis with the largest departure:
+/// Returns how far a reading differs from both neighbours in one direction, on the axis with the largest difference:
 /// outliers.md (O1).
 double departure(const Vector3d& before, const Vector3d& now, const Vector3d& after) {
   double out = 0.0;
@@ -115,8 +117,8 @@ double departure(const Vector3d& before, const Vector3d& now, const Vector3d& af
   return out;
 }
 
-/// Returns the distance of a reading from the last reading that passed, or from the line through the last two if
-/// smaller: outliers.md (O2).
+/// Returns the distance of a reading from the last accepted reading, or from the line through the last two accepted
+/// readings, whichever is smaller: outliers.md (O2).
 double distance(const ImuSample& sample, const OutlierFilter::State& state, const Triad& triad) {
   const ImuSample &first = state.passed[0], &last = state.passed[1];
   const Vector3d step = triad.of(sample) - triad.of(last);
@@ -155,8 +157,9 @@ void OutlierFilter::finish(State& state) {
 
 std::optional<ImuSample> OutlierFilter::settle(const ImuSample& next, State& state) const {
   if (!state.held) return std::nullopt;
+  const bool confirmed = confirms(next, state);
   const std::optional<ImuSample> held = std::exchange(state.held, std::nullopt);
-  if (next.time_ns > held->time_ns && !is_outlier(*held, next, state)) return held;
+  if (confirmed) return held;
   ++state.rejected;
   return std::nullopt;
 }
@@ -173,20 +176,24 @@ bool OutlierFilter::keeps_back(const ImuSample& sample, State& state) const {
   return true;
 }
 
-/// Returns the last step of the stamps, or the nominal period if it is longer. The result is infinite if neither is
-/// known.
+/// Returns the last step of the stamps, or the nominal period if it is longer. The result is infinite if the nominal
+/// period is not stated.
 double OutlierFilter::period_s(const State& state) const {
-  if (!(device_.period_s > 0.0) || state.count < 2) return kUnknown;
+  if (!(device_.period_s > 0.0)) return kUnknown;
+  if (state.count < 2) return device_.period_s;
   return std::max(device_.period_s, step_s(state.passed[0], state.passed[1]));
 }
 
-/// Returns whether a reading jumps further than the other triad explains: outliers.md (O5).
 bool OutlierFilter::is_suspicious(const ImuSample& sample, const State& state) const {
   if (state.count == 0) return false;
-  const ImuSample& before = state.passed[1];
-  const double after_s = step_s(before, sample);
+  const double after_s = step_s(state.passed[1], sample);
   if (after_s > device_.gap_max_s) return false;
-  if (after_s > kPeriodsAhead * period_s(state)) return true;
+  return after_s > kPeriodsAhead * period_s(state) || jumps(sample, state);
+}
+
+/// Returns whether a reading jumps further than the other triad explains: outliers.md (O5).
+bool OutlierFilter::jumps(const ImuSample& sample, const State& state) const {
+  const double after_s = step_s(state.passed[1], sample);
   if (after_s > kNear_s) return false;
   const double step = std::max(after_s, device_.period_s);
   Sequence sequence = passed_near(state);
@@ -195,7 +202,7 @@ bool OutlierFilter::is_suspicious(const ImuSample& sample, const State& state) c
          distance(sample, state, accel_of(device_)) > accel_threshold(device_, sequence, sample, step);
 }
 
-/// Returns whether the delayed reading is an outlier, given the reading after it: outliers.md (O6).
+/// Returns whether the delayed reading is an outlier, given the following reading: outliers.md (O6).
 bool OutlierFilter::is_outlier(const ImuSample& held, const ImuSample& after, const State& state) const {
   const ImuSample& before = state.passed[1];
   if (state.count == 0 || step_s(before, held) > kNear_s || step_s(held, after) > kNear_s) return false;
@@ -216,6 +223,10 @@ std::vector<bool> find_inliers(const OutlierFilter& filter, std::span<const ImuS
   OutlierFilter::State state;
   std::size_t held = 0;
   for (std::size_t k = 0; k < samples.size(); ++k) {
+    if (filter.first_is_refuted(samples[k], state)) {
+      std::fill(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(held), false);
+      state.count = 0;
+    }
     if (const std::optional<ImuSample> confirmed = filter.settle(samples[k], state)) {
       OutlierFilter::pass(*confirmed, state);
       out[held] = true;

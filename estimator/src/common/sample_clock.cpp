@@ -11,8 +11,8 @@ namespace tumble {
 
 namespace {
 
-constexpr double kOutlier = 4.0;  // errors are limited to this many standard deviations
-constexpr double kStray = 0.4;    // error in periods above which the sample number is uncertain
+constexpr double kOutlier = 4.0;  // limit of an error, in standard deviations
+constexpr double kStray = 0.4;    // error, in periods, above which the sample number is uncertain
 constexpr std::size_t kStraysMax = 8;
 constexpr double kNoPeriod = 0.25;    // maximum jitter in periods; random stamps have 0.29
 constexpr double kWander = 0.5;       // maximum correlation of successive errors for a line that follows the clock
@@ -20,19 +20,19 @@ constexpr double kLeastStep = 0.25;   // minimum time between two samples, in pe
 constexpr double kNumberSigma = 0.1;  // maximum uncertainty of the sample number after a gap, in periods
 
 constexpr double kPeriodMax_ns = 1e11;
-constexpr TimeNs kLast_ns = TimeNs{1} << 62;  // larger stamps are not corrected, to avoid overflow
+constexpr TimeNs kLast_ns = TimeNs{1} << 62;  // larger stamps remain uncorrected, to avoid overflow
 
 double after_ns(TimeNs later_ns, TimeNs earlier_ns) {
   return static_cast<double>(static_cast<std::uint64_t>(later_ns) - static_cast<std::uint64_t>(earlier_ns));
 }
 
 struct Line {
-  double period_ns = 0.0, last_ns = 0.0;  ///< slope; value at the last stamp's number, from the first stamp
-  double sum_n = 0.0, sum_nn = 0.0;       ///< sums over the numbers, counted from the last
-  double mean_square_error_ns2 = 0.0;     ///< variance of the stamps about the line
+  double period_ns = 0.0, last_ns = 0.0;  ///< slope; value of the line at the last stamp, relative to the first stamp
+  double weighted_sum_number = 0.0, sum_nn = 0.0;  ///< sums over the sample numbers, counted from the last stamp
+  double mean_square_error_ns2 = 0.0;              ///< variance of the stamps about the line
 };
 
-using Offsets = std::array<double, SampleClock::kStart>;  // from the first stamp [ns]
+using Offsets = std::array<double, SampleClock::kStart>;  // times relative to the first stamp [ns]
 using Numbers = std::array<double, SampleClock::kStart>;
 
 Line fit(const Offsets& x_ns, const Numbers& n) {
@@ -41,14 +41,14 @@ Line fit(const Offsets& x_ns, const Numbers& n) {
   double sum_x = 0.0, sum_nx = 0.0;
   for (std::size_t k = 0; k < SampleClock::kStart; ++k) {
     const double from_last = n[k] - n.back();
-    line.sum_n += from_last;
+    line.weighted_sum_number += from_last;
     line.sum_nn += from_last * from_last;
     sum_x += x_ns[k];
     sum_nx += from_last * x_ns[k];
   }
-  const double determinant = kCount * line.sum_nn - line.sum_n * line.sum_n;
-  line.last_ns = (line.sum_nn * sum_x - line.sum_n * sum_nx) / determinant;
-  line.period_ns = (kCount * sum_nx - line.sum_n * sum_x) / determinant;
+  const double determinant = kCount * line.sum_nn - line.weighted_sum_number * line.weighted_sum_number;
+  line.last_ns = (line.sum_nn * sum_x - line.weighted_sum_number * sum_nx) / determinant;
+  line.period_ns = (kCount * sum_nx - line.weighted_sum_number * sum_x) / determinant;
   for (std::size_t k = 0; k < SampleClock::kStart; ++k) {
     const double residual = x_ns[k] - line.last_ns - (n[k] - n.back()) * line.period_ns;
     line.mean_square_error_ns2 += residual * residual / (kCount - 2.0);
@@ -111,9 +111,9 @@ Status SampleClock::push(TimeNs stamp_ns, State& state, TimeNs& time_ns) const {
   time_ns = stamp_ns;
   if (corrects_stamps(state) && std::abs(stamp_ns) < kLast_ns) {
     const double bound_ns = 0.5 * state.period_ns;
-    time_ns += std::llround(std::clamp(state.fit_minus_stamp_ns, -bound_ns, bound_ns));
+    time_ns += std::llround(std::clamp(state.fit_residual_ns, -bound_ns, bound_ns));
   }
-  // after an uncorrected stamp or a burst, time must still increase: the stamps catch up
+  // Time must increase after an uncorrected stamp and after a burst of stamps. The corrected stamps then catch up.
   if (state.stamp_ns && time_ns <= state.time_ns)
     time_ns = state.time_ns + std::max<TimeNs>(1, std::llround(std::min(kLeastStep * state.period_ns, 0.5 * step_ns)));
   state.stamp_ns = stamp_ns;
@@ -121,7 +121,7 @@ Status SampleClock::push(TimeNs stamp_ns, State& state, TimeNs& time_ns) const {
   return {};
 }
 
-/// Fits a line to the first stamps if they have a period.
+/// Fits a line to the first stamps, if the stamps have a period.
 void SampleClock::begin(State& state) const {
   Offsets x_ns{};
   for (std::size_t k = 0; k < kStart; ++k) x_ns[k] = after_ns(state.start[k], state.start.front());
@@ -134,22 +134,23 @@ void SampleClock::begin(State& state) const {
   if (!(std::sqrt(line.mean_square_error_ns2) < kNoPeriod * line.period_ns)) return;
   state.line_fitted = true;
   state.period_ns = line.period_ns;
-  state.fit_minus_stamp_ns = line.last_ns - x_ns.back();
+  state.fit_residual_ns = line.last_ns - x_ns.back();
   state.sum = kStart;
-  state.sum_n = line.sum_n;
+  state.weighted_sum_number = line.weighted_sum_number;
   state.sum_nn = line.sum_nn;
   state.mean_square_error_ns2 = line.mean_square_error_ns2;
   state.mean_error_product_ns2 = state.error_ns = 0.0;
   state.outliers = 0;
 }
 
-/// Updates the line with a stamp, sample_clock.md (S1), (S2) and (S3). Restarts if the sample's number is uncertain.
+/// Updates the line with a stamp: sample_clock.md (S1), (S2), (S3). If the sample number is uncertain, restarts the
+/// fit.
 void SampleClock::follow(double step_ns, TimeNs stamp_ns, State& state) const {
-  const double passed_ns = step_ns - state.fit_minus_stamp_ns;
+  const double passed_ns = step_ns - state.fit_residual_ns;
   const double number = std::max(1.0, std::round(passed_ns / state.period_ns));
   const double error_ns = passed_ns - number * state.period_ns;
   const double jitter_ns = std::max(std::sqrt(state.mean_square_error_ns2), params_.jitter_min * state.period_ns);
-  const double before = state.sum * state.sum_nn - state.sum_n * state.sum_n;
+  const double before = state.sum * state.sum_nn - state.weighted_sum_number * state.weighted_sum_number;
   const double unsure_ns = number * jitter_ns * std::sqrt(state.sum / before);
   state.outliers = std::abs(error_ns) > kStray * state.period_ns ? state.outliers + 1 : 0;
   const bool lost = unsure_ns > kNumberSigma * state.period_ns || state.outliers > kStraysMax ||
@@ -166,14 +167,14 @@ void SampleClock::follow(double step_ns, TimeNs stamp_ns, State& state) const {
   state.mean_error_product_ns2 += fading * (limited_ns * state.error_ns - state.mean_error_product_ns2);
   state.error_ns = limited_ns;
 
-  // sample numbers count from the current sample; only its residual about the line is not zero
+  // sample numbers count from the current sample, so only the residual of the current sample enters the sum
   const double keep = 1.0 - fading;
-  state.sum_nn = keep * (state.sum_nn - 2.0 * number * state.sum_n + number * number * state.sum);
-  state.sum_n = keep * (state.sum_n - number * state.sum);
+  state.sum_nn = keep * (state.sum_nn - 2.0 * number * state.weighted_sum_number + number * number * state.sum);
+  state.weighted_sum_number = keep * (state.weighted_sum_number - number * state.sum);
   state.sum = keep * state.sum + 1.0;
-  const double determinant = state.sum * state.sum_nn - state.sum_n * state.sum_n;
-  state.fit_minus_stamp_ns = state.sum_nn / determinant * limited_ns - error_ns;
-  state.period_ns -= state.sum_n / determinant * limited_ns;
+  const double determinant = state.sum * state.sum_nn - state.weighted_sum_number * state.weighted_sum_number;
+  state.fit_residual_ns = state.sum_nn / determinant * limited_ns - error_ns;
+  state.period_ns -= state.weighted_sum_number / determinant * limited_ns;
 }
 
 Status SampleClock::check_state(const State& state) {
@@ -183,7 +184,7 @@ Status SampleClock::check_state(const State& state) {
     return {Trouble::out_of_range, "stamps.time_ns", double(state.time_ns), double(*state.stamp_ns)};
   if (!state.line_fitted) return {};
   if (!(state.period_ns > 0.0)) return {Trouble::out_of_range, "stamps.period_ns", state.period_ns, 0.0};
-  const double determinant = state.sum * state.sum_nn - state.sum_n * state.sum_n;
+  const double determinant = state.sum * state.sum_nn - state.weighted_sum_number * state.weighted_sum_number;
   if (!(determinant > 0.0)) return {Trouble::out_of_range, "stamps.sum_nn", determinant, 0.0};
   return {};
 }

@@ -14,9 +14,9 @@ void members(Self& s, Visitor& visit) {
   visit("stamps.time_ns", s.time_ns);
   visit("stamps.line_fitted", s.line_fitted);
   visit("stamps.period_ns", s.period_ns, 0.0, 1e11);
-  visit("stamps.fit_minus_stamp_ns", s.fit_minus_stamp_ns);
+  visit("stamps.fit_residual_ns", s.fit_residual_ns);
   visit("stamps.sum", s.sum, 0.0, 1e9);
-  visit("stamps.sum_n", s.sum_n);
+  visit("stamps.weighted_sum_number", s.weighted_sum_number);
   visit("stamps.sum_nn", s.sum_nn);
   visit("stamps.mean_square_error_ns2", s.mean_square_error_ns2, 0.0, 1e30);
   visit("stamps.mean_error_product_ns2", s.mean_error_product_ns2);

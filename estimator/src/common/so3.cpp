@@ -7,20 +7,20 @@ namespace tumble::so3 {
 
 namespace {
 
-// below this angle two terms of the series are exact to rounding
+// below this angle, two terms of the power series are exact to rounding
 constexpr double kSmallAngle = 1e-4;
-// below this angle, x - sin(x) loses digits by cancellation; six terms of its series are exact to rounding up to this
-// angle
+// Below this angle, x - sin(x) loses digits by cancellation. Up to this angle, six terms of the power series are exact
+// to rounding.
 constexpr double kCancellingAngle = 0.5;
 
-// Returns (1 - cos x) / x^2, by the half angle because 1 - cos x loses digits by cancellation.
+// Returns (1 - cos x) / x^2. The function uses the half angle, because 1 - cos x loses digits by cancellation.
 double cosine_term(double angle, double angle2) {
   if (angle < kSmallAngle) return 0.5 - angle2 / 24.0;
   const double s = std::sin(0.5 * angle);
   return 2.0 * s * s / angle2;
 }
 
-// (x - sin x) / x^3
+// Returns (x - sin x) / x^3.
 double sine_term(double angle, double angle2) {
   if (angle > kCancellingAngle) return (angle - std::sin(angle)) / (angle2 * angle);
   double term = 1.0 / 6.0, sum = 0.0;
@@ -48,7 +48,8 @@ Eigen::Quaterniond exp(const Eigen::Vector3d& phi) {
 }
 
 Eigen::Vector3d log(const Eigen::Quaterniond& q) {
-  // of the two vectors of a half turn, use the one whose first non-zero component is positive, so that q and -q agree
+  // A half turn has two rotation vectors. The function returns the vector whose first non-zero component is positive,
+  // so that q and -q give equal results.
   double sign = q.w() < 0.0 ? -1.0 : 1.0;
   if (q.w() == 0.0) {
     const double lead = q.x() != 0.0 ? q.x() : (q.y() != 0.0 ? q.y() : q.z());
@@ -78,8 +79,9 @@ Eigen::Matrix3d left_jacobian_inverse(const Eigen::Vector3d& phi) {
 }
 
 Eigen::Quaterniond shortest_arc(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
-  // q = (|h| / 2, from x to / |h|) with h = from + to. The product from x to equals from x h, and h is exact to
-  // rounding for nearly opposite vectors. Nothing cancels up to a half turn.
+  // With h = from + to, the rotation has the real part |h| / 2 and the imaginary part (from x to) / |h|. The product
+  // from x to equals from x h. For nearly opposite vectors, h is exact to rounding. The formula is accurate up to a
+  // half turn, because no term cancels.
   const Eigen::Vector3d h = from + to;
   const double length = h.norm();
   if (length < 1e-15) {

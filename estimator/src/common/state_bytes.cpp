@@ -47,7 +47,7 @@ bool StateReader::take(const char* name, std::byte* to, std::size_t count, std::
 std::size_t StateReader::length(const char* name, std::size_t /*replaced*/) {
   std::uint64_t count = 0;
   if (!take(name, reinterpret_cast<std::byte*>(&count), 1, sizeof count, false)) return 0;
-  // each element has at least one byte
+  // each element of the list has at least one byte
   bounded(name, double(count), 0.0, double(left_.size()));
   return going() ? static_cast<std::size_t>(count) : 0;
 }

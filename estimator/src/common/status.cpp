@@ -8,7 +8,7 @@ namespace tumble {
 
 namespace {
 
-// Returns the shortest text that reads back as exactly this number, independent of the locale.
+// Returns the shortest decimal text that converts back to exactly this number, independent of the locale.
 std::string number(double value) {
   std::array<char, 32> text{};
   const auto end = std::to_chars(text.data(), text.data() + text.size(), value);

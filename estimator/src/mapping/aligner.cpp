@@ -14,9 +14,10 @@ Registration::Params full_params(const LidarInertialOdometry::Params& params) {
   return out;
 }
 
-constexpr double kCoarseReach = 2.0;  // multiple of the matching distance with useful matches
+constexpr double kCoarseReach = 2.0;  // maximum distance of useful matches, as a multiple of the matching distance
 
-/// Returns parameters with wider limits, which find only the neighbourhood of the solution.
+/// Returns parameters of a coarse registration. The coarse registration has wider limits and finds only a start near
+/// the solution.
 Registration::Params coarse_params(const LidarInertialOdometry::Params& params) {
   const MatchingParams& matching = params.expert.matching;
   const RegistrationStagesParams& stages = params.expert.stages;
@@ -29,11 +30,11 @@ Registration::Params coarse_params(const LidarInertialOdometry::Params& params) 
   out.expert.step_m = stages.coarse_step_m;
   out.expert.step_rad = stages.coarse_step_rad;
   out.expert.fitting_share_min = stages.coarse_fitting_share_min;
-  out.expert.agreeing_min = out.matches_min;  // a coarse start has no prior to agree with
+  out.expert.agreeing_min = out.matches_min;  // a coarse start has no prior that it could agree with
   return out;
 }
 
-/// Selects at most `count` points, spread evenly.
+/// Selects at most `count` evenly spread points.
 void thin(std::span<const SweepPoint> points, std::size_t count, std::vector<SweepPoint>& out) {
   out.clear();
   const std::size_t every = std::max<std::size_t>(1, (points.size() + count - 1) / count);
@@ -42,7 +43,7 @@ void thin(std::span<const SweepPoint> points, std::size_t count, std::vector<Swe
 
 void align(Registration& registration, const Registration::Prior& prior, const Scene& scene,
            std::span<const SweepPoint> points, SweepTrajectory& trajectory, Registration::Result& found) {
-  // no error is possible: add_sweep ensures that the samples cover the sweep
+  // align() cannot fail here, because add_sweep() ensures that the samples cover the sweep
   const Status status = registration.align(prior, scene.samples, scene.end_ns, points, scene.map, trajectory, found);
   if (!status.ok()) found.verdict = RegistrationVerdict::diverged;
 }

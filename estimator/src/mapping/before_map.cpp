@@ -15,9 +15,11 @@ namespace u = unknowns;
 using Motion = Eigen::Matrix<double, 9, 9>;
 using Params = LidarInertialOdometry::Params;
 
-// Prior of the speed and its correlation time. Robots that use the library are slower than kSpeed_m_s, except for
+// Standard deviation and correlation time of the prior of the speed. Robots rarely exceed kSpeed_m_s, and only for
 // moments.
 constexpr double kSpeed_m_s = 10.0, kSpeedTime_s = 1.0;
+// Standard deviations of a start in motion: the mean force of half a second differs from gravity by 1 m/s^2.
+constexpr double kMovingTilt_rad = 0.1, kMovingSpeed_m_s = 2.0;
 
 StateEstimate of_motion(const MotionState& state, const SweepCalibration& calibration, const Motion& weight,
                         const Motion& error) {
@@ -34,17 +36,18 @@ double yaw_rad(const Eigen::Quaterniond& q) {
   return 2.0 * std::atan2(q.z(), q.w());
 }
 
-/// Transforms errors of a motion to a frame that is moved and turned to the IMU. The movement of the frame is an error
-/// in the old frame.
+/// Returns the matrix that transforms errors of the motion to a frame at the IMU, turned by `turn`. The displacement of
+/// the frame is an error in the old frame.
 Motion by_frame(const Eigen::Matrix3d& turn, const Eigen::Vector3d& v_WI_m_s) {
   Motion T = Motion::Zero();
   T.block<2, 3>(3, 3) = turn.topRows<2>();
   T.block<3, 3>(6, 6) = turn;
-  T.block<3, 3>(6, 3) = so3::hat(v_WI_m_s).col(2) * turn.row(2);  // the yaw's error turns the velocity
+  T.block<3, 3>(6, 3) = so3::hat(v_WI_m_s).col(2) * turn.row(2);  // the yaw error turns the velocity
   return T;
 }
 
-/// Applies a Kalman update by a velocity of 0, which keeps E consistent with the gain of C.
+/// Applies a Kalman update by a velocity of 0 with standard deviation `sigma_m_s`. The gain follows from C. The
+/// covariance of the errors E is updated with this gain.
 void bound_speed(double sigma_m_s, MotionState& state, Motion& C, Motion& E) {
   const Eigen::Matrix3d R = sigma_m_s * sigma_m_s * Eigen::Matrix3d::Identity();
   const Eigen::Matrix3d S = u::block(C, u::velocity) + R;
@@ -65,8 +68,36 @@ StateEstimate belief_before_map(const Params& params, const MotionState& levelle
   calibration.T_IL = params.T_IL;
   calibration.gravity_W_m_s2 = Eigen::Vector3d(0.0, 0.0, -params.expert.gravity_m_s2);
   Motion error = levelled.covariance;
-  u::variances(error, u::tilt).setConstant(params.expert.world.tilt_sigma_rad * params.expert.world.tilt_sigma_rad);
+  const double level = params.expert.start.level_sigma_rad, world = params.expert.world.tilt_sigma_rad;
+  if (u::variances(error, u::tilt).maxCoeff() <= level * level) u::variances(error, u::tilt).setConstant(world * world);
   return of_motion(levelled, calibration, levelled.covariance, error);
+}
+
+void widen_to_motion(MotionState& levelled) {
+  u::variances(levelled.covariance, u::tilt).setConstant(kMovingTilt_rad * kMovingTilt_rad);
+  u::variances(levelled.covariance, u::velocity).setConstant(kMovingSpeed_m_s * kMovingSpeed_m_s);
+}
+
+MotionState moved_to(const Eigen::Isometry3d& T_WI, const MotionState& motion) {
+  const Eigen::Quaterniond wanted(T_WI.linear());
+  const Eigen::Quaterniond turn = so3::exp({0.0, 0.0, yaw_rad(wanted * motion.q_WI.conjugate())});
+  const Eigen::Matrix3d R = turn.toRotationMatrix();
+  Motion T = Motion::Zero();
+  for (int k = 0; k < Motion::RowsAtCompileTime; k += 3) T.block<3, 3>(k, k) = R;
+  MotionState out = motion;
+  out.p_WI_m = T_WI.translation();
+  out.q_WI = (turn * motion.q_WI).normalized();
+  out.v_WI_m_s = R * motion.v_WI_m_s;
+  out.covariance = T * motion.covariance * T.transpose();
+  return out;
+}
+
+StateEstimate moved_to(const Eigen::Isometry3d& T_WI, const StateEstimate& estimate) {
+  MotionState state = estimate.mean.state, error = estimate.mean.state;
+  state.covariance = u::block(estimate.weight, u::motion);
+  error.covariance = u::block(estimate.error, u::motion);
+  state = moved_to(T_WI, state);
+  return of_motion(state, estimate.mean.calibration, state.covariance, moved_to(T_WI, error).covariance);
 }
 
 StateEstimate without_place(const StateEstimate& reckoned, double step_s) {
@@ -81,15 +112,15 @@ StateEstimate without_place(const StateEstimate& reckoned, double step_s) {
   return of_motion(state, reckoned.mean.calibration, T * C * T.transpose(), T * E * T.transpose());
 }
 
-/// The frame is turned by the tilt error φ so that the IMU's attitude has no error. In the turned frame, velocity v and
-/// gravity g are turned back: δv + v × φ, g × φ.
+/// Returns the state estimate in a frame in which the IMU's attitude has no error. The frame is turned by the tilt
+/// error φ. In the turned frame, velocity v and gravity g have the errors δv + v × φ and g × φ.
 StateEstimate belief_at_first_sweep(const Params& params, const StateEstimate& reckoned) {
   MotionState start = reckoned.mean.state;
   start.covariance.setZero();
   u::variances(start.covariance, u::tilt)
       .setConstant(params.expert.start.level_sigma_rad * params.expert.start.level_sigma_rad);
   StateEstimate out = estimate_at_start(params, start);
-  Eigen::Matrix<double, 6, 9> T = Eigen::Matrix<double, 6, 9>::Zero();  // of velocity and gravity
+  Eigen::Matrix<double, 6, 9> T = Eigen::Matrix<double, 6, 9>::Zero();  // derivative of velocity and gravity
   T.block<3, 3>(0, 3) = so3::hat(start.v_WI_m_s);
   T.block<3, 3>(0, 6).setIdentity();
   const bool free_gravity = params.expert.gravity_sigma_m_s2 > 0.0;
@@ -110,7 +141,8 @@ StateEstimate belief_at_first_sweep(const Params& params, const StateEstimate& r
 WorldCovariance world_at_first_sweep(const Params& params, const StateEstimate& reckoned) {
   WorldCovarianceParams world = params.expert.world;
   world.tilt_sigma_rad = std::sqrt(u::variances(reckoned.error, u::tilt).mean());
-  return {world, reckoned.mean.state.q_WI, params.T_IL.translation()};
+  const MotionState& start = reckoned.mean.state;
+  return {world, start.q_WI, params.T_IL.translation(), start.p_WI_m};
 }
 
 }  // namespace tumble::mapping

@@ -11,9 +11,17 @@ namespace tumble::mapping {
 /// error of the attitude.
 StateEstimate belief_before_map(const LidarInertialOdometry::Params& params, const MotionState& levelled);
 
-/// Returns the dead-reckoned state, `step_s` after the last call, with the origin and yaw of the world frame moved to
-/// the IMU. Without a map, origin and yaw are not observable. A weak prior on the speed limits the errors of tilt and
-/// velocity over minutes of motion.
+/// Widens the covariance of a state that was levelled in motion: the mean force is not gravity, and the velocity is
+/// unknown.
+void widen_to_motion(MotionState& levelled);
+
+/// Returns the motion with position and heading of the IMU as in `T_WI`. The tilt is unchanged.
+MotionState moved_to(const Eigen::Isometry3d& T_WI, const MotionState& motion);
+StateEstimate moved_to(const Eigen::Isometry3d& T_WI, const StateEstimate& estimate);
+
+/// Returns the reckoned state, `step_s` after the last call, with the origin and yaw of the frame moved to the IMU.
+/// Without a map, origin and yaw cannot be observed. A weak prior on the speed bounds the errors of tilt and velocity
+/// over minutes of motion.
 StateEstimate without_place(const StateEstimate& reckoned, double step_s);
 
 /// Returns the state at the start of the sweep that starts the map. The lidar's pose at the start of the map's first

@@ -47,23 +47,23 @@ void apply_calibration(const SweepCalibration& calibration, double later_s, std:
   }
 }
 
-/// mapping.md (R3): u.
-void compute_levers(const SweepTrajectory& trajectory, std::span<const SweepPoint> points,
-                    std::vector<Eigen::Vector3f>& levers_W_m) {
+/// Computes u(t) of each point, the position without start and gravity: mapping.md (R3).
+void compute_lever_arm_vectors(const SweepTrajectory& trajectory, std::span<const SweepPoint> points,
+                               std::vector<Eigen::Vector3f>& levers_W_m) {
   levers_W_m.resize(points.size());
   trajectory.levers(points, levers_W_m);
 }
 
-/// mapping.md (R12).
+/// Transforms each point to the IMU frame at the target time: mapping.md (R12).
 void deskew(const SweepTrajectory& trajectory, std::span<const SweepPoint> points, double target_s,
             std::vector<Eigen::Vector3f>& positions_I_m) {
-  compute_levers(trajectory, points, positions_I_m);
+  compute_lever_arm_vectors(trajectory, points, positions_I_m);
   std::size_t hint = trajectory.intervals();
   const SweepTrajectory::Instant target = trajectory.at(target_s, hint);
-  const Eigen::Vector3d origin = trajectory.base_m(target_s) + target.preintegrated_position_m;
+  const Eigen::Vector3d origin = trajectory.common_position_m(target_s) + target.preintegrated_position_m;
   const Eigen::Quaterniond q_IW = target.q_WI.conjugate();
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const Eigen::Vector3d world = trajectory.base_m(points[i].t_s) + positions_I_m[i].cast<double>();
+    const Eigen::Vector3d world = trajectory.common_position_m(points[i].t_s) + positions_I_m[i].cast<double>();
     positions_I_m[i] = (q_IW * (world - origin)).cast<float>();
   }
 }

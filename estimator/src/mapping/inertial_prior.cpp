@@ -11,7 +11,7 @@ namespace tumble::mapping {
 
 namespace u = unknowns;
 
-/// mapping.md (R39), (R40), (R41), (R43).
+/// Computes the covariance of the inertial prediction: mapping.md (R39), (R40), (R41), (R43).
 Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& params,
                                            const SweepTrajectory& trajectory, std::span<const MotionSample> samples,
                                            unsigned deficit_axes) {
@@ -46,7 +46,7 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
       .setConstant(std::pow(params.expert.prior.sigma_m_s * span, 2) +
                    std::pow(params.expert.prior.force_share * pushed_m_s, 2) + gap_m2_s2);
   u::variances(noise, u::position).array() += gap_m2;
-  // a stationary robot has zero velocity, and the effect of the velocity on the position is ignored
+  // a robot at rest has zero velocity, so the code ignores the effect of the velocity's error on the position
   const auto rests = [&](const MotionSample& sample) {
     return sample.at_rest || seconds(sample.from_ns - start_ns) >= trajectory.duration_s();
   };
@@ -57,18 +57,18 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
   return noise;
 }
 
-/// mapping.md (R45).
+/// Computes the variance of the velocity due to saturated forces: mapping.md (R45).
 Eigen::Matrix3d railed_velocity_variance(const LidarInertialOdometry::Params& params, const SweepTrajectory& trajectory,
                                          std::span<const MotionSample> samples) {
   std::size_t hint = 0;
-  Eigen::Matrix3d lasted = Eigen::Matrix3d::Zero();  // column j: duration of saturation of axis j, in W
+  Eigen::Matrix3d lasted = Eigen::Matrix3d::Zero();  // column j: duration of the saturation of axis j, in W
   for (const MotionSample& sample : samples) {
     const double from = std::max(seconds(sample.from_ns - trajectory.start_ns()), 0.0);
     const double to = std::min(seconds(sample.time_ns - trajectory.start_ns()), trajectory.duration_s());
-    if (to <= from || sample.railed_axes == 0) continue;
+    if (to <= from || sample.accel_saturated_axes == 0) continue;
     const Eigen::Matrix3d R = trajectory.at(0.5 * (from + to), hint).q_WI.toRotationMatrix();
     for (int axis = 0; axis < 3; ++axis) {
-      if (sample.railed_axes >> axis & 1) lasted.col(axis) += (to - from) * R.col(axis);
+      if (sample.accel_saturated_axes >> axis & 1) lasted.col(axis) += (to - from) * R.col(axis);
     }
   }
   return params.expert.rails.force_sigma_m_s2 * params.expert.rails.force_sigma_m_s2 * lasted * lasted.transpose();

@@ -16,13 +16,13 @@ using Params = LidarInertialOdometry::Params;
 
 constexpr TimeNs kArcStep_ns = 5'000'000;
 constexpr TimeNs kArcMost_ns = 10'000'000'000;  // longer than any flight
-constexpr double kArcOff_rad_s = 0.5;           // in addition to deviations: impacts change the rate by more
+constexpr double kArcOff_rad_s = 0.5;           // additional tolerance; impacts change the rate by more
 
 WindowRate rate_of(const MotionSample& sample) {
   return {sample.w_WI_I_rad_s, sample.rate_sigma_rad_s, sample.from_ns, sample.time_ns};
 }
 
-std::uint8_t railed_axes(const Params& params, const ImuSample& sample) {
+std::uint8_t accel_saturated_axes(const Params& params, const ImuSample& sample) {
   std::uint8_t axes = 0;
   for (int axis = 0; axis < 3; ++axis) {
     const bool railed = std::abs(sample.specific_force_m_s2[axis]) >= params.expert.rails.accel_m_s2 ||
@@ -35,7 +35,7 @@ std::uint8_t railed_axes(const Params& params, const ImuSample& sample) {
 }  // namespace
 
 RestDetector::Params mapper_rest(const LidarInertialOdometry::Params& params) {
-  // the detection misses a rotation within the bound, so each axis gets a part of the bound
+  // The detector misses a rotation vector within the bound. Each of the three axes therefore gets a part of the bound.
   return {.rate_max_rad_s = params.expert.rest.rate_rad_s,
           .rate_spread_rad_s = params.expert.rest.rate_rad_s / std::numbers::sqrt3,
           .force_min_m_s2 = std::max(params.expert.gravity_m_s2 - params.expert.rest.force_m_s2, 0.0),
@@ -60,7 +60,7 @@ Status InertialTrack::check(const ImuSample& sample) const {
 
 void InertialTrack::take(const Params& params, const ImuSample& sample, const RateState& rate) {
   const TimeNs from_ns = last_ns().value_or(sample.time_ns);
-  // the first window has the length of the second
+  // The first window has no start time and gets the length of the second window.
   if (!boundary_ns_ && samples_.size() == 1) samples_[0].from_ns = 2 * from_ns - sample.time_ns;
   MotionSample next;
   next.from_ns = from_ns;
@@ -70,9 +70,9 @@ void InertialTrack::take(const Params& params, const ImuSample& sample, const Ra
   next.f_I_m_s2 = sample.specific_force_m_s2;
   next.rate_sigma_rad_s = assumed_rate_sigma(params, rate);
   next.clipped_axes = static_cast<std::uint8_t>(rate.clipped_axes & kClipGyro);
-  next.railed_axes = railed_axes(params, sample);
+  next.accel_saturated_axes = accel_saturated_axes(params, sample);
   const bool after_gap = next.time_ns - next.from_ns > kGap_ns;
-  // a reading refers to its own window, which is as long as the window before the gap
+  // after a gap, a reading's window is as long as the window before the gap
   if (after_gap && newest_ && !next.at_rest)
     next.from_ns = std::max(from_ns, next.time_ns - (newest_->time_ns - newest_->from_ns));
   next.bridges_gap = after_gap && next.from_ns == from_ns;
@@ -89,13 +89,13 @@ void InertialTrack::fill_gap(const Params& params, bool in_flight) {
   if (!in_flight || !fly_through(params, *before_newest_, *newest_))
     bridge_gap(params.expert.prior, *before_newest_, *newest_, samples_);
   if (undecided_rad_s_.empty()) return;
-  // one rate per sample; the last rate belongs to the pending sample
+  // The list contains one rate per sample. The last rate belongs to the pending sample.
   for (const MotionSample& part : std::span(samples_).subspan(first))
     undecided_rad_s_.insert(undecided_rad_s_.end() - 1, part.w_WI_I_rad_s);
 }
 
-/// Bridges the gap by the ballistic arc if the rate predicted at the gap's end agrees with the next reading:
-/// flight_arc.md (A12).
+/// Bridges the gap by a ballistic arc if the predicted rate agrees with the next reading: flight_arc.md (A12). The
+/// prediction assumes free flight up to the end of the gap.
 bool InertialTrack::fly_through(const Params& params, const WindowRate& before, const WindowRate& after) {
   if (after.from_ns - before.time_ns > kArcMost_ns) return false;
   const std::size_t first = samples_.size();
@@ -115,8 +115,9 @@ bool InertialTrack::fly_through(const Params& params, const WindowRate& before, 
   return true;
 }
 
-/// Decides whether the newest sample belongs to a flight, with the rates on both sides of the sample. Before a gap,
-/// uses the rate predicted by free flight. flight_arc.md (A3), (A4), (A5).
+/// Decides whether the newest sample belongs to a flight: flight_arc.md (A3), (A4), (A5). The test uses the rates
+/// before and after the sample. If a gap follows the sample, the rate after the sample is the prediction of free
+/// flight.
 bool InertialTrack::detect_flight(const Params& params, const MotionSample& next, bool after_gap) {
   MotionSample& now = samples_.back();
   if (now.in_flight) return true;
@@ -139,17 +140,17 @@ void InertialTrack::listen_for_rest(const Params& params, const ImuSample& sampl
   ImuSample received = sample;
   received.angular_velocity_rad_s = rate.w_WI_I_rad_s;
   const bool clipped = (rate.clipped_axes & kClipGyro) != 0;
-  // during the initial rest, the mean rate is the bias
+  // during the initial rest, the mean rate is the gyro's bias
   const Eigen::Vector3d bias = initial_.lasts ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : initial_.gyro_bias_rad_s;
   if (clipped) rest_ = {};
-  if (!clipped && rests_.observe(received, rest_, bias)) next.rests_since_ns = rest_.first_ns;
+  if (!clipped && rests_.observe(received, rest_, bias)) next.rest_start_ns = rest_.first_ns;
   if (initial_.lasts) {
     if (!initial_.first_ns) initial_.first_ns = initial_.run_ns = sample.time_ns;
-    // the mean of a new run is as noisy as its readings, and noise may restart the run
-    if (next.rests_since_ns && seconds(*next.rests_since_ns - *initial_.first_ns) < params.expert.start.bias_rest_s)
-      initial_.run_ns = next.rests_since_ns;
-    initial_.lasts = next.rests_since_ns == initial_.run_ns;
-    if (initial_.lasts && seconds(rest_.quiet_ns) >= params.expert.start.bias_rest_s)
+    // The mean of a new run is as noisy as single readings. Noise may therefore restart the run.
+    if (next.rest_start_ns && seconds(*next.rest_start_ns - *initial_.first_ns) < params.expert.start.bias_rest_s)
+      initial_.run_ns = next.rest_start_ns;
+    initial_.lasts = next.rest_start_ns == initial_.run_ns;
+    if (initial_.lasts && seconds(rest_.within_bias_since_ns) >= params.expert.start.bias_rest_s)
       initial_.gyro_bias_rad_s = rest_.mean_rate_rad_s();
   }
   next.at_rest = initial_.lasts;
@@ -157,25 +158,32 @@ void InertialTrack::listen_for_rest(const Params& params, const ImuSample& sampl
     undecided_rad_s_.push_back(rate.w_WI_I_rad_s);
     return;
   }
-  const bool goes_on = next.rests_since_ns && *next.rests_since_ns < rest_.pending_first_ns;
-  if (!goes_on) take_back_rest(next.rests_since_ns);
+  const bool goes_on = next.rest_start_ns && *next.rest_start_ns < rest_.pending_first_ns;
+  if (!goes_on) take_back_rest(next.rest_start_ns);
   undecided_rad_s_.clear();
 }
 
-/// Marks all samples since the start of a complete reading as motion if the reading shows motion.
-void InertialTrack::take_back_rest(std::optional<TimeNs> rests_since_ns) {
+/// If a complete reading shows motion, marks all samples since the start of the reading as motion.
+void InertialTrack::take_back_rest(std::optional<TimeNs> rest_start_ns) {
   const std::size_t count = std::min(undecided_rad_s_.size(), samples_.size());
   for (std::size_t back = 1; back <= count; ++back) {
     MotionSample& sample = samples_[samples_.size() - back];
-    sample.rests_since_ns = rests_since_ns;
+    sample.rest_start_ns = rest_start_ns;
     if (!sample.at_rest || initial_.lasts) continue;
     sample.at_rest = false;
     sample.w_WI_I_rad_s = undecided_rad_s_[undecided_rad_s_.size() - back] - initial_.gyro_bias_rad_s;
   }
 }
 
+bool InertialTrack::starts_at_rest(double lasted_s) const {
+  const auto rests = [&](const MotionSample& sample) {
+    return sample.at_rest || seconds(sample.from_ns - samples_.front().from_ns) >= lasted_s;
+  };
+  return std::all_of(samples_.begin(), samples_.end(), rests);
+}
+
 bool InertialTrack::rests_until(TimeNs end_ns) const {
-  const auto rests = [&](const MotionSample& sample) { return sample.from_ns >= end_ns || sample.rests_since_ns; };
+  const auto rests = [&](const MotionSample& sample) { return sample.from_ns >= end_ns || sample.rest_start_ns; };
   return std::all_of(samples_.begin(), samples_.end(), rests);
 }
 
@@ -183,7 +191,7 @@ bool InertialTrack::rests_between(TimeNs from_ns, TimeNs end_ns) const {
   const std::span<const MotionSample> samples = samples_from(from_ns);
   const auto after = [&](const MotionSample& sample) { return sample.from_ns >= end_ns; };
   const auto end = std::find_if(samples.begin(), samples.end(), after);
-  return std::all_of(samples.begin(), end, [](const MotionSample& sample) { return bool(sample.rests_since_ns); });
+  return std::all_of(samples.begin(), end, [](const MotionSample& sample) { return bool(sample.rest_start_ns); });
 }
 
 std::span<const MotionSample> InertialTrack::samples_from(TimeNs from_ns) const {
@@ -196,11 +204,11 @@ std::optional<Eigen::Vector3d> InertialTrack::resting_force(TimeNs time_ns, doub
   return rest_.mean_force_m_s2();
 }
 
-void InertialTrack::exclude_force(TimeNs end_ns) {
+void InertialTrack::exclude_accelerometer(TimeNs end_ns) {
   for (MotionSample& sample : samples_) {
     if (sample.from_ns >= end_ns) break;
     sample.bridges_gap = true;
-    sample.railed_axes = 0;
+    sample.accel_saturated_axes = 0;
   }
 }
 

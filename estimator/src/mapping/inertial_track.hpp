@@ -32,7 +32,9 @@ class InertialTrack {
   std::optional<TimeNs> border_ns() const { return boundary_ns_; }
   /// Returns the mean specific force of the current rest, if the rest had lasted for `lasted_s` by `time_ns`.
   std::optional<Eigen::Vector3d> resting_force(TimeNs time_ns, double lasted_s) const;
-  /// Returns whether the rest at the start of the recording continues.
+  /// Returns whether the first `lasted_s` of samples, or all samples if there are fewer, are a rest.
+  bool starts_at_rest(double lasted_s) const;
+  /// Returns whether the rest at the start continues.
   bool has_not_moved() const { return initial_.lasts; }
   /// Returns the time of the newest sample, or the end of the last sweep without samples.
   std::optional<TimeNs> last_ns() const;
@@ -40,7 +42,7 @@ class InertialTrack {
   bool rests_until(TimeNs end_ns) const;
   bool rests_between(TimeNs from_ns, TimeNs end_ns) const;
   /// Marks the forces before `end_ns` as unknown, as in a gap; the rates remain.
-  void exclude_force(TimeNs end_ns);
+  void exclude_accelerometer(TimeNs end_ns);
   /// Deletes samples that ended by `end_ns`, the end of a sweep.
   void prune_until(TimeNs end_ns);
 
@@ -60,7 +62,7 @@ class InertialTrack {
   };
 
   void listen_for_rest(const Params& params, const ImuSample& sample, const RateState& rate, MotionSample& next);
-  void take_back_rest(std::optional<TimeNs> rests_since_ns);
+  void take_back_rest(std::optional<TimeNs> rest_start_ns);
   bool detect_flight(const Params& params, const MotionSample& next, bool after_gap);
   void fill_gap(const Params& params, bool in_flight);
   bool fly_through(const Params& params, const WindowRate& before, const WindowRate& after);

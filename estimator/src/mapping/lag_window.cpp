@@ -21,10 +21,10 @@ WindowSweep& LagWindow::enter() {
   return sweeps_.emplace_back();
 }
 
-/// mapping.md (R63). Backward pass over the window (H. Rauch, F. Tung, C. Striebel, 1965). The measurement of each
-/// sweep is the registration, linearised at its converged value. The result is the maximum a posteriori of all sweeps'
-/// unknowns, to first order. Smoothing improves sweeps with few features. With many features everywhere, the final
-/// error does not depend on the window (1.0 to 1.9 cm for windows of 1, 2 and 3).
+/// Smooths the sweeps of the window by a backward pass (H. Rauch, F. Tung, C. Striebel, 1965): mapping.md (R63). The
+/// measurement of a sweep is its registration, linearised at the converged value. To first order, the result is the
+/// maximum a posteriori estimate of all sweeps' unknowns. Smoothing improves sweeps with few features. In scenes with
+/// many features, the window length hardly matters: the final error is 1.0 to 1.9 cm for windows of 1, 2 and 3 sweeps.
 void LagWindow::smooth() {
   if (sweeps_.empty()) return;
   sweeps_.back().smoothed = sweeps_.back().filtered;

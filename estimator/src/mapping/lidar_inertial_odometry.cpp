@@ -8,6 +8,7 @@
 #include <variant>
 
 #include "odometry_impl.hpp"
+#include "tumble/common/detail/sample_check.hpp"
 #include "unknowns.hpp"
 
 namespace tumble {
@@ -16,6 +17,7 @@ namespace {
 
 Status check(const ImuSample& sample, const RateState& rate) {
   if (const Status status = check_sample(sample); !status.ok()) return status;
+  if (const Status status = check_stamp(sample.time_ns, "time_ns"); !status.ok()) return status;
   if (!rate.w_WI_I_rad_s.allFinite() || !rate.covariance_rad2_s2.allFinite()) {
     return {Trouble::non_finite, "rate", std::numeric_limits<double>::quiet_NaN(), 0.0};
   }
@@ -45,6 +47,14 @@ LidarInertialOdometry& LidarInertialOdometry::operator=(const LidarInertialOdome
   return *this;
 }
 
+void LidarInertialOdometry::start_at(const Eigen::Isometry3d& T_WI) {
+  impl_->start_pose = T_WI;
+}
+
+const std::optional<Eigen::Isometry3d>& LidarInertialOdometry::start() const {
+  return impl_->start_pose;
+}
+
 Status LidarInertialOdometry::add_imu(const ImuSample& sample, const RateState& rate) {
   if (Status status = check(sample, rate); !status.ok()) return status;
   if (Status status = impl_->track.check(sample); !status.ok()) return status;
@@ -67,13 +77,15 @@ Status LidarInertialOdometry::add_reading(const OdometerReading& reading) {
   return status;
 }
 
-void LidarInertialOdometry::exclude_force() {
+void LidarInertialOdometry::exclude_accelerometer() {
   impl_->known = mapping::ConstantVelocity{};
 }
 
 Status LidarInertialOdometry::add_sweep(TimeNs lidar_start_ns, TimeNs lidar_end_ns, std::span<const LidarPoint> points,
                                         SweepReport& report) {
   report = SweepReport{};
+  if (const Status status = check_stamp(lidar_start_ns, "start_ns"); !status.ok()) return status;
+  if (const Status status = check_stamp(lidar_end_ns, "end_ns"); !status.ok()) return status;
   const TimeNs offset_ns = static_cast<TimeNs>(std::llround(impl_->params.time_offset_s * 1e9));
   return impl_->add_sweep(lidar_start_ns + offset_ns, lidar_end_ns + offset_ns, points, report);
 }
@@ -91,7 +103,7 @@ Status LidarInertialOdometry::predict(std::span<const ImuSample> samples, std::s
   }
   if (track.samples().empty()) return pose_at(my.boundary.time_ns(), pose);
   const TimeNs end_ns = track.samples().back().time_ns;
-  if (std::holds_alternative<mapping::ConstantVelocity>(my.known)) track.exclude_force(end_ns);
+  if (std::holds_alternative<mapping::ConstantVelocity>(my.known)) track.exclude_accelerometer(end_ns);
   const Registration::Estimate& last = my.boundary.state_estimate.mean;
   SweepTrajectory trajectory;
   if (Status status = trajectory.build(last.state, track.samples(), end_ns, last.calibration.gravity_W_m_s2);
@@ -101,7 +113,7 @@ Status LidarInertialOdometry::predict(std::span<const ImuSample> samples, std::s
   const mapping::MotionWindow motion{track.samples(), end_ns, resting_sweeps};
   const std::unique_ptr<const mapping::Prediction> at_start(
       new mapping::Prediction(mapping::predict(my.params, my.boundary, motion, trajectory, my.known)));
-  const Registration::Estimate& mean = at_start->prior.mean;  // includes an odometer reading
+  const Registration::Estimate& mean = at_start->prior.mean;  // already includes an odometer reading
   if (Status status =
           trajectory.build(mean.state, track.samples(), end_ns, mean.calibration.gravity_W_m_s2, mean.deficit_rad_s);
       !status.ok())
@@ -121,8 +133,18 @@ SweepCalibration::Covariance LidarInertialOdometry::calibration_covariance() con
   return mapping::unknowns::block(impl_->boundary.state_estimate.error, mapping::unknowns::calibration);
 }
 
-SweepCalibration::Covariance LidarInertialOdometry::calibration_weight() const {
+SweepCalibration::Covariance LidarInertialOdometry::calibration_weighting_covariance() const {
   return mapping::unknowns::block(impl_->boundary.state_estimate.weight, mapping::unknowns::calibration);
+}
+
+Status LidarInertialOdometry::vertical() const {
+  constexpr double kMost_rad = 0.02;
+  namespace u = mapping::unknowns;
+  const double variance = u::variances(impl_->boundary.state_estimate.error, u::gravity).head<2>().maxCoeff();
+  const double sigma_rad = std::sqrt(variance) / std::max(impl_->params.expert.gravity_m_s2, 1e-3);
+  if (!mapping::has_started(impl_->tracking) || !(sigma_rad > kMost_rad)) return {};
+  return {Trouble::out_of_range, "standard deviation of the map's vertical after a start in motion", sigma_rad,
+          kMost_rad};
 }
 
 Status LidarInertialOdometry::pose_at(TimeNs time_ns, PoseState& pose) const {

@@ -11,8 +11,8 @@ namespace tumble::mapping {
 
 namespace {
 
-/// Uncertainty of the trajectory between start and end of a segment, as variance of a point. The variance is the
-/// trajectory's term of mapping.md (R64).
+/// Variance of a point due to the uncertain trajectory within a segment, relative to the segment's ends: mapping.md
+/// (R64).
 class PoseVariance {
  public:
   PoseVariance(const Registration::Matrix& covariance, const SweepTrajectory& trajectory)
@@ -20,7 +20,7 @@ class PoseVariance {
     namespace u = unknowns;
     const SweepTrajectory::Transition step = trajectory.transition(trajectory.duration_s());
     Eigen::Matrix<double, 9, Registration::kCalibration> F;
-    F << step.by_start, step.by_deficit_s;
+    F << step.jacobian_start, step.jacobian_deficit_s;
     const Eigen::Matrix<double, 9, 9> end = F * u::block(covariance, u::moving) * F.transpose();
     start_m2_ = u::variances(covariance, u::position).mean();
     start_rad2_ = u::variances(covariance, u::attitude).mean();
@@ -44,20 +44,21 @@ std::size_t LocalMap::insert(const Params& params, const SweepToInsert& sweep, c
                              std::vector<InsertedPoint>& inserted) {
   const SweepTrajectory& trajectory = sweep.trajectory;
   const std::span<const SweepPoint> points = sweep.points;
-  compute_levers(trajectory, points, levers_W_m_);
+  compute_lever_arm_vectors(trajectory, points, levers_W_m_);
   const PoseVariance of_pose(sweep.covariance, trajectory);
   const std::uint32_t number = sweeps();
   const MotionState middle = trajectory.state(0.5 * trajectory.duration_s());
   const std::uint32_t line = scan_lines_.base(middle.q_WI * params.T_IL.linear().col(2), sweep.rings_differ);
-  const double moved_m = (trajectory.base_m(trajectory.duration_s()) - trajectory.base_m(0.0)).norm();
+  const double moved_m =
+      (trajectory.common_position_m(trajectory.duration_s()) - trajectory.common_position_m(0.0)).norm();
   sight_.start(middle.p_WI_m.cast<float>(), static_cast<float>(0.5 * moved_m));
   const auto add = [&](double sigma_max_m) {
     std::size_t added = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const Eigen::Vector3f position = levers_W_m_[i] + trajectory.base_m(points[i].t_s).cast<float>();
+      const Eigen::Vector3f position = levers_W_m_[i] + trajectory.common_position_m(points[i].t_s).cast<float>();
       sight_.add(position);
-      if (map_.is_taken(position)) continue;  // true for most points
-      // mapping.md (R64)
+      if (map_.is_occupied(position)) continue;  // true for most points
+      // standard deviation of an inserted point: mapping.md (R64)
       const double sigma_m = std::sqrt(noise.point_variance_m2(points[i]) + of_pose.at_m2(points[i]));
       if (sigma_m > sigma_max_m) continue;
       const std::uint32_t index =
@@ -79,7 +80,8 @@ void LocalMap::look_through(const SightGrid& sight) {
   for (std::uint32_t index = 0; index < map_.index_end(); ++index) {
     if (!map_.exists(index)) continue;
     const SightGrid::Verdict verdict = sight.verdict(map_.position_W_m(index), map_.sigma_m(index));
-    if (verdict != SightGrid::Verdict::unknown) map_.count_sight(index, verdict == SightGrid::Verdict::seen_through);
+    if (verdict != SightGrid::Verdict::unknown)
+      map_.count_observation(index, verdict == SightGrid::Verdict::seen_through);
   }
 }
 
@@ -89,7 +91,7 @@ void LocalMap::move(const SweepTrajectory& trajectory, const Eigen::Isometry3d& 
   for (const InsertedPoint& inserted_point : inserted) {
     const double t_s = inserted_point.point.t_s + later_s;
     const SweepTrajectory::Instant at = trajectory.at(t_s, hint);
-    const Eigen::Vector3d position = trajectory.base_m(t_s) + at.preintegrated_position_m +
+    const Eigen::Vector3d position = trajectory.common_position_m(t_s) + at.preintegrated_position_m +
                                      at.q_WI * (T_IL * inserted_point.point.x_L_m.cast<double>());
     map_.move(inserted_point.index, position.cast<float>());
   }
@@ -100,7 +102,7 @@ bool LocalMap::prune(const Params& params, const Eigen::Vector3d& p_WI_m) {
   const float moved = (here - pruned_at_W_m_).norm();
   if (moved < static_cast<float>(LocalMapParams::kPruneShare * params.expert.map.radius_m)) return false;
   pruned_at_W_m_ = here;
-  const std::vector<std::uint32_t> kept = map_.keep_within(here, static_cast<float>(params.expert.map.radius_m));
+  const std::vector<std::uint32_t> kept = map_.remove_beyond(here, static_cast<float>(params.expert.map.radius_m));
   std::vector<Eigen::Vector3f> from(kept.size());
   for (std::size_t i = 0; i < kept.size(); ++i) from[i] = seen_from_W_m_[kept[i]];
   seen_from_W_m_.swap(from);
@@ -109,7 +111,7 @@ bool LocalMap::prune(const Params& params, const Eigen::Vector3d& p_WI_m) {
 
 void LocalMap::withdraw(std::uint32_t first_sweep) {
   if (first_sweep >= sweeps()) return;
-  map_.keep_before(first_sweep);
+  map_.remove_sweeps_from(first_sweep);
   seen_from_W_m_.resize(first_sweep);
 }
 

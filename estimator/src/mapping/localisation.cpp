@@ -4,9 +4,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tumble/common/imu.hpp"
 #include "unknowns.hpp"
 
 namespace tumble {
+
+namespace {
+
+double innovation_max() {
+  return std::sqrt(mapping::unknowns::kAgrees / SweepUnknowns::kMotion);
+}
+
+}  // namespace
 
 void Localisation::add(const SweepReport& sweep) {
   mapped_ = mapped_ || sweep.verdict != SweepVerdict::rejected;
@@ -15,15 +24,26 @@ void Localisation::add(const SweepReport& sweep) {
   largest_sigma_m_ = std::max(largest_sigma_m_, std::sqrt(variance_m2));
   second_innovation_ = std::max(second_innovation_, std::min(largest_innovation_, sweep.innovation));
   largest_innovation_ = std::max(largest_innovation_, sweep.innovation);
+  sigma_m_ = sweep.map_sigma_m;
+  newest_ns_ = sweep.pose.time_ns;
+  if (!(sweep.innovation > innovation_max())) return;
+  before_ns_ = contradicted_ns_;
+  contradicted_ns_ = newest_ns_;
 }
 
-/// mapping.md (R70), (R71).
+Status Localisation::present() const {
+  if (sigma_m_ > matched_m_)
+    return {Trouble::out_of_range, "standard deviation of the position in the map", sigma_m_, matched_m_};
+  if (!before_ns_ || check_follows(newest_ns_, *before_ns_, kMemory_s).trouble == Trouble::gap) return {};
+  return {Trouble::out_of_range, "innovation of two sweeps", second_innovation_, innovation_max()};
+}
+
+/// Returns an error if tracking failed (R70), or if sweeps contradict their predicted poses (R71): mapping.md.
 Status Localisation::verdict() const {
   if (largest_sigma_m_ > matched_m_)
     return {Trouble::out_of_range, "deviation of a sweep's position", largest_sigma_m_, matched_m_};
-  const double innovation_max = std::sqrt(mapping::unknowns::kAgrees / SweepUnknowns::kMotion);
-  if (second_innovation_ > innovation_max)
-    return {Trouble::out_of_range, "innovation of two sweeps", second_innovation_, innovation_max};
+  if (second_innovation_ > innovation_max())
+    return {Trouble::out_of_range, "innovation of two sweeps", second_innovation_, innovation_max()};
   return {};
 }
 

@@ -9,17 +9,20 @@ namespace tumble {
 
 namespace {
 
-// sin 10 deg; lines steeper against the beam are surfaces (Bogoslavskyi, Stachniss).
+// sin 10 deg. If the line between two returns is steeper relative to the beam, both returns belong to one surface
+// (Bogoslavskyi, Stachniss).
 constexpr float kSurfaceSine = 0.17365f;
-// sin 2 deg: ground 0.5 m below the sensor is seen at this angle at a distance of 14 m. Smaller angles are edges.
+// sin 2 deg. A beam meets the ground at this angle at a distance of 14 m if the sensor is 0.5 m above the ground.
+// Smaller angles indicate an edge.
 constexpr float kGrazingSine = 0.0349f;
 constexpr float kBend = 0.15f;                     // tolerance of the range difference for uneven ground
-constexpr int kNeighbours = 2;                     // on each side along the ring
-constexpr float kReachSteps = kNeighbours + 0.5f;  // angular steps; beams further apart are no neighbours
-constexpr float kStepMax = 0.05f;                  // rad; rings of 16-channel lidars are 0.035 apart
+constexpr int kNeighbours = 2;                     // number of neighbours on each side along the ring
+constexpr float kReachSteps = kNeighbours + 0.5f;  // angular steps; beams further apart are not neighbours
+constexpr float kStepMax = 0.05f;                  // rad; the rings of 16-channel lidars are 0.035 rad apart
 constexpr float kDeviations = 3.0f;
-// Fraction of lone returns of a sweep in clear air: thin objects, edges and distant ground. Measured: 0.05 % at rest,
-// 0.3 to 0.7 % in motion, 1.6 % where a thrown rig sees little ground.
+// Maximum fraction of lone returns in a sweep in clear air. Lone returns come from thin objects, edges and distant
+// ground. Measured fractions are 0.05 % at rest, 0.3 to 0.7 % in motion, and 1.6 % for a thrown rig that sees little
+// ground.
 constexpr float kClearShare = 0.02f;
 
 float square(float x) {
@@ -28,7 +31,7 @@ float square(float x) {
 
 }  // namespace
 
-/// Returns the squared sine of the angle between two beams. Returns 1 for right or larger angles.
+/// Returns the squared sine of the angle between two beams. For an angle of 90 deg or more, returns 1.
 float LoneReturns::sine2_between(const Beam& a, const Beam& b) {
   if (a.x_L_m.dot(b.x_L_m) <= 0.0f) return 1.0f;
   return a.x_L_m.cross(b.x_L_m).squaredNorm() / (square(a.range_m) * square(b.range_m));
@@ -38,12 +41,12 @@ float LoneReturns::variance_m2(const RangeNoise& noise, const Beam& beam) {
   return square(std::max(static_cast<float>(noise.sigma_m), static_cast<float>(noise.share) * beam.range_m));
 }
 
-/// Returns whether the ranges of two returns are equal within noise: mapping.md (R13).
+/// Returns whether two returns have equal ranges within noise: mapping.md (R13).
 bool LoneReturns::same_range(const RangeNoise& noise, const Beam& a, const Beam& b) {
   return square(a.range_m - b.range_m) <= square(kDeviations) * (variance_m2(noise, a) + variance_m2(noise, b));
 }
 
-/// Returns whether the line between two returns forms at least the angle of `sine` with the beam: mapping.md (R14).
+/// Returns whether the line between two returns forms an angle with the beam of at least `sine`: mapping.md (R14).
 bool LoneReturns::stands(float sine, const Beam& a, const Beam& b) {
   const float farther = std::max(a.range_m, b.range_m);
   return a.x_L_m.cross(b.x_L_m).squaredNorm() >= square(sine * farther) * (a.x_L_m - b.x_L_m).squaredNorm();
@@ -61,7 +64,7 @@ bool LoneReturns::between(const RangeNoise& noise, const Beam& before, const Bea
   return square(beam.range_m - expected_m) <= std::max(square(kDeviations) * variance, square(bend_m));
 }
 
-/// The neighbours on one side of a return on its ring, closest first.
+/// The neighbours on one side of a return on its ring, starting with the closest neighbour.
 struct LoneReturns::Beside {
   std::array<const Beam*, kNeighbours> beam;
   int count = 0;
@@ -70,7 +73,7 @@ struct LoneReturns::Beside {
   auto end() const { return beam.begin() + count; }
 };
 
-/// Returns whether two sorted beams are on one ring and within reach of each other.
+/// Returns whether two beams, given by their indices in ring order, are neighbours on one ring.
 bool LoneReturns::is_neighbour(std::size_t at, std::size_t other, float reach2) const {
   if (other >= beams_.size() || beams_[other].ring != beams_[at].ring) return false;
   const bool next = other + 1 == at || at + 1 == other;
@@ -80,7 +83,7 @@ bool LoneReturns::is_neighbour(std::size_t at, std::size_t other, float reach2) 
 
 bool LoneReturns::is_confirmed(const RangeNoise& noise, std::size_t at, float reach2) const {
   const Beam& beam = beams_[at];
-  // most returns are confirmed by the beam before; an index below 0 wraps beyond the end
+  // The previous beam confirms most returns. An index below 0 wraps beyond the end of the list.
   const bool has_before = is_neighbour(at, at - 1, reach2);
   if (has_before && stands(kSurfaceSine, beam, beams_[at - 1])) return true;
   const bool has_after = is_neighbour(at, at + 1, reach2);
@@ -104,7 +107,7 @@ bool LoneReturns::is_confirmed(const RangeNoise& noise, std::size_t at, float re
   });
 }
 
-/// Sorts the points by ring, in firing order within each ring. Overwrites the start indices of the rings.
+/// Sorts the points by ring, and within each ring by firing time. Overwrites the start indices of the rings.
 void LoneReturns::sort_by_ring(const std::vector<SweepPoint>& points) {
   ring_next_.assign(1, 0);
   for (const SweepPoint& point : points) {
@@ -121,7 +124,7 @@ void LoneReturns::sort_by_ring(const std::vector<SweepPoint>& points) {
   }
 }
 
-/// Computes the step from each beam to the previous beam on its ring. The first beam of a ring has a step of 1.
+/// Computes the angular step from each beam to the previous beam on its ring. The first beam of a ring has a step of 1.
 void LoneReturns::measure_steps() {
   steps2_.assign(beams_.size(), 1.0f);
   sorted_steps2_.clear();
@@ -132,7 +135,7 @@ void LoneReturns::measure_steps() {
   }
 }
 
-/// Returns the median of the steps along the rings. Returns 1 without steps.
+/// Returns the median of the angular steps along the rings. If there are no steps, returns 1.
 float LoneReturns::median_step2() {
   if (sorted_steps2_.empty()) return 1.0f;
   const auto middle = sorted_steps2_.begin() + static_cast<std::ptrdiff_t>(sorted_steps2_.size() / 2);

@@ -9,8 +9,7 @@ namespace {
 
 constexpr double kSameLineCosine = 0.9988;  // 0.05 rad, less than the angle between two rings
 constexpr int kRingBits = 16;
-// Number of sweeps that must see through a point before the point is left out, because a single sweep may be wrong
-// about an edge.
+// Number of sweeps that must see through a point before the point is omitted. A single sweep may be wrong near an edge.
 constexpr std::uint8_t kSeenThrough = 2;
 
 }  // namespace

@@ -58,6 +58,8 @@ void members(Self& s, Visitor& visit) {
 template <class Self, class Visitor>
 void WorldCovariance::members(Self& s, Visitor& visit) {
   visit_params(s.params_, visit);
+  visit("world.start_W_m", s.start_W_m_);
+  visit("world.map_at_W_m", s.map_at_W_m_);
   visit("world.start_by_mounting", s.start_by_mounting_);
   visit("world.map", s.map_);
   visit("world.drift_m2", s.drift_m2_);
@@ -85,6 +87,7 @@ void LocalMap::members(Self& s, Visitor& visit) {
 template <class Self, class Visitor>
 void LidarInertialOdometry::Impl::members(Self& s, Visitor& visit) {
   visit.scratch(s.params);
+  visit("start_pose", s.start_pose);
   visit_variant("tracking", s.tracking, visit);
   visit("track", s.track);
   visit("boundary", s.boundary);

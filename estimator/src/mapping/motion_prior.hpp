@@ -29,8 +29,8 @@ struct KnownVelocity {
 
 /// ConstantVelocity assumes a constant velocity with the uncertainty of impacts, for an accelerometer that is absent or
 /// always saturated. With ConstantVelocity, the gyro is still used. ConstantVelocity needs neither `impose` nor
-/// `weigh`, because its samples are treated like the samples of a gap (InertialTrack::exclude_force). The gap also
-/// determines the noise.
+/// `weigh`, because its samples are treated like the samples of a gap (InertialTrack::exclude_accelerometer). The gap
+/// also determines the noise.
 struct ConstantVelocity {};
 
 using MotionPrior = std::variant<InertialPrior, KnownVelocity, OdometerReading, ConstantVelocity>;

@@ -50,8 +50,9 @@ struct LidarInertialOdometry::Impl {
   Status check_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns) const;
   /// Initialises the state from the IMU at rest, before the first sweep.
   Status level_at_first();
-  /// Starts the map and returns `ok`, if the sweep is suitable. If the sweep is not suitable, the state is propagated
-  /// inertially to the end of the sweep.
+  Status level_start(MotionState& levelled) const;
+  /// Starts the map if the sweep is suitable, and returns ok. If the sweep is not suitable, the state is propagated
+  /// inertially to the sweep's end.
   Status start_map(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns, SweepReport& report);
   Status dead_reckon(TimeNs end_ns);
   bool rests(const mapping::InertialTrack& inertial, const SweepTrajectory& motion, TimeNs end_ns) const;
@@ -98,6 +99,7 @@ struct LidarInertialOdometry::Impl {
   Status check_other() const;
 
   Params params;
+  std::optional<Eigen::Isometry3d> start_pose;  // position and heading of the IMU where the map starts
   mapping::TrackingState tracking;
   mapping::InertialTrack track;
   mapping::SweepBoundary boundary;  // boundary between the last sweep and the next sweep

@@ -52,6 +52,7 @@ void members(Self& s, Visitor& visit) {
   visit("report.conditioning", s.conditioning);
   visit.with_nan("report.weakest_sigma_m", s.weakest_sigma_m);  // infinite without constraints
   visit("report.innovation", s.innovation);
+  visit("report.map_sigma_m", s.map_sigma_m);
   visit("report.iterations", s.iterations);
   visit("report.lost_sweeps", s.lost_sweeps);
   visit("report.weakest_direction", s.weakest_direction);
@@ -71,6 +72,7 @@ void members(Self& s, Visitor& visit) {
 
 template <StateOf<SweepScaleWatch::Change> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
+  visit("change.time_ns", s.time_ns);
   visit("change.by_imu_m_s", s.by_imu_m_s);
   visit("change.by_sweeps_m_s", s.by_sweeps_m_s);
 }
@@ -92,6 +94,10 @@ void Localisation::members(Self& s, Visitor& visit) {
   visit("localisation.largest_sigma_m", s.largest_sigma_m_);
   visit("localisation.largest_innovation", s.largest_innovation_);
   visit("localisation.second_innovation", s.second_innovation_);
+  visit("localisation.sigma_m", s.sigma_m_);
+  visit("localisation.newest_ns", s.newest_ns_);
+  visit("localisation.contradicted_ns", s.contradicted_ns_);
+  visit("localisation.before_ns", s.before_ns_);
 }
 
 template <StateOf<FlyingBody> Self, class Visitor>

@@ -7,7 +7,8 @@ namespace tumble {
 
 namespace {
 
-/// Eigen's empty box means no box. Any other box without an inside has swapped corners.
+/// Checks the order of a box' corners. Eigen's empty box means no box. In any other box without volume, the corners are
+/// swapped.
 template <class Visitor>
 void visit_corners_in_order(const Eigen::AlignedBox3d& box, Visitor& visit) {
   const Eigen::AlignedBox3d none;
@@ -17,7 +18,7 @@ void visit_corners_in_order(const Eigen::AlignedBox3d& box, Visitor& visit) {
   visit(box.sizes().z(), {"own_body_L largest z less the least", "m", 0.0, kUnbounded, ""});
 }
 
-/// Checks the fields, their relations, and members that are not fields.
+/// Checks the fields, the relations between fields, and the members that are not fields.
 detail::OutOfBounds out_of_bounds(const OdometryParams& params) {
   detail::OutOfBounds found;
   detail::FindOutOfBounds visit(found);

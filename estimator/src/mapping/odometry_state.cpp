@@ -5,14 +5,11 @@
 #include "../common/state_bytes.hpp"
 #include "../common/state_layout.hpp"
 #include "mapping_members.hpp"
+#include "tumble/common/detail/sample_check.hpp"
 
 namespace tumble {
 
 namespace {
-
-// Limit of stamps, so that twice a difference fits into 64 bits. The limit is the year 2067 for a clock that starts in
-// 1970.
-constexpr TimeNs kStamp_ns = 3'070'000'000'000'000'000;
 
 /// Visits parameters that an earlier run may have estimated: SecondPass.
 template <StateOf<LidarInertialOdometry::Params> Self, class Visitor>
@@ -61,13 +58,10 @@ Status LidarInertialOdometry::Impl::check_state() const {
   for (std::size_t k = 0; k < samples.size(); ++k) {
     if (samples[k].from_ns > samples[k].time_ns || (k > 0 && samples[k].time_ns <= samples[k - 1].time_ns))
       return {Trouble::time_order, "motion.time_ns", double(samples[k].time_ns), double(samples[k].from_ns)};
-    if (samples[k].from_ns < -kStamp_ns || samples[k].time_ns > kStamp_ns)
-      return {Trouble::out_of_range, "motion.time_ns", double(samples[k].time_ns), double(kStamp_ns)};
+    if (const Status status = check_stamp(samples[k].from_ns, "motion.from_ns"); !status.ok()) return status;
+    if (const Status status = check_stamp(samples[k].time_ns, "motion.time_ns"); !status.ok()) return status;
   }
-  const std::optional<TimeNs> last_ns = track.last_ns();
-  if (last_ns && (*last_ns < -kStamp_ns || *last_ns > kStamp_ns))
-    return {Trouble::out_of_range, "track.boundary_ns", double(*last_ns), double(kStamp_ns)};
-  return {};
+  return check_stamp(track.last_ns().value_or(0), "track.boundary_ns");
 }
 
 void LidarInertialOdometry::save(StateWriter& out) const {

@@ -17,8 +17,8 @@ using mapping::UpdatedSweep, mapping::WindowSweep;
 
 namespace {
 
-constexpr double kTogether_s = 0.5;       // IMU and lidar start together: what levels the attitude
-constexpr TimeNs kStep_ns = 100'000'000;  // of dead reckoning: what the inertial noise is stated for
+constexpr double kTogether_s = 0.5;       // maximum delay between first sample and first sweep
+constexpr TimeNs kStep_ns = 100'000'000;  // time step of dead reckoning, for which the inertial noise is stated
 
 }  // namespace
 
@@ -27,11 +27,11 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
   if (Status status = check_sweep(start_ns, end_ns, returns); !status.ok()) return status;
   if (Status status = level_at_first(); !status.ok()) return status;
 
-  if (std::holds_alternative<mapping::ConstantVelocity>(known)) track.exclude_force(end_ns);
+  if (std::holds_alternative<mapping::ConstantVelocity>(known)) track.exclude_accelerometer(end_ns);
   if (!mapping::has_started(tracking)) {
     if (Status status = start_map(start_ns, end_ns, returns, report); !status.ok()) return status;
   }
-  // starts as the inertial prediction from the boundary; an alignment refines it
+  // The initial trajectory is the inertial prediction from the boundary of the last sweep. The alignment refines it.
   SweepTrajectory& trajectory = scratch.trajectory;
   const Registration::Estimate& before = boundary.state_estimate.mean;
   if (Status status = trajectory.build(before.state, track.samples(), end_ns, before.calibration.gravity_W_m_s2);
@@ -41,9 +41,9 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
   resting_sweeps = rests(track, trajectory, end_ns) ? resting_sweeps + 1 : 0;
   const MotionWindow motion{track.samples(), end_ns, resting_sweeps};
   const std::unique_ptr<Prediction> prediction(
-      new Prediction(mapping::predict(params, boundary, motion, trajectory, known)));  // 27 KiB: not on the stack
+      new Prediction(mapping::predict(params, boundary, motion, trajectory, known)));  // too large for the stack
 
-  // a sweep without usable returns gets the inertial prediction
+  // A sweep without usable returns gets the inertial prediction as its pose.
   mapping::SweepPoints& points = scratch.points;
   mapping::SweepPoints::Counts counts;
   const Status points_status = points.select(params, returns, end_ns - start_ns, before.calibration,
@@ -60,16 +60,17 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
   }
   report.verdict = placed->verdict;
 
-  // The updated state determines the motion, the map update, and the state for the next sweep.
+  // The updated state determines the motion, the map update, and the start of the next sweep.
   const std::unique_ptr<const StateEstimate> start(new StateEstimate(update(motion, *placed, *prediction)));
-  if (!placed->alignment) {  // a failed attempt may have changed it
+  if (!placed->alignment) {  // a failed attempt may have changed the trajectory
     const Registration::Estimate& mean = start->mean;
     const Status status = trajectory.build(mean.state, motion.samples, motion.end_ns, mean.calibration.gravity_W_m_s2,
                                            mean.deficit_rad_s);
     if (!status.ok()) return status;
   }
   const UpdatedSweep sweep{*prediction, *start, trajectory};
-  // if the map had too few points, insertion follows the prior; LocalMap excludes points that are too uncertain
+  // If the map has too few points, LocalMap inserts the sweep at the predicted pose. LocalMap omits points that are too
+  // uncertain.
   std::vector<InsertedPoint> inserted;
   if (placed->verdict != SweepVerdict::rejected || placed->map_too_sparse)
     inserted = insert(sweep, points, counts.rings_differ, *placed, report);
@@ -89,9 +90,10 @@ Status LidarInertialOdometry::Impl::check_sweep(TimeNs start_ns, TimeNs end_ns,
   if (samples.back().time_ns < end_ns) {
     return {Trouble::too_few, "imu time_ns", double(samples.back().time_ns), double(end_ns)};
   }
-  // with a wrong clock, the first sweep may start before the first sample, so the initial rest is extended backwards
+  // With a wrong clock, the first sweep may start before the first sample. The initial rest is therefore extended
+  // backwards.
   const double early_s = seconds(samples.front().from_ns - start_ns);
-  if (!started && early_s > (params.time_offset_s != 0.0 ? SweepTrajectory::kBeyond_s : 0.0)) {
+  if (!started && early_s > (params.time_offset_s != 0.0 ? SweepTrajectory::kExtrapolation_s : 0.0)) {
     return {Trouble::too_few, "start_ns", double(start_ns), double(samples.front().from_ns)};
   }
   return mapping::check_offsets(end_ns - start_ns, returns);
@@ -100,10 +102,24 @@ Status LidarInertialOdometry::Impl::check_sweep(TimeNs start_ns, TimeNs end_ns,
 Status LidarInertialOdometry::Impl::level_at_first() {
   if (mapping::has_started(tracking) || track.border_ns()) return {};
   MotionState levelled;
-  if (Status status = mapping::start_at_rest(params, track.samples(), levelled); !status.ok()) return status;
+  if (Status status = level_start(levelled); !status.ok()) return status;
+  if (start_pose) levelled = mapping::moved_to(*start_pose, levelled);
+  if (!track.starts_at_rest(params.expert.start.bias_rest_s)) {
+    const StateEstimate in_motion = mapping::belief_before_map(params, levelled);
+    world = mapping::world_at_first_sweep(params, in_motion);
+    boundary.state_estimate = mapping::belief_at_first_sweep(params, in_motion);
+    return {};
+  }
   boundary.state_estimate = mapping::estimate_at_start(params, levelled);
-  world = mapping::WorldCovariance(params.expert.world, levelled.q_WI, params.T_IL.translation());
+  world = mapping::WorldCovariance(params.expert.world, levelled.q_WI, params.T_IL.translation(), levelled.p_WI_m);
   return {};
+}
+
+/// Levels the start by the mean force, which is gravity only if the start is at rest.
+Status LidarInertialOdometry::Impl::level_start(MotionState& levelled) const {
+  const Status status = mapping::start_at_rest(params, track.samples(), levelled);
+  if (status.ok() && !track.starts_at_rest(params.expert.start.bias_rest_s)) mapping::widen_to_motion(levelled);
+  return status;
 }
 
 /// Starts the map with the first sweep that has enough points. If the sweep begins with the IMU, the sweep's start is
@@ -122,6 +138,7 @@ Status LidarInertialOdometry::Impl::start_map(TimeNs start_ns, TimeNs end_ns, st
     const mapping::MotionPrior of_sweep = std::exchange(known, mapping::InertialPrior{});
     if (Status status = dead_reckon(start_ns); !status.ok()) return status;
     known = of_sweep;
+    if (start_pose) boundary.state_estimate = mapping::moved_to(*start_pose, boundary.state_estimate);
     world = mapping::world_at_first_sweep(params, boundary.state_estimate);
     boundary.state_estimate = mapping::belief_at_first_sweep(params, boundary.state_estimate);
     return {};
@@ -132,11 +149,12 @@ Status LidarInertialOdometry::Impl::start_map(TimeNs start_ns, TimeNs end_ns, st
   return {Trouble::too_few, "points", double(points), double(params.expert.matching.least)};
 }
 
-/// Propagates the state to `end_ns` by inertial integration, without a map. A rest levels the attitude again.
+/// Propagates the state to `end_ns` by inertial integration, without a map. During a rest, the attitude is levelled
+/// again.
 Status LidarInertialOdometry::Impl::dead_reckon(TimeNs end_ns) {
   MotionState levelled;
   if (!track.border_ns()) {
-    if (Status status = mapping::start_at_rest(params, track.samples(), levelled); !status.ok()) return status;
+    if (Status status = level_start(levelled); !status.ok()) return status;
     boundary.state_estimate = mapping::belief_before_map(params, levelled);
   }
   if (const std::optional<Eigen::Vector3d> force = track.resting_force(end_ns, params.expert.rest.levels_s)) {
@@ -159,7 +177,7 @@ Status LidarInertialOdometry::Impl::dead_reckon(TimeNs end_ns) {
   return {};
 }
 
-/// Returns whether the IMU measures only gravity, and whether gravity agrees with the estimated attitude.
+/// Returns whether the IMU measures only gravity and whether this gravity agrees with the estimated attitude.
 bool LidarInertialOdometry::Impl::rests(const mapping::InertialTrack& inertial, const SweepTrajectory& motion,
                                         TimeNs end_ns) const {
   if (!inertial.rests_until(end_ns)) return false;
@@ -195,12 +213,12 @@ void LidarInertialOdometry::Impl::register_to_map(const Prediction& prediction, 
   mapping::judge(params, tracking, scene.points.size(), prior_certain, attempt, placed);
 }
 
-/// Returns the state at the sweep's start. After tracking failure at rest, the prediction is corrected before the
-/// update, because the window also uses the prediction.
+/// Returns the state at the sweep's start. After a tracking failure at rest, the prediction is corrected before the
+/// update, because the lag window also uses the prediction.
 StateEstimate LidarInertialOdometry::Impl::update(const MotionWindow& motion, const Placed& placed,
                                                   Prediction& prediction) const {
   if (placed.alignment) return mapping::posterior(prediction, *placed.alignment);
-  // the inertial prior remains; an IMU at rest stops its velocity drift
+  // The inertial prior remains. If the IMU is at rest, its velocity stops drifting.
   if (mapping::is_lost(tracking)) stop_at_rest(motion, boundary, prediction);
   return mapping::posterior(prediction);
 }
@@ -227,8 +245,8 @@ std::vector<InsertedPoint> LidarInertialOdometry::Impl::insert(const UpdatedSwee
   return inserted;
 }
 
-/// Updates the persistent state after a sweep. The window links the sweep to the last sweep by the old boundary. The
-/// sweep therefore enters the window before boundary_after() replaces the boundary.
+/// Updates the persistent state after a sweep. The lag window links the sweep to the previous sweep by the old
+/// boundary. The sweep therefore enters the window before boundary_after() replaces the boundary.
 void LidarInertialOdometry::Impl::propagate(const UpdatedSweep& sweep, const Placed& placed, const MotionWindow& motion,
                                             std::vector<InsertedPoint> inserted, SweepReport& report) {
   const Registration::Result* aligned = placed.alignment ? &*placed.alignment : nullptr;
@@ -240,12 +258,15 @@ void LidarInertialOdometry::Impl::propagate(const UpdatedSweep& sweep, const Pla
   if (aligned && placed.verdict == SweepVerdict::degenerate && motion.resting_sweeps == 0)
     world.add_drift(report.weakest_sigma_m, report.weakest_direction);
   report.trajectory = poses_along(sweep.trajectory, motion.end_ns, sweep.start.error);
+  const Registration::Matrix to_end = mapping::unknowns_at(sweep.trajectory, sweep.trajectory.duration_s());
+  report.map_sigma_m =
+      world.sigma_in_map_m(mapping::pose_and_mounting(to_end, sweep.start.error), report.trajectory.back().p_WA_m);
   enter_window(sweep, motion, boundary, window).inserted = std::move(inserted);
   if (aligned) {
     window.smooth();
     window.move_inserted(map);
   }
-  // no later sweep refines the oldest sweep, which leaves the window with the next sweep
+  // the oldest sweep leaves the window with the next sweep, so its pose is final
   if (window.is_full()) report.smoothed = poses_of(window.sweeps().front());
   mapping::boundary_after(params, sweep.start, motion, sweep.trajectory, aligned, boundary);
   report.pose = boundary.state_estimate.mean.state.pose();
@@ -254,7 +275,8 @@ void LidarInertialOdometry::Impl::propagate(const UpdatedSweep& sweep, const Pla
   prune_until(motion.end_ns);
 }
 
-/// Adds the pose error of a sweep to the map's error where the robot is, because the sweep's points have this error.
+/// Adds the pose error of a sweep to the map error at the robot's position, because the inserted points have this
+/// error.
 void LidarInertialOdometry::Impl::add_map_drift(const UpdatedSweep& sweep, const SweepReport& report) {
   const double inserted_share =
       report.points_used == 0 ? 0.0 : double(report.map_points_added) / double(report.points_used);
@@ -262,21 +284,21 @@ void LidarInertialOdometry::Impl::add_map_drift(const UpdatedSweep& sweep, const
                       boundary.state_estimate.mean.calibration.T_IL.translation());
 }
 
-/// All inputs up to the boundary have been used.
+/// Deletes the input up to `end_ns`, because the odometry has used it.
 void LidarInertialOdometry::Impl::prune_until(TimeNs end_ns) {
   known = mapping::InertialPrior{};
   track.prune_until(end_ns);
   if (mapping::is_unconfirmed(tracking))
-    return;  // withdrawing its points needs their sweep numbers, which pruning changes
+    return;  // withdrawing the points needs their sweep numbers, which pruning changes
   if (map.prune(params, boundary.state_estimate.mean.state.p_WI_m)) window.clear_inserted();
 }
 
-/// Propagates the alternative pose by inertial prediction. The alternative is the pose without an unconfirmed
-/// relocalisation, or a contradicted pose after tracking failed again.
+/// Propagates the alternative pose by inertial prediction. The alternative pose is the pose without an unconfirmed
+/// relocalisation. After a second tracking failure, the alternative is the contradicted pose.
 void LidarInertialOdometry::Impl::propagate_alternative(const MotionWindow& motion, bool unconfirmed_before) {
   const bool unconfirmed = mapping::is_unconfirmed(tracking);
   if (unconfirmed && !unconfirmed_before) {
-    mapping::DeadReckoning& from_here = other.emplace();  // constructed in place: too large for the stack
+    mapping::DeadReckoning& from_here = other.emplace();  // constructed in place, because it is too large for the stack
     from_here.boundary = boundary;
     from_here.window = window;
     from_here.window.clear_inserted();
@@ -289,8 +311,8 @@ void LidarInertialOdometry::Impl::propagate_alternative(const MotionWindow& moti
   if (!go_on_by_inertia(motion, rests, other->boundary, &other->window).ok()) other.reset();
 }
 
-/// Propagates from the boundary to a sweep's end without the sweep's points. With `rests`, the velocity is known to be
-/// 0. The sweep enters the window, if there is one.
+/// Propagates the state from the boundary to a sweep's end, without the sweep's points. If `rests`, the velocity is
+/// known to be 0. If there is a lag window, the sweep enters the window.
 Status LidarInertialOdometry::Impl::go_on_by_inertia(const MotionWindow& motion, bool rests, mapping::SweepBoundary& at,
                                                      mapping::LagWindow* into) const {
   const Registration::Estimate& before = at.state_estimate.mean;
@@ -311,8 +333,8 @@ Status LidarInertialOdometry::Impl::go_on_by_inertia(const MotionWindow& motion,
   return {};
 }
 
-/// Reverts a contradicted relocalisation. The points of the relocalisation are removed from the map, and inertial
-/// prediction resumes. The contradicted pose remains as a start of the search.
+/// Reverts a contradicted relocalisation. Removes the points inserted since the relocalisation from the map, and
+/// resumes inertial prediction. The contradicted pose remains a start of the search.
 void LidarInertialOdometry::Impl::go_back_to_inertia() {
   map.withdraw(std::exchange(other->inserted_from, 0));  // pruning changes sweep numbers
   std::swap(boundary, other->boundary);

@@ -34,7 +34,7 @@ PlaneFit fit_plane(const VoxelMap& map, const Neighbours& neighbours, const Plan
     return fit;
   }
 
-  // positions are relative to the nearest neighbour, so that floats keep their precision far from the origin
+  // Positions are relative to the nearest neighbour. Floats therefore keep their precision far from the origin.
   const Eigen::Vector3f origin = map.position_W_m(neighbours.index[0]);
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
   Eigen::Matrix3f square = Eigen::Matrix3f::Zero();
@@ -62,7 +62,7 @@ PlaneFit fit_plane(const VoxelMap& map, const Neighbours& neighbours, const Plan
     fit.verdict = PlaneVerdict::collinear;
     return fit;
   }
-  // the plane uses three of the n degrees of freedom: mapping.md (R27)
+  // the plane fit uses three of the n degrees of freedom: mapping.md (R27)
   const double noise2 = l[0] / std::max(n - 3, 1);
   for (int axis = 0; axis < 2; ++axis) {
     fit.tilt_W.col(axis) = (std::sqrt(noise2 / l[axis + 1]) * solver.eigenvectors().col(axis + 1)).cast<float>();

@@ -25,8 +25,8 @@ void PointMotion::along(const Eigen::Vector3d& n, SweepUnknowns::Vector& derivat
   u::segment(derivative, u::velocity) = t_s_ * n;
   auto of_deficit = u::segment(derivative, u::deficit);
   if (clipped_) {
-    of_deficit =
-        by_deficit_.preintegrated_position_m_s.transpose() * n + by_deficit_.attitude_s.transpose() * turned_.cross(n);
+    of_deficit = by_deficit_.position_jacobian_m_s.transpose() * n +
+                 by_deficit_.attitude_jacobian_s.transpose() * turned_.cross(n);
   } else {
     of_deficit.setZero();
   }

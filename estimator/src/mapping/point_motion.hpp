@@ -21,7 +21,7 @@ class PointMotion {
   /// (R17).
   void along(const Eigen::Vector3d& direction_W, SweepUnknowns::Vector& derivative) const;
 
-  /// Returns the lever arm vector u of SweepTrajectory::base_m, in W.
+  /// Returns the lever arm vector u of SweepTrajectory::common_position_m, in W.
   const Eigen::Vector3d& lever_m() const { return lever_; }
 
  private:

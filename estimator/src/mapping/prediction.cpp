@@ -19,14 +19,14 @@ namespace {
 namespace u = unknowns;
 using Params = LidarInertialOdometry::Params;
 
-/// Continues the saturation deficit of an axis that is saturated at the boundary, with exponential decay: mapping.md
-/// (R48).
+/// Continues the saturation deficit of an axis that is saturated at the boundary. The predicted deficit decays
+/// exponentially: mapping.md (R48).
 void carry_deficit(const Params& params, const SweepBoundary& boundary, const SweepTrajectory& trajectory,
                    Prediction& next) {
   constexpr int kLast = SweepTrajectory::kKnots - 1;
   u::rows(next.by_last, u::deficit).setZero();
   if (!params.expert.rails.estimate_deficit) return;
-  const Eigen::Vector3d share_at_start = trajectory.deficit_share_at_start();
+  const Eigen::Vector3d share_at_start = trajectory.deficit_factor_at_start();
   const double rho = knot_correlation(params, trajectory);
   for (int axis = 0; axis < 3; ++axis) {
     if (!(share_at_start[axis] > 0.0 && boundary.deficit_share[axis] > 0.0)) continue;
@@ -40,21 +40,21 @@ void carry_deficit(const Params& params, const SweepBoundary& boundary, const Sw
   }
 }
 
-/// Returns the largest standard deviation that the rate method reports for the axis while clipped within the segment.
-/// The result is at least the parameter's value.
+/// Returns the largest standard deviation that the rate method reports for a clipped axis within the segment. The
+/// result is at least the parameter `deficit_sigma_min_rad_s`.
 double deficit_sigma(const Params& params, const MotionWindow& window, const SweepTrajectory& trajectory, int axis) {
   double sigma = params.expert.rails.deficit_sigma_min_rad_s;
   for (const MotionSample& sample : window.samples) {
-    // later samples belong to the next segment
+    // the following samples belong to the next segment
     if (seconds(sample.from_ns - trajectory.start_ns()) >= trajectory.duration_s()) break;
     if (sample.clipped_axes >> axis & 1) sigma = std::max(sigma, sample.rate_sigma_rad_s[axis]);
   }
   return sigma;
 }
 
-/// Adds the process noise of the saturation deficit. Knots are samples of a first-order Gauss-Markov process with the
-/// reported standard deviation, mapping.md (R46), (R47). If the first knot continues from the last sweep, (R49)
-/// applies.
+/// Adds the process noise of the saturation deficit. The knots of the deficit are samples of a first-order Gauss-Markov
+/// process with the reported standard deviation: mapping.md (R46), (R47). If the deficit continues from the last sweep,
+/// the covariance is (R49).
 void add_deficit_noise(const Params& params, const MotionWindow& window, const SweepTrajectory& trajectory,
                        Prediction& next) {
   if (!params.expert.rails.estimate_deficit) return;
@@ -81,7 +81,7 @@ double knot_correlation(const Params& params, const SweepTrajectory& trajectory)
   return std::exp(-trajectory.duration_s() / (SweepTrajectory::kKnots - 1) / params.expert.rails.deficit_time_s);
 }
 
-/// mapping.md (R32).
+/// Propagates the covariances by the motion of the segment: mapping.md (R32).
 void Prediction::compose(const StateEstimate& at_boundary) {
   sandwich(by_last, at_boundary.weight, prior.covariance);
   sandwich(by_last, at_boundary.error, errors);
@@ -97,7 +97,7 @@ void Prediction::zero_velocity_update(double sigma_m_s) {
   u::variances(noise, u::velocity).setConstant(sigma_m_s * sigma_m_s);
 }
 
-/// mapping.md (R33).
+/// Applies a known velocity to the prediction: mapping.md (R33).
 void impose(const KnownVelocity& known, Prediction& prediction) {
   prediction.zero_velocity_update(known.sigma_m_s);
   const Eigen::Vector3d v_WI_m_s = prediction.prior.mean.state.q_WI * known.v_WI_I_m_s;
@@ -112,7 +112,7 @@ Prediction predict(const Params& params, const SweepBoundary& boundary, const Mo
   next.prior.mean.calibration = boundary.state_estimate.mean.calibration;
   carry_deficit(params, boundary, trajectory, next);
   if (window.samples.front().at_rest) next.zero_velocity_update(params.expert.standstill.start_sigma_m_s);
-  // without the speed limit, a slow drive with well constrained sweeps would count as rest
+  // Without the speed limit, a slow drive through a scene with many features would count as rest.
   const bool creeps = boundary.state_estimate.mean.state.v_WI_m_s.norm() < params.expert.standstill.creep_max_m_s;
   if (window.resting_sweeps >= params.expert.standstill.sweeps_min && !boundary.constrained && creeps)
     next.zero_velocity_update(params.expert.standstill.sigma_m_s);
@@ -121,7 +121,8 @@ Prediction predict(const Params& params, const SweepBoundary& boundary, const Mo
   MotionNoise within = inertial_noise(params, trajectory, window.samples, axes);
   const Eigen::Matrix3d railed_m2_s2 = railed_velocity_variance(params, trajectory, window.samples);
   u::block(next.noise, u::motion) += within;
-  // a force late in a segment hardly changes the fitted velocity, so its variance is also added to the next segment
+  // A force late in a segment hardly changes the fitted velocity. The variance of the velocity is therefore also added
+  // to the next segment.
   u::block(next.noise, u::velocity) += boundary.railed_velocity_m2_s2 + railed_m2_s2;
   u::block(within, u::velocity) += railed_m2_s2;
   add_deficit_noise(params, window, trajectory, next);
@@ -154,21 +155,22 @@ StateEstimate posterior(const Prediction& prediction) {
 
 namespace {
 
-/// Computes the factor of the prior's errors in mapping.md (R52). weigh_prior() is a separate function to limit the
-/// stack.
+/// Computes the factor by which the prior's errors enter the errors after registration: mapping.md (R52). The function
+/// is separate to limit the use of the stack.
 [[gnu::noinline]] void weigh_prior(const Prediction& prediction, const Registration::Result& aligned,
                                    Registration::Matrix& out) {
-  // errors in variables are not information and correct nothing
+  // noise of the normals (errors in variables) is not information
   Registration::Matrix kept = Registration::Matrix::Identity();
   dense::solve_semidefinite(invertible(prediction.prior.covariance), kept);
-  kept += aligned.errors_in_variables_information;
+  kept += aligned.normal_noise_information;
   out.noalias() = aligned.covariance * kept;
 }
 
 }  // namespace
 
-/// Computes the errors of the unknowns after the registration: mapping.md (R52). The errors of the prior and the
-/// gradient of the surfaces, with the measured score_covariance, pass through one system of normal equations.
+/// Computes the errors of the unknowns after the registration: mapping.md (R52). Two errors pass through one system of
+/// normal equations. They are the errors of the prior, and the gradient of the surfaces with the covariance
+/// `score_covariance`, measured from the residuals.
 StateEstimate posterior(const Prediction& prediction, const Registration::Result& aligned) {
   StateEstimate start{aligned.mean, aligned.covariance, Registration::Matrix::Zero()};
   const auto from_prior = std::make_unique<Registration::Matrix>();
@@ -203,7 +205,7 @@ void boundary_after(const Params& params, const StateEstimate& start, const Moti
   boundary.railed_velocity_m2_s2 = railed_velocity_variance(params, trajectory, window.samples);
   const bool aligned = alignment != nullptr;
   boundary.deficit_share = Eigen::Vector3d::Zero();
-  if (aligned) boundary.deficit_share = trajectory.deficit_share_at_end();
+  if (aligned) boundary.deficit_share = trajectory.deficit_factor_at_end();
   boundary.constrained = aligned && alignment->weakest_sigma_m <= params.expert.matching.degenerate_sigma_m;
 }
 

@@ -24,17 +24,17 @@ using Covariance = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMos
 template <int Values>
 using OfMotion = Eigen::Matrix<double, Values, kMotion>;
 
-constexpr int kIterations = 6;     // usually two or three are enough
-constexpr double kSettled = 1e-9;  // m, rad, m/s, rad/s
+constexpr int kIterations = 6;     // two or three iterations are usually enough
+constexpr double kSettled = 1e-9;  // convergence limit [m, rad, m/s, rad/s]
 
-/// Current unknowns relative to the prediction: unknowns at the boundary, and noise since the boundary.
+/// Current change of the unknowns relative to the prediction: unknowns at the boundary, and noise since the boundary.
 struct Offsets {
   Registration::Vector start = Registration::Vector::Zero();
   Eigen::Matrix<double, kMotion, 1> noise = Eigen::Matrix<double, kMotion, 1>::Zero();
 };
 
 struct Expected {
-  Rows<kUnknowns> by_start;
+  Rows<kUnknowns> jacobian_start;
   Rows<kMotion> by_noise;
   Values residual;  ///< innovation: the reading minus its prediction
   Covariance variance;
@@ -45,7 +45,7 @@ struct Moment {
   double noise_share = 0.0;  ///< fraction of the sweep's noise up to this time
   Eigen::Quaterniond q_WI;
   Eigen::Vector3d p_WI_m, v_WI_m_s;
-  Eigen::Matrix<double, kMotion, kUnknowns> by_start;
+  Eigen::Matrix<double, kMotion, kUnknowns> jacobian_start;
 };
 
 class Sweep {
@@ -53,12 +53,12 @@ class Sweep {
   Sweep(const Registration::Estimate& predicted, const MotionWindow& window) : predicted_(predicted), window_(window) {}
 
   bool holds(TimeNs time_ns) const {
-    const auto beyond_ns = static_cast<TimeNs>(1e9 * SweepTrajectory::kBeyond_s);
+    const auto beyond_ns = static_cast<TimeNs>(1e9 * SweepTrajectory::kExtrapolation_s);
     return time_ns >= predicted_.state.time_ns - beyond_ns && time_ns <= window_.end_ns + beyond_ns;
   }
 
-  /// Evaluates the motion at a time within the sweep. The noise's standard deviations grow in proportion to time.
-  /// mapping.md (R34).
+  /// Evaluates the motion at a time within the sweep: mapping.md (R34). The standard deviations of the noise grow in
+  /// proportion to time.
   Moment at(TimeNs time_ns, const Offsets& offsets) const {
     Moment out;
     const double t_s = seconds(time_ns - predicted_.state.time_ns);
@@ -70,18 +70,18 @@ class Sweep {
     Registration::Estimate start = predicted_;
     start.add(moved);
     SweepTrajectory trajectory;
-    // no error is possible: add_sweep ensures that the samples cover the window
+    // build() cannot fail here, because add_sweep() ensures that the samples cover the window
     (void)trajectory.build(start.state, window_.samples, window_.end_ns, start.calibration.gravity_W_m_s2,
                            start.deficit_rad_s);
     std::size_t hint = 0;
     const SweepTrajectory::Instant instant = trajectory.at(t_s, Eigen::Vector3d::Zero(), hint, out.v_WI_m_s);
     out.q_WI = instant.q_WI;
-    out.p_WI_m = trajectory.base_m(t_s) + instant.preintegrated_position_m;
+    out.p_WI_m = trajectory.common_position_m(t_s) + instant.preintegrated_position_m;
     const SweepTrajectory::Transition step = trajectory.transition(inside_s);
-    out.by_start.setZero();
-    u::columns(out.by_start, u::motion) = step.by_start;
-    u::columns(out.by_start, u::deficit) = step.by_deficit_s;
-    u::columns(out.by_start, u::gravity) = step.by_gravity;
+    out.jacobian_start.setZero();
+    u::columns(out.jacobian_start, u::motion) = step.jacobian_start;
+    u::columns(out.jacobian_start, u::deficit) = step.jacobian_deficit_s;
+    u::columns(out.jacobian_start, u::gravity) = step.jacobian_gravity;
     return out;
   }
 
@@ -90,12 +90,13 @@ class Sweep {
   const MotionWindow& window_;
 };
 
-/// `by_moment` is the derivative of the reading by errors of the motion at the reading's time.
+/// Adds a part of the reading's derivative. `by_moment` is the derivative by errors of the motion at the time of the
+/// reading.
 template <int Size>
 void add(const OfMotion<Size>& by_moment, const Moment& moment, Expected& out) {
-  const Eigen::Matrix<double, Size, kUnknowns> by_start = by_moment * moment.by_start;
-  out.by_start += by_start;
-  out.by_noise += moment.noise_share * by_start.template leftCols<kMotion>();
+  const Eigen::Matrix<double, Size, kUnknowns> jacobian_start = by_moment * moment.jacobian_start;
+  out.jacobian_start += jacobian_start;
+  out.by_noise += moment.noise_share * jacobian_start.template leftCols<kMotion>();
 }
 
 template <int Size>
@@ -104,7 +105,7 @@ Expected nothing() {
           Covariance::Zero(Size, Size)};
 }
 
-/// mapping.md (R35).
+/// Predicts a velocity reading: mapping.md (R35).
 Expected expect(const VelocityReading& reading, const Sweep& sweep, const Offsets& offsets) {
   Expected out = nothing<3>();
   const Moment now = sweep.at(reading.time_ns, offsets);
@@ -118,7 +119,7 @@ Expected expect(const VelocityReading& reading, const Sweep& sweep, const Offset
   return out;
 }
 
-/// mapping.md (R36).
+/// Predicts an odometer reading of relative motion: mapping.md (R36).
 Expected expect(const MotionReading& reading, const Sweep& sweep, const Offsets& offsets) {
   Expected out = nothing<kMost>();
   const Moment from = sweep.at(reading.from_ns, offsets), to = sweep.at(reading.to_ns, offsets);
@@ -149,38 +150,38 @@ bool holds(const Sweep& sweep, const OdometerReading& reading) {
 template <int Size>
 using Gain = Eigen::Matrix<double, Size, Eigen::Dynamic, 0, Size, kMost>;
 
-/// Buffers of an update, on the heap because sandwich() needs the stack.
+/// Buffers of an update. The buffers are on the heap, because sandwich() needs the stack.
 struct Work {
   Matrix at_start, before, left;  ///< covariance at the start, the part due to noise; factor of the remaining errors
   Offsets offsets;
   Expected expected;
-  Gain<kUnknowns> by_start;  ///< for the unknowns at the boundary
-  Gain<kMotion> by_noise;    ///< for the noise since
+  Gain<kUnknowns> jacobian_start;  ///< gain of the unknowns at the boundary
+  Gain<kMotion> by_noise;          ///< gain of the noise since the boundary
 };
 
-/// Computes the gains at the current offsets: mapping.md (R37).
+/// Computes the gains at the current linearisation point: mapping.md (R37).
 bool find_gains(const MotionNoise& within, Work& work) {
   const Expected& expected = work.expected;
-  work.by_start = work.at_start * expected.by_start.transpose();
+  work.jacobian_start = work.at_start * expected.jacobian_start.transpose();
   work.by_noise = within * expected.by_noise.transpose();
-  Covariance S = expected.by_start * work.by_start + expected.by_noise * work.by_noise + expected.variance;
+  Covariance S = expected.jacobian_start * work.jacobian_start + expected.by_noise * work.by_noise + expected.variance;
   make_symmetric(S);
   const Eigen::LLT<Covariance> factors(S);
   if (factors.info() != Eigen::Success) return false;
-  work.by_start = factors.solve(work.by_start.transpose()).transpose();
+  work.jacobian_start = factors.solve(work.jacobian_start.transpose()).transpose();
   work.by_noise = factors.solve(work.by_noise.transpose()).transpose();
   return true;
 }
 
-/// Iterates to the optimum of reading and prediction; returns false without a solution.
+/// Iterates to the optimum of reading and prediction. Returns false if there is no solution.
 [[gnu::noinline]] bool settle(const OdometerReading& reading, const Sweep& sweep, const MotionNoise& within,
                               Work& work) {
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     work.expected = std::visit([&](const auto& kind) { return expect(kind, sweep, work.offsets); }, reading);
     if (!find_gains(within, work)) return false;
-    const Values innovation = work.expected.residual + work.expected.by_start * work.offsets.start +
+    const Values innovation = work.expected.residual + work.expected.jacobian_start * work.offsets.start +
                               work.expected.by_noise * work.offsets.noise;
-    const Offsets next{work.by_start * innovation, work.by_noise * innovation};
+    const Offsets next{work.jacobian_start * innovation, work.by_noise * innovation};
     if (!next.start.allFinite() || !next.noise.allFinite()) return false;
     const double change = std::max((next.start - work.offsets.start).cwiseAbs().maxCoeff(),
                                    (next.noise - work.offsets.noise).cwiseAbs().maxCoeff());
@@ -190,21 +191,21 @@ bool find_gains(const MotionNoise& within, Work& work) {
   return true;
 }
 
-/// Applies the update, and the effect of the update on the boundary's errors: mapping.md (R38).
+/// Applies the update, and its effect on the errors at the boundary: mapping.md (R38).
 [[gnu::noinline]] void move(Work& work, Prediction& prediction) {
   Registration::Vector moved = work.offsets.start;
   u::segment(moved, u::motion) += work.offsets.noise;
   prediction.prior.mean.add(moved);
-  work.by_start.topRows<kMotion>() += work.by_noise;  // from here on, of the sum
-  const Rows<kUnknowns> by_last = work.expected.by_start * prediction.by_last;
-  prediction.by_last.noalias() -= work.by_start * by_last;
+  work.jacobian_start.topRows<kMotion>() += work.by_noise;  // from here on, the gain of the sum
+  const Rows<kUnknowns> by_last = work.expected.jacobian_start * prediction.by_last;
+  prediction.by_last.noalias() -= work.jacobian_start * by_last;
   work.left.setIdentity();
-  work.left.noalias() -= work.by_start * work.expected.by_start;
+  work.left.noalias() -= work.jacobian_start * work.expected.jacobian_start;
 }
 
-/// Adds the noise within the sweep, reduced by the gains, and the noise of the reading: mapping.md (R38).
+/// Adds the noise within the sweep, which the gains reduce, and the noise of the reading: mapping.md (R38).
 [[gnu::noinline]] void add_noise(const MotionNoise& within, Work& work, Prediction& prediction) {
-  const Gain<kUnknowns>& K = work.by_start;
+  const Gain<kUnknowns>& K = work.jacobian_start;
   Eigen::Matrix<double, kUnknowns, kMotion> left = -K * work.expected.by_noise;
   left.topRows<kMotion>().diagonal().array() += 1.0;
   const Eigen::Matrix<double, kUnknowns, kMotion> spread = left * within;
@@ -221,9 +222,9 @@ void weigh_reading(const OdometerReading& reading, const SweepBoundary& boundary
   const Sweep sweep(prediction.prior.mean, window);
   if (!holds(sweep, reading)) return;
   const auto work = std::make_unique<Work>();
-  // the update is weighted by the covariance C, like the registration: mapping.md section 6
+  // the gains follow from the covariance C, as in the registration: mapping.md section 6
   sandwich(prediction.by_last, boundary.state_estimate.weight, work->at_start);
-  Matrix& before = work->before;  // noise at the start: of the deficit, and of earlier saturation
+  Matrix& before = work->before;  // noise at the start: saturation deficit, earlier saturation
   before = prediction.noise;
   u::block(before, u::motion) -= within;
   work->at_start += before;

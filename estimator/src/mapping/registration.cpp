@@ -27,8 +27,8 @@ Matrix information_of(const Matrix& covariance) {
   return dense::Cholesky(positive).inverse<Matrix>();
 }
 
-/// Adds the prior's information and gradient to the normal equations over all unknowns: the prior's terms of mapping.md
-/// (R22), (R23).
+/// Adds the information and the gradient of the prior to the normal equations over all unknowns: mapping.md (R22),
+/// (R23).
 void add_prior(const Registration::Prior& prior, const Matrix& information, const Registration::Estimate& now,
                Matrix& H, Vector& g) {
   const auto held = std::make_unique<std::array<Matrix, 3>>();
@@ -42,7 +42,7 @@ void add_prior(const Registration::Prior& prior, const Matrix& information, cons
   g += J.transpose() * (information * away);
 }
 
-/// Returns whether the motion is within the prior's uncertainty: mapping.md (R25).
+/// Returns whether the registered motion is within the prior's uncertainty: mapping.md (R25).
 bool agrees(const Registration::Prior& prior, const Registration::Estimate& now) {
   constexpr int kMotion = Registration::kMotion;
   const Vector moved = now.minus(prior.mean);
@@ -91,7 +91,7 @@ struct Registration::Problem {
   const Prior& prior;
   std::span<const MotionSample> samples;
   TimeNs end_ns;
-  std::span<const SweepPoint> points;  ///< by the prior's calibration
+  std::span<const SweepPoint> points;  ///< positions computed with the prior's calibration
   const VoxelMap& map;
   Unknowns unknowns{prior.covariance};
   Matrix information = information_of(prior.covariance);
@@ -104,7 +104,7 @@ struct Registration::Problem {
 
 struct Registration::Descent {
   Estimate now;
-  std::span<const SweepPoint> points;  ///< by the current calibration
+  std::span<const SweepPoint> points;  ///< positions computed with the current calibration
   Sums sum;
   Matrix H = Matrix::Zero();  ///< normal matrix, including the prior
   double kernel_m = 0.0;
@@ -119,7 +119,7 @@ Status Registration::align(const Prior& prior, std::span<const MotionSample> sam
   Problem& problem = *posed;
   problem.matches_needed = std::max(params_.matches_min, static_cast<std::size_t>(params_.expert.matched_share_min *
                                                                                   static_cast<double>(points.size())));
-  std::destroy_at(&result);  // reconstructed in place: it is 22 KiB
+  std::destroy_at(&result);  // reconstructed in place, because it takes 22 KiB
   std::construct_at(&result);
   result.mean = prior.mean;
   result.covariance = prior.covariance;
@@ -164,7 +164,7 @@ Status Registration::iterate(const Problem& problem, Descent& at, SweepTrajector
   add_prior(problem.prior, problem.information, at.now, at.H, g);
   problem.unknowns.hold(at.H, g);
   dense::solve_semidefinite_vector(at.H, g);
-  const Vector step = -g;  // mapping.md (R23)
+  const Vector step = -g;  // Gauss-Newton step: mapping.md (R23)
   if (!step.allFinite()) {
     at.verdict = RegistrationVerdict::diverged;
     return {};
@@ -180,7 +180,7 @@ Status Registration::iterate(const Problem& problem, Descent& at, SweepTrajector
 }
 
 RegistrationVerdict Registration::judge(const Problem& problem, const Descent& at) const {
-  // at a false minimum, most matches are far from their planes
+  // at a false minimum of the cost, most matches are far from their planes
   const bool fits =
       static_cast<double>(at.sum.inliers) >= params_.expert.fitting_share_min * static_cast<double>(at.sum.matches);
   if (!at.converged || !fits) return RegistrationVerdict::diverged;
@@ -190,7 +190,7 @@ RegistrationVerdict Registration::judge(const Problem& problem, const Descent& a
 
 /// Computes mean, covariance and diagnostics of an accepted optimisation.
 Status Registration::conclude(const Problem& problem, const Descent& at, SweepTrajectory& trajectory, Result& result) {
-  Matrix posterior = Matrix::Identity();  // mapping.md (R24)
+  Matrix posterior = Matrix::Identity();  // posterior covariance: mapping.md (R24)
   dense::solve_semidefinite(at.H, posterior);
   result.covariance = 0.5 * (posterior + posterior.transpose());
   problem.unknowns.clear_fixed(result.covariance);
@@ -203,10 +203,10 @@ Status Registration::conclude(const Problem& problem, const Descent& at, SweepTr
   return {};
 }
 
-/// mapping.md (R30), (R31).
+/// Computes how well the surfaces constrain each direction: mapping.md (R30), (R31).
 void Registration::describe_shape(std::span<const SweepPoint> points, double kernel_m, const Sums& sum,
                                   Result& result) const {
-  Eigen::Matrix<double, 6, 6> shape = Eigen::Matrix<double, 6, 6>::Zero();  // robustly weighted, without variances
+  Eigen::Matrix<double, 6, 6> shape = Eigen::Matrix<double, 6, 6>::Zero();  // with robust weights, without variances
   double weight = 0.0, lever2 = 0.0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (matches_[i].plane.verdict != PlaneVerdict::plane) continue;
@@ -225,7 +225,7 @@ void Registration::describe_shape(std::span<const SweepPoint> points, double ker
   result.eigenvalues = result.eigenvalues.cwiseMax(0.0).eval();
   Eigen::Matrix<double, 6, 1> information;
   dense::eigenvalues(scale.asDiagonal() *
-                         (u::block(sum.H, u::pose) - u::block(result.errors_in_variables_information, u::pose)) *
+                         (u::block(sum.H, u::pose) - u::block(result.normal_noise_information, u::pose)) *
                          scale.asDiagonal(),
                      information);
   result.weakest_sigma_m = 1.0 / std::sqrt(std::max(information[0], 1e-12));

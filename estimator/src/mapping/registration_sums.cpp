@@ -73,20 +73,20 @@ void Registration::Sums::add(const Sums& other) {
   inliers += other.inliers;
 }
 
-/// Computes the variance due to range and skew, the first part of mapping.md (R18).
+/// Computes the variance of a point due to range and skew errors: first part of mapping.md (R18).
 double Registration::point_variance_m2(const SweepPoint& point) const {
   const double range = std::max(params_.range_sigma_m, params_.range_sigma_share * point.range_m);
   const double skew = params_.skew_sigma_m_s * point.sweep_t_s;
   return range * range + skew * skew;
 }
 
-/// Computes the distance to a plane and its derivative, mapping.md (R16) and (R17).
+/// Computes the distance of a point from a plane, and the derivative of the distance: mapping.md (R16), (R17).
 double Registration::residual(const SweepTrajectory& trajectory, const SweepCalibration& calibration,
                               const SweepPoint& point, const PlaneFit& plane, std::size_t& hint, Vector& derivative) {
   const Eigen::Vector3d n = plane.normal_W.cast<double>();
   const mapping::PointMotion motion(trajectory, calibration, point, hint);
   motion.along(n, derivative);
-  return n.dot(trajectory.base_m(point.t_s) + motion.lever_m() - plane.centre_W_m.cast<double>());
+  return n.dot(trajectory.common_position_m(point.t_s) + motion.lever_m() - plane.centre_W_m.cast<double>());
 }
 
 void Registration::find_match(const VoxelMap& map, std::size_t point, Neighbours& found) {
@@ -94,14 +94,14 @@ void Registration::find_match(const VoxelMap& map, std::size_t point, Neighbours
   const float rematch2 = static_cast<float>(params_.expert.rematch_m * params_.expert.rematch_m);
   float radius_m = static_cast<float>(params_.match_distance_m);
   if (match.searched) {
-    const float moved2 = (positions_[point] - match.searched_at_W_m).squaredNorm();
+    const float moved2 = (positions_[point] - match.search_position_W_m).squaredNorm();
     if (moved2 <= rematch2) return;
-    // the former neighbours are within this radius, so the new neighbours are also within it; a small margin covers
-    // rounding
+    // The previous neighbours are within this radius. A search for the new neighbours therefore needs no larger radius.
+    // A small margin covers rounding.
     radius_m = std::min(radius_m, kRounding * (match.reach_m + std::sqrt(moved2)));
   }
   match.searched = true;
-  match.searched_at_W_m = positions_[point];
+  match.search_position_W_m = positions_[point];
   map.nearest(positions_[point], params_.neighbours, radius_m, found);
   match.reach_m = found.count == params_.neighbours ? std::sqrt(found.distance2_m2[found.count - 1])
                                                     : std::numeric_limits<float>::infinity();
@@ -112,11 +112,11 @@ void Registration::find_match(const VoxelMap& map, std::size_t point, Neighbours
     const float sigma = map.sigma_m(found.index[k]);
     variance += sigma * sigma;
   }
-  // the part of mapping.md (R18) due to the map
+  // variance of a match due to the map: last part of mapping.md (R18)
   match.map_variance_m2 = variance / static_cast<float>(found.count) + match.plane.thickness2_m2;
 }
 
-/// Computes the information of a match with its robust weight (D. Geman, D. McClure, 1987); mapping.md (R19), (R21).
+/// Computes the information of a match with its robust weight (D. Geman, D. McClure, 1987): mapping.md (R19), (R21).
 Registration::Weight Registration::weigh(const SweepPoint& point, const Match& match, double distance_m,
                                          double kernel_m) const {
   const double variance = point_variance_m2(point) + match.map_variance_m2;
@@ -125,7 +125,8 @@ Registration::Weight Registration::weigh(const SweepPoint& point, const Match& m
   return {variance, robust, robust * params_.expert.correlation_discount / variance};
 }
 
-/// Computes the points' positions by the given trajectory, their planes, and the distances: mapping.md (R3), (R16).
+/// Computes the positions of the points by the trajectory, the planes of the neighbours, and the distances: mapping.md
+/// (R3), (R16).
 void Registration::match_points(const SweepTrajectory& trajectory, std::span<const SweepPoint> points,
                                 const VoxelMap& map) {
   levers_.resize(points.size());
@@ -136,14 +137,14 @@ void Registration::match_points(const SweepTrajectory& trajectory, std::span<con
     const std::size_t begin = block * kBlock, end = std::min(points.size(), (block + 1) * kBlock);
     trajectory.levers(points.subspan(begin, end - begin), std::span(levers_).subspan(begin, end - begin));
     for (std::size_t i = begin; i < end; ++i) {
-      positions_[i] = (trajectory.base_m(points[i].t_s) + levers_[i].cast<double>()).cast<float>();
+      positions_[i] = (trajectory.common_position_m(points[i].t_s) + levers_[i].cast<double>()).cast<float>();
       find_match(map, i, found);
       distances_[i] = matches_[i].plane.normal_W.dot(positions_[i] - matches_[i].plane.centre_W_m);
     }
   });
 }
 
-/// mapping.md (R20).
+/// Computes the width of the robust kernel from the median distance: mapping.md (R20).
 double Registration::kernel_width_m() {
   sorted_.clear();
   for (std::size_t i = 0; i < matches_.size(); ++i) {
@@ -152,16 +153,16 @@ double Registration::kernel_width_m() {
   if (sorted_.empty()) return params_.expert.kernel_min_m;
   const auto middle = sorted_.begin() + static_cast<std::ptrdiff_t>(sorted_.size() / 2);
   std::nth_element(sorted_.begin(), middle, sorted_.end());
-  // three standard deviations of a normal distribution with this median absolute value
+  // three standard deviations, if the distances are normally distributed with this median absolute value
   return std::max(params_.expert.kernel_min_m, 3.0 * 1.4826 * static_cast<double>(*middle));
 }
 
-/// Computes the sums of mapping.md (R23) over a block of points.
+/// Computes the sums of the normal equations over a block of points: mapping.md (R23).
 void Registration::accumulate_block(std::span<const SweepPoint> points, std::size_t block,
                                     const SweepTrajectory& trajectory, const SweepCalibration& calibration,
                                     const Unknowns& unknowns, double kernel_m, Products& products, Sums& sum) {
-  // One column per match contains the derivatives by the free unknowns and the distance. Derivatives and distance are
-  // multiplied by the square root of the weight.
+  // Each match has one column with its distance and its derivatives by the free unknowns. The column is multiplied by
+  // the square root of the weight.
   auto& rows = products.columns;
   Eigen::Matrix<double, static_cast<int>(kBlock), 1> weighted;
   const bool rigid = !unknowns.deficit && !unknowns.calibration;
@@ -212,9 +213,9 @@ void Registration::accumulate(std::span<const SweepPoint> points, const SweepTra
   sum.H = lower.selfadjointView<Eigen::Lower>();
 }
 
-/// Part of the normal matrix due to noise of the normals, for all free unknowns: mapping.md (R28), (R29). Computed for
-/// the motion alone, this part would constrain unobservable combinations of motion and calibration, for example
-/// attitude and mounting rotation. The covariance (R52) of unobservable combinations would then grow without bound.
+/// Part of the normal matrix that is due to noise of the normals, for all free unknowns: mapping.md (R28), (R29). If
+/// this part covered only the motion, it would constrain unobservable combinations of motion and calibration, for
+/// example attitude and mounting rotation. The covariance (R52) of these combinations would then grow without bound.
 struct Registration::NoiseOfNormals {
   const Unknowns& unknowns;
   using Products = mapping::OuterProducts<kUnknowns, 2 * static_cast<int>(kBlock)>;
@@ -252,7 +253,7 @@ struct Registration::NoiseOfNormals {
   }
 };
 
-/// mapping.md (R26).
+/// Gradient sums q of clusters of points, from which the score covariance follows: mapping.md (R26).
 struct Registration::Pulls {
   SpatialHash& cluster_of;
   std::vector<Vector>& pulls;
@@ -284,9 +285,9 @@ void Registration::describe_errors(std::span<const SweepPoint> points, const Swe
                                    const SweepCalibration& calibration, const Unknowns& unknowns, double kernel_m,
                                    Result& result) {
   cluster_of_.clear();
-  pulls_.clear();
+  cluster_gradients_.clear();
   NoiseOfNormals noise(unknowns);
-  Pulls pulls{cluster_of_, pulls_, static_cast<float>(1.0 / params_.expert.cluster_m)};
+  Pulls pulls{cluster_of_, cluster_gradients_, static_cast<float>(1.0 / params_.expert.cluster_m)};
   std::size_t hint = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Match& match = matches_[i];
@@ -297,7 +298,7 @@ void Registration::describe_errors(std::span<const SweepPoint> points, const Swe
     noise.add(motion, match.plane, std::sqrt(information));
     pulls.add(motion, match.plane, positions_[i], information * r);
   }
-  result.errors_in_variables_information = noise.information();
+  result.normal_noise_information = noise.information();
   result.score_covariance = pulls.covariance(unknowns);
 }
 

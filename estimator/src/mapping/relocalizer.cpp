@@ -14,12 +14,12 @@ namespace {
 
 using Params = LidarInertialOdometry::Params;
 
-// Multiples of deficit_try_rad_s. The multiples are dense where most saturation deficits are, and one is larger.
+// Tried saturation deficits, as multiples of deficit_try_rad_s. The multiples are dense where most deficits occur.
 constexpr double kDeficitTries[] = {1.0, 2.0, 3.0, 5.0};
 constexpr double kDeficitSigmas = 5.0;  // deficits beyond this many standard deviations are not tried
 
 constexpr int kStartsPerRound = 12;   // six axes, two directions
-constexpr double kStartSigmas = 1.5;  // distance of a start in standard deviations of the prior, if within reach
+constexpr double kStartSigmas = 1.5;  // distance of a start from the prior, in standard deviations, if within reach
 
 bool converged(const Registration::Result& found) {
   return found.verdict == RegistrationVerdict::converged;
@@ -31,12 +31,12 @@ bool fits(const Params& params, const Registration::Result& found) {
 }
 
 /// Registers the sweep. If the registration fails and a clipped axis may have a saturation deficit, track() tries
-/// larger deficits. Saturation that ends within one sweep may rotate the start by a radian.
+/// larger deficits. A saturation that ends within one sweep may rotate the start of the search by a radian.
 void track(const Params& params, const Registration::Prior& prior, const Scene& scene, Aligner& aligner,
            SweepTrajectory& trajectory, Registration::Result& found) {
   aligner.in_full(prior, scene, trajectory, found);
   int iterations = found.iterations, tries = 0;
-  // an attempt that exceeded the correction limit would exceed the limit again
+  // if an attempt exceeded the correction limit, another attempt would also exceed the limit
   const bool out_of_bounds = found.correction_m > params.expert.matching.correction_max_m ||
                              found.correction_rad > params.expert.matching.correction_max_rad;
   if (found.verdict == RegistrationVerdict::diverged && !out_of_bounds) {
@@ -59,8 +59,8 @@ void track(const Params& params, const Registration::Prior& prior, const Scene& 
   found.iterations = iterations;
 }
 
-/// Searches for the pose from the prior and from starts around the prior, until the surfaces fit. If no pose fits,
-/// returns the pose with most inliers. The search continues with the next sweep, to limit the cost per sweep.
+/// Registers the sweep from the prior and from starts around the prior, until the surfaces fit. If no pose fits,
+/// returns the pose with the most inliers. To limit the cost per sweep, the search continues with the next sweep.
 void search(const Params& params, const SearchContext& from, const Scene& scene, Aligner& aligner,
             SweepTrajectory& trajectory, Registration::Result& found) {
   const RelocalizationParams& starts = params.expert.search;
@@ -77,14 +77,14 @@ void search(const Params& params, const SearchContext& from, const Scene& scene,
   };
   std::unique_ptr<Best> best;
   aligner.from_afar(prior, prior, scene, trajectory, found);
-  const RegistrationVerdict verdict = found.verdict;  // of the sweep if nothing is found
+  const RegistrationVerdict verdict = found.verdict;  // verdict of the sweep if the search finds no pose
   const int moved = starts.starts_per_sweep - 1;
   for (int k = 0; k < moved && !(converged(found) && fits(params, found)); ++k) {
     if (converged(found) && (!best || found.inliers > best->found.inliers))
       best = std::make_unique<Best>(Best{found, trajectory});
-    const int index = 1 + (failed_searches(from.tracking) * moved + k) % (kStartsPerRound * starts.rounds);
+    const int index = next_start(failed_searches(from.tracking), moved, starts) + k;
     const auto start = std::make_unique<Registration::Prior>(prior);
-    move_start(starts, index, *start);
+    move_start(starts, 1 + (index - 1) % (kStartsPerRound * starts.rounds), *start);
     aligner.from_afar(*start, prior, scene, trajectory, found);
   }
   if (best && !(converged(found) && (fits(params, found) || found.inliers >= best->found.inliers))) {
@@ -95,6 +95,10 @@ void search(const Params& params, const SearchContext& from, const Scene& scene,
 }
 
 }  // namespace
+
+int next_start(int failed, int starts_per_search, const RelocalizationParams& params) {
+  return 1 + std::max(failed - 1, 0) * starts_per_search % (kStartsPerRound * params.rounds);
+}
 
 void move_start(const RelocalizationParams& params, int index, Registration::Prior& prior) {
   if (index == 0) return;

@@ -9,12 +9,13 @@ namespace tumble::mapping {
 
 namespace {
 
-// Minimum ratio of range to sensor motion on each side. Returns are binned by their direction from one position. Above
-// the minimum ratio, the error of the direction is below the size of the checked bins: 0.1 rad.
+// Minimum ratio of range to sensor motion on each side of the sweep's middle. SightGrid sorts returns into bins by
+// their direction from one position. For larger ratios, the error of the direction is below 0.1 rad, the size of the
+// checked bins.
 constexpr float kMovedToRange = 10.0f;
-constexpr int kEmptyMost = 4;  // of nine bins; rings are further apart than bins
-// Margin by which all returns must be beyond a map point that is no longer present. The margin covers errors of the
-// sweeps' relative pose, a return's noise, and the slope of the ground within a bin.
+constexpr int kEmptyMost = 4;  // maximum number of empty bins out of nine, because rings are further apart than bins
+// Distance by which all returns must be behind a map point that is no longer present. The distance covers the error of
+// the relative pose of two sweeps, the noise of a return, and the slope of the ground within a bin.
 constexpr float kBeyond_m = 0.3f, kBeyondShare = 0.03f;
 constexpr float kDeviations = 3.0f;
 
@@ -26,7 +27,7 @@ void SightGrid::start(const Eigen::Vector3f& from_W_m, float moved_m) {
   nearest_m_.assign(std::size_t{6} * kBins * kBins, std::numeric_limits<float>::infinity());
 }
 
-/// Returns the direction of a point. The result is empty for the ray origin and for non-finite values.
+/// Returns the direction of a point. For the ray origin and for non-finite coordinates, the result is empty.
 std::optional<SightGrid::Direction> SightGrid::direction(const Eigen::Vector3f& lever_m) {
   Eigen::Index axis = 0;
   const float along = lever_m.cwiseAbs().maxCoeff(&axis);
@@ -46,8 +47,8 @@ void SightGrid::add(const Eigen::Vector3f& return_W_m) {
   nearest_m = std::min(nearest_m, lever_m.norm());
 }
 
-/// Returns the smallest range of the returns around a direction. Returns 0 with too few returns or at the edge of the
-/// cube.
+/// Returns the smallest range of the returns around a direction. If there are too few returns, or at the edge of the
+/// cube of directions, returns 0.
 float SightGrid::free_m(const Direction& towards) const {
   float nearest_m = std::numeric_limits<float>::infinity();
   int empty = 0;
@@ -65,7 +66,7 @@ float SightGrid::free_m(const Direction& towards) const {
   return nearest_m;
 }
 
-/// mapping.md (R65).
+/// Compares a map point with the returns in its direction: mapping.md (R65).
 SightGrid::Verdict SightGrid::verdict(const Eigen::Vector3f& point_W_m, float sigma_m) const {
   const Eigen::Vector3f lever_m = point_W_m - from_W_m_;
   const float range_m = lever_m.norm();
@@ -74,7 +75,7 @@ SightGrid::Verdict SightGrid::verdict(const Eigen::Vector3f& point_W_m, float si
   if (!towards) return Verdict::unknown;
   const float beyond_m = kBeyond_m + kBeyondShare * range_m + kDeviations * sigma_m;
   const float there_m = nearest_m_[towards->bin()];
-  if (there_m > range_m + beyond_m)  // sufficient for most points
+  if (there_m > range_m + beyond_m)  // this test suffices for most points
     return free_m(*towards) > range_m + beyond_m ? Verdict::seen_through : Verdict::unknown;
   return there_m > range_m - beyond_m ? Verdict::seen : Verdict::unknown;
 }

@@ -9,14 +9,14 @@ namespace tumble::mapping {
 
 using Matrix = Registration::Matrix;
 
-/// The map is defined by the lidar's first pose, which is exact by definition. A mounting error is therefore an error
-/// of the IMU's pose and of gravity in the map: mapping.md (R54), (R55).
+/// Returns the estimate at the start of the map: mapping.md (R54), (R55). The first pose of the lidar defines the map
+/// and is therefore exact. An error of the mounting is thus an error of the IMU's pose and of gravity in the map.
 StateEstimate estimate_at_start(const LidarInertialOdometry::Params& params, const MotionState& levelled) {
   namespace u = unknowns;
   StateEstimate state_estimate;
   SweepCalibration& calibration = state_estimate.mean.calibration;
   calibration.T_IL = params.T_IL;
-  calibration.time_offset_s = 0.0;  // the stated offset is already applied to the stamps
+  calibration.time_offset_s = 0.0;  // the time stamps already include the stated offset
   calibration.gravity_W_m_s2 = Eigen::Vector3d(0.0, 0.0, -params.expert.gravity_m_s2);
   Matrix& P = state_estimate.weight;
   u::variances(P, u::mounting_rotation).setConstant(params.mount_sigma_rad * params.mount_sigma_rad);
@@ -35,7 +35,7 @@ StateEstimate estimate_at_start(const LidarInertialOdometry::Params& params, con
     u::block(P, u::mounting, u::gravity) = u::block(P, u::gravity, u::mounting).transpose();
     u::block(P, u::gravity) = gravity_by_mounting * mounting * gravity_by_mounting.transpose();
     const double sigma2 = params.expert.gravity_sigma_m_s2 * params.expert.gravity_sigma_m_s2;
-    // the magnitude is known much better than the direction
+    // the standard deviation of gravity's magnitude is much smaller than the standard deviation of its direction
     u::variances(P, u::gravity) += Eigen::Vector3d(sigma2, sigma2, 0.01 * sigma2);
     u::block(P, u::motion, u::gravity) = by_mounting * mounting * gravity_by_mounting.transpose();
   }
@@ -46,19 +46,19 @@ StateEstimate estimate_at_start(const LidarInertialOdometry::Params& params, con
   return state_estimate;
 }
 
-/// mapping.md (R11), of all unknowns.
+/// Returns the transition matrix of all unknowns: mapping.md (R11).
 Matrix unknowns_at(const SweepTrajectory& trajectory, double t_s) {
   namespace u = unknowns;
   const SweepTrajectory::Transition step = trajectory.transition(t_s);
   Matrix F = Matrix::Identity();
-  u::block(F, u::motion) = step.by_start;
-  u::block(F, u::motion, u::deficit) = step.by_deficit_s;
-  u::block(F, u::motion, u::gravity) = step.by_gravity;
+  u::block(F, u::motion) = step.jacobian_start;
+  u::block(F, u::motion, u::deficit) = step.jacobian_deficit_s;
+  u::block(F, u::motion, u::gravity) = step.jacobian_gravity;
   return F;
 }
 
-/// Multiplies blocks of whole SIMD packets, so that the order of each sum equals that in the full product. Rows of F
-/// beyond the motion are those of the identity: mapping.md (R11).
+/// Computes the covariance blocks of pose and mounting. The blocks have the size of whole SIMD packets, so that each
+/// sum has the order of the full matrix product. Rows of F after the motion are rows of the identity: mapping.md (R11).
 Matrix pose_and_mounting(const Matrix& F, const Matrix& errors) {
   constexpr int kSize = 8, kMounting = 16;
   static_assert(kMounting >= Registration::kMotion && kMounting <= Registration::kCalibration &&
@@ -71,7 +71,7 @@ Matrix pose_and_mounting(const Matrix& F, const Matrix& errors) {
   return out;
 }
 
-/// mapping.md (R53).
+/// Propagates the estimate from the start to the end of the sweep: mapping.md (R53).
 void at_end(const StateEstimate& at_start, const SweepTrajectory& trajectory, const Matrix& end_by_start, TimeNs end_ns,
             StateEstimate& end) {
   end.mean = at_start.mean;

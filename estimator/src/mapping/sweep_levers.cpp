@@ -16,7 +16,7 @@ constexpr int kLanes = 8;
 constexpr double kForever_s = std::numeric_limits<double>::infinity();
 using Lane = double[kLanes];
 
-/// Points in one interval: seconds since its start, positions in I, and results.
+/// Points in one interval of the trajectory: seconds since the start of the interval, positions in I, and results.
 struct Lanes {
   int count = 0;
   alignas(16) Lane s{}, x{}, y{}, z{};
@@ -39,9 +39,9 @@ void turn(double rate2_rad2_s2, Lanes& p) {
 
 }  // namespace
 
-/// mapping.md (R2), (R4), (R6).
+/// Evaluates the trajectory at the time of each point: mapping.md (R2), (R4), (R6).
 void SweepTrajectory::levers(std::span<const SweepPoint> points, std::span<Eigen::Vector3f> levers_W_m) const {
-  const double from_s = -kBeyond_s, to_s = duration_s_ + kBeyond_s;
+  const double from_s = -kExtrapolation_s, to_s = duration_s_ + kExtrapolation_s;
   std::size_t hint = 0;
   for (std::size_t first = 0; first < points.size();) {
     const Interval& now = interval_at(std::clamp<double>(points[first].t_s, from_s, to_s), hint);
@@ -73,16 +73,16 @@ void SweepTrajectory::levers(std::span<const SweepPoint> points, std::span<Eigen
     turn(rate2, p);
     const Eigen::Quaterniond& q = now.q_WI;
     const double ax = q.x(), ay = q.y(), az = q.z(), aw = q.w();
-    const Eigen::Vector3d &w = now.w_I, &S = now.preintegrated_p, &V = now.preintegrated_v, &A = now.a_W;
+    const Eigen::Vector3d &w = now.w_I, &S = now.preintegrated_p, &V = now.preintegrated_velocity_m_s, &A = now.a_W;
     alignas(16) float ux[kLanes], uy[kLanes], uz[kLanes];
     for (int l = 0; l < kLanes; ++l) {
       const double s = p.s[l], x = p.x[l], y = p.y[l], z = p.z[l];
       const double half = 0.5 * s * p.sinc[l], bx = half * w.x(), by = half * w.y(), bz = half * w.z();
       const double bw = p.cosine[l];
-      // product of both rotations
+      // product of the quaternions of both rotations
       const double qx = (aw * bx + ay * bz) - (az * by - ax * bw), qy = (aw * by + ay * bw) + (az * bx - ax * bz);
       const double qz = (aw * bz - ay * bx) + (az * bw + ax * by), qw = (aw * bw - ay * by) - (az * bz + ax * bx);
-      // rotated point
+      // point after the rotation
       double tx = qy * z - qz * y, ty = qz * x - qx * z, tz = qx * y - qy * x;
       tx += tx;
       ty += ty;

@@ -17,9 +17,9 @@ void members(Self& s, Visitor& visit) {
   visit("motion.f_I_m_s2", s.f_I_m_s2);
   visit("motion.rate_sigma_rad_s", s.rate_sigma_rad_s);
   visit("motion.clipped_axes", s.clipped_axes);
-  visit("motion.railed_axes", s.railed_axes);
+  visit("motion.accel_saturated_axes", s.accel_saturated_axes);
   visit("motion.at_rest", s.at_rest);
-  visit("motion.rests_since_ns", s.rests_since_ns);
+  visit("motion.rest_start_ns", s.rest_start_ns);
   visit("motion.in_flight", s.in_flight);
   visit("motion.bridges_gap", s.bridges_gap);
 }

@@ -18,15 +18,16 @@ Status SweepPoints::select(const Params& params, std::span<const LidarPoint> ret
   chosen_.clear();
   counts = {found.used, 0, found.rings_differ};
   if (Status status = check_selection(span_ns, returns, found); !status.ok()) return status;
-  // neighbours are on one ring, so a device without ring numbers has no neighbours
+  // Neighbours are on one ring. Without ring numbers, a point has no neighbours.
   if (found.rings_differ) counts.lone = lone_returns_.drop(noise_, all_);
   if (all_.empty()) return {Trouble::too_few, "points", 0.0, 1.0};
   return {};
 }
 
 void SweepPoints::choose(const Params& params, const SweepTrajectory& predicted) {
-  compute_levers(predicted, all_, positions_W_m_);
-  for (std::size_t i = 0; i < all_.size(); ++i) positions_W_m_[i] += predicted.base_m(all_[i].t_s).cast<float>();
+  compute_lever_arm_vectors(predicted, all_, positions_W_m_);
+  for (std::size_t i = 0; i < all_.size(); ++i)
+    positions_W_m_[i] += predicted.common_position_m(all_[i].t_s).cast<float>();
   sampler_.choose(positions_W_m_, params.sweep_voxel_m, chosen_index_);
   for (const std::uint32_t index : chosen_index_) chosen_.push_back(all_[index]);
 }

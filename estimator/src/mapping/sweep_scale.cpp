@@ -15,18 +15,21 @@ namespace tumble {
 namespace {
 
 constexpr double kLeast = 0.02, kScaleDeviations = 5.0;
-// Duration of a span. The mapper's prior comes from the IMU and hides scale errors over short spans. Ranges that are 10
-// % too long give a scale of 1.02 to 1.03 over 0.1 s, and 1.08 over 0.4 s. Correct ranges give 0.998 to 1.006.
+// Duration of a span over which velocities are compared. Over short spans, the mapper's prior from the IMU hides scale
+// errors. If ranges are 10 % too long, the estimated scale is 1.02 to 1.03 over 0.1 s, and 1.08 over 0.4 s. For correct
+// ranges, the estimated scale is 0.998 to 1.006.
 constexpr double kSpan_s = 0.4;
-constexpr double kChange_m_s = 0.5;  // smaller changes of velocity are dominated by noise
+constexpr double kChange_m_s = 0.5;  // minimum change of velocity; noise dominates smaller changes
 constexpr std::size_t kChangesMin = 5, kChangesMax = 1000;
 constexpr std::size_t kSpanMax = 64;  // maximum number of buffered sweeps
 constexpr int kIterations = 10;
+constexpr double kBias_m_s2 = 0.05;  // constant error of the acceleration: bias of the accelerometer, tilt
+constexpr double kMemory_s = 60.0;   // age of a change that is still compared: a finding ends
 constexpr double kHuber = 1.5, kPerMedian = 1.4826;  // standard deviations; per median absolute deviation
 
 using Change = SweepScaleWatch::Change;
 
-/// Integrals of the IMU along the run's attitudes.
+/// Integrals of the specific force along the attitudes of the run.
 class ImuMotion {
  public:
   template <class Sweeps>
@@ -36,8 +39,8 @@ class ImuMotion {
       attitudes_.insert(attitudes_.end(), sweep.trajectory.begin(), sweep.trajectory.end());
   }
 
-  /// Returns the mean velocity from `middle_ns` to `to_ns` minus the mean velocity from `from_ns` to `middle_ns`. The
-  /// result is empty if a force is saturated or in a gap.
+  /// Returns the mean velocity from `middle_ns` to `to_ns`, minus the mean velocity from `from_ns` to `middle_ns`. If a
+  /// force is saturated or missing in this time, the result is empty.
   std::optional<Eigen::Vector3d> change(TimeNs from_ns, TimeNs middle_ns, TimeNs to_ns) const {
     if (attitudes_.empty()) return std::nullopt;
     const auto later = [](const ImuSample& sample, TimeNs time_ns) { return sample.time_ns <= time_ns; };
@@ -74,7 +77,7 @@ class ImuMotion {
   std::vector<PoseState> attitudes_;
 };
 
-/// Returns whether surfaces constrain the sweep in some direction.
+/// Returns whether surfaces constrain the sweep in at least one direction.
 bool is_placed(const SweepReport& sweep) {
   return sweep.verdict == SweepVerdict::registered || sweep.verdict == SweepVerdict::degenerate;
 }
@@ -87,8 +90,8 @@ std::size_t sweeps_in(double span_s, const Sweeps& sweeps) {
   return static_cast<std::size_t>(std::clamp(std::round(count), 1.0, static_cast<double>(sweeps.size())));
 }
 
-/// Returns the change of velocity over the two spans that end with sweep `last`. The result is empty if the change is
-/// unknown or too small.
+/// Returns the change of velocity between the two spans before the end of sweep `last`. If the change is unknown or too
+/// small, the result is empty.
 template <class Sweeps>
 std::optional<Change> change_until(std::size_t last, std::size_t span, const Sweeps& sweeps,
                                    const ImuMotion& imu_motion) {
@@ -99,7 +102,7 @@ std::optional<Change> change_until(std::size_t last, std::size_t span, const Swe
   if (!(from.time_ns < middle.time_ns && middle.time_ns < to.time_ns)) return std::nullopt;
   const auto by_imu = imu_motion.change(from.time_ns, middle.time_ns, to.time_ns);
   if (!by_imu || !(by_imu->norm() >= kChange_m_s)) return std::nullopt;
-  return Change{*by_imu, (to.p_WA_m - middle.p_WA_m) / seconds(to.time_ns - middle.time_ns) -
+  return Change{to.time_ns, *by_imu, (to.p_WA_m - middle.p_WA_m) / seconds(to.time_ns - middle.time_ns) -
                              (middle.p_WA_m - from.p_WA_m) / seconds(middle.time_ns - from.time_ns)};
 }
 
@@ -116,14 +119,17 @@ SweepScale fit(const Changes& changes) {
     std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
     const double deviation = std::max(1e-6, kPerMedian * sorted[sorted.size() / 2]);
     double together = 0.0, squared = 0.0, residual = 0.0;
+    Eigen::Vector3d by_bias = Eigen::Vector3d::Zero();
     for (std::size_t k = 0; k < changes.size(); ++k) {
       const double weight = std::min(1.0, kHuber * deviation / std::max(off[k], 1e-12));
       together += weight * changes[k].by_imu_m_s.dot(changes[k].by_sweeps_m_s);
       squared += weight * changes[k].by_imu_m_s.squaredNorm();
+      by_bias += weight * kSpan_s * changes[k].by_imu_m_s;
       residual += weight * weight * off[k] * off[k] * changes[k].by_imu_m_s.squaredNorm() / 3.0;
     }
     out.scale = together / squared;
-    out.sigma = std::sqrt(residual) / squared;  // heteroscedasticity-consistent: White, 1980
+    // heteroscedasticity-consistent: White, 1980
+    out.sigma = std::sqrt(residual + kBias_m_s2 * kBias_m_s2 * by_bias.squaredNorm()) / squared;
   }
   return out;
 }
@@ -158,7 +164,7 @@ SweepScaleWatch::SweepScaleWatch(double gravity_m_s2, std::size_t samples_max)
 }
 
 void SweepScaleWatch::add(const ImuSample& sample) {
-  if (samples_.size() >= samples_max_) {  // the lidar is silent
+  if (samples_.size() >= samples_max_) {  // the lidar provides no sweeps
     samples_.clear();
     sweeps_.clear();
   }
@@ -174,6 +180,8 @@ void SweepScaleWatch::add(const SweepReport& sweep) {
   while (sweeps_.size() > 2 * span + 1) sweeps_.pop_front();
   const TimeNs from_ns = sweeps_.front().pose.time_ns;
   std::erase_if(samples_, [&](const ImuSample& earlier) { return earlier.time_ns <= from_ns; });
+  const auto is_old = [&](const Change& change) { return seconds(sweep.pose.time_ns - change.time_ns) > kMemory_s; };
+  if (std::erase_if(changes_, is_old) > 0) scale_ = fit(changes_);
   if (sweeps_.size() < 2 * span + 1) return;
   const ImuMotion imu_motion(samples_, sweeps_, gravity_m_s2_);
   const std::optional<Change> change = change_until(2 * span, span, sweeps_, imu_motion);

@@ -12,8 +12,8 @@ namespace tumble {
 
 namespace {
 
-/// Returns the largest standard deviation of each axis among the segment's samples in which the axis was clipped. Later
-/// samples are not included.
+/// Returns the largest standard deviation of each axis over the samples of the segment in which the axis was clipped.
+/// The function ignores later samples.
 Eigen::Vector3d least_known(std::span<const MotionSample> samples, TimeNs end_ns) {
   Eigen::Vector3d sigma = Eigen::Vector3d::Zero();
   for (const MotionSample& sample : samples) {
@@ -25,20 +25,21 @@ Eigen::Vector3d least_known(std::span<const MotionSample> samples, TimeNs end_ns
   return sigma;
 }
 
-/// Returns the signed factors s_j of the saturation deficit for a sample, in proportion to the sample's uncertainty.
-/// mapping.md (R8).
+/// Returns the signed factors s_j of the saturation deficit for a sample: mapping.md (R8). The factors are proportional
+/// to the standard deviation of the sample.
 Eigen::Vector3d signed_shares(const MotionSample& sample, const Eigen::Vector3d& least_known_rad_s) {
   Eigen::Vector3d share = Eigen::Vector3d::Zero();
   for (int axis = 0; axis < 3; ++axis) {
     if (!(sample.clipped_axes >> axis & 1)) continue;
     share[axis] = least_known_rad_s[axis] > 0.0 ? sample.rate_sigma_rad_s[axis] / least_known_rad_s[axis] : 1.0;
-    // a saturated rate is larger in magnitude; a gap's error has no known sign
+    // A saturated rate has a larger true magnitude. The error in a gap has no known sign.
     if (sample.w_WI_I_rad_s[axis] < 0.0 && !sample.bridges_gap) share[axis] = -share[axis];
   }
   return share;
 }
 
-/// Returns the weights of the knots at a fraction of the segment: linear between neighbours, mapping.md (R7).
+/// Returns the weights of the deficit's knots at a fraction of the segment. The deficit is linear between neighbouring
+/// knots: mapping.md (R7).
 Eigen::Matrix<double, SweepTrajectory::kKnots, 1> knot_weights(double share) {
   Eigen::Matrix<double, SweepTrajectory::kKnots, 1> weights;
   const double place = std::clamp(share, 0.0, 1.0) * (SweepTrajectory::kKnots - 1);
@@ -46,12 +47,12 @@ Eigen::Matrix<double, SweepTrajectory::kKnots, 1> knot_weights(double share) {
   return weights;
 }
 
-/// Returns so3::exp(rate_rad_s * s), by its series, exact to rounding. The function is called for each point of a
-/// sweep, with small angles.
+/// Returns so3::exp(rate_rad_s * s) by its power series, exact to rounding. The series saves time, because each point
+/// of a sweep needs this rotation and its angle is small.
 Eigen::Quaterniond rotated_by(const Eigen::Vector3d& rate_rad_s, double s) {
   const double angle2 = s * s * rate_rad_s.squaredNorm();
   if (!(angle2 <= rotation_series::kAngle2_rad2)) return so3::exp(rate_rad_s * s);
-  const double h = 0.25 * angle2;  // half of the angle, squared
+  const double h = 0.25 * angle2;  // square of half of the angle
   double cosine = 1.0, sinc = 1.0;
   for (const auto& [of_cosine, of_sinc] : rotation_series::kRatios) {
     cosine = 1.0 - (h * of_cosine) * cosine;
@@ -85,19 +86,21 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
     return {Trouble::too_few, "imu time_ns", samples.empty() ? 0.0 : double(samples.back().time_ns), double(end_ns)};
   }
   if (samples.front().from_ns > start.time_ns) {
-    // the gap is in seconds, as in every gap error
+    // the status reports the gap in seconds, like every gap
     return {Trouble::gap, "imu window start", seconds(samples.front().from_ns - start.time_ns), 0.0};
   }
 
   const Eigen::Vector3d sigma = least_known(samples, end_ns);
   Interval next{};
   next.q_WI = start.q_WI;
-  next.preintegrated_v = next.preintegrated_p = next.w_I = next.a_W = next.deficit_share = Eigen::Vector3d::Zero();
-  next.deficit_attitude = next.deficit_v = next.deficit_p = next.deficit_a = ByDeficit::Zero();
+  next.preintegrated_velocity_m_s = next.preintegrated_p = next.w_I = next.a_W = next.deficit_share =
+      Eigen::Vector3d::Zero();
+  next.attitude_jacobian = next.velocity_jacobian = next.position_jacobian = next.acceleration_jacobian =
+      DeficitJacobian::Zero();
   for (const MotionSample& sample : samples) {
     const TimeNs from = std::max(sample.from_ns, start.time_ns);
     const TimeNs to = std::min(sample.time_ns, end_ns);
-    // a segment of zero length still gets one interval, so that it can be evaluated
+    // a segment of zero length still gets one interval, so that the trajectory can be evaluated
     if (to < from || (to == from && !(end_ns == start.time_ns && intervals_.empty()))) continue;
     const double dt = seconds(to - from);
     const Eigen::Vector3d share = signed_shares(sample, sigma);
@@ -107,22 +110,22 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
     now.length_s = dt;
     now.deficit_share = share;
     now.knot_weight = knot_weights(duration_s_ > 0.0 ? (now.start_s + 0.5 * dt) / duration_s_ : 0.0);
-    // mapping.md (R7), (R5), (R4), (R6)
+    // rate with saturation deficit, and integration over the interval: mapping.md (R7), (R5), (R4), (R6)
     now.w_I = sample.w_WI_I_rad_s + share.cwiseProduct(deficit_rad_s * now.knot_weight);
     const Eigen::Matrix3d R = now.q_WI.toRotationMatrix();
     const Eigen::Matrix3d mean_rotation = R * so3::left_jacobian(now.w_I * dt);
     now.a_W = sample.bridges_gap ? Eigen::Vector3d(-gravity_W_m_s2) : Eigen::Vector3d(mean_rotation * sample.f_I_m_s2);
 
     next.q_WI = (now.q_WI * so3::exp(now.w_I * dt)).normalized();
-    next.preintegrated_v = now.preintegrated_v + now.a_W * dt;
-    next.preintegrated_p = now.preintegrated_p + now.preintegrated_v * dt + now.a_W * (0.5 * dt * dt);
+    next.preintegrated_velocity_m_s = now.preintegrated_velocity_m_s + now.a_W * dt;
+    next.preintegrated_p = now.preintegrated_p + now.preintegrated_velocity_m_s * dt + now.a_W * (0.5 * dt * dt);
     if (clipped_axes_ == 0) continue;
-    now.deficit_a = -so3::hat(now.a_W) * now.deficit_attitude;
-    next.deficit_attitude = now.deficit_attitude + gained_by_deficit(now, dt);
-    // the force rotates with the mean attitude error of the interval, mapping.md (R10)
-    const ByDeficit turn = -so3::hat(now.a_W) * (0.5 * (now.deficit_attitude + next.deficit_attitude));
-    next.deficit_v = now.deficit_v + turn * dt;
-    next.deficit_p = now.deficit_p + now.deficit_v * dt + turn * (0.5 * dt * dt);
+    now.acceleration_jacobian = -so3::hat(now.a_W) * now.attitude_jacobian;
+    next.attitude_jacobian = now.attitude_jacobian + deficit_jacobian_within(now, dt);
+    // the mean attitude error of the interval rotates the force: mapping.md (R10)
+    const DeficitJacobian turn = -so3::hat(now.a_W) * (0.5 * (now.attitude_jacobian + next.attitude_jacobian));
+    next.velocity_jacobian = now.velocity_jacobian + turn * dt;
+    next.position_jacobian = now.position_jacobian + now.velocity_jacobian * dt + turn * (0.5 * dt * dt);
   }
   if (intervals_.empty()) return {Trouble::too_few, "imu samples", 0.0, 1.0};
   return {};
@@ -136,46 +139,48 @@ const SweepTrajectory::Interval& SweepTrajectory::interval_at(double t_s, std::s
   return intervals_[i];
 }
 
-/// Evaluates mapping.md (R2), (R4), (R6) within an interval.
+/// Evaluates attitude, velocity and position within an interval: mapping.md (R2), (R4), (R6).
 SweepTrajectory::Instant SweepTrajectory::at(double t_s, std::size_t& hint) const {
-  const double t = std::clamp(t_s, -kBeyond_s, duration_s_ + kBeyond_s);
+  const double t = std::clamp(t_s, -kExtrapolation_s, duration_s_ + kExtrapolation_s);
   const Interval& now = interval_at(t, hint);
   const double s = t - now.start_s;
-  return {now.q_WI * rotated_by(now.w_I, s), now.preintegrated_p + s * now.preintegrated_v + (0.5 * s * s) * now.a_W};
+  return {now.q_WI * rotated_by(now.w_I, s),
+          now.preintegrated_p + s * now.preintegrated_velocity_m_s + (0.5 * s * s) * now.a_W};
 }
 
 SweepTrajectory::Instant SweepTrajectory::at(double t_s, const Eigen::Vector3d& x_I_m, std::size_t& hint,
                                              Eigen::Vector3d& velocity_m_s) const {
-  const double t = std::clamp(t_s, -kBeyond_s, duration_s_ + kBeyond_s);
+  const double t = std::clamp(t_s, -kExtrapolation_s, duration_s_ + kExtrapolation_s);
   const Interval& now = interval_at(t, hint);
   const double s = t - now.start_s;
   const Eigen::Quaterniond turned = rotated_by(now.w_I, s);
-  velocity_m_s = start_.v_WI_m_s + t * gravity_W_m_s2_ + now.preintegrated_v + s * now.a_W +
+  velocity_m_s = start_.v_WI_m_s + t * gravity_W_m_s2_ + now.preintegrated_velocity_m_s + s * now.a_W +
                  now.q_WI * (turned * now.w_I.cross(x_I_m));
-  return {now.q_WI * turned, now.preintegrated_p + s * now.preintegrated_v + (0.5 * s * s) * now.a_W};
+  return {now.q_WI * turned, now.preintegrated_p + s * now.preintegrated_velocity_m_s + (0.5 * s * s) * now.a_W};
 }
 
-/// Returns the attitude change by the saturation deficit up to `s` seconds into an interval, per unit of each knot's
-/// axes: mapping.md (R9).
-SweepTrajectory::ByDeficit SweepTrajectory::gained_by_deficit(const Interval& now, double s) {
-  if (now.deficit_share.isZero(0.0)) return ByDeficit::Zero();
+/// Returns the derivative of the attitude by the knots of the saturation deficit, `s` seconds into an interval:
+/// mapping.md (R9).
+SweepTrajectory::DeficitJacobian SweepTrajectory::deficit_jacobian_within(const Interval& now, double s) {
+  if (now.deficit_share.isZero(0.0)) return DeficitJacobian::Zero();
   const Eigen::Matrix3d gained =
       now.q_WI.toRotationMatrix() * so3::left_jacobian(now.w_I * s) * now.deficit_share.asDiagonal() * s;
-  ByDeficit out;
+  DeficitJacobian out;
   for (int k = 0; k < kKnots; ++k) out.middleCols<3>(3 * k) = now.knot_weight[k] * gained;
   return out;
 }
 
-/// Evaluates mapping.md (R9), (R10) within an interval.
+/// Returns the derivatives of attitude, velocity and position by the saturation deficit: mapping.md (R9), (R10).
 SweepTrajectory::DeficitDerivative SweepTrajectory::deficit_derivative(double t_s, std::size_t& hint) const {
   const double t = std::clamp(t_s, 0.0, duration_s_);
   const Interval& now = interval_at(t, hint);
   const double s = t - now.start_s;
   if (now.deficit_share.isZero(0.0))
-    return {now.deficit_attitude, now.deficit_p + s * now.deficit_v + now.deficit_a * (0.5 * s * s)};
-  const ByDeficit gained = gained_by_deficit(now, s);
-  const ByDeficit turn = -so3::hat(now.a_W) * (now.deficit_attitude + 0.5 * gained);
-  return {now.deficit_attitude + gained, now.deficit_p + s * now.deficit_v + turn * (0.5 * s * s)};
+    return {now.attitude_jacobian,
+            now.position_jacobian + s * now.velocity_jacobian + now.acceleration_jacobian * (0.5 * s * s)};
+  const DeficitJacobian gained = deficit_jacobian_within(now, s);
+  const DeficitJacobian turn = -so3::hat(now.a_W) * (now.attitude_jacobian + 0.5 * gained);
+  return {now.attitude_jacobian + gained, now.position_jacobian + s * now.velocity_jacobian + turn * (0.5 * s * s)};
 }
 
 MotionState SweepTrajectory::state(double t_s) const {
@@ -186,15 +191,16 @@ MotionState SweepTrajectory::state(double t_s) const {
   MotionState state;
   state.time_ns = start_.time_ns + static_cast<TimeNs>(std::llround(t * 1e9));
   state.q_WI = (now.q_WI * so3::exp(now.w_I * s)).normalized();
-  state.p_WI_m = base_m(t) + now.preintegrated_p + s * now.preintegrated_v + (0.5 * s * s) * now.a_W;
-  state.v_WI_m_s = start_.v_WI_m_s + now.preintegrated_v + s * now.a_W + t * gravity_W_m_s2_;
-  const Eigen::Matrix<double, 9, 9> F = transition(t).by_start;
+  state.p_WI_m =
+      common_position_m(t) + now.preintegrated_p + s * now.preintegrated_velocity_m_s + (0.5 * s * s) * now.a_W;
+  state.v_WI_m_s = start_.v_WI_m_s + now.preintegrated_velocity_m_s + s * now.a_W + t * gravity_W_m_s2_;
+  const Eigen::Matrix<double, 9, 9> F = transition(t).jacobian_start;
   const Eigen::Matrix<double, 9, 9> P = F * start_.covariance * F.transpose();
   state.covariance = 0.5 * (P + P.transpose());
   return state;
 }
 
-/// mapping.md (R11).
+/// Returns the transition matrix from the start of the segment: mapping.md (R11).
 SweepTrajectory::Transition SweepTrajectory::transition(double t_s) const {
   const double t = std::clamp(t_s, 0.0, duration_s_);
   std::size_t hint = 0;
@@ -202,17 +208,18 @@ SweepTrajectory::Transition SweepTrajectory::transition(double t_s) const {
   const double s = t - now.start_s;
   namespace u = mapping::unknowns;
   Transition out;
-  out.by_start.setIdentity();
-  u::block(out.by_start, u::position, u::attitude) =
-      -so3::hat(now.preintegrated_p + s * now.preintegrated_v + (0.5 * s * s) * now.a_W);
-  u::block(out.by_start, u::position, u::velocity) = t * Eigen::Matrix3d::Identity();
-  u::block(out.by_start, u::velocity, u::attitude) = -so3::hat(now.preintegrated_v + s * now.a_W);
+  out.jacobian_start.setIdentity();
+  u::block(out.jacobian_start, u::position, u::attitude) =
+      -so3::hat(now.preintegrated_p + s * now.preintegrated_velocity_m_s + (0.5 * s * s) * now.a_W);
+  u::block(out.jacobian_start, u::position, u::velocity) = t * Eigen::Matrix3d::Identity();
+  u::block(out.jacobian_start, u::velocity, u::attitude) = -so3::hat(now.preintegrated_velocity_m_s + s * now.a_W);
 
   const DeficitDerivative deficit = deficit_derivative(t, hint);
-  const ByDeficit mean_attitude = 0.5 * (now.deficit_attitude + deficit.attitude_s);
-  out.by_deficit_s << deficit.preintegrated_position_m_s, deficit.attitude_s,
-      now.deficit_v - so3::hat(now.a_W) * mean_attitude * s;
-  out.by_gravity << 0.5 * t * t * Eigen::Matrix3d::Identity(), Eigen::Matrix3d::Zero(), t * Eigen::Matrix3d::Identity();
+  const DeficitJacobian mean_attitude = 0.5 * (now.attitude_jacobian + deficit.attitude_jacobian_s);
+  out.jacobian_deficit_s << deficit.position_jacobian_m_s, deficit.attitude_jacobian_s,
+      now.velocity_jacobian - so3::hat(now.a_W) * mean_attitude * s;
+  out.jacobian_gravity << 0.5 * t * t * Eigen::Matrix3d::Identity(), Eigen::Matrix3d::Zero(),
+      t * Eigen::Matrix3d::Identity();
   return out;
 }
 

@@ -5,7 +5,7 @@ namespace tumble::mapping {
 
 namespace {
 
-constexpr int kAgreeing = 2;  // sweeps that confirm a relocalisation: a single one may fit by chance
+constexpr int kAgreeing = 2;  // number of sweeps that confirm a relocalisation: a single sweep may fit by chance
 
 bool is_found(Placement placement) {
   return placement == Placement::found || placement == Placement::unconfirmed;

@@ -16,9 +16,9 @@ using mapping::cube_of;
 
 namespace {
 
-// coordinates of a free slot, beyond any search radius
+// A free slot of a chunk has this coordinate, which is beyond any search radius.
 constexpr float kFar = 1e18f;
-constexpr int kReachMax = 8;  // cells searched to each side
+constexpr int kReachMax = 8;  // maximum number of cells that a search covers to each side
 
 inline void keep(float distance2, std::uint32_t index, int k, Neighbours& best) {
   int place = best.count < k ? best.count++ : k - 1;
@@ -31,8 +31,8 @@ inline void keep(float distance2, std::uint32_t index, int k, Neighbours& best) 
   best.index[place] = index;
 }
 
-/// Computes the squared distances from a query to the slabs of cells at -reach..reach along one axis. `fraction` is the
-/// query's position within its cell, in cells.
+/// Computes the squared distances from a query to the slabs of cells with offsets -reach to reach along one axis.
+/// `fraction` is the query's position within its own cell, in cells.
 void slab_distances(float fraction, float voxel_m, int reach, float* distance2) {
   for (int d = -reach; d <= reach; ++d) {
     const float cells = d > 0 ? static_cast<float>(d) - fraction : d < 0 ? fraction - static_cast<float>(d + 1) : 0.0f;
@@ -44,7 +44,7 @@ void slab_distances(float fraction, float voxel_m, int reach, float* distance2) 
 using Floats [[gnu::vector_size(16)]] = float;
 using Ints [[gnu::vector_size(16)]] = std::int32_t;
 
-/// Returns a bit mask of the values of a chunk within the limit, without branches.
+/// Returns a bit mask of the values of a chunk that are within the limit. The code has no branches.
 inline std::uint32_t within(float limit, const Floats (&values)[4]) {
   constexpr Ints kFirst = {1, 2, 4, 8};
   const Floats limits = {limit, limit, limit, limit};
@@ -53,7 +53,8 @@ inline std::uint32_t within(float limit, const Floats (&values)[4]) {
   return static_cast<std::uint32_t>(bits[0] | bits[1] | bits[2] | bits[3]);
 }
 
-/// Returns the offsets 0, 1, -1, 2, -2 ... in order. Near cells come first, so that the search radius shrinks early.
+/// Returns element i of the sequence 0, 1, -1, 2, -2 ... The search visits near cells first, so that its radius shrinks
+/// early.
 inline int alternating(int i) {
   return (i & 1) ? (i + 1) / 2 : -i / 2;
 }
@@ -79,7 +80,7 @@ inline Eigen::Vector3i VoxelMap::Group::of(const Eigen::Vector3i& cell) {
   return {cell.x() >> kBits, cell.y() >> kBits, cell.z() >> kBits};
 }
 
-/// The cells of a search, row by row. Groups of cells are looked up one time, at first use.
+/// The cells of a search, row by row. Each group of cells is looked up only one time, when it is first used.
 class VoxelMap::Rows {
  public:
   Rows(const VoxelMap& map, const Eigen::Vector3i& cell, int reach) : map_(map), first_x_(cell.x() - reach) {
@@ -88,7 +89,7 @@ class VoxelMap::Rows {
     groups_.fill(kUnasked);
   }
 
-  /// Returns the bit mask of the occupied cells of a row, from the smallest x on.
+  /// Returns the occupied cells of a row as a bit mask, starting with the smallest x.
   std::uint32_t occupied(int y, int z) {
     const Eigen::Vector3i away = Group::of({first_x_, y, z}) - low_;
     std::uint32_t bits = 0;
@@ -121,7 +122,7 @@ class VoxelMap::Rows {
   std::array<std::uint32_t, kAcross * kAcross * kAcross> groups_;
 };
 
-/// Returns the first chunk of a cell for writing. Marks the cell as occupied.
+/// Returns the first chunk of a cell for writing, and marks the cell as occupied.
 std::uint32_t& VoxelMap::first_of(const Eigen::Vector3i& cell) {
   const std::uint32_t group =
       groups_of_.insert(SpatialHash::key(Group::of(cell)), static_cast<std::uint32_t>(groups_.size()));
@@ -143,17 +144,17 @@ std::uint32_t VoxelMap::new_chunk(std::uint32_t& first) {
   sweep_.resize(sweep_.size() + kChunk, 0);
   line_.resize(line_.size() + kChunk, kNoLine);
   seen_through_.resize(seen_through_.size() + kChunk, 0);
-  vacant_ += kChunk;
+  free_slots_ += kChunk;
   return first;
 }
 
-/// Returns whether a position is within the map's range. Cells and cubes of the spacing have one margin. Returns false
-/// for NaN.
+/// Returns whether a position is within the range of the map's integer coordinates. The range has one margin for cells
+/// and for the cubes of the point spacing. For NaN, returns false.
 bool VoxelMap::has_room_for(const Eigen::Vector3f& position) const {
   return (position * cubes_per_m_).cwiseAbs().maxCoeff() < static_cast<float>(SpatialHash::kLimit - 2);
 }
 
-bool VoxelMap::is_taken(const Eigen::Vector3f& position) const {
+bool VoxelMap::is_occupied(const Eigen::Vector3f& position) const {
   if (!has_room_for(position)) return true;
   return params_.spacing_m > 0.0 &&
          taken_.find(SpatialHash::key(cube_of(position, cubes_per_m_))) != SpatialHash::kAbsent;
@@ -166,7 +167,7 @@ std::uint32_t VoxelMap::add(const Eigen::Vector3f& position, float sigma_m, std:
 }
 
 std::uint32_t VoxelMap::put(const Eigen::Vector3f& position, float sigma_m, std::uint32_t sweep, std::uint32_t line) {
-  // the newest chunk of a cell is the first chunk, and the only chunk with free slots
+  // The newest chunk of a cell is its first chunk. No other chunk of the cell has free slots.
   std::uint32_t& first = first_of(cube_of(position, cells_per_m_));
   if (first == kNone || chunks_[first].count == kChunk) new_chunk(first);
   Chunk& chunk = chunks_[first];
@@ -177,7 +178,7 @@ std::uint32_t VoxelMap::put(const Eigen::Vector3f& position, float sigma_m, std:
   sigma_m_[first * kChunk + place] = std::max(sigma_m, 0.0f);
   sweep_[first * kChunk + place] = sweep;
   line_[first * kChunk + place] = line;
-  --vacant_;
+  --free_slots_;
   return first * kChunk + place;
 }
 
@@ -193,7 +194,7 @@ bool VoxelMap::move(std::uint32_t index, const Eigen::Vector3f& position) {
   return true;
 }
 
-void VoxelMap::count_sight(std::uint32_t index, bool through) {
+void VoxelMap::count_observation(std::uint32_t index, bool through) {
   std::uint8_t& count = seen_through_[index];
   if (through ? count < std::numeric_limits<std::uint8_t>::max() : count > 0) count += through ? 1 : -1;
 }
@@ -204,7 +205,7 @@ Eigen::Vector3f VoxelMap::position_W_m(std::uint32_t index) const {
   return {chunk.x[place], chunk.y[place], chunk.z[place]};
 }
 
-std::vector<std::uint32_t> VoxelMap::keep_within(const Eigen::Vector3f& centre, float radius_m) {
+std::vector<std::uint32_t> VoxelMap::remove_beyond(const Eigen::Vector3f& centre, float radius_m) {
   const auto stays = [&](std::uint32_t index) {
     return exists(index) && (position_W_m(index) - centre).squaredNorm() <= radius_m * radius_m;
   };
@@ -227,12 +228,12 @@ std::vector<std::uint32_t> VoxelMap::keep_within(const Eigen::Vector3f& centre, 
   return kept;
 }
 
-void VoxelMap::keep_before(std::uint32_t first_sweep) {
+void VoxelMap::remove_sweeps_from(std::uint32_t first_sweep) {
   VoxelMap kept(params_);
   for (std::uint32_t index = 0; index < index_end(); ++index) {
     if (!exists(index) || sweep_[index] >= first_sweep) continue;
     const Eigen::Vector3f position = position_W_m(index);
-    // two points that were moved into one cube both remain
+    // if two points move into one cube of the point spacing, the map keeps both points
     if (params_.spacing_m > 0.0) kept.taken_.add(SpatialHash::key(cube_of(position, cubes_per_m_)));
     const std::uint32_t now = kept.put(position, sigma_m_[index], sweep_[index], line_[index]);
     kept.seen_through_[now] = seen_through_[index];
@@ -246,7 +247,7 @@ std::size_t VoxelMap::bytes() const {
          seen_through_.capacity();
 }
 
-/// Adds the points of a cell's chunks to the k nearest points so far. `worst2` is the current squared search radius.
+/// Adds the points of a cell to the k nearest points. `worst2` is the squared current search radius.
 void VoxelMap::search(std::uint32_t first, const Eigen::Vector3f& query, int k, float& worst2,
                       Neighbours& found) const {
   for (std::uint32_t c = first; c != kNone; c = chunks_[c].next) {

@@ -2,6 +2,7 @@
 #include "world_covariance.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "tumble/common/so3.hpp"
 #include "unknowns.hpp"
@@ -11,6 +12,10 @@ namespace tumble::mapping {
 namespace {
 
 using Pose = WorldCovariance::Pose;
+
+// Standard deviation of the map's scale. Errors of successive sweeps have common causes (ranges, matching along a hall),
+// so the position error grows in proportion to the distance: 0.24 % in a hall with pillars.
+constexpr double kScale = 0.003;
 
 /// Returns the covariance of (error of the pose) - by_mounting (error of the mounting): mapping.md (R57).
 Pose less_mounting(const Registration::Matrix& joint, const Pose& by_mounting) {
@@ -23,32 +28,49 @@ Pose less_mounting(const Registration::Matrix& joint, const Pose& by_mounting) {
 
 }  // namespace
 
+/// A rotation of the map about the start moves distant points: mapping.md (R56).
+Pose WorldCovariance::by_start_mounting(const Eigen::Vector3d& p_WI_m) const {
+  Pose start = start_by_mounting_;
+  start.topRows<3>() -= so3::hat(p_WI_m - start_W_m_) * start_by_mounting_.bottomRows<3>();
+  return start;
+}
+
+double WorldCovariance::sigma_in_map_m(const Registration::Matrix& joint, const Eigen::Vector3d& p_WI_m) const {
+  const Pose P = less_mounting(joint, by_start_mounting(p_WI_m));
+  return std::sqrt(std::max(P.topLeftCorner<3, 3>().trace(), 0.0));
+}
+
 /// Adds the map's error at the pose's position, and the tilt of the start: mapping.md (R58).
 Pose WorldCovariance::in_world(const Registration::Matrix& joint, const Eigen::Vector3d& p_WI_m) const {
-  // rotation of the map about the start moves distant points: mapping.md (R56)
-  Pose start = start_by_mounting_;
-  start.topRows<3>() -= so3::hat(p_WI_m) * start_by_mounting_.bottomRows<3>();
+  const Eigen::Vector3d from_start_m = p_WI_m - start_W_m_;
   Eigen::Matrix<double, 6, 2> by_tilt = Eigen::Matrix<double, 6, 2>::Zero();
-  by_tilt.topRows<3>() = -so3::hat(p_WI_m).leftCols<2>();
+  by_tilt.topRows<3>() = -so3::hat(from_start_m).leftCols<2>();
   by_tilt.block<2, 2>(3, 0).setIdentity();
-  Pose P = less_mounting(joint, start);
+  Pose P = less_mounting(joint, by_start_mounting(p_WI_m));
   P += map_ + (params_.tilt_sigma_rad * params_.tilt_sigma_rad) * by_tilt * by_tilt.transpose();
-  P.topLeftCorner<3, 3>() += drift_m2_;
+  P.topLeftCorner<3, 3>() += drift_m2_ + kScale * kScale * from_start_m * from_start_m.transpose();
   return P;
 }
 
-/// mapping.md (R61).
+/// Adds the drift of a sweep in its weakest direction: mapping.md (R61).
 void WorldCovariance::add_drift(double weakest_sigma_m, const Eigen::Matrix<double, 6, 1>& weakest_direction) {
   const double sigma_m = params_.drift_share * std::min(weakest_sigma_m, params_.drift_sigma_max_m);
   const Eigen::Vector3d direction = weakest_direction.head<3>();
   drift_m2_ += (sigma_m * sigma_m) * direction * direction.transpose();
 }
 
-/// Adds the error of a sweep to the map, by the lidar's pose in the middle of the sweep: mapping.md (R59), (R60). An
-/// error of the mounting is not an error of the map. A sweep's pose is less certain at start and end than on average.
+/// Adds the error of a sweep to the map error, at the lidar's pose in the middle of the sweep: mapping.md (R59), (R60).
+/// The pose is more uncertain at the start and end of a sweep than in its middle. An error of the mounting is not an
+/// error of the map.
 void WorldCovariance::add_insertion(double inserted_share, const SweepTrajectory& trajectory,
                                     const Registration::Matrix& errors, const Eigen::Vector3d& p_IL_m) {
   const double middle_s = 0.5 * trajectory.duration_s();
+  // a rotation of the map about its last extension moves the map where the robot is now
+  const Eigen::Vector3d p_WI_m = trajectory.state(middle_s).p_WI_m;
+  Pose moved = Pose::Identity();
+  moved.topRightCorner<3, 3>() = -so3::hat(p_WI_m - map_at_W_m_);
+  map_ = (moved * map_ * moved.transpose()).eval();
+  map_at_W_m_ = p_WI_m;
   const Registration::Matrix F = unknowns_at(trajectory, middle_s);
   map_ += inserted_share * inserted_share *
           less_mounting(pose_and_mounting(F, errors), pose_by_mounting(trajectory.state(middle_s).q_WI, p_IL_m));

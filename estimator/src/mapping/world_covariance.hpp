@@ -5,23 +5,26 @@
 
 namespace tumble::mapping {
 
-/// WorldCovariance contains the errors of the map relative to the world: mounting, tilt of the start, errors at
-/// insertion, and drift in unconstrained directions. The first pose of the IMU defines the world.
+/// Errors of the map relative to the world: mounting, tilt of the start, scale, errors at insertion, and drift in
+/// unconstrained directions. The IMU's first pose defines the world.
 class WorldCovariance {
  public:
   using Pose = Eigen::Matrix<double, 6, 6>;
 
   WorldCovariance() = default;
   /// Starts at the first pose of the IMU.
-  WorldCovariance(const WorldCovarianceParams& params, const Eigen::Quaterniond& q_WI, const Eigen::Vector3d& p_IL_m)
-      : params_(params), start_by_mounting_(pose_by_mounting(q_WI, p_IL_m)) {}
+  WorldCovariance(const WorldCovarianceParams& params, const Eigen::Quaterniond& q_WI, const Eigen::Vector3d& p_IL_m,
+                  const Eigen::Vector3d& p_WI_m = Eigen::Vector3d::Zero())
+      : params_(params), start_W_m_(p_WI_m), map_at_W_m_(p_WI_m), start_by_mounting_(pose_by_mounting(q_WI, p_IL_m)) {}
 
   /// Returns the covariance of a pose's error in the world. `joint` is the covariance of all unknowns in the map at the
   /// time of the pose.
   Pose in_world(const Registration::Matrix& joint, const Eigen::Vector3d& p_WI_m) const;
 
-  /// Adds the drift of a moving sweep, given the standard deviation and the direction (position, scaled attitude) that
-  /// surfaces constrain least.
+  /// Returns the standard deviation of a pose's position relative to the map around the pose [m].
+  double sigma_in_map_m(const Registration::Matrix& joint, const Eigen::Vector3d& p_WI_m) const;
+
+  /// Adds the drift of a moving sweep, with its weakest standard deviation and direction (position, scaled attitude).
   void add_drift(double weakest_sigma_m, const Eigen::Matrix<double, 6, 1>& weakest_direction);
   /// Adds the error of a sweep that inserted a fraction of the visible map, evaluated at the middle of the sweep's
   /// motion. `errors` is the covariance at the start of the sweep.
@@ -32,10 +35,14 @@ class WorldCovariance {
   static void members(Self& s, Visitor& visit);
 
  private:
+  Pose by_start_mounting(const Eigen::Vector3d& p_WI_m) const;
+
   WorldCovarianceParams params_;
+  Eigen::Vector3d start_W_m_ = Eigen::Vector3d::Zero();   // position of the first pose
+  Eigen::Vector3d map_at_W_m_ = Eigen::Vector3d::Zero();  // position of the sweep that extended the map last
   Pose start_by_mounting_ = Pose::Zero();
-  Pose map_ = Pose::Zero();                             // covariance of the map relative to the world
-  Eigen::Matrix3d drift_m2_ = Eigen::Matrix3d::Zero();  // covariance of the position drift
+  Pose map_ = Pose::Zero();                             // of the map relative to the world, at map_at_W_m_
+  Eigen::Matrix3d drift_m2_ = Eigen::Matrix3d::Zero();  // of the position
 };
 
 }  // namespace tumble::mapping

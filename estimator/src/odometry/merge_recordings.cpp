@@ -14,38 +14,40 @@ namespace tumble {
 
 namespace {
 
-constexpr double kSilentReported_s = 0.5;  // a longer silence is reported
-// Sensing elements without an observed saturation plane are assumed aligned and exact. With an uncertainty of 0.03 for
-// the cross-axis sensitivity, three clipped units would no longer determine the rate (slip_long, seeds 4, 30 and 42).
+constexpr double kSilentReported_s = 0.5;  // minimum duration of a reported interval without readings
+// A sensing element without an observed saturation plane is assumed to be exactly aligned with its axis. If the
+// uncertainty of its cross-axis sensitivity were 0.03, three clipped units would no longer determine the rate (scenario
+// slip_long, seeds 4, 30 and 42).
 constexpr double kUnknownSlope = 0.0;
 
-/// The units with samples, resampled to common times.
+/// The IMUs (units) that provide samples, resampled to common times.
 struct Units {
   std::vector<std::size_t> index;
   std::vector<Eigen::Isometry3d> T_BI;
   std::vector<std::vector<ImuSample>> samples;
-  std::vector<ElementRows> gyro_elements, accel_elements;
+  std::vector<SensingDirections> gyro_elements, accel_elements;
   std::vector<std::vector<FrozenAxis>> frozen;
 };
 
-/// Sets the clip flags of a unit's readings and estimates the directions of its sensing elements. The unit may have
-/// frozen axes.
-void flag_clipped(const ImuSheet& sheet, std::vector<ImuSample>& samples, ElementRows& gyro, ElementRows& accel) {
+/// Sets the clip flags in the readings of a unit, and estimates the directions of its sensing elements. The unit may
+/// have frozen axes.
+void flag_clipped(const ImuSheet& sheet, std::vector<ImuSample>& samples, SensingDirections& gyro,
+                  SensingDirections& accel) {
   ClippingFinder::Params params;
   if (sheet.gyro_range_rad_s > 0.0) params.upright_rails.stated_gyro_rad_s = sheet.gyro_range_rad_s;
   if (sheet.accel_range_m_s2 > 0.0) params.upright_rails.stated_accel_m_s2 = sheet.accel_range_m_s2;
   const ClippingFinder::Found found = ClippingFinder(params).find(samples);
-  const CertainRails certain{.gyro = found.rails.planes_in_use(),
-                             .accel = found.rails.planes_in_use(Triad::accelerometer),
-                             .gyro_range_rad_s = sheet.gyro_range_rad_s,
-                             .accel_range_m_s2 = sheet.accel_range_m_s2};
+  const ConfirmedSaturation certain{.gyro = found.rails.planes_in_use(),
+                                    .accel = found.rails.planes_in_use(Triad::accelerometer),
+                                    .gyro_range_rad_s = sheet.gyro_range_rad_s,
+                                    .accel_range_m_s2 = sheet.accel_range_m_s2};
   for (std::size_t k = 0; k < samples.size(); ++k)
     samples[k].device_clip_flags = certain.flags(samples[k], found.clippings[k]);
   gyro = found.rails.rows(Triad::gyro, kUnknownSlope);
   accel = found.rails.rows(Triad::accelerometer, kUnknownSlope);
 }
 
-/// Resamples the units to common times, in place.
+/// Resamples the readings of all units to common times, in place.
 Status align(std::vector<std::vector<ImuSample>>& samples) {
   const UnitAlignment alignment(samples.size());
   UnitAlignment::State state;
@@ -109,7 +111,7 @@ Status run(const ImuMerge& merge, const Units& units, ImuMerge::State& state, st
   return {};
 }
 
-/// Marks the readings of a unit in an interval as absent.
+/// Marks the readings of a unit between two times as absent.
 void exclude(std::vector<ImuSample>& unit, TimeNs from_ns, TimeNs to_ns = std::numeric_limits<TimeNs>::max()) {
   for (ImuSample& sample : unit) {
     if (sample.time_ns >= from_ns && sample.time_ns <= to_ns)
@@ -117,7 +119,8 @@ void exclude(std::vector<ImuSample>& unit, TimeNs from_ns, TimeNs to_ns = std::n
   }
 }
 
-/// Returns the start of an interval without readings that lasts until the end or is long.
+/// Returns the start of the first interval without readings, if the interval is long or lasts until the end of the
+/// recording.
 std::optional<TimeNs> silent_since(const std::vector<ImuSample>& unit) {
   std::size_t from = unit.size();
   for (std::size_t k = 0; k <= unit.size(); ++k) {
@@ -148,7 +151,7 @@ Status frozen_in_all(const FrozenAxis& axis) {
   return {Trouble::out_of_range, field, seconds(axis.to_ns - axis.from_ns), FrozenAxes::Params{}.frozen_s};
 }
 
-/// Excludes readings while an axis of their unit is frozen. Returns an error if no unit remains.
+/// Excludes the readings of a unit while one of its axes is frozen. If no unit remains, returns an error.
 Status exclude_frozen(Units& units, std::vector<UnitFault>& faults) {
   std::optional<FrozenAxis> any;
   for (std::size_t unit = 0; unit < units.index.size(); ++unit) {
@@ -176,7 +179,7 @@ void erase_unit(Units& units, std::size_t unit) {
   units.accel_elements.erase(units.accel_elements.begin() + at);
 }
 
-/// Excludes the units that ImuMerge found faulty. Returns true if there is any.
+/// Excludes the units that ImuMerge classified as faulty. Returns whether there are any.
 bool exclude_found(const ImuMerge::State& state, Units& units, std::vector<UnitFault>& faults) {
   bool any = false;
   for (std::size_t k = units.index.size(); k-- > 0;) {
@@ -203,8 +206,8 @@ void report_calibration(const ImuMerge& merge, const ImuMerge::State& state, con
     const ImuMerge::Unit& unit = state.units[k];
     constexpr int kOffset = ImuMerge::kErrors - 1;
     out.readings_excluded += static_cast<std::size_t>(unit.left_out);
-    out.units.push_back({units.index[k], unit.offset_s(), std::sqrt(std::max(0.0, unit.P(kOffset, kOffset))),
-                         unit.x.head<3>().norm()});
+    out.units.push_back(
+        {units.index[k], unit.offset_s(), std::sqrt(std::max(0.0, unit.P(kOffset, kOffset))), unit.x.head<3>().norm()});
   }
 }
 

@@ -8,6 +8,7 @@
 #include "../common/sample_clock_members.hpp"
 #include "../common/state_params.hpp"
 #include "pass_members.hpp"
+#include "stamp_order_members.hpp"
 #include "tumble/odometry/tumbling_odometry.hpp"
 
 namespace tumble {
@@ -63,6 +64,13 @@ void others(Self& p, Visitor& visit) {
   others(p.expert.mapping, visit);
 }
 
+template <StateOf<GyroOffset::State> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("offset.rest", s.rest);
+  visit("offset.first_ns", s.first_ns);
+  visit("offset.decided", s.decided);
+}
+
 template <StateOf<WaitingSweep> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("waiting.start_ns", s.start_ns);
@@ -73,6 +81,10 @@ void members(Self& s, Visitor& visit) {
 template <class Self, class Visitor>
 void TumblingOdometry::members(Self& s, Visitor& visit) {
   visit.scratch(s.params_);  // must equal the saved ones
+  visit.scratch(s.order_);  // derived from the parameters
+  visit("order", s.order_state_);
+  visit.scratch(s.gyro_offset_);
+  visit("gyro_offset", s.gyro_offset_state_);
   visit.scratch(s.filter_);  // derived from the parameters
   visit("outliers", s.outliers_);
   visit.scratch(s.clock_);
@@ -80,7 +92,6 @@ void TumblingOdometry::members(Self& s, Visitor& visit) {
   visit("pass", s.pass_);
   visit("second_pass", s.second_pass_);
   visit("newest_ns", s.newest_ns_);
-  visit("after_gap", s.after_gap_);
   visit("registered_ns", s.registered_ns_);
   visit("gaps", s.gaps_);
   visit("dropped_sweeps", s.dropped_sweeps_);

@@ -10,15 +10,16 @@ namespace tumble {
 namespace {
 
 constexpr double kLeastGravity_m_s2 = 1e-3;
-constexpr double kRoom_s = 2.0;  // duration of preallocated sample memory: more than the longest gap of a lidar
+constexpr double kRoom_s = 2.0;  // duration of preallocated sample memory, longer than any gap of a lidar
 
 std::size_t samples_in(double time_s, const RegimeStream::Params& rate) {
   return static_cast<std::size_t>(std::ceil(time_s / rate.rate.period_s)) + 16;
 }
 
-/// Returns the rate that the mapper receives. For a clipped axis that is too uncertain for the mapper, the gyro's
-/// reading is passed as a lower bound. The registration then estimates the saturation deficit. With an uncertain
-/// calibration, the stream may extrapolate an impact by tens of rad/s, with a correspondingly large standard deviation.
+/// Returns the rate that the mapper receives. If a clipped axis is too uncertain for the mapper, the returned rate is
+/// the gyro's reading, which is a lower bound. The registration then estimates the saturation deficit. With an
+/// uncertain calibration, RateStream may extrapolate an impact by tens of rad/s, with a correspondingly large standard
+/// deviation.
 RateState for_the_mapper(const RateState& rate, const ImuSample& sample, double sigma_max_rad_s) {
   RateState out = rate;
   for (int axis = 0; axis < 3; ++axis) {
@@ -32,7 +33,7 @@ RateState for_the_mapper(const RateState& rate, const ImuSample& sample, double 
   return out;
 }
 
-/// Samples as RateStream classified them, with saturated forces flagged. Queries must be in time order.
+/// Samples with flags on forces that RateStream classified as saturated. The times of successive calls must increase.
 class ClassifiedSamples {
  public:
   ClassifiedSamples(std::span<const ImuSample> samples, const RateStream::State& state)
@@ -86,6 +87,7 @@ Status OdometryPass::add_imu(const ImuSample& sample) {
   if (const Status status = rates_.push(sample, rate_state_, rate); !status.ok()) return status;
   pending_.push(sample);
   gravity_.step(sample, gravity_state_);
+  RestGravity::limit_memory(gravity_state_);
   if (rate && (!smoothed_ || rate->time_ns > smoothed_->time_ns)) take_rate(*rate);
   return {};
 }
@@ -115,7 +117,7 @@ std::optional<TimeNs> OdometryPass::covering_ns(TimeNs end_ns) const {
 Status OdometryPass::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points,
                                const std::optional<OdometerReading>& reading,
                                LidarInertialOdometry::SweepReport& report) {
-  if (reading) (void)mapper_.add_reading(*reading);  // no error is possible: add() checked it
+  if (reading) (void)mapper_.add_reading(*reading);  // add_reading() cannot fail, because add() checked the reading
   const Status status = mapper_.add_sweep(start_ns, end_ns, points, report);
   if (report.trajectory.empty()) return status;
   scale_.add(report);
@@ -157,7 +159,7 @@ void OdometryPass::flush_until(TimeNs time_ns) {
 
 void OdometryPass::begin_rates(const RegimeStream::Params& rate) {
   rates_ = RegimeStream(rate);
-  const FrozenAxes::State frozen = rate_state_.rate.frozen;  // an axis may remain frozen
+  const FrozenAxes::State frozen = rate_state_.rate.frozen;  // a frozen axis may remain frozen
   const FlightSense::State sense = rate_state_.rate.sense;
   rate_state_ = rates_.start();
   rate_state_.rate.frozen = frozen;

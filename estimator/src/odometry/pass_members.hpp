@@ -7,6 +7,7 @@
 #include "../attitude/regime_stream_members.hpp"
 #include "../attitude/rest_gravity_members.hpp"
 #include "../mapping/odometry_members.hpp"
+#include "tumble/angular_velocity/detail/gyro_offset.hpp"
 #include "tumble/odometry/detail/odometry_pass.hpp"
 #include "tumble/odometry/detail/second_pass.hpp"
 #include "tumble/odometry/detail/waiting_input.hpp"
@@ -16,9 +17,16 @@ namespace tumble {
 
 namespace odometry {
 
-/// Visits the rate parameters that may come from an earlier run.
+template <class Visitor>
+void check_offset(const RegimeStream::Params& rate, Visitor& visit) {
+  visit.bounded("gyro offset", rate.rate.model.nominal.gyro_bias_rad_s.cwiseAbs().maxCoeff(), 0.0,
+                GyroOffset::kMost_rad_s);
+}
+
+/// Visits the parameters of the rates that may come from an earlier run.
 template <StateOf<RegimeStream::Params> Self, class Visitor>
 void visit_estimated(Self& p, Visitor& visit) {
+  visit("gyro offset", p.rate.model.nominal.gyro_bias_rad_s);
   visit("calibration", p.rate.model.calibration);
   visit("known rails", p.rate.expert.planes.known);
   visit("known rails of the accelerometer", p.rate.expert.accel_planes.known);
@@ -46,6 +54,7 @@ void OdometryPass::members(Self& s, Visitor& visit) {
   odometry::visit_estimated(rate, visit);
   visit.scratch(s.rates_);
   if constexpr (!std::is_const_v<Self>) {
+    odometry::check_offset(rate, visit);
     if (visit.going() && rate.rate.model.calibration) visit.refuse(check_calibration(*rate.rate.model.calibration));
     if (!visit.going()) return;
     s.begin_rates(rate);
@@ -83,6 +92,8 @@ void SecondPass::Sweep::members(Self& s, Visitor& visit) {
 template <class Self, class Visitor>
 void SecondPass::members(Self& s, Visitor& visit) {
   visit.scratch(s.params_);
+  visit("second_pass.gyro_offset", s.rate_.rate.model.nominal.gyro_bias_rad_s);
+  if constexpr (Visitor::kReads) odometry::check_offset(s.rate_, visit);
   visit.scratch(s.rate_);
   visit.scratch(s.mapping_);
   visit("second_pass.wanted", s.wanted_);

@@ -2,17 +2,20 @@
 #include "tumble/odometry/rolling_odometry.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
+
+#include "tumble/common/so3.hpp"
 
 namespace tumble {
 
 namespace {
 
-constexpr std::size_t kRecoveringUnits = 3;  // number of IMUs needed to recover a rate beyond the range
+constexpr std::size_t kRecoveringUnits = 3;  // minimum number of IMUs for recovering a rate beyond the range
 constexpr double kRecoveredSigma_rad_s = 1.0;
-constexpr double kUnknownRadiusShare = 0.05;  // prior of a radius that a known distance determines
-// Prior standard deviations of an IMU without a data sheet, mounted anywhere in the sphere.
+constexpr double kUnknownRadiusShare = 0.05;  // prior of an unknown radius, if a known distance determines the radius
+// Prior standard deviations of an IMU without a data sheet at an arbitrary position in the sphere.
 constexpr double kUnknownGyroBias_rad_s = 5e-3, kUnknownAccelBias_m_s2 = 0.4, kUnknownScale = 0.01,
                  kUnknownDelay_s = 5e-3, kUnknownLeverArm_m = 0.05;
 constexpr double kLevelInclinePerS = 1e-9;  // rate at which slopes begin on a level floor
@@ -39,7 +42,7 @@ constexpr std::array<std::array<const char*, 6>, ImuMerge::kImus> kFrozenFields 
        "seconds for which unit 4's accel y repeats one reading",
        "seconds for which unit 4's accel z repeats one reading"}}}};
 
-// Checks the radius of RollingOdometry, because the smoother's radius has no default.
+// Checks the radius of RollingOdometry here, because the radius of the smoother has no default.
 void require_stated(RollingOdometry::Params params) {
   params.expert.rolling.filter.radius_m = params.radius_m;
   require_fields(params);
@@ -62,7 +65,7 @@ ImuMerge::Params merge_params(const RollingOdometry::Params& params) {
   return out;
 }
 
-/// `units` IMUs are in use; `lever_arm_m` is the position of the merged IMU.
+/// Returns the parameters of the smoother for `units` IMUs. `lever_arm_m` is the position of the merged IMU.
 RollingSmoother::Params rolling_params(const RollingOdometry::Params& params, const ImuMerge::Params& merged,
                                        std::size_t units, const Eigen::Vector3d& lever_arm_m) {
   RollingSmoother::Params out = params.expert.rolling;
@@ -111,7 +114,7 @@ ImuSample at_time(TimeNs time_ns, ImuSample sample) {
   return sample;
 }
 
-/// Sets a sample to that of a unit without readings.
+/// Marks the sample of a unit as absent.
 void leave_out(ImuSample& sample) {
   sample.angular_velocity_rad_s.setConstant(std::numeric_limits<double>::quiet_NaN());
 }
@@ -150,6 +153,7 @@ RollingOdometry::RollingOdometry(const Params& params) : RollingOdometry(params,
 
 RollingOdometry::RollingOdometry(const Params& params, const ImuMerge::Params& merged)
     : params_(params),
+      order_(params.expert.rolling.filter.expert.gap.gap_max_s),
       clock_(params.expert.stamps),
       merge_(merged),
       smoother_(rolling_params(params, merged, params.units.size(), merge_.p_C_m())),
@@ -166,6 +170,8 @@ RollingOdometry::RollingOdometry(const Params& params, const ImuMerge::Params& m
 
 RollingOdometry::RollingOdometry(const RollingOdometry& other)
     : params_(other.params_),
+      order_(other.order_),
+      order_state_(other.order_state_),
       clock_(other.clock_),
       stamps_(other.stamps_),
       merge_(other.merge_),
@@ -187,6 +193,10 @@ RollingOdometry::RollingOdometry(const RollingOdometry& other)
       gravity_state_(other.gravity_state_),
       done_(other.done_),
       taken_(other.taken_),
+      start_(other.start_),
+      T_WR_(other.T_WR_),
+      gaps_(other.gaps_),
+      restarted_(other.restarted_),
       live_(other.live_),
       finished_(other.finished_) {}
 
@@ -205,9 +215,10 @@ Status RollingOdometry::add_imus(std::span<const ImuSample> samples) {
       status = record(k, at_time(samples.front().time_ns, samples[k]));
     return status;
   }
-  // for a time that does not increase, and for units without any reading, add_inliers() returns the error
-  if (!any_reading(samples) || (stamps_.stamp_ns && samples.front().time_ns <= *stamps_.stamp_ns))
-    return add_inliers(samples);
+  if (!any_reading(samples)) return add_inliers(samples);  // returns the error
+  StampOrder::Verdict verdict{};
+  if (const Status status = order_.judge(samples.front().time_ns, order_state_, verdict); !status.ok()) return status;
+  if (verdict != StampOrder::Verdict::continues) restart_at_newest();
   if (const Status status = add_held(samples); !status.ok()) return status;
   UnitRails::Samples judged;
   std::copy(samples.begin(), samples.end(), judged.begin());
@@ -235,7 +246,7 @@ Status RollingOdometry::add_imu(std::size_t unit, const ImuSample& sample) {
   return add_aligned(false);
 }
 
-/// Adds the readings of all complete common times; `ended` states that no further readings follow.
+/// Adds the readings at all common times that are complete. If `ended`, no further readings follow.
 Status RollingOdometry::add_aligned(bool ended) {
   Status first;
   UnitAlignment::Readings readings;
@@ -246,7 +257,7 @@ Status RollingOdometry::add_aligned(bool ended) {
   return first;
 }
 
-/// Stores a reading until finish(). A reading that is not finite is ignored.
+/// Stores a reading until finish(). Readings that are not finite are ignored.
 Status RollingOdometry::record(std::size_t unit, ImuSample sample) {
   if (!check_sample(sample).ok()) return {};
   std::vector<ImuSample>& samples = recorded_[unit];
@@ -256,7 +267,8 @@ Status RollingOdometry::record(std::size_t unit, ImuSample sample) {
   return {};
 }
 
-/// Adds the delayed samples, without the readings that the next samples do not confirm.
+/// Adds the delayed samples, except for readings that the outlier filter rejects after comparison with the next
+/// samples.
 Status RollingOdometry::add_held(std::span<const ImuSample> next) {
   if (!held_) return {};
   for (std::size_t k = 0; k < next.size(); ++k) {
@@ -279,12 +291,12 @@ Status RollingOdometry::add_inliers(std::span<const ImuSample> samples) {
   UnitRails::Samples flagged;
   rails_.flag(samples, rails_state_, flagged);
   flagged.front().time_ns = time_ns;
-  *merged_state_ = *merge_state_;  // all parts accept the sample, or none
+  *merged_state_ = *merge_state_;  // either all parts accept the sample or none
   Frozen frozen = frozen_;
   for (std::size_t k = 0; k < samples.size(); ++k) watches_[k].step(samples[k], frozen[k]);
   const std::span<ImuSample> judged = std::span(flagged).first(samples.size());
   if (Status status = exclude_frozen(frozen, judged); !status.ok()) {
-    frozen_ = frozen;  // for health()
+    frozen_ = frozen;  // health() reports the frozen axes
     return status;
   }
   if (Status status = merge_.step(judged, *merged_state_, merged); !status.ok()) return status;
@@ -295,11 +307,15 @@ Status RollingOdometry::add_inliers(std::span<const ImuSample> samples) {
   merge_state_.swap(merged_state_);
   stamps_ = stamps;
   frozen_ = frozen;
-  for (std::size_t k = 0; k < samples.size(); ++k) gravity_.step(samples[k], gravity_state_[k]);
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    gravity_.step(samples[k], gravity_state_[k]);
+    RestGravity::limit_memory(gravity_state_[k]);
+  }
   rails_.observe(samples, rails_state_);
   for (std::size_t k = 0; k < samples.size(); ++k) {
     if (check_sample(samples[k]).ok()) OutlierFilter::pass(at_time(samples.front().time_ns, samples[k]), outliers_[k]);
   }
+  StampOrder::accept(samples.front().time_ns, order_state_);
   return {};
 }
 
@@ -309,7 +325,7 @@ std::size_t RollingOdometry::rejected_readings() const {
   return out;
 }
 
-/// Sets the readings of frozen units to NaN. Returns an error if no unit remains.
+/// Sets the readings of frozen units to NaN. If no unit remains, returns an error.
 Status RollingOdometry::exclude_frozen(const Frozen& states, std::span<ImuSample> samples) const {
   bool any = false, received = false;
   for (std::size_t k = 0; k < samples.size(); ++k) {
@@ -347,7 +363,7 @@ Status RollingOdometry::frozen_axis(const Frozen& frozen) const {
 
 std::optional<RollingOdometry::Pose> RollingOdometry::newest() const {
   if (!state_->live.started) return std::nullopt;
-  return as_pose(RollingFilter::estimate(state_->live));
+  return as_pose(in_world(RollingFilter::estimate(state_->live)));
 }
 
 std::optional<RollingOdometry::Pose> RollingOdometry::take() {
@@ -372,11 +388,18 @@ RollingOdometry::Calibration RollingOdometry::calibration() const {
 Status RollingOdometry::finish() {
   if (finished_) return {};
   const Status status = is_whole() ? finish_whole() : add_aligned(true);
-  for (OutlierFilter::State& unit : outliers_) OutlierFilter::finish(unit);
-  held_.reset();
-  if (!live_ && !is_whole()) smoother_.finish(*state_, done_);
+  end_run();
   finished_ = true;
   return status;
+}
+
+/// Smooths the poses that are still within the lag.
+void RollingOdometry::end_run() {
+  for (OutlierFilter::State& unit : outliers_) OutlierFilter::finish(unit);
+  held_.reset();
+  const std::size_t before = done_.size();
+  if (!live_ && !is_whole()) smoother_.finish(*state_, done_);
+  for (std::size_t k = before; k < done_.size(); ++k) done_[k] = in_world(done_[k]);
 }
 
 /// Estimates all poses from the recorded readings.
@@ -400,30 +423,95 @@ Status RollingOdometry::finish_whole() {
   smoother_ = RollingSmoother(smoother_params(params_, merged));
   for (const ImuSample& sample : merged.samples) {
     if (Status status = smoother_.step(sample, *state_, done_); !status.ok()) return status;
+    place_start();
   }
   smoother_.finish(*state_, done_);
   return {};
 }
 
+/// Restarts the run at the newest pose.
+void RollingOdometry::restart_at_newest() {
+  const std::optional<Pose> pose = newest();
+  end_run();
+  Eigen::Isometry3d T_WG = start_.value_or(Eigen::Isometry3d::Identity());
+  if (pose) {
+    T_WG.linear() = pose->pose.q_WA.toRotationMatrix();
+    T_WG.translation() = pose->pose.p_WA_m;
+  }
+  start_run();
+  start_ = T_WG;
+  ++gaps_;
+  restarted_ = true;
+}
+
 void RollingOdometry::reset() {
-  stamps_ = {};
+  start_run();
   alignment_state_ = {};
   recorded_ = {};
+}
+
+/// Resets all states of a run, except the readings that UnitAlignment has not yet passed on.
+void RollingOdometry::start_run() {
+  stamps_ = {};
   merge_state_ = std::make_unique<ImuMerge::State>();
   state_ = std::make_unique<RollingSmoother::State>();
   rails_state_ = rails_.start();
   frozen_ = {};
-  outliers_ = {};
+  for (OutlierFilter::State& unit : outliers_) {
+    unit.held.reset();
+    unit.count = 0;
+  }
   held_.reset();
   gravity_state_ = {};
+  order_state_ = {};
+  start_ = T_WR_ = std::nullopt;
+  restarted_ = false;
   finished_ = false;
 }
 
+void RollingOdometry::reset(const Eigen::Isometry3d& T_WG) {
+  reset();
+  start_ = T_WG;
+}
+
+/// Computes the pose of the run's origin, from the run's first pose.
+void RollingOdometry::place_start() {
+  if (!start_ || !state_->live.started) return;
+  const RollingEstimate first = RollingFilter::estimate(state_->live);
+  const Eigen::Quaterniond turn = Eigen::Quaterniond(start_->linear()) * first.q_WI.conjugate();
+  Eigen::Isometry3d T_WR = Eigen::Isometry3d::Identity();
+  T_WR.linear() = so3::exp({0.0, 0.0, 2.0 * std::atan2(turn.z(), turn.w())}).toRotationMatrix();
+  T_WR.translation() = start_->translation() - T_WR.linear() * first.p_WG_m;
+  T_WR_ = T_WR;
+  start_.reset();
+}
+
+/// Converts an estimate of the filter or the smoother to the world.
+RollingEstimate RollingOdometry::in_world(RollingEstimate estimate) const {
+  estimate.uncertain = estimate.uncertain || restarted_;
+  if (!T_WR_) return estimate;
+  const Eigen::Matrix3d R = T_WR_->linear();
+  Eigen::Matrix<double, 6, 6> both = Eigen::Matrix<double, 6, 6>::Zero();
+  both.topLeftCorner<3, 3>() = both.bottomRightCorner<3, 3>() = R;
+  estimate.p_WG_m = *T_WR_ * estimate.p_WG_m;
+  estimate.q_WI = (Eigen::Quaterniond(R) * estimate.q_WI).normalized();
+  estimate.v_WG_m_s = R * estimate.v_WG_m_s;
+  estimate.covariance = both * estimate.covariance * both.transpose();
+  return estimate;
+}
+
 Status RollingOdometry::take_in(const ImuSample& merged) {
-  if (!live_) return smoother_.step(merged, *state_, done_);
-  if (Status status = smoother_.filter().step(merged, state_->live); !status.ok()) return status;
-  done_.push_back(RollingFilter::estimate(state_->live));
-  return {};
+  const std::size_t before = done_.size();
+  Status status;
+  if (live_) {
+    status = smoother_.filter().step(merged, state_->live);
+    if (status.ok()) done_.push_back(RollingFilter::estimate(state_->live));
+  } else {
+    status = smoother_.step(merged, *state_, done_);
+  }
+  place_start();
+  for (std::size_t k = before; k < done_.size(); ++k) done_[k] = in_world(done_[k]);
+  return status;
 }
 
 }  // namespace tumble

@@ -8,6 +8,7 @@
 #include "../common/state_params.hpp"
 #include "../rolling/rolling_members.hpp"
 #include "saved_state.hpp"
+#include "stamp_order_members.hpp"
 #include "tumble/odometry/rolling_odometry.hpp"
 
 namespace tumble {
@@ -42,6 +43,8 @@ void others(Self& p, Visitor& visit) {
 template <class Self, class Visitor>
 void RollingOdometry::members(Self& s, Visitor& visit) {
   visit.scratch(s.params_);  // must equal the saved ones; the next three are derived from them
+  visit.scratch(s.order_);
+  visit("order", s.order_state_);
   visit.scratch(s.clock_);
   visit.scratch(s.merge_);
   visit.scratch(s.smoother_);
@@ -59,7 +62,7 @@ void RollingOdometry::members(Self& s, Visitor& visit) {
   visit.with_nan("held", s.held_);
   visit.scratch(s.watches_);
   visit("frozen", s.frozen_);
-  visit.scratch(s.gravity_);  // of the parameters
+  visit.scratch(s.gravity_);  // derived from the parameters
   visit("gravity", s.gravity_state_);
   if constexpr (std::is_const_v<Self>) {
     const std::vector<RollingEstimate> waiting(s.done_.begin() + static_cast<std::ptrdiff_t>(s.taken_), s.done_.end());
@@ -68,6 +71,10 @@ void RollingOdometry::members(Self& s, Visitor& visit) {
     visit("done", s.done_);
     s.taken_ = 0;
   }
+  visit("start", s.start_);
+  visit("T_WR", s.T_WR_);
+  visit("gaps", s.gaps_);
+  visit("restarted", s.restarted_);
   visit.scratch(s.live_);
   visit("finished", s.finished_);
 }
@@ -87,7 +94,7 @@ Status RollingOdometry::load(std::span<const std::byte> bytes) {
 }
 
 Status RollingOdometry::saved_params(std::span<const std::byte> bytes, Params& params) {
-  Params read;  // two parameters have no default
+  Params read;  // two of the parameters have no default
   read.radius_m = 1.0;
   read.units.emplace_back();
   const RollingOdometry any(read);

@@ -28,7 +28,7 @@ constexpr SavedKind kKind<RollingFilter> = SavedKind::rolling_filter;
 template <>
 constexpr SavedKind kKind<RollingSmoother> = SavedKind::rolling_smoother;
 
-/// Creates a state before the first sample. The state is on the heap because the state of RollingOdometry is too large
+/// Creates a state before the first sample. The state is on the heap, because the state of RollingOdometry is too large
 /// for a stack.
 template <class Stream>
 std::unique_ptr<typename Stream::State> fresh_state(const Stream& stream) {

@@ -12,14 +12,14 @@ namespace tumble {
 
 namespace {
 
-constexpr double kBefore_s = 0.1;       // samples before the first buffered sweep, because clocks may differ
-constexpr std::size_t kMoreShare = 20;  // per this many sweeps, the second pass may reject one more than the first
-// If more than one in kSweepsPerRejection sweeps is rejected, the calibration is not used.
+constexpr double kBefore_s = 0.1;       // time before the first buffered sweep, because the clocks may differ
+constexpr std::size_t kMoreShare = 20;  // the second pass may reject one sweep more than the first per this many sweeps
+// If more than one sweep in kSweepsPerRejection sweeps is rejected, the second pass does not use the calibration.
 constexpr std::size_t kSweepsPerRejection = 5;
 
-/// Starts with the saturation levels that the stream detected. The uncertainty of the saturation levels is inflated
-/// like that of the calibration.
-void start_from_rails(const KnownRails& known, double inflation, RateStream::Params& params) {
+/// Initialises the stream with the saturation levels that the first pass detected. The covariance of the saturation
+/// planes is multiplied by `inflation`, as for the calibration.
+void start_from_rails(const SaturationLevels& known, double inflation, RateStream::Params& params) {
   params.expert.planes.known = known.planes;
   params.expert.accel_planes.known = known.accel_planes;
   for (RailPlanes* const planes : {&params.expert.planes.known, &params.expert.accel_planes.known}) {
@@ -49,12 +49,13 @@ void SecondPass::give_up() {
   pass_.reset();
   sweeps_.clear();
   samples_ = {};
-  next_sample_ = next_sweep_ = 0;  // refer to cleared buffers; check_state() requires 0
+  next_sample_ = next_sweep_ = 0;  // the indices refer to cleared buffers; check_state() requires 0
 }
 
 void SecondPass::store(const ImuSample& sample) {
   if (!wanted_) return;
-  if (!moves_ns_ && !rests_.observe(sample, rest_)) moves_ns_ = sample.time_ns;
+  if (!moves_ns_ && !rests_.observe(sample, rest_, rate_.rate.model.nominal.gyro_bias_rad_s))
+    moves_ns_ = sample.time_ns;
   if (!moves_ns_) {
     const TimeNs from_ns = sample.time_ns - static_cast<TimeNs>(1e9 * params_.rest_s);
     while (!sweeps_.empty() && sweeps_.front().start_ns < from_ns) sweeps_.pop_front();
@@ -109,7 +110,7 @@ LidarInertialOdometry::Params SecondPass::calibrated_mapping(const OdometryPass&
   LidarInertialOdometry::Params out = mapping_;
   if (kSweepsPerRejection * rejected_by_first_ > sweeps_.size()) return out;
   const SweepCalibration learnt = first.mapper().calibration();
-  const auto sigma = first.mapper().calibration_weight().diagonal().cwiseSqrt().eval();
+  const auto sigma = first.mapper().calibration_weighting_covariance().diagonal().cwiseSqrt().eval();
   out.T_IL = learnt.T_IL;
   out.time_offset_s = learnt.time_offset_s;
   out.mount_sigma_rad = sigma.head<3>().maxCoeff();
@@ -126,6 +127,7 @@ bool SecondPass::begin(const OdometryPass& first) {
     return false;
   }
   pass_.emplace(rate, mapping);
+  if (first.mapper().start()) pass_->start_at(*first.mapper().start());
   next_sample_ = next_sweep_ = rejected_ = 0;
   early_ = seconds(sweeps_.back().end_ns - counts_from_ns()) < params_.after_s;
   return true;
@@ -146,7 +148,7 @@ void SecondPass::complete(OdometryPass& first) {
 }
 
 void SecondPass::run(OdometryPass& first, std::size_t sweeps) {
-  // At the end of the buffer, samples without the whole lag ahead are processed immediately.
+  // At the end of the buffer, fewer samples than the lag follow. The pass processes the last samples without waiting.
   bool tail = false;
   for (std::size_t taken = 0; tail || taken < sweeps; ++taken) {
     if (next_sweep_ == sweeps_.size()) {
@@ -181,7 +183,7 @@ void SecondPass::take_over(OdometryPass& first) {
   if (rejected_ <= rejected_by_first_ + sweeps_.size() / kMoreShare && (!lost_ || first_lost)) {
     first.take_map(std::move(*pass_));
     taken_ = true;
-    // an early pass serves as first pass of the regular second pass
+    // an early second pass replaces the first pass when the regular second pass follows
     rejected_by_first_ = rejected_;
     if (!lost_) newest = SweepVerdict::registered;
   }

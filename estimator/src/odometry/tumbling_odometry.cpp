@@ -3,18 +3,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <utility>
 
+#include "tumble/common/detail/sample_check.hpp"
 #include "tumble/mapping/detail/sweep_check.hpp"
 
 namespace tumble {
 
 namespace {
 
-// Standard deviation of gravity's horizontal part, after levelling in a world that is not exactly level.
+// Standard deviation of the horizontal part of gravity after levelling, if the world is not exactly level.
 constexpr double kGravitySigma_m_s2 = 0.03;
 
-/// Returns the points fired at `from_ns` or later, with times relative to `from_ns`.
+/// Returns the points fired at `from_ns` or later. The times of the points are relative to `from_ns`.
 std::vector<LidarPoint> points_from(TimeNs from_ns, TimeNs start_ns, std::span<const LidarPoint> points) {
   std::vector<LidarPoint> out;
   out.reserve(points.size());
@@ -27,7 +29,7 @@ std::vector<LidarPoint> points_from(TimeNs from_ns, TimeNs start_ns, std::span<c
   return out;
 }
 
-/// Drops the sweeps that ended by `time_ns` and returns their number.
+/// Removes the sweeps that ended at or before `time_ns`, and returns their number.
 std::size_t drop_until(TimeNs time_ns, std::deque<WaitingSweep>& sweeps) {
   std::size_t dropped = 0;
   for (; !sweeps.empty() && sweeps.front().end_ns <= time_ns; sweeps.pop_front()) ++dropped;
@@ -72,11 +74,9 @@ LidarInertialOdometry::Params mapper_params(const TumblingOdometry::Params& para
   return out;
 }
 
-// Largest stamp of a sample or a sweep, equal to 109 years. Differences of stamps then fit into 64 bits.
-constexpr TimeNs kStampMax_ns = 3 * (TimeNs{1} << 60);
 constexpr double kSilent_s = 1.0;       // silence of the lidar after which empty sweeps are inserted
 constexpr double kAhead_s = 1.0;        // maximum time by which a sweep may end after the newest sample
-constexpr double kSweepsMax_hz = 20.0;  // highest sweep rate of lidars: determines how many sweeps wait for the lag
+constexpr double kSweepsMax_hz = 20.0;  // maximum sweep rate of a lidar; limits how many sweeps wait for the lag
 
 }  // namespace
 
@@ -95,34 +95,27 @@ OdometryParams TumblingExpertParams::mapping_defaults() {
 
 TumblingOdometry::TumblingOdometry(const Params& params)
     : params_(params),
+      order_(params.expert.rate.rate.gap_max_s),
       filter_(outlier_params(params)),
       clock_(params.expert.stamps),
       pass_(rate_params(params), mapper_params(params)),
       second_pass_(params.expert.second_pass, rate_params(params), mapper_params(params)) {}
 
 Status TumblingOdometry::add_imu(const ImuSample& sample) {
-  if (sample.time_ns < -kStampMax_ns || sample.time_ns > kStampMax_ns)
-    return {Trouble::out_of_range, "time_ns", double(sample.time_ns), double(kStampMax_ns)};
-  const bool in_order = outliers_.count == 0 || sample.time_ns > outliers_.passed.back().time_ns;
-  if (!in_order || !check_sample(sample).ok()) return take_in(sample);  // which returns what is wrong
+  if (const Status status = check_sample(sample); !status.ok()) return status;
+  StampOrder::Verdict verdict{};
+  if (const Status status = order_.judge(sample.time_ns, order_state_, verdict); !status.ok()) return status;
+  if (verdict == StampOrder::Verdict::restarts_after_gap) restart_rates();
+  if (verdict == StampOrder::Verdict::restarts_after_step_back) restart_at_newest();
+  if (filter_.first_is_refuted(sample, outliers_)) restart_without_first();
   if (const std::optional<ImuSample> confirmed = filter_.settle(sample, outliers_)) {
-    if (const Status status = add_inlier(*confirmed); !status.ok()) return status;
+    if (const Status status = take_in(*confirmed); !status.ok()) return status;
   }
-  return filter_.keeps_back(sample, outliers_) ? Status{} : add_inlier(sample);
-}
-
-Status TumblingOdometry::add_inlier(const ImuSample& sample) {
-  const Status status = take_in(sample);
-  if (status.trouble != Trouble::gap) return status;
-  const double gap_max_s = params_.expert.rate.rate.gap_max_s;
-  if (!after_gap_ || !check_follows(sample.time_ns, after_gap_->time_ns, gap_max_s).ok()) {
-    after_gap_ = sample;
-    return status;
-  }
-  const ImuSample first = *after_gap_;
-  restart();
-  ++gaps_;
-  if (const Status begun = take_in(first); !begun.ok()) return begun;
+  if (filter_.keeps_back(sample, outliers_)) return {};
+  if (const Status status = take_in(sample); !status.ok()) return status;
+  const std::optional<Eigen::Vector3d> offset = gyro_offset_.observe(sample, gyro_offset_state_);
+  if (!offset) return {};
+  restart_with_offset(*offset);
   return take_in(sample);
 }
 
@@ -133,9 +126,9 @@ Status TumblingOdometry::take_in(const ImuSample& sample) {
   if (const Status status = pass_.add_imu(timed); !status.ok()) return status;
   stamps_ = stamps;
   OutlierFilter::pass(sample, outliers_);
+  StampOrder::accept(sample.time_ns, order_state_);
   second_pass_.store(timed);
   newest_ns_ = timed.time_ns;
-  after_gap_.reset();
   if (!registered_ns_) {
     registered_ns_ = timed.time_ns;
     early_sweeps_ += drop_until(timed.time_ns, waiting_);
@@ -146,8 +139,8 @@ Status TumblingOdometry::take_in(const ImuSample& sample) {
 
 Status TumblingOdometry::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points) {
   if (end_ns < start_ns) return {Trouble::time_order, "end_ns", double(end_ns), double(start_ns)};
-  if (start_ns < -kStampMax_ns) return {Trouble::out_of_range, "start_ns", double(start_ns), double(-kStampMax_ns)};
-  if (end_ns > kStampMax_ns) return {Trouble::out_of_range, "end_ns", double(end_ns), double(kStampMax_ns)};
+  if (const Status status = check_stamp(start_ns, "start_ns"); !status.ok()) return status;
+  if (const Status status = check_stamp(end_ns, "end_ns"); !status.ok()) return status;
   const TimeNs from_ns = std::max(start_ns, sweep_end_ns_.value_or(start_ns));
   if (from_ns > start_ns && from_ns - start_ns > (end_ns - start_ns) / 2)
     return {Trouble::time_order, "start_ns", double(start_ns), double(from_ns)};
@@ -202,7 +195,8 @@ Status TumblingOdometry::health() const {
   if (const Status of_force = pass_.force_at_rest(); !of_force.ok()) return of_force;
   const Status of_ranges = pass_.sweep_scale().verdict();
   if (!of_ranges.ok()) return of_ranges;
-  const Status of_localisation = pass_.localisation().verdict();
+  if (const Status of_vertical = mapper().vertical(); !of_vertical.ok()) return of_vertical;
+  const Status of_localisation = pass_.localisation().present();
   return of_localisation.ok() ? params_.stated_calibration().verdict(mapper().calibration()) : of_localisation;
 }
 
@@ -229,8 +223,8 @@ void TumblingOdometry::register_sweep(TimeNs start_ns, TimeNs end_ns, std::vecto
   second_pass_.advance(pass_);
 }
 
-/// Returns whether the sweep would be more than lag_s old at the sample after the newest sample. In addition, the whole
-/// lag except one period must follow the covering sample, which is not the case after a gap.
+/// Returns whether the sweep would be older than lag_s when the next sample arrives. In addition, samples for the lag
+/// minus one period must follow the sample that covers the sweep's end. After a gap, these samples are missing.
 bool TumblingOdometry::is_due(TimeNs end_ns) const {
   const std::optional<TimeNs> covering_ns = pass_.covering_ns(end_ns);
   if (!covering_ns) return false;
@@ -242,7 +236,8 @@ bool TumblingOdometry::is_due(TimeNs end_ns) const {
 void TumblingOdometry::register_covered() {
   while (!waiting_.empty()) {
     const TimeNs end_ns = waiting_.front().end_ns;
-    // the covering sample ends up to one period later, so its rate is reported one period earlier
+    // The sample that covers the sweep's end may end up to one period later. Its rate is therefore reported one period
+    // early.
     if (!pass_.covers(end_ns) && is_due(end_ns)) pass_.flush_until(pass_.needed_ns(end_ns));
     if (!pass_.covers(end_ns)) break;
     WaitingSweep sweep = std::move(waiting_.front());
@@ -253,7 +248,7 @@ void TumblingOdometry::register_covered() {
   if (!waiting_.empty() || !covered_ns) return;
   if (seconds(*covered_ns - *registered_ns_) > kSilent_s) {
     register_sweep(*covered_ns, *covered_ns, {});
-    if (done_.back().report.trajectory.empty()) done_.pop_back();  // no sweep has started the map
+    if (done_.back().report.trajectory.empty()) done_.pop_back();  // no sweep has started the map yet
     sweep_end_ns_ = *covered_ns;
   }
 }
@@ -263,14 +258,81 @@ void TumblingOdometry::flush_all() {
   register_covered();
 }
 
-void TumblingOdometry::restart() {
+void TumblingOdometry::restart_rates() {
+  ++gaps_;
+  OutlierFilter::finish(outliers_);
   flush_all();
   second_pass_.give_up();
   begin_rates();
 }
 
+/// Restarts the run at the newest pose after the clock stepped back. Sweeps that the IMU covers are registered before.
+void TumblingOdometry::restart_at_newest() {
+  ++gaps_;
+  PoseState pose;
+  const bool located = newest(pose).ok();
+  OutlierFilter::finish(outliers_);
+  if (newest_rate()) flush_all();
+  Eigen::Isometry3d T_WI = mapper().start().value_or(Eigen::Isometry3d::Identity());
+  if (located) {
+    T_WI.linear() = pose.q_WA.toRotationMatrix();
+    T_WI.translation() = pose.p_WA_m;
+  }
+  const Eigen::Vector3d offset_rad_s = gyro_offset_rad_s();
+  reset(T_WI);
+  if (!offset_rad_s.isZero(0.0)) set_gyro_offset(offset_rad_s);
+}
+
+/// Restarts a run of one sample, which is an outlier.
+void TumblingOdometry::restart_without_first() {
+  const std::optional<Eigen::Isometry3d> start = mapper().start();
+  std::deque<WaitingSweep> waiting = std::move(waiting_);
+  OutlierFilter::State outliers = outliers_;
+  const std::optional<TimeNs> sweep_end_ns = sweep_end_ns_;
+  reset();
+  if (start) pass_.start_at(*start);
+  waiting_ = std::move(waiting);
+  sweep_end_ns_ = sweep_end_ns;
+  outliers.count = 0;
+  ++outliers.rejected;
+  outliers_ = outliers;
+}
+
+/// Restarts the run at rest, at the same start, with the gyro's zero offset as nominal bias.
+void TumblingOdometry::restart_with_offset(const Eigen::Vector3d& offset_rad_s) {
+  const std::optional<Eigen::Isometry3d> start = mapper().start();
+  early_sweeps_ += waiting_.size();
+  reset();
+  if (start) pass_.start_at(*start);
+  set_gyro_offset(offset_rad_s);
+}
+
+void TumblingOdometry::set_gyro_offset(const Eigen::Vector3d& offset_rad_s) {
+  gyro_offset_state_.decided = true;
+  RegimeStream::Params rate = rate_params(params_);
+  rate.rate.model.nominal.gyro_bias_rad_s = offset_rad_s;
+  pass_.begin_rates(rate);
+  second_pass_.set_gyro_offset(offset_rad_s);
+}
+
+void TumblingOdometry::reset() {
+  const auto fresh = std::make_unique<TumblingOdometry>(params_);
+  fresh->gaps_ = gaps_;
+  fresh->dropped_sweeps_ = dropped_sweeps_;
+  fresh->early_sweeps_ = early_sweeps_;
+  fresh->outliers_.rejected = outliers_.rejected;
+  fresh->done_ = std::move(done_);
+  *this = std::move(*fresh);
+}
+
+void TumblingOdometry::reset(const Eigen::Isometry3d& T_WI) {
+  reset();
+  pass_.start_at(T_WI);
+}
+
 void TumblingOdometry::begin_rates() {
   RegimeStream::Params params = rate_params(params_);
+  params.rate.model.nominal.gyro_bias_rad_s = gyro_offset_rad_s();
   // if the estimated calibration is out of bounds, restart from the stated calibration
   if (const RigCalibration learnt = rig(); check_calibration(learnt).ok()) params.rate.model.calibration = learnt;
   pass_.begin_rates(params);

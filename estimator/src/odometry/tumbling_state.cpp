@@ -22,7 +22,7 @@ Status OdometryPass::check_state() const {
   const TimeNs newest_ns = window.back().observation.sample.time_ns;
   if (last_mapped_ns_ && *last_mapped_ns_ > newest_ns)
     return {Trouble::out_of_range, "pass.last_mapped_ns", double(*last_mapped_ns_), double(newest_ns)};
-  if (pending_.all().empty()) {  // all were reported, as after the second pass
+  if (pending_.all().empty()) {  // all poses were reported, as after the second pass
     const bool complete = smoothed_ && smoothed_->time_ns == newest_ns && last_mapped_ns_ == newest_ns;
     return complete ? Status{} : missing("pass.pending");
   }
@@ -64,7 +64,7 @@ Status TumblingOdometry::load(std::span<const std::byte> bytes) {
 
 Status TumblingOdometry::saved_params(std::span<const std::byte> bytes, Params& params) {
   Params read;
-  read.lever_arm_I_m.setZero();  // has no default
+  read.lever_arm_I_m.setZero();  // the lever arm has no default
   const auto any = std::make_unique<TumblingOdometry>(read);
   const Status status = odometry::load_params(odometry::SavedKind::tumbling, bytes, *any, read);
   if (status.ok()) params = read;

@@ -17,7 +17,8 @@ ImuSample absent(TimeNs time_ns) {
   return sample;
 }
 
-/// Returns the time of the newest reading of a unit, or the time of the first reading of any unit.
+/// Returns the time of a unit's newest reading. If the unit has no reading, returns the time of the first reading of
+/// any unit.
 TimeNs newest_ns(std::size_t unit, const UnitAlignment::State& state) {
   const std::vector<ImuSample>& readings = state.readings[unit];
   return readings.empty() ? *state.first_ns : readings.back().time_ns;
@@ -35,7 +36,7 @@ bool is_silent(std::size_t unit, const UnitAlignment::State& state) {
   return seconds(newest_ns(state) - newest_ns(unit, state)) > UnitAlignment::kSilentMax_s;
 }
 
-/// Returns the first reading after the newest common time, or the end.
+/// Returns the first reading after the newest common time, or the end of the readings.
 auto after_common(const std::vector<ImuSample>& readings, const UnitAlignment::State& state) {
   return std::find_if(readings.begin(), readings.end(), [&](const ImuSample& reading) {
     return !state.common_ns || reading.time_ns > *state.common_ns;
@@ -86,7 +87,7 @@ bool UnitAlignment::next(State& state, Readings& out, bool ended) const {
   return true;
 }
 
-/// Changes the reference if it is silent and another unit is not.
+/// Replaces the reference unit if it provides no readings and another unit does.
 void UnitAlignment::choose_reference(State& state) const {
   const std::vector<ImuSample>& readings = state.readings[state.reference];
   if (after_common(readings, state) != readings.end() || !is_silent(state.reference, state)) return;

@@ -7,7 +7,7 @@ namespace tumble {
 
 namespace {
 
-constexpr int kReadings = 512;               // stored readings per triad: some seconds at the extremes
+constexpr int kReadings = 512;               // stored readings per triad: some seconds near the extremes
 constexpr double kStatedMax_rad_s = 1000.0;  // RailDetector ignores larger ranges
 
 RailWatch::Params watch_params(const ImuSheet& sheet) {
@@ -37,10 +37,10 @@ void UnitRails::flag(std::span<const ImuSample> samples, const State& state, Sam
     if (!check_sample(samples[k]).ok()) continue;
     const RailWatch::State& rails = state[k].rails;
     const Clipping judged = units_[k].watch.judge(state[k].before ? &*state[k].before : nullptr, samples[k], rails);
-    const CertainRails certain{.gyro = rails.known.planes_in_use(),
-                               .accel = rails.known.planes_in_use(Triad::accelerometer),
-                               .gyro_range_rad_s = units_[k].sheet.gyro_range_rad_s,
-                               .accel_range_m_s2 = units_[k].sheet.accel_range_m_s2};
+    const ConfirmedSaturation certain{.gyro = rails.known.planes_in_use(),
+                                      .accel = rails.known.planes_in_use(Triad::accelerometer),
+                                      .gyro_range_rad_s = units_[k].sheet.gyro_range_rad_s,
+                                      .accel_range_m_s2 = units_[k].sheet.accel_range_m_s2};
     out[k].device_clip_flags = certain.flags(samples[k], judged);
   }
 }

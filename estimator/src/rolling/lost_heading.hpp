@@ -21,7 +21,7 @@ inline bool lost_heading(const Covariance& P) {
 /// Removes the effect of a rotation of the whole run from the derivative of the contact velocity, rolling.md (R35). The
 /// true effect is zero while the contact point does not move.
 inline void blind_to_heading(Contact& c) {
-  c.H.col(kAttitude + 2) -= Eigen::Vector3d::UnitZ().cross(c.u_W_m_s);
+  c.H.col(kAttitude + 2) -= Eigen::Vector3d::UnitZ().cross(c.contact_velocity_W_m_s);
 }
 
 /// Returns how a correction `x` of the nominal changes the effect of a rotation about the vertical on velocity,

@@ -15,8 +15,8 @@ namespace tumble {
 namespace {
 
 constexpr double kSlowRateTau_s = 0.3;
-constexpr double kEventProbability = 0.5;  // of slip or bump, over all hypotheses, from which an event is reported
-constexpr double kSpinSigmas = 4.0;  // a rate at rest above this many sigmas is not a bias
+constexpr double kEventProbability = 0.5;  // a slip or bump is reported above this probability
+constexpr double kSpinSigmas = 4.0;  // limit of a rate at rest, in standard deviations; a larger rate is not a bias
 
 static_assert(RollingFilter::kStates == rolling::kStates);
 
@@ -63,7 +63,7 @@ void RollingFilter::start(const ImuSample& sample, const Eigen::Quaterniond& q_W
 void RollingFilter::take_average(State& state, Listener listener) const {
   const ImuAverage reading = state.average;
   state.average = {};
-  // a node closes one reading late because the rate at its end is between two readings
+  // The last reading of a node follows the node's end, because the rate at the end is between two readings.
   if (state.sums.node_s >= params_.expert.node_s - 0.5 * reading.length_s) {
     close_node(reading.mean.angular_velocity_rad_s, state);
     listener.call(listener.to, state);
@@ -113,12 +113,12 @@ void RollingFilter::close_node(const Eigen::Vector3d& next_rate_rad_s, State& st
   }
   state.position_covariance_m2 =
       state.hypotheses[0].P.block<3, 3>(rolling::kPosition, rolling::kPosition) + position_spread(state);
-  // the disagreement of the hypotheses about the past is a spread of the current position
+  // If the hypotheses about past motion disagree, the uncertainty of the current position increases.
   if (state.at_rest && state.count == 1) {
     state.hypotheses[0].P.block<3, 3>(rolling::kPosition, rolling::kPosition) += state.pruned_spread_m2;
     state.position_covariance_m2 += state.pruned_spread_m2;
   }
-  call_uncertain(state);
+  flag_uncertain(state);
   weigh_events(state);
   rebase(lost_heading, state);
   constrain_position(state);
@@ -128,7 +128,7 @@ void RollingFilter::close_node(const Eigen::Vector3d& next_rate_rad_s, State& st
 
 void RollingFilter::detect_rest(State& state) const {
   const double h = state.sums.node_s;
-  if (state.sums.gap_s > 0.0) {  // two readings do not show rest between them
+  if (state.sums.gap_s > 0.0) {  // two readings do not show rest between the readings
     state.rest = {};
     state.at_rest = state.spins_in_place = false;
     return;
@@ -141,8 +141,8 @@ void RollingFilter::detect_rest(State& state) const {
   state.spins_in_place = state.at_rest && spins_in_place(state);
 }
 
-/// Returns whether a sphere at rest rotates slowly about its contact, by comparison with the known bias. rolling.md
-/// (R29).
+/// Returns whether a sphere at rest rotates slowly about its contact point: rolling.md (R29). The criterion is the
+/// difference between the averaged rate and the gyro bias.
 bool RollingFilter::spins_in_place(const State& state) const {
   const double averaged = params_.expert.node_s / (2.0 * kSlowRateTau_s);
   const Hypothesis& best = state.hypotheses[0];
@@ -153,8 +153,8 @@ bool RollingFilter::spins_in_place(const State& state) const {
   return (off.square() > kSpinSigmas * kSpinSigmas * variance).any();
 }
 
-/// Returns the contribution of the other hypotheses to the position's covariance about the best hypothesis: sum of w d
-/// d^T over the sum of w, with weight w and position difference d, rolling.md (R27).
+/// Returns the part of the position covariance that is due to the other hypotheses: rolling.md (R27). With the weight w
+/// and the difference d to the best position, the result is the sum of w d d^T over the sum of w.
 Eigen::Matrix3d RollingFilter::position_spread(const State& state) {
   const Eigen::Vector3d best = state.hypotheses[0].x.segment<3>(rolling::kPosition);
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
@@ -169,7 +169,7 @@ Eigen::Matrix3d RollingFilter::position_spread(const State& state) {
   return spread / total;
 }
 
-void RollingFilter::call_uncertain(State& state) const {
+void RollingFilter::flag_uncertain(State& state) const {
   const double variance_m2 = state.position_covariance_m2(0, 0) + state.position_covariance_m2(1, 1);
   const bool event = slips(state.hypotheses[0].mode);
   if (!event) state.variance_before_event_m2 = variance_m2;
@@ -189,10 +189,11 @@ void RollingFilter::weigh_events(State& state) {
   state.bump_probability = hopping / total;
 }
 
-/// Decides whether the reported position is constant until the next node.
+/// Decides whether the reported position remains constant until the next node.
 void RollingFilter::constrain_position(State& state) const {
-  const bool quiet = seconds(state.rest.quiet_ns) >= std::min(rolling::kConstrainAfter_s, params_.expert.rest.rest_s) &&
-                     !slips(state.hypotheses[0].mode);
+  const bool quiet =
+      seconds(state.rest.within_bias_since_ns) >= std::min(rolling::kConstrainAfter_s, params_.expert.rest.rest_s) &&
+      !slips(state.hypotheses[0].mode);
   const bool revised = state.hypotheses[0].parent != 0;
   const bool stands = quiet && !revised && state.v_WG_m_s.norm() < rolling::kConstrainSpeed_m_s;
   if (!stands || !state.position_constrained) {
@@ -202,8 +203,8 @@ void RollingFilter::constrain_position(State& state) const {
   state.position_constrained = stands;
 }
 
-/// Moves the errors of the best hypothesis into the nominal trajectory and constants. The remaining hypotheses are
-/// expressed relative to the best one.
+/// Moves the errors of the best hypothesis into the nominal trajectory and the constants. The states of all hypotheses
+/// are then relative to the best hypothesis.
 void RollingFilter::rebase(bool lost_heading, State& state) const {
   const Vector x = state.hypotheses[0].x, turned = rolling::turned_by_heading(x);
   rolling::rebase(x, state.nominal);
@@ -229,11 +230,11 @@ void RollingFilter::report(State& state) const {
   if (!state.position_constrained) state.p_WG_m = nominal.p_WI_m - arm_W;
   state.v_WG_m_s = nominal.v_WI_m_s - w_W.cross(arm_W);
   state.mode = state.hypotheses[0].mode;
-  state.contact_velocity_m_s = state.hypotheses[0].u_W_m_s;
+  state.contact_velocity_m_s = state.hypotheses[0].contact_velocity_W_m_s;
 }
 
-/// Returns the most probable mode, over all hypotheses. The best hypothesis can be one of several that agree only in
-/// whether the contact moves.
+/// Returns the most probable mode over all hypotheses. The best hypothesis may be one of several hypotheses that differ
+/// in their past, but agree whether the contact point moves.
 RollingMode RollingFilter::most_probable_mode(const State& state) {
   const bool event = state.slip_probability >= kEventProbability;
   if (event == slips(state.mode)) return state.mode;

@@ -18,19 +18,20 @@ namespace tumble {
 
 namespace {
 
-constexpr double kDropped = -120.0;   // log weight relative to the best below which a hypothesis is pruned
-constexpr double kRestFloor = -60.0;  // minimum log likelihood at rest: a single bad node must not decide
-constexpr double kLongAgo_s = 1.0;    // time in one mode after which its start no longer matters
-// Horizontal change of the contact velocity u per node. The plateau component is as narrow as grip; a wider component
-// would classify each plateau as grip.
+constexpr double kDropped = -120.0;   // log weight relative to the best hypothesis, below which a hypothesis is pruned
+constexpr double kRestFloor = -60.0;  // minimum log likelihood at rest; limits the effect of a single bad node
+constexpr double kLongAgo_s = 1.0;    // time in one mode after which the start of the mode no longer matters
+// Mixture for the horizontal change of the contact point's velocity per node during slip. The component kPlateau_m_s is
+// as narrow as grip. A wider component would classify each phase of constant slip velocity as grip.
 constexpr double kPlateau_m_s = 0.004, kSteady_m_s = 0.01, kJump_m_s = 0.08, kPlateauShare = 0.4, kSteadyShare = 0.35;
-constexpr double kRise_m_s = 0.03, kHit_m_s = 0.3, kRiseShare = 0.7;  // vertical change of u per node, on a bump
+constexpr double kRise_m_s = 0.03, kHit_m_s = 0.3, kRiseShare = 0.7;  // vertical change of contact velocity, on a bump
 constexpr std::int64_t kAgesApart = 4;
-// Minimum number of hypotheses that do not contain the best hypothesis' last mode change. A slip with constant spin
-// looks like grip until the slip ends. At this time, a hundred variants of the last nodes are more probable.
+// Minimum number of hypotheses that do not contain the last mode change of the best hypothesis. A slip with constant
+// spin looks like grip until the slip ends. When the slip ends, a hundred variants of the last nodes have higher
+// weights.
 constexpr std::size_t kDissenters = 6;
-constexpr double kRoughCost = 0.2;  // per node: less than the residual of a slope, more than that of grip on a plane
-constexpr double kInclineAfterBump = 4.0;  // the foot of a ramp is a bump
+constexpr double kRoughCost = 0.2;         // cost per node, between the residuals of a slope and of grip on a plane
+constexpr double kInclineAfterBump = 4.0;  // factor for a slope after a bump, because the foot of a ramp is a bump
 constexpr RollingMode kModes[] = {RollingMode::grip, RollingMode::slip, RollingMode::bump, RollingMode::incline,
                                   RollingMode::rough};
 static_assert(std::size(kModes) == kRollingModes);
@@ -39,8 +40,8 @@ double log_normal(double value, double variance) {
   return -0.5 * (value * value / variance + std::log(2.0 * std::numbers::pi * variance));
 }
 
-/// Returns the log density of a vertical change of the contact velocity u per node on a bump: rolling over the bump, or
-/// hitting it. m1 of rolling.md (R25).
+/// Returns the log density of a vertical change of the contact velocity u per node on a bump: m1 of rolling.md (R25).
+/// The sphere rolls over the bump or hits it.
 double log_rise(double change) {
   const auto density = [&](double sigma) {
     return std::exp(-0.5 * change * change / (sigma * sigma)) / (sigma * std::sqrt(2.0 * std::numbers::pi));
@@ -48,8 +49,8 @@ double log_rise(double change) {
   return std::log(kRiseShare * density(kRise_m_s) + (1.0 - kRiseShare) * density(kHit_m_s) + 1e-300);
 }
 
-/// Returns the log density of a horizontal change of the contact velocity u per node with squared length `square`:
-/// plateau, drift or jump. m2 of rolling.md (R24).
+/// Returns the log density of a horizontal change of the contact velocity u per node: m2 of rolling.md (R24). The
+/// velocity is constant, drifts, or jumps. `square` is the squared length of the change.
 double log_change(double square) {
   double density = 0.0;
   for (const auto& [share, sigma] : {std::pair(kPlateauShare, kPlateau_m_s), std::pair(kSteadyShare, kSteady_m_s),
@@ -81,7 +82,8 @@ double log_still(const rolling::Contact& c, const RollingFilter::Hypothesis& h, 
   Eigen::LLT<Eigen::Matrix3d> factor;
   double log_det = 0.0, cost = 0.0;
   if (mode == RollingMode::rough) {
-    // roughness lasts many nodes; its width must not be penalised in each node
+    // Roughness lasts for many nodes. The normalisation of the density therefore uses the width of grip, which avoids a
+    // penalty in each node.
     log_det = log_det_with(rolling::contact_variance(params, c, RollingMode::grip), factor);
     cost = kRoughCost;
   }
@@ -91,18 +93,18 @@ double log_still(const rolling::Contact& c, const RollingFilter::Hypothesis& h, 
   return -cost - 0.5 * (square + log_det + 3.0 * std::log(2.0 * std::numbers::pi));
 }
 
-/// Returns the log density of a moving contact point, by the change of its velocity `u` since the last node: rolling.md
-/// (R24), (R25).
+/// Returns the log density of a moving contact point, given the change of its velocity `u` since the last node:
+/// rolling.md (R24), (R25).
 double log_moving(const rolling::Contact& c, const RollingFilter::Hypothesis& h, RollingMode mode,
                   const Eigen::Vector3d& u, const RollingParams& params) {
-  const Eigen::Vector3d change = u - h.u_W_m_s;
+  const Eigen::Vector3d change = u - h.contact_velocity_W_m_s;
   const double horizontal = log_change(change.head<2>().squaredNorm());
   if (mode == RollingMode::bump) return horizontal + log_rise(change.z());
   const double vertical = c.H.row(2) * h.P * c.H.row(2).transpose() + squared(params.expert.contact.vertical_sigma_m_s);
   return horizontal + log_normal(u.z(), vertical);
 }
 
-/// rolling.md (R22).
+/// Returns the log probability of a transition between two modes within a node: rolling.md (R22).
 double log_transition(const RollingParams& params, RollingMode from, RollingMode to, double h_s) {
   const auto& modes = params.expert.modes;
   const auto rate = [&](RollingMode a, RollingMode b) {
@@ -130,7 +132,7 @@ struct Candidate {
 };
 using Candidates = std::array<Candidate, kRollingModes * RollingFilter::kHypotheses>;
 
-/// Returns all candidates in `out`, the most probable first.
+/// Stores all candidates in `out` and returns them, sorted by decreasing probability.
 std::span<const Candidate> propose(const RollingParams& params, const rolling::Contact& c,
                                    const RollingFilter::State& state, Candidates& out) {
   const double node_s = state.sums.node_s;
@@ -145,7 +147,7 @@ std::span<const Candidate> propose(const RollingParams& params, const rolling::C
       const bool bound = slips(h.mode) && state.node - h.switched_node < shortest;
       if (mode != h.mode && bound) continue;
       if (too_fast && !slips(mode)) continue;
-      double likelihood = 0.0;  // a gap is no evidence of a mode
+      double likelihood = 0.0;  // a gap provides no evidence of a mode
       if (!in_gap) likelihood = slips(mode) ? log_moving(c, h, mode, u, params) : log_still(c, h, mode, params);
       const double impact = mode == RollingMode::bump
                                 ? 0.0
@@ -154,14 +156,14 @@ std::span<const Candidate> propose(const RollingParams& params, const rolling::C
                       mode == h.mode ? h.switched_node : state.node};
     }
   }
-  // std::stable_sort would allocate; ties are ordered by origin, so the order is unique
+  // std::stable_sort would allocate memory. Equal weights are ordered by origin, so the order is unique.
   std::sort(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(total), [](const Candidate& a, const Candidate& b) {
     return std::tuple(-a.log_weight, a.parent, a.mode) < std::tuple(-b.log_weight, b.parent, b.mode);
   });
   return {out.data(), total};
 }
 
-/// Returns the start node after merging. Two starts of one mode merge the sooner, the older they are.
+/// Returns the start node of a mode after merging. The distance within which starts merge grows with their age.
 std::int64_t beginning(std::int64_t switched_node, std::int64_t node, double node_s) {
   const auto long_ago = static_cast<std::int64_t>(kLongAgo_s / node_s);
   const std::int64_t age = std::min(node - switched_node, long_ago);
@@ -175,7 +177,8 @@ struct Kept {
   std::size_t count = 0;
 };
 
-/// Selects the candidates that remain: the most probable candidates of each mode and start, with kDissenters reserved.
+/// Selects the candidates that remain: the most probable candidate for each mode and start. kDissenters places are
+/// reserved for candidates without the best candidate's last mode change.
 Kept keep(std::span<const Candidate> candidates, std::int64_t node, double node_s) {
   Kept kept;
   for (const Candidate& candidate : candidates) {
@@ -194,7 +197,7 @@ Kept keep(std::span<const Candidate> candidates, std::int64_t node, double node_
 
 using Origins = std::array<std::size_t, RollingFilter::kHypotheses>;
 
-/// Replaces the first `count` hypotheses by copies of the hypotheses in `from`. The copies are made in place, because a
+/// Replaces the first `count` hypotheses by copies of the hypotheses in `from`. The function copies in place, because a
 /// second array would need 420 KiB of stack.
 void rearrange(const Origins& from, std::size_t count, std::span<RollingFilter::Hypothesis> all) {
   std::array<int, RollingFilter::kHypotheses> readers{};  // number of pending readers of each slot
@@ -203,7 +206,7 @@ void rearrange(const Origins& from, std::size_t count, std::span<RollingFilter::
     waits[k] = from[k] != k;
     readers[from[k]] += waits[k] ? 1 : 0;
   }
-  // a slot without readers can be overwritten, which may free the slot's source
+  // A slot that no pending copy reads can be overwritten. The copy may free the slot that it reads.
   for (std::size_t first = 0; first < count; ++first) {
     for (std::size_t k = first; k < count && waits[k] && readers[k] == 0; k = from[k]) {
       all[k] = all[from[k]];
@@ -211,7 +214,7 @@ void rearrange(const Origins& from, std::size_t count, std::span<RollingFilter::
       --readers[from[k]];
     }
   }
-  // the remaining slots form cycles
+  // the remaining copies form cycles of slots
   for (std::size_t first = 0; first < count; ++first) {
     if (!waits[first]) continue;
     const RollingFilter::Hypothesis kept = all[first];
@@ -227,7 +230,7 @@ void rearrange(const Origins& from, std::size_t count, std::span<RollingFilter::
 
 }  // namespace
 
-/// rolling.md (R26).
+/// Updates the weights of the hypotheses and selects the most probable hypotheses: rolling.md (R26).
 void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, bool lost_heading, State& state) const {
   rolling::Contact c = rolling::contact(params_, state.nominal, rate_I_rad_s, state.sums);
   if (lost_heading) rolling::blind_to_heading(c);
@@ -245,7 +248,7 @@ void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, bool lost_
     rolling::contact_rows(
         params_, c, candidate.mode, node_s, state.nominal.v_WI_m_s, h.x, h.P,
         [&](const auto& row, double measured, double variance) { rolling::update(row, measured, variance, h.x, h.P); });
-    h.u_W_m_s = c.velocity(h.x);
+    h.contact_velocity_W_m_s = c.velocity(h.x);
     h.log_weight = candidate.log_weight - ordered[0].log_weight;
     h.mode = candidate.mode;
     h.switched_node = candidate.switched_node;
@@ -254,7 +257,7 @@ void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, bool lost_
   keep_first(kept.count, state);
 }
 
-/// Clears unused hypotheses, so that equal estimates are equal states.
+/// Clears unused hypotheses, so that equal estimates have equal states.
 void RollingFilter::keep_first(std::size_t count, State& state) {
   const auto begin = state.hypotheses.begin();
   const auto first = begin + static_cast<std::ptrdiff_t>(count);
@@ -262,14 +265,14 @@ void RollingFilter::keep_first(std::size_t count, State& state) {
   state.count = static_cast<int>(count);
 }
 
-/// Updates every hypothesis with rest and grip: rolling.md (R28).
+/// Updates each hypothesis with the measurements of rest and grip: rolling.md (R28).
 void RollingFilter::correct_at_rest(State& state) const {
   for (int k = 0; k < state.count; ++k) {
     Hypothesis& h = state.hypotheses[static_cast<std::size_t>(k)];
     double likelihood = 0.0;
     rolling::rest_rows(params_, state.sums, state.nominal, state.spins_in_place,
                        [&](int index, double measured, double variance) {
-                         if (index < rolling::kPosition)  // a velocity; a bias is no evidence of a mode
+                         if (index < rolling::kPosition)  // a velocity is evidence of a mode, a bias is not
                            likelihood += log_normal(measured - h.x[index], h.P(index, index) + variance);
                          rolling::update(index, measured, variance, h.x, h.P);
                        });
@@ -279,7 +282,7 @@ void RollingFilter::correct_at_rest(State& state) const {
       h.switched_node = state.node;
       h.mode = RollingMode::grip;
     }
-    h.u_W_m_s.setZero();
+    h.contact_velocity_W_m_s.setZero();
   }
   const auto count = static_cast<std::size_t>(state.count);
   Origins order{};
@@ -288,8 +291,8 @@ void RollingFilter::correct_at_rest(State& state) const {
     return std::tuple(-state.hypotheses[a].log_weight, a) < std::tuple(-state.hypotheses[b].log_weight, b);
   });
   rearrange(order, count, state.hypotheses);
-  // the hypotheses agree about the present, so one is sufficient after a while
-  const bool rested = seconds(state.rest.quiet_ns) > kLongAgo_s;
+  // After some rest, the hypotheses agree about the present. One hypothesis is then sufficient.
+  const bool rested = seconds(state.rest.within_bias_since_ns) > kLongAgo_s;
   if (rested && state.count > 1) state.pruned_spread_m2 = position_spread(state);
   const double best = state.hypotheses[0].log_weight;
   std::size_t kept = 0;

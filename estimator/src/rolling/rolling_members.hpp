@@ -25,10 +25,11 @@ void members(Self& s, Visitor& visit) {
 template <StateOf<RollingSums> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("sums.R_s", s.R_s);
+  visit("sums.R_force_s", s.R_force_s);
   visit("sums.f_W_m_s", s.f_W_m_s);
   visit("sums.R_f", s.R_f);
   visit("sums.R_w", s.R_w);
-  visit("sums.R_wxf", s.R_wxf);
+  visit("sums.rotated_rate_cross_force", s.rotated_rate_cross_force);
   visit("sums.w_I_rad", s.w_I_rad);
   visit("sums.f_I_m_s", s.f_I_m_s);
   visit("sums.rotated_rad2_s", s.rotated_rad2_s);
@@ -49,7 +50,7 @@ template <StateOf<RollingFilter::Hypothesis> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("hypothesis.x", s.x);
   visit("hypothesis.P", s.P);
-  visit("hypothesis.u_W_m_s", s.u_W_m_s);
+  visit("hypothesis.contact_velocity_W_m_s", s.contact_velocity_W_m_s);
   visit("hypothesis.log_weight", s.log_weight);
   visit("hypothesis.switched_node", s.switched_node);
   visit("hypothesis.parent", s.parent, 0.0, RollingFilter::kHypotheses - 1.0);

@@ -12,7 +12,7 @@ namespace tumble::rolling {
 
 namespace {
 
-constexpr double kSteepest = 0.95;  // maximum sine of a slope, so that the normal points up
+constexpr double kSteepest = 0.95;  // maximum sine of a slope, which ensures that the normal points up
 constexpr double kLevelSlopeSigma = 1e-3;
 
 double upward(const Eigen::Vector2d& slope) {
@@ -23,40 +23,40 @@ Eigen::Vector3d normal(const Eigen::Vector2d& slope) {
   return {slope.x(), slope.y(), upward(slope)};
 }
 
-constexpr double kUsual_m_s2 = 3.0;                   // difference of a force from gravity without an impact
-constexpr double kOffCentre_m = 0.02;                 // of an IMU: explains forces in fast rotation
+constexpr double kUsual_m_s2 = 3.0;                   // maximum difference of a force from gravity without an impact
+constexpr double kOffCentre_m = 0.02;                 // offset of an IMU, explains forces in fast rotation
 constexpr double kHiddenFrom = 0.3, kHiddenTo = 0.6;  // as fractions of the accelerometer's range
 constexpr double kForceTilt_rad = 0.35;               // direction error of a force in motion
-constexpr double kLostTilt_rad = kForceTilt_rad;      // a tilt with a larger standard deviation is levelled by a force
-constexpr double kUncertainTilt_rad = 0.1;            // same at rest, where the force is gravity
+constexpr double kLostTilt_rad = kForceTilt_rad;      // if the standard deviation is larger, a force levels the tilt
+constexpr double kUncertainTilt_rad = 0.1;            // the same limit at rest, where the force is gravity
 constexpr double kRestTilt_rad = 5e-3;
-// Fraction of gravity above which a difference of the force from gravity is a push or a fast rotation.
+// Difference between force and gravity, as a fraction of gravity, above which the sphere is pushed or rotates fast.
 constexpr double kPush = 0.15;
 constexpr double kLostSpeed_m_s = 1.0;
 constexpr double kRecoveredTau_s = 0.1;  // correlation time of the error of a recovered rate
-constexpr double kFastRate_rad_s = 6.0;  // at higher rates, a node's force rotates too far to level by
+constexpr double kFastRate_rad_s = 6.0;  // at higher rates, the force rotates too far within a node for levelling
 constexpr double kUnsureSpeed_m_s = 0.1, kSpeedWindow_s = 1.0;
-constexpr double kStartTilt_rad = 0.15;  // of a start in motion: a push of 1.5 m/s^2
-// Limits of the motion around a gap. A sphere with smaller rates on both sides of a gap was hardly pushed during the
-// gap.
+constexpr double kStartTilt_rad = 0.15;  // tilt error of a start in motion, caused by a push of 1.5 m/s^2
+// Limits of rate and angular acceleration around a gap. If the rates on both sides of a gap are below the limit, the
+// sphere was hardly pushed during the gap.
 constexpr double kGapRate_rad_s = 1.0, kGapStill_rad_s2 = 0.5;
-constexpr double kGapTurned = 0.5;  // in a gap, as a fraction of the rolling velocity's change
+constexpr double kGapTurned = 0.5;  // change of velocity in a gap, as a fraction of the rolling velocity's change
 constexpr double kGapStep = 0.15;   // uncertain time of a rate change within a gap, as a fraction of the gap
 
 }  // namespace
 
-/// rolling.md (R18), (R19).
+/// Returns the variance of the contact velocity in a mode: rolling.md (R18), (R19).
 Eigen::Vector3d contact_variance(const RollingParams& params, const Contact& c, RollingMode mode) {
   const double rough =
       mode == RollingMode::rough ? squared(params.expert.contact.rough_share * c.rolling_speed_m_s) : 0.0;
   return {c.grip_variance, c.grip_variance, squared(params.expert.contact.vertical_sigma_m_s) + rough + c.gap_variance};
 }
 
-/// rolling.md (R17).
+/// Returns the velocity of the contact point: rolling.md (R17).
 Eigen::Vector3d Contact::velocity(const Vector& x) const {
   const Eigen::Vector2d change = x.segment<2>(kSlope);
   const double curved = upward(slope + change) - upward(slope) + slope.dot(change) / upward(slope);
-  return u_W_m_s + H * x + curved * lift_W;
+  return contact_velocity_W_m_s + H * x + curved * lift_W;
 }
 
 bool starts_in_motion(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s) {
@@ -76,14 +76,14 @@ RollingNominal start_nominal(const RollingParams& params, const Eigen::Quaternio
   return nominal;
 }
 
-/// Sets the prior of the states in the order of rolling.md (R1).
+/// Sets the prior covariance of the states, in the order of rolling.md (R1).
 void set_prior(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s, Covariance& P) {
   P.setZero();
   auto prior = P.diagonal();
-  // the force on a pushed sphere is not gravity, and a rotating sphere may slip by its full speed
+  // On a pushed sphere, the measured force is not gravity. A rotating sphere may slip with its full rolling speed.
   const bool moves = starts_in_motion(params, rate_I_rad_s);
   const double tilt = moves ? kStartTilt_rad : 0.0, velocity = moves ? params.radius_m * rate_I_rad_s.norm() : 0.0;
-  // the heading defines the world's x axis
+  // the heading at the start defines the world's x axis, so its prior variance is 0
   prior.segment<2>(kAttitude).setConstant(squared(params.expert.prior.tilt_sigma_rad) + squared(tilt));
   prior.segment<3>(kVelocity).setConstant(squared(params.expert.prior.velocity_sigma_m_s) + squared(velocity));
   prior.segment<3>(kGyroBias).setConstant(squared(params.expert.prior.gyro_bias_sigma_rad_s));
@@ -100,11 +100,11 @@ namespace {
 
 struct RailedForce {
   Eigen::Vector3d force_m_s2 = Eigen::Vector3d::Zero();
-  Eigen::Vector3d least_m_s2 = Eigen::Vector3d::Zero();  ///< components for which the reading is a lower bound
+  Eigen::Vector3d least_m_s2 = Eigen::Vector3d::Zero();  ///< the reading is a lower bound of these components
 };
 
-/// Returns the reading, or the force that keeps the centre's velocity constant if this force is larger. rolling.md
-/// (R8).
+/// Returns the reading of a saturated force, or a larger force: rolling.md (R8). The larger force keeps the velocity of
+/// the centre constant.
 RailedForce railed_force(const ImuSample& sample, const Eigen::Vector3d& read_m_s2, const Eigen::Vector3d& kept_m_s2) {
   int largest = 0;
   sample.specific_force_m_s2.cwiseAbs().maxCoeff(&largest);
@@ -124,7 +124,7 @@ RailedForce railed_force(const ImuSample& sample, const Eigen::Vector3d& read_m_
 
 }  // namespace
 
-/// rolling.md (R2) to (R9).
+/// Integrates a reading: rolling.md (R2) to (R9).
 void integrate(const RollingParams& params, const ImuAverage& reading, RollingNominal& nominal, RollingSums& sums,
                Force known) {
   const ImuSample& sample = reading.mean;
@@ -134,8 +134,8 @@ void integrate(const RollingParams& params, const ImuAverage& reading, RollingNo
   const Eigen::Vector3d w = w_raw - nominal.gyro_bias_rad_s - nominal.gyro_scale * w_raw;
   Eigen::Vector3d f =
       f_raw - nominal.accel_bias_m_s2 - nominal.accel_scale * f_raw - nominal.accel_delay_s * w.cross(f_raw);
-  // averaging over the window reduces a force that rotates in the sensor by the fraction (|w| dt)^2 / 24 across the
-  // axis: rolling.md (R4)
+  // A force that rotates in the sensor is reduced by averaging over the window. Across the rotation axis, the reduction
+  // is the fraction (|w| dt)^2 / 24: rolling.md (R4).
   f -= dt_s * dt_s / 24.0 * w.cross(w.cross(f));
   const Eigen::Quaterniond half = so3::exp(0.5 * dt_s * w);
   const Eigen::Quaterniond q_mid = nominal.q_WI * half;
@@ -151,7 +151,8 @@ void integrate(const RollingParams& params, const ImuAverage& reading, RollingNo
   const Eigen::Vector3d arm = params.lever_arm_m + nominal.lever_arm_error_m;
   const Eigen::Vector3d change_rad_s = w_raw - nominal.last_rate_I_rad_s;  // angular acceleration times dt_s
   nominal.last_rate_I_rad_s = w_raw;
-  // a force rotated by an unknown rate gives no information, so the centre's velocity is kept constant, (R7)
+  // If the rate is unknown, the direction of the force is unknown. The velocity of the centre then remains constant:
+  // rolling.md (R7).
   const Eigen::Vector3d keeps_centre = R_T * w.cross(w.cross(arm)) + q_mid * change_rad_s.cross(arm);
   const Eigen::Vector3d fallen = dt_s * gravity * Eigen::Vector3d::UnitZ();
   Eigen::Vector3d least = Eigen::Vector3d::Zero();
@@ -166,9 +167,10 @@ void integrate(const RollingParams& params, const ImuAverage& reading, RollingNo
   sums.R_s += R_T;
   for (int axis = 0; axis < 3; ++axis) sums.R_w.middleCols<3>(3 * axis) += w_raw[axis] * R_T;
   if (!unturned) {  // otherwise no error of force or attitude affects the velocity
+    sums.R_force_s += R_T;
     sums.f_W_m_s += R_T * f;
     for (int axis = 0; axis < 3; ++axis) sums.R_f.middleCols<3>(3 * axis) += f_raw[axis] * R_T;
-    sums.R_wxf += R_T * w.cross(f_raw);
+    sums.rotated_rate_cross_force += R_T * w.cross(f_raw);
   }
   sums.w_I_rad += dt_s * w;
   sums.f_I_m_s += dt_s * f_raw;
@@ -209,15 +211,15 @@ ImuAverage gap_piece(const RollingParams& params, const ImuSample& before, const
   const Eigen::Vector3d change = after.angular_velocity_rad_s - before.angular_velocity_rad_s;
   ImuSample sample = after;
   sample.angular_velocity_rad_s = before.angular_velocity_rad_s + share * change;
-  sample.device_clip_flags = 0;  // flags of the reading after the gap do not apply to the gap
+  sample.device_clip_flags = 0;  // flags of the reading after the gap do not apply within the gap
   const double turning = std::max(before.angular_velocity_rad_s.norm(), after.angular_velocity_rad_s.norm());
   const double acceleration =
       kGapStill_rad_s2 + params.expert.gap.gap_acceleration_rad_s2 * std::min(1.0, turning / kGapRate_rad_s);
-  // a parabola between two known rates has the integral a T^3 / 12, with acceleration a and gap length T: rolling.md
-  // (R31)
+  // A parabola between two known rates has the integral a T^3 / 12, with the angular acceleration a and the duration T
+  // of the gap: rolling.md (R31).
   const double off_rad = acceleration * gap_s * gap_s * gap_s / 12.0 + kGapStep * change.norm() * gap_s;
   uncertainty.rad2 = off_rad * off_rad / pieces;
-  // rolling.md (R32)
+  // variance of the contact velocity in a gap: rolling.md (R32)
   uncertainty.rate_rad2_s = squared(off_rad / gap_s) * gap_s;  // common to all pieces, hence a factor gap_s
   uncertainty.speed_m2_s2 = squared(kGapTurned * params.radius_m * change.norm()) / pieces;  // rolling.md (R33)
   ImuAverage piece;
@@ -234,21 +236,21 @@ void integrate_gap(const RollingParams& params, const ImuAverage& piece, const G
   sums.gap_speed_m2_s2 += uncertainty.speed_m2_s2;
 }
 
-/// rolling.md (R10).
+/// Returns the transition matrix of the moving states: rolling.md (R10).
 Moving transition(const RollingSums& sums) {
   Moving B = Moving::Zero();
   B.block<3, 3>(kAttitude, kGyroBias) = -sums.R_s;
   B.block<3, 9>(kAttitude, kGyroScale) = -sums.R_w;
   B.block<3, 3>(kVelocity, kAttitude) = -so3::hat(sums.f_W_m_s);
-  B.block<3, 3>(kVelocity, kAccelBias) = -sums.R_s;
+  B.block<3, 3>(kVelocity, kAccelBias) = -sums.R_force_s;
   B.block<3, 9>(kVelocity, kAccelScale) = -sums.R_f;
-  B.block<3, 1>(kVelocity, kDelay) = -sums.R_wxf;
+  B.block<3, 1>(kVelocity, kDelay) = -sums.rotated_rate_cross_force;
   B.middleRows<3>(kPosition) = 0.5 * sums.node_s * B.middleRows<3>(kVelocity);
   B.block<3, 3>(kPosition, kVelocity) += sums.node_s * Eigen::Matrix3d::Identity();
   return B;
 }
 
-/// rolling.md (R11) to (R14).
+/// Predicts the states and their covariance over a node: rolling.md (R11) to (R14).
 void predict(const RollingParams& params, const RollingSums& sums, const Moving& B, Vector& x, Covariance& P) {
   const double h = sums.node_s;
   x.head<9>() += (B * x).eval();
@@ -274,7 +276,7 @@ void predict(const RollingParams& params, const RollingSums& sums, const Moving&
   diagonal.segment<3>(kAccelBias).array() += squared(params.expert.noise.accel_bias_walk_m_s2_sqrts) * h;
 }
 
-/// Computes rolling.md (R15), (R16), and the variance of (R18).
+/// Computes the contact velocity, its derivatives, and its variance: rolling.md (R15), (R16), (R18).
 Contact contact(const RollingParams& params, const RollingNominal& nominal, const Eigen::Vector3d& rate_I_rad_s,
                 const RollingSums& sums) {
   const Eigen::Matrix3d R = nominal.q_WI.toRotationMatrix();
@@ -282,13 +284,13 @@ Contact contact(const RollingParams& params, const RollingNominal& nominal, cons
   const Eigen::Vector3d arm_W = R * (params.lever_arm_m + nominal.lever_arm_error_m);
   const Eigen::Vector3d n = normal(nominal.slope);
   const double r = params.radius_m + nominal.radius_error_m;
-  // vector from the IMU to the contact point, with the contact velocity u = v + w x (-arm - r n)
+  // The vector from the IMU to the contact point determines the contact velocity u = v + w x (-arm - r n).
   const Eigen::Matrix3d reach = so3::hat(arm_W + r * n);
   Contact out;
-  out.u_W_m_s = nominal.v_WI_m_s + reach * w_W;
+  out.contact_velocity_W_m_s = nominal.v_WI_m_s + reach * w_W;
   out.H.setZero();
   out.H.middleCols<3>(kVelocity).setIdentity();
-  // an attitude error rotates the rate w and the lever arm, but not the floor's normal
+  // an attitude error rotates the rate w and the lever arm, but not the normal of the floor
   out.H.middleCols<3>(kAttitude) = so3::hat(w_W.cross(arm_W)) - r * so3::hat(n) * so3::hat(w_W);
   out.H.middleCols<3>(kGyroBias) = -reach * R;
   for (int axis = 0; axis < 3; ++axis) {
@@ -303,7 +305,7 @@ Contact contact(const RollingParams& params, const RollingNominal& nominal, cons
   out.rolling_speed_m_s = r * w_W.cross(n).norm();
   out.grip_variance =
       squared(params.expert.contact.grip_sigma_m_s) + squared(params.expert.contact.grip_sigma_share * r * w_W.norm());
-  // a flag counts at any rate, because saturation may occur below the range
+  // A clip flag counts at any rate, because saturation may occur below the stated range.
   const bool beyond = rate_I_rad_s.cwiseAbs().maxCoeff() >= params.gyro_range_rad_s || sums.recovered_s > 0.0;
   const bool recovered = params.expert.rails.recovered_rate_sigma_rad_s > 0.0;
   if (sums.rate_clipped_s > 0.0 || (beyond && !recovered)) {
@@ -318,7 +320,8 @@ Contact contact(const RollingParams& params, const RollingNominal& nominal, cons
   return out;
 }
 
-/// rolling.md (R20).
+/// Returns the variance of the measurement that the velocity is zero, if the velocity is too uncertain: rolling.md
+/// (R20).
 std::optional<double> lost_velocity_variance(const RollingParams& params, double node_s, const Covariance& P) {
   if (P(kVelocity, kVelocity) + P(kVelocity + 1, kVelocity + 1) < squared(kUnsureSpeed_m_s)) return std::nullopt;
   return squared(params.expert.contact.speed_sigma_m_s) * kSpeedWindow_s / node_s;
@@ -328,13 +331,14 @@ bool resets_slope(RollingMode from, RollingMode to) {
   return from != to && !slips(to);
 }
 
-/// rolling.md (R21).
+/// Resets the slope after a change of mode: rolling.md (R21).
 void change_floor(const RollingParams& params, RollingMode from, RollingMode to, double h_s,
                   const RollingNominal& nominal, Vector& x, Covariance& P) {
   if (from == RollingMode::incline && to == from) {
     P.diagonal().segment<2>(kSlope).array() += squared(params.expert.contact.slope_walk_sqrts) * h_s;
   }
-  // on a rough floor, the sphere travels less than it rotates, depending on the steepness
+  // On a rough floor, the travelled distance is smaller than the radius times the rotation. The ratio depends on the
+  // roughness.
   if (to == RollingMode::rough) P(kRadius, kRadius) += squared(params.expert.contact.rough_radius_walk_m_sqrts) * h_s;
   if (!resets_slope(from, to)) return;
   P.middleRows<2>(kSlope).setZero();
@@ -344,7 +348,7 @@ void change_floor(const RollingParams& params, RollingMode from, RollingMode to,
   x.segment<2>(kSlope) = -nominal.slope;
 }
 
-/// rolling.md (R30).
+/// Levels a lost tilt by the mean force: rolling.md (R30).
 bool reset_tilt(const RollingParams& params, const RollingSums& sums, bool at_rest, RollingNominal& nominal,
                 Covariance& P) {
   if (sums.force_clipped_s >= sums.node_s) return false;
@@ -362,7 +366,7 @@ bool reset_tilt(const RollingParams& params, const RollingSums& sums, bool at_re
   P.leftCols<6>().setZero();
   const double tilt_sigma_rad = at_rest ? std::max(params.expert.prior.tilt_sigma_rad, kRestTilt_rad) : kForceTilt_rad;
   P.diagonal().segment<2>(kAttitude).setConstant(squared(tilt_sigma_rad));
-  P(kAttitude + 2, kAttitude + 2) = squared(kLostSpeed_m_s);  // practically unknown, and small enough for linearisation
+  P(kAttitude + 2, kAttitude + 2) = squared(kLostSpeed_m_s);  // practically unknown, but small enough for linearisation
   P.diagonal().segment<3>(kVelocity).setConstant(
       squared(at_rest ? params.expert.contact.rest_velocity_sigma_m_s : kLostSpeed_m_s));
   return true;
@@ -376,7 +380,7 @@ void update(int index, double measured, double variance, Vector& x, Covariance& 
   x += component_update(index, measured - x[index], variance, P);
 }
 
-/// rolling.md (R1).
+/// Moves the errors x into the nominal states: rolling.md (R1).
 void rebase(const Vector& x, RollingNominal& nominal) {
   nominal.q_WI = (so3::exp(x.segment<3>(kAttitude)) * nominal.q_WI).normalized();
   nominal.v_WI_m_s += x.segment<3>(kVelocity);

@@ -27,7 +27,7 @@ inline constexpr double kConstrainAfter_s = 0.1, kConstrainSpeed_m_s = 0.02;
 
 /// Contact is the contact velocity of the nominal trajectory, and its derivative by the error state.
 struct Contact {
-  Eigen::Vector3d u_W_m_s;
+  Eigen::Vector3d contact_velocity_W_m_s;
   Eigen::Matrix<double, 3, kStates> H;
   double grip_variance = 0.0;
   double gap_variance = 0.0;       ///< additional variance from a gap, in every direction

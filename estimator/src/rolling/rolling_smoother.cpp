@@ -13,9 +13,9 @@ namespace tumble {
 
 namespace {
 
-// Limit of preallocated samples and nodes. With a lag beyond this limit, memory grows with the run.
+// Maximum number of preallocated samples and nodes. If the lag needs more samples, memory grows during the run.
 constexpr std::size_t kSetAsideMost = 1'000'000;
-constexpr std::size_t kBeyondStorage = 4;  // maximum number of samples, as a multiple of those with preallocated memory
+constexpr std::size_t kBeyondStorage = 4;  // maximum number of samples, as a multiple of the preallocated number
 
 RollingParams quieter(RollingParams params, double share) {
   params.expert.contact.grip_sigma_m_s *= share;
@@ -25,7 +25,7 @@ RollingParams quieter(RollingParams params, double share) {
   return params;
 }
 
-/// Returns the one of two modes that constrains the contact less.
+/// Returns which of two modes constrains the contact point less.
 RollingMode looser(RollingMode a, RollingMode b) {
   const auto rank = [](RollingMode mode) {
     if (slips(mode)) return mode == RollingMode::bump ? 3 : 2;
@@ -39,7 +39,8 @@ bool equal(const ImuSample& a, const ImuSample& b) {
          a.specific_force_m_s2 == b.specific_force_m_s2;
 }
 
-/// Returns the ratio of the reported variance to that of the final pass, which uses reduced process noise.
+/// Returns the ratio of the reported variance to the variance of the final pass. The final pass uses reduced process
+/// noise.
 double stated(const RollingSmoother::Params& params) {
   return 1.0 / (params.path_noise * params.path_noise);
 }
@@ -52,7 +53,7 @@ rolling::Readings::Cursor start_cursor(const ImuSample& sample) {
   return cursor;
 }
 
-/// Returns the covariance of (centre, attitude) from that of the reported states: rolling.md (R40).
+/// Returns the covariance of centre and attitude, given the covariance of the reported states: rolling.md (R40).
 Eigen::Matrix<double, 6, 6> pose_covariance(const rolling::NodeRecord& node, const Eigen::Vector3d& arm_W) {
   Eigen::Matrix<double, 6, rolling::kReported> J = Eigen::Matrix<double, 6, rolling::kReported>::Zero();
   J.block<3, 3>(0, 0) = so3::hat(arm_W);
@@ -62,7 +63,7 @@ Eigen::Matrix<double, 6, 6> pose_covariance(const rolling::NodeRecord& node, con
   return J * node.smoothed_P * J.transpose();
 }
 
-/// Keeps the reported position constant while the sphere is at rest.
+/// While the sphere is at rest, keeps the reported position constant.
 void constrain_position(const rolling::PathNode& node, RollingSmoother::Committed& committed,
                         RollingEstimate& estimate) {
   const bool stands = node.stands && !slips(node.mode) && estimate.v_WG_m_s.norm() < rolling::kConstrainSpeed_m_s;
@@ -75,7 +76,7 @@ RollingSmoother::Take appending(std::vector<RollingEstimate>& out) {
   return [&out](const RollingEstimate& estimate) { out.push_back(estimate); };
 }
 
-/// Returns the start of the final pass: the committed node, or the first sample.
+/// Returns the start of the final pass, which is the committed node or the first sample.
 void start_window(const RollingParams& filter, const RollingParams& path, const RollingSmoother::State& state,
                   rolling::LastPass::Checkpoint& start) {
   const RollingSmoother::Committed& last = state.committed;
@@ -97,7 +98,7 @@ void start_window(const RollingParams& filter, const RollingParams& path, const 
 
 struct Events {
   std::vector<bool> uncertain;
-  double committed_m2 = 0.0;  ///< RollingSmoother::Committed::event_variance_m2 after the node `emitted`
+  double committed_m2 = 0.0;  ///< event_variance_m2 of RollingSmoother::Committed after the node `emitted`
 };
 
 Events find_events(const RollingSmoother::Params& params, std::span<const rolling::PathNode> path,
@@ -183,7 +184,7 @@ Status RollingSmoother::check_state(const State& state) const {
   const Committed& committed = state.committed;
   for (std::size_t k = committed.started ? 0 : 1; k < state.samples.size(); ++k) {
     const TimeNs before_ns = k > 0 ? state.samples[k - 1].time_ns : committed.last_time_ns;
-    // a node may be within a gap, so the next sample may be much later than the node
+    // A node may be within a gap. The next sample may then be much later than the node.
     const TimeNs from_ns = k == 0 && committed.gap_piece > 0 ? committed.gap_start_ns : before_ns;
     const Status status = check_follows(state.samples[k].time_ns, from_ns, filter.expert.gap.gap_max_s);
     if (!status.ok()) return status;
@@ -208,7 +209,7 @@ Status RollingSmoother::step(const ImuSample& sample, State& state, std::vector<
       step.mode[k] = live.hypotheses[k].mode;
     }
     step.spread_m2 = live.pruned_spread_m2;
-    step.rest_s = seconds(live.rest.quiet_ns);
+    step.rest_s = seconds(live.rest.within_bias_since_ns);
     step.at_rest = live.at_rest;
     step.spins_in_place = live.spins_in_place;
     steps.push_back(step);
@@ -253,13 +254,13 @@ void RollingSmoother::finish(std::span<const RollingMode> known, State& state, c
   run_window(path, path.nodes.size() + 1, state, take);
 }
 
-/// Returns the modes of the currently most probable hypothesis, back to the committed node.
+/// Returns the modes of the most probable hypothesis, from the newest node back to the committed node.
 RollingSmoother::Path RollingSmoother::best_path(const State& state) const {
   Path path;
   path.nodes.resize(state.steps.size());
   const double constrain_after_s = std::min(rolling::kConstrainAfter_s, params_.filter.expert.rest.rest_s);
   std::size_t which = 0;
-  double lasts_s = 0.0;  // duration of the rest that contains a node
+  double lasts_s = 0.0;  // duration of the rest that contains the node
   for (std::size_t n = path.nodes.size(); n-- > 0;) {
     const Step& step = state.steps[n];
     rolling::PathNode& node = path.nodes[n];
@@ -300,7 +301,7 @@ void RollingSmoother::run_window(const Path& path, std::size_t emitted, State& s
 
   if (emitted <= pass.nodes()) {
     const auto& [filter, cursor] = pass.cut();
-    Committed& last = state.committed;  // its constant position remains
+    Committed& last = state.committed;  // the constant position of the committed node remains
     last.nominal = filter.nominal;
     last.P = filter.P;
     last.mode = filter.mode;
@@ -314,7 +315,7 @@ void RollingSmoother::run_window(const Path& path, std::size_t emitted, State& s
     state.samples.erase(state.samples.begin(), state.samples.begin() + static_cast<std::ptrdiff_t>(cursor.next));
     state.steps.erase(state.steps.begin(), state.steps.begin() + static_cast<std::ptrdiff_t>(emitted));
   } else {
-    state.committed.gap_piece = 0;  // no gap continues
+    state.committed.gap_piece = 0;  // the gap ends here
     state.samples.clear();
     state.steps.clear();
   }

@@ -13,10 +13,10 @@ namespace tumble::rolling {
 namespace {
 
 constexpr double kMaxSigmas = 5.0;
-constexpr double kNoDirection_m = 0.05;  // minimum distance of two positions with a defined direction
+constexpr double kNoDirection_m = 0.05;  // minimum distance of two positions whose direction is defined
 
-/// Reduces the weight of a measurement beyond kMaxSigmas, because large linear corrections would distort the whole run:
-/// rolling.md (R37).
+/// Applies a measurement. If the residual exceeds kMaxSigmas standard deviations, reduces the weight, because a large
+/// linear correction would distort the whole run: rolling.md (R37).
 void measure(const Row& H, double measured, double variance, NodeRecord& record, Vector& x, Covariance& P) {
   const auto k = static_cast<std::size_t>(record.rows++);
   const Vector PHt = P * H.transpose();
@@ -38,8 +38,7 @@ Reported reported(const Vector& x) {
   return out;
 }
 
-/// Transforms the adjoint after a move of the nominal to the adjoint before the move: T^T lambda, T^T Lambda T.
-/// rolling.md (R36)
+/// Transforms the adjoint to the time before the nominal state moved: T^T lambda, T^T Lambda T, rolling.md (R36).
 void move_back(const Vector& turned, Adjoint& adjoint) {
   constexpr int kHeading = kAttitude + 2;
   adjoint.lambda[kHeading] += turned.dot(adjoint.lambda);
@@ -142,7 +141,7 @@ Reported error_before_update(const NodeRecord& node) {
   return node.lost_heading ? Reported(error - node.smoothed[kAttitude + 2] * reported(node.turned)) : error;
 }
 
-/// rolling.md (R41).
+/// Applies a known distance between start and end: rolling.md (R41).
 Reported measure_distance(const RollingParams& params, double distance_m, double sigma_m, NodeRecord& last,
                           PathFilter& filter) {
   const RollingNominal& nominal = filter.nominal;
@@ -167,7 +166,7 @@ Reported measure_distance(const RollingParams& params, double distance_m, double
   return reported(x);
 }
 
-/// rolling.md (R38), (R39).
+/// Computes the smoothed states and covariances by a backward pass: rolling.md (R38), (R39).
 void smooth_back(Adjoint& adjoint, std::span<NodeRecord> nodes) {
   auto& [lambda, Lambda] = adjoint;
   for (std::size_t n = nodes.size(); n-- > 0;) {
@@ -185,7 +184,7 @@ void smooth_back(Adjoint& adjoint, std::span<NodeRecord> nodes) {
       lambda -= H.transpose() * (K.dot(lambda) + node.innovation[k] / node.variance[k]);
       const Row seen = H * (K.dot(through) + 1.0 / node.variance[k]);
       Lambda += H.transpose().lazyProduct(seen) - H.transpose().lazyProduct(through.transpose()) -
-                through.lazyProduct(H);  // avoids a temporary matrix of 13 KiB for each
+                through.lazyProduct(H);  // avoids a temporary matrix of 13 KiB per measurement
     }
     if (node.resets_slope) {
       lambda.segment<2>(kSlope).setZero();

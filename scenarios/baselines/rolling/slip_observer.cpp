@@ -58,7 +58,7 @@ Status SlipObserver::step(const ImuSample& sample, const Eigen::Quaterniond& q_W
     if (const Status bad = elapsed(sample.time_ns, state.last_time_ns, params_.gap_max_s, dt_s); !bad.ok()) return bad;
     observe(sample, q_WI, dt_s, state);
     const Eigen::Vector3d w_W = q_WI * sample.angular_velocity_rad_s;
-    state.v_WG_m_s = params_.radius_m * Eigen::Vector2d(w_W.y(), -w_W.x()) + state.u_W_m_s;
+    state.v_WG_m_s = params_.radius_m * Eigen::Vector2d(w_W.y(), -w_W.x()) + state.contact_velocity_W_m_s;
     const Eigen::Vector2d blended = state.pending_m * -std::expm1(-dt_s / params_.blend_tau_s);
     state.pending_m -= blended;
     state.p_WG_m += dt_s * state.v_WG_m_s + blended;
@@ -97,7 +97,7 @@ void SlipObserver::observe(const ImuSample& sample, const Eigen::Quaterniond& q_
 }
 
 void SlipObserver::advance_closed(const Eigen::Vector2d& e, double dt_s, State& state) const {
-  state.u_W_m_s *= std::exp(-params_.closed_decay_per_s * dt_s);
+  state.contact_velocity_W_m_s *= std::exp(-params_.closed_decay_per_s * dt_s);
   if (state.quiet_s > 0.0) state.bias_m_s2 += -std::expm1(-dt_s / params_.bias_tau_s) * e;
   if (state.ignoring && state.quiet_s >= params_.ignore_time_s) state.ignoring = false;
   if (!state.ignoring && e.norm() > params_.open_m_s2) open_event(e, state);
@@ -117,25 +117,25 @@ void SlipObserver::open_event(const Eigen::Vector2d& e, State& state) const {
     path += dt_s * state.event_s * state.e_W_m_s2[place];  // displacement due to the residual from `event_s` ago
     state.event_s += dt_s;
   }
-  state.u_W_m_s = u;
+  state.contact_velocity_W_m_s = u;
   state.event_m = path;
   state.pending_m += path;
 }
 
 void SlipObserver::advance_open(const Eigen::Vector2d& e, double dt_s, State& state) const {
-  state.u_W_m_s += dt_s * e;
-  state.event_m += dt_s * state.u_W_m_s;
+  state.contact_velocity_W_m_s += dt_s * e;
+  state.event_m += dt_s * state.contact_velocity_W_m_s;
   state.event_s += dt_s;
   if (state.event_s > params_.timeout_s) {
     state.pending_m -= state.event_m;
     state.open = false;
     state.ignoring = true;
-  } else if (state.quiet_s >= params_.quiet_time_s && state.u_W_m_s.norm() < params_.closing_speed_m_s) {
-    state.pending_m -= 0.5 * state.event_s * state.u_W_m_s;
+  } else if (state.quiet_s >= params_.quiet_time_s && state.contact_velocity_W_m_s.norm() < params_.closing_speed_m_s) {
+    state.pending_m -= 0.5 * state.event_s * state.contact_velocity_W_m_s;
     state.open = false;
   }
   if (!state.open) {
-    state.u_W_m_s.setZero();
+    state.contact_velocity_W_m_s.setZero();
     state.event_m.setZero();
     state.event_s = 0.0;
   }

@@ -70,12 +70,12 @@ class SlipObserver {
   struct State {
     Eigen::Vector2d p_WG_m = Eigen::Vector2d::Zero();
     Eigen::Vector2d v_WG_m_s = Eigen::Vector2d::Zero();
-    Eigen::Vector2d u_W_m_s = Eigen::Vector2d::Zero();    ///< contact velocity
-    Eigen::Vector2d bias_m_s2 = Eigen::Vector2d::Zero();  ///< mean of e
-    Eigen::Vector2d pending_m = Eigen::Vector2d::Zero();  ///< correction not yet applied
-    Eigen::Vector2d event_m = Eigen::Vector2d::Zero();    ///< displacement due to u in this event
-    std::array<Eigen::Vector2d, kWindow> a_W_m_s2{};      ///< ring buffers; the newest is at (count - 1) mod size
-    std::array<Eigen::Vector2d, kWindow> roll_W_m_s{};    ///< r w x n
+    Eigen::Vector2d contact_velocity_W_m_s = Eigen::Vector2d::Zero();  ///< contact velocity
+    Eigen::Vector2d bias_m_s2 = Eigen::Vector2d::Zero();               ///< mean of e
+    Eigen::Vector2d pending_m = Eigen::Vector2d::Zero();               ///< correction not yet applied
+    Eigen::Vector2d event_m = Eigen::Vector2d::Zero();                 ///< displacement due to u in this event
+    std::array<Eigen::Vector2d, kWindow> a_W_m_s2{};    ///< ring buffers; the newest is at (count - 1) mod size
+    std::array<Eigen::Vector2d, kWindow> roll_W_m_s{};  ///< r w x n
     std::array<double, kWindow> dt_s{};
     std::array<Eigen::Vector2d, kHistory> e_W_m_s2{};
     std::array<double, kHistory> e_dt_s{};

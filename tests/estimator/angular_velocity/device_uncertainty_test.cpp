@@ -34,10 +34,10 @@ DeviceUncertainty::Posterior posterior_by(const DeviceUncertainty& device, const
 }
 
 TEST(DeviceUncertainty, WithoutEvidenceIsTheMixtureAssumed) {
-  const SensorErrorSizes sizes;
+  const SensorErrorPriors sizes;
   const DeviceUncertainty::Posterior posterior = posterior_by(DeviceUncertainty(sizes, 0.3), {});
   EXPECT_NEAR(posterior.unlike, 0.3, 1e-12);
-  const SensorErrors::Vector sheet = error_deviations(sizes, 0.0), unknown = error_deviations(sizes, 1.0);
+  const SensorErrors::Vector sheet = prior_deviations(sizes, 0.0), unknown = prior_deviations(sizes, 1.0);
   const SensorErrors::Vector expected = 0.7 * sheet.cwiseAbs2() + 0.3 * unknown.cwiseAbs2();
   EXPECT_LT((posterior.covariance.diagonal() - expected).cwiseQuotient(expected).cwiseAbs().maxCoeff(), 1e-12);
   EXPECT_EQ((posterior.covariance - SensorErrors::Matrix(posterior.covariance.diagonal().asDiagonal())).norm(), 0.0);
@@ -46,7 +46,7 @@ TEST(DeviceUncertainty, WithoutEvidenceIsTheMixtureAssumed) {
 // One number alone: odds, mean and variance by hand. Of what samples say of the odds three tenths are believed, of
 // where the errors lie three hundredths.
 TEST(DeviceUncertainty, IsBayesOverTwoDevices) {
-  const SensorErrorSizes sizes;
+  const SensorErrorPriors sizes;
   const double delay_s = 1.5e-4, sigma_s = 1e-4;
   const DeviceUncertainty::Posterior posterior =
       posterior_by(DeviceUncertainty(sizes, 0.3), delay_of(delay_s, sigma_s));
@@ -78,10 +78,10 @@ TEST(DeviceUncertainty, APlainDelayLeavesAllOpenAndNoneTakesTheSheetsWord) {
 }
 
 TEST(DeviceUncertainty, OfNoneThatIsUncalibratedTheSheetIsBelieved) {
-  const SensorErrorSizes sizes;
+  const SensorErrorPriors sizes;
   const DeviceUncertainty::Posterior posterior = posterior_by(DeviceUncertainty(sizes, 0.0), delay_of(8e-3, 1e-4));
   EXPECT_EQ(posterior.unlike, 0.0);
-  EXPECT_LE(posterior.covariance(0, 0), 1.001 * error_deviations(sizes, 0.0)[0] * error_deviations(sizes, 0.0)[0]);
+  EXPECT_LE(posterior.covariance(0, 0), 1.001 * prior_deviations(sizes, 0.0)[0] * prior_deviations(sizes, 0.0)[0]);
 }
 
 TEST(DeviceUncertainty, EvidenceThatIsNoNumberLeavesWhatWasOpen) {

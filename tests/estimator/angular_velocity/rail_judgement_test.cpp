@@ -222,8 +222,8 @@ TEST(RailJudgement, AnAuxiliaryImuIsReadAlongItsElements) {
   double along = 0.0, by_axis = 0.0;
   int count = 0;
   for (std::size_t k = 0; k < readings.size(); ++k) {
-    EXPECT_EQ(readings[k].rate_by_elements, found.clippings[k].gyro != 0) << k;
-    if (!readings[k].rate_by_elements || tumble.hidden[k].norm() < 2.0) continue;
+    EXPECT_EQ(readings[k].rate_along_elements, found.clippings[k].gyro != 0) << k;
+    if (!readings[k].rate_along_elements || tumble.hidden[k].norm() < 2.0) continue;
     for (int j = 0; j < 3; ++j) {
       if (!std::isfinite(readings[k].rate_rad_s[j]) || auxiliary_imu.gyro_elements.slope_sigma[j] > 0.01) continue;
       along += std::abs(readings[k].rate_rad_s[j] - rows.row(j).dot(tumble.truth[k]));

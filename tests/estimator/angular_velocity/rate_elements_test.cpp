@@ -70,7 +70,7 @@ TEST(RateElements, WhatIsLearntOfTheElementsIsNearTheTruth) {
   std::vector<RateState> states;
   RateReport report;
   ASSERT_TRUE(RateSmoother(with_lever_arm<RateSmoother::Params>()).estimate(tumble.samples, states, report).ok());
-  EXPECT_FALSE(report.rails_axis_aligned);
+  EXPECT_FALSE(report.clips_after_compensation);
   ASSERT_TRUE(report.planes.any());
   double known = 0.0;
   for (int i = 0; i < 6; ++i) {
@@ -87,7 +87,7 @@ TEST(RateElements, AnUprightDeviceIsTakenForOne) {
   std::vector<RateState> states;
   RateReport report;
   ASSERT_TRUE(RateSmoother(with_lever_arm<RateSmoother::Params>()).estimate(tumble.samples, states, report).ok());
-  EXPECT_TRUE(report.rails_axis_aligned);
+  EXPECT_TRUE(report.clips_after_compensation);
 }
 
 // A rate about y that rises and falls along straight lines and is cut at a level; another element's rail is known.

@@ -134,7 +134,8 @@ TEST(RateSmootherInput, TellsWhenTheStatedRangeIsWrongAndWhenForcesLookLikeG) {
   std::vector<RateState> out;
   RateReport report;
   ASSERT_TRUE(RateSmoother(params).estimate(tumble.samples, out, report).ok());
-  EXPECT_TRUE(report.rail_disagrees[0] || report.rail_disagrees[1] || report.rail_disagrees[2]);
+  EXPECT_TRUE(report.contradicts_stated_range[0] || report.contradicts_stated_range[1] ||
+              report.contradicts_stated_range[2]);
   EXPECT_EQ(report.rail[0].value_or(0.0), 10.5);
   EXPECT_FALSE(report.force_unit_suspect);
   for (ImuSample& sample : tumble.samples) sample.specific_force_m_s2 /= 9.81;

@@ -89,7 +89,7 @@ TEST(StrokeSums, TellNothingOfFewOrOfAHandOrAtTheEnds) {
 
 // Two Gaussians and their shares, by hand.
 TEST(RateStreamDelay, OddsOfTheSheetAreThoseOfTwoGaussians) {
-  const SensorErrorSizes sizes;
+  const SensorErrorPriors sizes;
   const double sigma_s = 1.5e-3;
   for (const double delay_s : {0.0, 3e-3, 6e-3, 0.01}) {
     const auto density = [&](double size) {

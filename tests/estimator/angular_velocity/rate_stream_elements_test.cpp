@@ -74,7 +74,7 @@ TEST(RateStreamElements, WithALongLagItIsTheBatch) {
       RateReport report;
       ASSERT_TRUE(RateSmoother(batch_params).estimate(tumble.samples, batch, report).ok());
       ASSERT_EQ(live.size(), batch.size());
-      EXPECT_EQ(state.rails.known.upright, report.rails_axis_aligned);
+      EXPECT_EQ(state.rails.known.upright, report.clips_after_compensation);
       std::vector<double> apart;
       int judged_apart = 0;
       for (std::size_t k = 0; k < batch.size(); ++k) {

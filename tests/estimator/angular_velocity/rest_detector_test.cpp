@@ -139,11 +139,11 @@ TEST(RestDetector, TakesMeans) {
   };
   for (int k = 0; k < 19; ++k) EXPECT_FALSE(take(0.01, k)) << k;
   EXPECT_TRUE(take(0.01, 19)) << "0.4 s";
-  EXPECT_EQ(state.quiet_ns, 400'000'000);
+  EXPECT_EQ(state.within_bias_since_ns, 400'000'000);
   EXPECT_FALSE(take(0.045, 20)) << "beyond the spread, below the largest";
-  EXPECT_EQ(state.quiet_ns, kNode_ns) << "a run of its own";
+  EXPECT_EQ(state.within_bias_since_ns, kNode_ns) << "a run of its own";
   EXPECT_FALSE(take(0.5, 21));
-  EXPECT_EQ(state.quiet_ns, 0);
+  EXPECT_EQ(state.within_bias_since_ns, 0);
 }
 
 TEST(RestDetector, ForceBeyondGravityIsNoRest) {

@@ -74,7 +74,7 @@ TEST(ScaleBound, ARunTellsNoMoreOfAScaleThanItsAcceleration) {
     const ScaleInformation tumbling = scale_information(seed, {1.0, 1.15, 1.3});
     EXPECT_LT(tumbling.of_model, tumbling.at_most) << seed;
     // no better than what is assumed of a device that nobody has calibrated, 1 %; measured: 0.85, 1.8, 0.97 %
-    EXPECT_GT(1.0 / std::sqrt(tumbling.of_model), 0.5 * SensorErrorSizes{}.gyro_uncalibrated) << seed;
+    EXPECT_GT(1.0 / std::sqrt(tumbling.of_model), 0.5 * SensorErrorPriors{}.gyro_uncalibrated) << seed;
     // a sphere turns at a constant rate whatever it is: its flights tell nothing
     const ScaleInformation sphere = scale_information(seed, {1.0, 1.0, 1.0});
     EXPECT_LT(sphere.of_model, sphere.at_most) << seed;

@@ -96,14 +96,14 @@ TEST(SensorErrors, WhatNoMotionTellsIsDiscounted) {
 }
 
 TEST(SensorErrors, WithoutReadingsTheyAreWhatIsAssumed) {
-  SensorErrorSizes sheet;
+  SensorErrorPriors sheet;
   sheet.gyro_uncalibrated = sheet.accel_uncalibrated = sheet.g_sensitivity_uncalibrated_s_m =
       sheet.delay_uncalibrated_s = 0.0;
   const SensorErrorFit believed = fit_sensor_errors({}, sheet), open = fit_sensor_errors({}, {});
   EXPECT_EQ(believed.known.errors, SensorErrors{});
   EXPECT_DOUBLE_EQ(std::sqrt(believed.known.covariance(1, 1)), sheet.gyro);
-  EXPECT_DOUBLE_EQ(believed.in_sheet_probability, 1.0);
-  EXPECT_LT(open.in_sheet_probability, 1.0);
+  EXPECT_DOUBLE_EQ(believed.data_sheet_probability, 1.0);
+  EXPECT_LT(open.data_sheet_probability, 1.0);
   EXPECT_GT(open.known.covariance(0, 0), 20.0 * believed.known.covariance(0, 0));
 }
 
@@ -162,7 +162,7 @@ TEST(SensorErrors, MoveTheGradientAsTheModelHasIt) {
 
 // What was learnt comes back as it was, from a device as open as the one it was learnt of and without other readings.
 TEST(SensorErrors, WhatWasLearntComesBack) {
-  SensorErrorSizes open;
+  SensorErrorPriors open;
   open.gyro = open.accel = open.gyro_uncalibrated;
   open.g_sensitivity_s_m = open.g_sensitivity_uncalibrated_s_m;
   open.delay_s = open.delay_uncalibrated_s;

@@ -91,10 +91,10 @@ testing::RollingTruth l_roll() {
 TEST(ImuPlausibility, EveryOtherNamingOfTheAxesIsFound) {
   const testing::RollingTruth truth = l_roll();
   const ImuPlausibility plausibility({});
-  EXPECT_FALSE(plausibility.other_labels(state_of(truth, axis_labels().front())));
+  EXPECT_FALSE(plausibility.better_axis_labels(state_of(truth, axis_labels().front())));
   for (std::size_t k = 1; k < axis_labels().size(); ++k) {
     const AxisLabels& named = axis_labels()[k];
-    const std::optional<AxisLabels> found = plausibility.other_labels(state_of(truth, named));
+    const std::optional<AxisLabels> found = plausibility.better_axis_labels(state_of(truth, named));
     ASSERT_TRUE(found) << k;
     EXPECT_EQ(found->axis, named.axis) << k;
     EXPECT_EQ(found->sign, named.sign) << k;
@@ -213,13 +213,14 @@ TEST(ImuPlausibility, APendulumIsHeldToItsLiftNotToItsSwing) {
 // pushes take from the slope; another sense or scale would leave less of what is unexplained
 TEST(ImuPlausibility, ASlopeIsToldWhereItExplainsWhatTheGyroLeaves) {
   const ImuPlausibility plausibility({});
-  const auto verdict_at = [&](double by_force_rad2, double correlation) {
+  const auto verdict_at = [&](double force_rotation_rad2, double correlation) {
     ImuPlausibility::State state;
     constexpr double kRotated_rad2 = 10.0;  // by the gyro, well beyond what little is left out
-    state.by_force_rad2 = kRotated_rad2 * by_force_rad2;
-    state.by_gyro_rad2 = kRotated_rad2;
+    state.force_rotation_rad2 = kRotated_rad2 * force_rotation_rad2;
+    state.gyro_rotation_rad2 = kRotated_rad2;
     state.rotated_windows = 100.0;
-    const double unexplained = kRotated_rad2 * (by_force_rad2 + 1.0 - 2.0 * correlation * std::sqrt(by_force_rad2));
+    const double unexplained =
+        kRotated_rad2 * (force_rotation_rad2 + 1.0 - 2.0 * correlation * std::sqrt(force_rotation_rad2));
     std::fill(state.unexplained_rad2.begin(), state.unexplained_rad2.end(), unexplained);
     EXPECT_NEAR(plausibility.rotation_agreement(state), correlation, 1e-9);
     return plausibility.verdict(state).ok();

@@ -56,15 +56,15 @@ struct RegimeRecording {
     }
   }
 
-  std::vector<RegimeShares> found() const {
-    std::vector<RegimeShares> out;
+  std::vector<RegimeProbabilities> found() const {
+    std::vector<RegimeProbabilities> out;
     EXPECT_TRUE(RegimeEvidence({}).find(samples, rates, kLever_m, kLeverCovariance_m2, out).ok());
     return out;
   }
 
   /// Share of the samples of `regime` that are found to be carried, those within 0.1 s of a change left out.
   double called_carried(Regime regime) const {
-    const std::vector<RegimeShares> shares = found();
+    const std::vector<RegimeProbabilities> shares = found();
     double of = 0.0, called = 0.0;
     for (std::size_t k = 10; k + 10 < truth.size(); ++k) {
       if (truth[k] != regime || truth[k - 10] != regime || truth[k + 10] != regime) continue;
@@ -85,7 +85,7 @@ TEST(Regimes, EachAloneIsFound) {
     motion.go_on(regime, 3.0);
     std::size_t right = 0;
     double off = 0.0;
-    for (const RegimeShares& shares : motion.found()) {
+    for (const RegimeProbabilities& shares : motion.found()) {
       right += (regime == Regime::flight ? shares.flight : shares.carried) > 0.5;
       off = std::max(off, std::abs(shares.flight + shares.contact + shares.carried - 1.0));
     }
@@ -121,7 +121,7 @@ TEST(Regimes, ATumbleIsNoHand) {
   // but for the first and the last moments, before which and after which there may have been anything
   EXPECT_EQ(motion.called_carried(Regime::flight), 0.0);
   double most = 0.0;
-  const std::vector<RegimeShares> shares = motion.found();
+  const std::vector<RegimeProbabilities> shares = motion.found();
   for (std::size_t k = 30; k + 30 < shares.size(); ++k) most = std::max(most, shares[k].carried);
   EXPECT_LT(most, 1e-3);
 }
@@ -146,7 +146,7 @@ TEST(Regimes, ABodyThatDoesNotTurnSaysNothingOfWhoHoldsIt) {
   motion.go_on(Regime::carried, 2.0, 0.0);
   for (RateState& rate : motion.rates) rate.w_WI_I_rad_s *= 0.01;
   double most = 0.0;
-  for (const RegimeShares& shares : motion.found()) most = std::max(most, shares.carried);
+  for (const RegimeProbabilities& shares : motion.found()) most = std::max(most, shares.carried);
   EXPECT_NEAR(most, 1.0 / 3.0, 0.01);
 }
 
@@ -170,7 +170,7 @@ TEST(Regimes, EitherHoldsBothAnswers) {
 TEST(Regimes, RefusesWhatDoesNotBelongTogether) {
   RegimeRecording motion;
   motion.go_on(Regime::flight, 0.1);
-  std::vector<RegimeShares> out(3);
+  std::vector<RegimeProbabilities> out(3);
   const RegimeEvidence evidence({});
   EXPECT_EQ(evidence.find({}, {}, kLever_m, kLeverCovariance_m2, out).trouble, Trouble::empty);
   motion.rates.pop_back();

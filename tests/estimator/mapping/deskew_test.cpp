@@ -69,7 +69,7 @@ TEST(SweepTrajectory, SaysTheSameOfManyPointsAsOfEach) {
                                             static_cast<float>(test::uniform(4 * i + 3)) - 0.5f);
     }
     std::vector<Eigen::Vector3f> levers;
-    compute_levers(trajectory, points, levers);
+    compute_lever_arm_vectors(trajectory, points, levers);
     ASSERT_EQ(levers.size(), points.size());
     std::size_t hint = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -115,9 +115,9 @@ TEST(SweepTrajectory, WhatWaitsChangesNothing) {
   const std::vector<MotionSample> samples = {clipped, waiting};
   SweepTrajectory trajectory;
   ASSERT_TRUE(trajectory.build(MotionState{}, samples, 10'000'000, {0.0, 0.0, -9.8}).ok());
-  EXPECT_EQ(trajectory.deficit_share_at_end().x(), 1.0);
+  EXPECT_EQ(trajectory.deficit_factor_at_end().x(), 1.0);
   ASSERT_TRUE(trajectory.build(MotionState{}, samples, 20'000'000, {0.0, 0.0, -9.8}).ok());
-  EXPECT_EQ(trajectory.deficit_share_at_start().x(), 0.01) << "one of the segment does";
+  EXPECT_EQ(trajectory.deficit_factor_at_start().x(), 0.01) << "one of the segment does";
 }
 
 TEST(SweepTrajectory, SaysWhatItLacks) {

@@ -210,7 +210,7 @@ TEST(LidarInertialOdometry, AnAccelerometerOfNoUseIsLeftOut) {
         if (of_no_use) sample.specific_force_m_s2 = read;
         EXPECT_TRUE(odometry.add_imu(sample, test::believe(sample)).ok());
       }
-      if (of_no_use && left_out) odometry.exclude_force();
+      if (of_no_use && left_out) odometry.exclude_accelerometer();
       EXPECT_TRUE(add_sweep(odometry, i, test::room_tumble().sweeps[static_cast<std::size_t>(i)], report).ok());
       worst = std::max(worst, error_of(report.pose).m);
     }

@@ -60,5 +60,28 @@ TEST(Localisation, TwoSweepsThatContradictTheirPriorsAreNotForgotten) {
   EXPECT_NEAR(contradicted.bound, 1.370, 1e-3);
 }
 
+TEST(Localisation, APresentFindingEnds) {
+  Localisation localisation(1.0);
+  TimeNs time_ns = 0;
+  const auto add = [&](double map_sigma_m, double innovation, double world_sigma_m = 0.1) {
+    SweepReport report = sweep(world_sigma_m, innovation);
+    report.map_sigma_m = map_sigma_m;
+    report.pose.time_ns = time_ns += 100'000'000;
+    localisation.add(report);
+  };
+  for (int k = 0; k < 100; ++k) add(0.1, 0.3, 30.0);
+  EXPECT_TRUE(localisation.present().ok()) << "the drift of a long path is no tracking failure";
+  add(1.1, 0.3);
+  EXPECT_FALSE(localisation.present().ok());
+  add(0.1, 0.3);
+  EXPECT_TRUE(localisation.present().ok());
+  add(0.1, 3.0);
+  EXPECT_TRUE(localisation.present().ok());
+  add(0.1, 3.0);
+  EXPECT_FALSE(localisation.present().ok());
+  for (int k = 0; k < int(10.0 * Localisation::kMemory_s) + 2; ++k) add(0.1, 0.3);
+  EXPECT_TRUE(localisation.present().ok());
+}
+
 }  // namespace
 }  // namespace tumble

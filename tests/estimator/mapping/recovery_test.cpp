@@ -67,7 +67,7 @@ TEST(Calibration, FindsMountingAndClock) {
   Odometry odometry(params);
   run_miscalibrated(odometry, turning(), 40);
   // the first map was drawn while the calibration was wrong: what it taught starts a second one
-  const auto learnt_sigma = odometry.calibration_weight().diagonal().cwiseSqrt().eval();
+  const auto learnt_sigma = odometry.calibration_weighting_covariance().diagonal().cwiseSqrt().eval();
   params.T_IL = odometry.calibration().T_IL;
   params.time_offset_s = odometry.calibration().time_offset_s;
   params.mount_sigma_rad = learnt_sigma.head<3>().maxCoeff();

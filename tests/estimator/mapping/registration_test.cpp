@@ -87,7 +87,8 @@ TEST(Registration, DerivativesMatchDifferences) {
     SweepPoint point = measured;
     point.x_I_m = x_I.cast<float>();
     Registration::residual(trajectory, calibration, point, plane, hint, derivative);
-    return plane.normal_W.cast<double>().dot(trajectory.base_m(t) + now.preintegrated_position_m + now.q_WI * x_I);
+    return plane.normal_W.cast<double>().dot(trajectory.common_position_m(t) + now.preintegrated_position_m +
+                                             now.q_WI * x_I);
   };
   Registration::Vector analytic, unused;
   residual(Registration::Vector::Zero(), analytic);
@@ -187,12 +188,12 @@ TEST(Registration, TakesNoNoiseOfNormalsForInformation) {
   // 3.3 cm
   const double along = 1.0 / corridor.covariance(0, 0) - 1.0 / (0.5 * 0.5);
   EXPECT_GT(along, 500.0);
-  EXPECT_NEAR(corridor.errors_in_variables_information(0, 0) / along, 1.0, 0.2);
+  EXPECT_NEAR(corridor.normal_noise_information(0, 0) / along, 1.0, 0.2);
   EXPECT_GT(corridor.weakest_sigma_m, 0.1);
   const Registration::Result corner = align(test::Room::corner(), prior, {}, kNoise_m);
   ASSERT_EQ(corner.verdict, RegistrationVerdict::converged);
   // and where surfaces hold all six, next to none: 610 of 33 800
-  EXPECT_LT(corner.errors_in_variables_information(0, 0) * corner.covariance(0, 0), 0.05);
+  EXPECT_LT(corner.normal_noise_information(0, 0) * corner.covariance(0, 0), 0.05);
   EXPECT_LT(corner.weakest_sigma_m, 0.05);
 }
 
@@ -208,7 +209,7 @@ TEST(Registration, TakesNoNoiseOfNormalsForInformationOfAMounting) {
   prior.covariance.bottomRightCorner<SweepCalibration::kErrors, SweepCalibration::kErrors>() *= 0.01 * 0.01;
   const Registration::Result corridor = align(test::Room::corridor(), prior, {}, kNoise_m);
   ASSERT_EQ(corridor.verdict, RegistrationVerdict::converged);
-  const Registration::Matrix& B = corridor.errors_in_variables_information;
+  const Registration::Matrix& B = corridor.normal_noise_information;
   const Eigen::Matrix3d R = corridor.mean.state.q_WI.toRotationMatrix();
   const Eigen::Vector3d lever_m = corridor.mean.calibration.T_IL.translation();
   for (int axis = 0; axis < 3; ++axis) {

@@ -128,5 +128,28 @@ TEST(SweepScale, PlacesAsUncertainAsTheScaleAreNotTakenForOne) {
   EXPECT_FALSE(found.is_off()) << found.scale << " +- " << found.sigma;
 }
 
+TEST(SweepScale, AFindingEndsAMinuteAfterItsCause) {
+  const Flight flight = hops(1.1, 0.005);
+  SweepScaleWatch watch(kGravity, 200);
+  std::size_t next = 0;
+  for (const SweepReport& sweep : flight.sweeps) {
+    for (; next < flight.samples.size() && flight.samples[next].time_ns <= sweep.pose.time_ns; ++next)
+      watch.add(flight.samples[next]);
+    watch.add(sweep);
+  }
+  ASSERT_FALSE(watch.scale().verdict().ok());
+  SweepReport later = flight.sweeps.back();
+  for (int k = 0; k < 58; ++k) {
+    later.pose.time_ns += 1'000'000'000;
+    watch.add(later);
+  }
+  EXPECT_FALSE(watch.scale().verdict().ok());
+  for (int k = 0; k < 3; ++k) {
+    later.pose.time_ns += 1'000'000'000;
+    watch.add(later);
+  }
+  EXPECT_TRUE(watch.scale().verdict().ok());
+}
+
 }  // namespace
 }  // namespace tumble

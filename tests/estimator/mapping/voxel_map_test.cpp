@@ -197,7 +197,7 @@ TEST(VoxelMap, TakesBackTheNewestSweepsAndKeepsTheOthersAsTheyWere) {
   const Eigen::Vector3f place = all.position_W_m(0) + Eigen::Vector3f::Constant(1e-3f);
   ASSERT_TRUE(all.move(0, place) && older.move(0, place));
   ASSERT_GT(all.size(), older.size());
-  all.keep_before(3);
+  all.remove_sweeps_from(3);
   EXPECT_EQ(all.size(), older.size());
   Neighbours of_all, of_older;
   for (std::uint64_t q = 0; q < 100; ++q) {
@@ -222,11 +222,11 @@ TEST(VoxelMap, CountsWhatIsSeenThroughAndKeepsTheCount) {
   const std::uint32_t marked_at = 16;  // the first of a chunk
   const Eigen::Vector3f marked = map.position_W_m(marked_at), other = map.position_W_m(0);
   ASSERT_TRUE(map.exists(marked_at) && map.sweep(marked_at) == 0);
-  map.count_sight(marked_at, false);
+  map.count_observation(marked_at, false);
   EXPECT_EQ(map.seen_through(marked_at), 0);
-  for (int k = 0; k < 300; ++k) map.count_sight(marked_at, true);
+  for (int k = 0; k < 300; ++k) map.count_observation(marked_at, true);
   EXPECT_EQ(map.seen_through(marked_at), 255);
-  map.count_sight(marked_at, false);
+  map.count_observation(marked_at, false);
 
   const auto count_at = [](const VoxelMap& given, const Eigen::Vector3f& place) {
     Neighbours found;
@@ -234,8 +234,8 @@ TEST(VoxelMap, CountsWhatIsSeenThroughAndKeepsTheCount) {
     return found.count == 1 ? int{given.seen_through(found.index[0])} : -1;
   };
   VoxelMap older = map, near = map, loaded({0.5, 0.1});
-  older.keep_before(1);
-  near.keep_within(marked, 3.0f);
+  older.remove_sweeps_from(1);
+  near.remove_beyond(marked, 3.0f);
   std::vector<std::byte> saved;
   StateWriter writer(saved);
   map.save(writer);

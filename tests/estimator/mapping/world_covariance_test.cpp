@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <vector>
 
 #include "estimator/src/mapping/unknowns.hpp"
@@ -26,8 +27,11 @@ WorldCovarianceParams without_tilt() {
   return params;
 }
 
+/// Without the part of the map's scale, which the last test checks.
 Pose in_world(const WorldCovariance& covariance, const Matrix& joint = Matrix::Zero()) {
-  return covariance.in_world(joint, kPlace_W_m);
+  Pose P = covariance.in_world(joint, kPlace_W_m);
+  P.topLeftCorner<3, 3>() -= 0.003 * 0.003 * kPlace_W_m * kPlace_W_m.transpose();
+  return P;
 }
 
 TEST(WorldCovariance, ATiltOfTheStartTurnsThePathAboutIt) {
@@ -101,6 +105,41 @@ TEST(WorldCovariance, WhatIsInsertedMovesTheMapByItsShare) {
   EXPECT_NEAR(P(2, 2), d2 * (0.01 + 0.25 * 0.0025), 1e-12);
   EXPECT_NEAR(P(0, 0), d2 * (0.01 + 0.25 * 0.0025 + 0.0004 * by_tilt_m * by_tilt_m), 1e-9);
   EXPECT_NEAR(P(4, 4), d2 * 0.0004, 1e-15);
+}
+
+/// The errors of successive sweeps have common causes, so the error grows in proportion to the distance.
+TEST(WorldCovariance, TheScaleOfTheMapMovesDistantPositions) {
+  const WorldCovariance covariance(without_tilt(), kStart, kLever_m, kPlace_W_m);
+  const auto sigma_m = [&](double x_m) {
+    const Eigen::Vector3d p_WI_m = kPlace_W_m + Eigen::Vector3d(x_m, 0.0, 0.0);
+    return std::sqrt(covariance.in_world(Matrix::Zero(), p_WI_m)(0, 0));
+  };
+  EXPECT_EQ(sigma_m(0.0), 0.0);
+  EXPECT_NEAR(sigma_m(1000.0), 3.0, 1e-9);
+}
+
+/// A rotation of the map where the robot extended it moves the robot's later positions in proportion to the path.
+TEST(WorldCovariance, TheMapsRotationMovesLaterPositions) {
+  WorldCovariance covariance(without_tilt(), kStart, Eigen::Vector3d::Zero());
+  Matrix errors = Matrix::Zero();
+  const auto extend = [&](double x_m, double yaw_sigma_rad) {
+    MotionState start;
+    start.p_WI_m.x() = x_m;
+    MotionSample sample;
+    sample.time_ns = 100'000'000;
+    sample.f_I_m_s2 = {0.0, 0.0, 9.8};
+    SweepTrajectory trajectory;
+    EXPECT_TRUE(trajectory.build(start, {&sample, 1}, sample.time_ns, {0.0, 0.0, -9.8}).ok());
+    errors(5, 5) = yaw_sigma_rad * yaw_sigma_rad;
+    covariance.add_insertion(1.0, trajectory, errors, Eigen::Vector3d::Zero());
+  };
+  extend(0.0, 0.01);
+  EXPECT_LT(covariance.in_world(Matrix::Zero(), Eigen::Vector3d::Zero())(1, 1), 1e-12);
+  extend(100.0, 0.0);
+  const Pose P = covariance.in_world(Matrix::Zero(), {100.0, 0.0, 0.0});
+  EXPECT_NEAR(std::sqrt(P(1, 1)), 1.0, 0.01);
+  EXPECT_NEAR(std::sqrt(P(5, 5)), 0.01, 1e-4);
+  EXPECT_EQ(covariance.sigma_in_map_m(Matrix::Zero(), {100.0, 0.0, 0.0}), 0.0);
 }
 
 }  // namespace

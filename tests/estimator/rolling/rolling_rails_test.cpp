@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "estimator/src/rolling/rolling_node.hpp"
 
 // rolling.md (R7), (R8): forces of which some axes met the accelerometer's rail.
@@ -58,6 +60,21 @@ TEST(RollingRails, AFastTurnIsWhatItTakesToKeepTheCentre) {
   // negative control: of another sense it is an impact
   const Gained struck = gained({0.0, 0.0, kRate_rad_s}, -read, kClipAccelX);
   EXPECT_GT(struck.hidden_m_s.norm(), 0.05);
+}
+
+// A force that is ignored has no bias that moves the velocity.
+TEST(RollingRails, AnIgnoredForceHasNoBias) {
+  const Eigen::Vector3d rate(0.0, 0.0, 5.0), force(0.0, 0.0, 9.8);
+  const auto by_bias = [&](std::uint8_t flags) {
+    RollingNominal nominal;
+    RollingSums sums;
+    ImuAverage reading;
+    reading.add({0, rate, force, flags}, kRepeated_s);
+    integrate(RollingParams{}, reading, nominal, sums);
+    return Eigen::Matrix3d(transition(sums).block<3, 3>(kVelocity, kAccelBias));
+  };
+  EXPECT_TRUE(by_bias(kClipGyroX).isZero(0.0));
+  EXPECT_NEAR(by_bias(0).norm(), std::sqrt(3.0) * kRepeated_s, 1e-12);  // negative control
 }
 
 }  // namespace

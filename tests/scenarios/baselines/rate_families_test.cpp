@@ -13,7 +13,6 @@
 
 #include "scenarios/baselines/angular_velocity/accelerometer_rate.hpp"
 #include "scenarios/baselines/angular_velocity/clipped_baseline.hpp"
-#include "scenarios/baselines/angular_velocity/magnetometer_rate.hpp"
 #include "scenarios/baselines/angular_velocity/standstill_smoother.hpp"
 #include "tumble/angular_velocity/detail/rate_observation.hpp"
 #include "tumble/angular_velocity/detail/subsample_saturation.hpp"
@@ -133,40 +132,6 @@ TEST(AccelerometerRate, TwoAuxiliaryImusGiveTheClippedRate) {
             Trouble::too_few);
 }
 
-double worst_magnetometer(const Swing& swing, const Vector3d& field_W_t, const Vector3d& iron_t) {
-  const std::vector<ImuSample> samples = swing.samples();
-  std::vector<Vector3d> field;
-  for (std::size_t k = 0; k < swing.count(); ++k) field.push_back(swing.turned(field_W_t, k) + iron_t);
-  return worst_of(swing, [&](std::vector<RateState>& out) {
-    return MagnetometerRate({.rails = rails(), .earth_field_t = field_W_t.norm()}).estimate(samples, field, out);
-  });
-}
-
-TEST(MagnetometerRate, SeesARateAcrossTheFieldAndNoneAlongIt) {
-  const Swing swing;
-  const Vector3d across = 4.9e-5 * swing.axis.unitOrthogonal();
-  EXPECT_LT(worst_magnetometer(swing, across, Vector3d::Zero()), 0.15 * raw(swing));
-  EXPECT_LT(worst_magnetometer(swing, across, Vector3d(1e-6, -1e-6, 5e-7)), 0.3 * raw(swing));
-  // negative control: about the field itself nothing shows (an axis of the sensor: else its free axes would tell)
-  Swing about_y;
-  about_y.axis = Vector3d::UnitY();
-  EXPECT_GT(worst_magnetometer(about_y, 4.9e-5 * about_y.axis, Vector3d::Zero()), 0.3 * raw(about_y));
-  EXPECT_LT(worst_magnetometer(about_y, 4.9e-5 * Vector3d::UnitX(), Vector3d::Zero()), 0.15 * raw(about_y));
-}
-
-TEST(MagnetometerRate, TakesGapsAndRefusesAnotherNumberOfReadings) {
-  const Swing swing;
-  const std::vector<ImuSample> samples = swing.samples();
-  std::vector<Vector3d> field(samples.size(), Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()));
-  const MagnetometerRate method({.rails = rails()});
-  std::vector<RateState> none, gaps;
-  ASSERT_TRUE(method.estimate(samples, {}, none).ok());
-  ASSERT_TRUE(method.estimate(samples, field, gaps).ok());
-  for (std::size_t k = 0; k < samples.size(); ++k) EXPECT_EQ(none[k].w_WI_I_rad_s, gaps[k].w_WI_I_rad_s) << k;
-  field.pop_back();
-  EXPECT_EQ(method.estimate(samples, field, gaps).trouble, Trouble::too_few);
-}
-
 TEST(StandstillSmoother, SpreadsTheTiltBetweenTwoRests) {
   Swing swing;
   swing.peak = 11.4;  // a few samples: what is lost must stay a fraction of a radian
@@ -194,13 +159,10 @@ TEST(PublishedFamilies, RefuseBadInput) {
     return AccelerometerRate(AccelerometerRate::Params{}).estimate(s, {}, out);
   });
   refuses(
-      [&](std::span<const ImuSample> s) { return MagnetometerRate(MagnetometerRate::Params{}).estimate(s, {}, out); });
-  refuses(
       [&](std::span<const ImuSample> s) { return StandstillSmoother(StandstillSmoother::Params{}).estimate(s, out); });
   EXPECT_THROW(ClippedBaseline({.kind = ClippedBaseline::Kind::reject, .rails = {}, .rate_max_rad_s = 0.0}),
                InvalidParams);
   EXPECT_THROW(AccelerometerRate({.rails = {}, .jerk_psd = -1.0}), InvalidParams);
-  EXPECT_THROW(MagnetometerRate({.rails = {}, .field_noise_t = 0.0}), InvalidParams);
   EXPECT_THROW(StandstillSmoother({.rails = {}, .gravity_m_s2 = 0.0}), InvalidParams);
 }
 

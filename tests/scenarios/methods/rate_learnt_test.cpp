@@ -171,7 +171,7 @@ TEST(RateLearnt, RailsThatReadingsContradictGoAndOthersStay) {
   LearntRig before = known_before(nullptr, assumed_model());
   before.gyro_planes_rad_s[1] = {-7.2, 7.4};
   before.gyro_planes_rad_s[2] = {-7.1, 7.5};
-  KnownRails rails;
+  SaturationLevels rails;
   EXPECT_FALSE(with_rails(before, rails).has_value());
   rails.planes.element[0] = plane;
   rails.planes.element[1] = before.planes().element[1];  // as a run gives it back that did not meet it

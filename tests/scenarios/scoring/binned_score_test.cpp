@@ -86,5 +86,27 @@ TEST(BinnedScores, SortByLengthOfTheSegmentAndByTheNumberOfAxes) {
   EXPECT_NEAR(axes.at(2.0), 2.0, 1e-12);
 }
 
+// Coverage of clipped axes and of axes with a cross-axis error are two numbers.
+TEST(ClippedAxes, CrossAxisErrorsHaveTheirOwnCoverage) {
+  sim::Recording recording = testing::synthetic_rig();
+  sim::ImuTruth& imu = recording.truth.imus.front();
+  Eigen::Matrix3d elements = Eigen::Matrix3d::Identity();
+  elements(0, 1) = 0.05;
+  for (int i = 0; i < 3; ++i) imu.gyro_elements.emplace_back(elements.row(i));
+  std::vector<Eigen::Vector3d>& readings = recording.sensors.imus.front().gyro_rad_s;
+  readings = imu.gyro_unclipped_rad_s;
+  for (std::size_t k = 600; k < 700; ++k) readings[k] -= elements.inverse() * Eigen::Vector3d(0.0, 3.0, 0.0);
+  Estimate estimate = perfect_estimate(recording);
+  for (RateState& rate : estimate.rates) {
+    rate.covariance_rad2_s2 = 0.01 * Eigen::Matrix3d::Identity();
+    rate.w_WI_I_rad_s += Eigen::Vector3d(0.5, 0.1, 9.0);  // z is neither
+  }
+  const auto values = scores(Kind::rate, estimate, recording);
+  EXPECT_EQ(values.at("rate_coverage_3sigma"), 1.0);
+  EXPECT_EQ(values.at("rate_coverage_3sigma_cross_axis"), 0.0);
+  EXPECT_FALSE(scores(Kind::rate, perfect_estimate(testing::synthetic_rig()), testing::synthetic_rig())
+                   .contains("rate_coverage_3sigma_cross_axis"));
+}
+
 }  // namespace
 }  // namespace tumble::scenarios

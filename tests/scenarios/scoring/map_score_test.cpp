@@ -99,11 +99,11 @@ TEST(MapScores, PointsThatWereDrawnTwiceAreNotUnique) {
 TEST(MapScores, AMapFailsBeyondFifteenPercentOutliers) {
   for (const auto& [outliers, failed] : std::vector<std::pair<std::size_t, double>>{{14, 0.0}, {16, 1.0}}) {
     Estimate estimate = perfect_estimate(rig());
-    estimate.map = floor_points(0.0f);
-    estimate.map.resize(100);
-    for (std::size_t k = 0; k < outliers; ++k) estimate.map[k].position_W_m.z() = 1.0f;
+    const std::size_t points = estimate.map.size();
+    const std::size_t off = outliers * points / 100;
+    for (std::size_t k = 0; k < off; ++k) estimate.map[k * points / off].position_W_m = {0.0f, 0.0f, 1.0f};
     const auto values = scores(Kind::slam, estimate, rig(), &surface());
-    EXPECT_NEAR(values.at("map_overlap"), 1.0 - 0.01 * static_cast<double>(outliers), 1e-12);
+    EXPECT_NEAR(values.at("map_overlap"), 1.0 - static_cast<double>(off) / static_cast<double>(points), 1e-12);
     EXPECT_EQ(values.at("map_failed"), failed);
   }
 }
@@ -124,6 +124,17 @@ TEST(MapScores, CoverageIsTheShareOfWhatWasSeen) {
   const double coverage = scores(Kind::slam, estimate, rig(), &surface()).at("map_coverage");
   EXPECT_GT(coverage, 0.4);
   EXPECT_LT(coverage, 0.65);
+}
+
+TEST(MapScores, AMapOfLessThanHalfOfWhatWasSeenFails) {
+  for (const float from_m : {-1.0f, 1.5f}) {
+    Estimate estimate = perfect_estimate(rig());
+    std::erase_if(estimate.map, [&](const MapPoint& point) { return point.position_W_m.y() < from_m; });
+    const auto values = scores(Kind::slam, estimate, rig(), &surface());
+    EXPECT_EQ(values.at("map_overlap"), 1.0);
+    EXPECT_EQ(values.at("map_coverage") < 0.5, from_m > 0.0f);
+    EXPECT_EQ(values.at("map_failed"), from_m > 0.0f ? 1.0 : 0.0);
+  }
 }
 
 TEST(MapScores, NoMapIsAFailedMapAndNoSurfaceNoVerdict) {

@@ -64,6 +64,7 @@ TEST(MotionSummary, OfAMotionMadeByHand) {
   EXPECT_EQ(motion.clipped_samples, 100u);
   EXPECT_EQ(motion.axis_clipped_samples, (std::array<std::size_t, 3>{0, 100, 20}));
   EXPECT_EQ(motion.several_axes_samples, 20u);
+  EXPECT_EQ(motion.cross_axis_samples, 0u);
   EXPECT_EQ(motion.accel_clipped_samples, 1u);
 }
 

@@ -128,6 +128,22 @@ TEST(RateScores, CoverageCountsClippedAxesWithinThreeSigma) {
               1e-15);
 }
 
+// One method shortens the last sweep, another drops it: both are compared at the sweep before.
+TEST(EndPose, EveryMethodEndsAtTheLastSweepThatTheImuCovers) {
+  sim::Recording recording = rig();
+  sim::ImuRecord& imu = recording.sensors.imus.front();
+  const std::int64_t end_ns = imu.time_ns.back() - 10'000'000;
+  while (imu.time_ns.back() > end_ns) imu.time_ns.pop_back(), imu.gyro_rad_s.pop_back(), imu.accel_m_s2.pop_back();
+  Estimate shortened = perfect_estimate(rig());
+  PoseState& last = shortened.sweeps.back().pose;
+  last.time_ns = end_ns;
+  last.p_WA_m.x() += 1.0;
+  Estimate dropped = perfect_estimate(rig());
+  dropped.sweeps.pop_back();
+  for (const Estimate& estimate : {shortened, dropped})
+    EXPECT_NEAR(scores(Kind::slam, estimate, recording).at("translation_error_end_m"), 0.0, 1e-6);
+}
+
 TEST(RateScores, WithoutClippingThereIsNothingToScoreClipped) {
   testing::SyntheticMotion motion;
   motion.rail_rad_s = 50.0;

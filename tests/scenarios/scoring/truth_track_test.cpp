@@ -151,6 +151,32 @@ TEST(ClippingTruth, DifferencesBelowTheNoiseAreNoClipping) {
   EXPECT_EQ(truth.clipped_axes(11), 2);
 }
 
+// One element saturates; the compensation of the device spreads its deficit over the other two axes.
+TEST(ClippingTruth, CrossAxisErrorsAreNoClipping) {
+  sim::Recording recording = testing::synthetic_sphere();
+  sim::ImuTruth& imu = recording.truth.imus.front();
+  Eigen::Matrix3d elements = Eigen::Matrix3d::Identity();
+  elements(0, 1) = 0.03;
+  elements(2, 1) = -0.02;
+  for (int i = 0; i < 3; ++i) imu.gyro_elements.emplace_back(elements.row(i));
+  const auto lose = [&](std::size_t k, const Eigen::Vector3d& deficit_rad_s) {
+    recording.sensors.imus.front().gyro_rad_s[k] = imu.gyro_unclipped_rad_s[k] - elements.inverse() * deficit_rad_s;
+  };
+  lose(10, {0.0, 4.0, 0.0});
+  lose(11, {0.0, 4.0, -1.0});
+  const ClippingTruth truth(recording.sensors, recording.truth);
+  EXPECT_EQ(truth.clipped_axes(10), 0b010);
+  EXPECT_EQ(truth.cross_axes(10), 0b101);
+  EXPECT_EQ(truth.clipped_axes(11), 0b110);
+  EXPECT_EQ(truth.cross_axes(11), 0b001);
+  EXPECT_EQ(truth.clipped_axes(12), 0);
+  EXPECT_EQ(truth.cross_axes(12), 0);
+  const auto sample = truth.at(recording.sensors.imus.front().time_ns[10]);
+  ASSERT_TRUE(sample);
+  EXPECT_EQ(sample->clipped_axes, 0b010);
+  EXPECT_EQ(sample->cross_axes, 0b101);
+}
+
 TEST(Nearness, AgreesWithBruteForce) {
   // a lattice with irrational steps: no distance falls on the limit
   std::vector<Eigen::Vector3f> points;

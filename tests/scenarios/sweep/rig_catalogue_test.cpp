@@ -22,24 +22,26 @@ namespace {
 // rail
 constexpr std::uint64_t kClippedSeed = 1003;
 
-// those whose sensors are the question are a suite of their own; `stroll` is of peers/gentle.yaml, where no gyro clips
-TEST(HillSuite, HoldsWithThatOfRailsEveryScenarioButTheSpheres) {
+// those whose sensors are the question are suites of their own; `stroll` is of peers/gentle.yaml, where no gyro clips
+TEST(HillSuite, HoldsWithThoseOfRailsAndFaultsEveryScenarioButTheSpheres) {
   std::multiset<std::string> listed;
-  for (const char* name : {"hill", "rails"}) {
+  for (const char* name : {"hill", "rails", "faults"}) {
     const Suite suite = load_suite(tree_data(), name);
     listed.insert(suite.scenarios.begin(), suite.scenarios.end());
   }
   std::size_t rigs = 0;
   for (const std::string& name : scenario_names(tree_data())) {
     const std::string robot = load_scenario(tree_data(), name).robot.type;
-    EXPECT_EQ(listed.count(name), robot != "sphere" && name != "stroll" ? 1u : 0u) << name;
+    EXPECT_EQ(listed.count(name), (robot != "sphere" && name != "stroll") || name == "slip_faults" ? 1u : 0u) << name;
     rigs += robot == "rig" ? 1 : 0;
   }
   EXPECT_GE(rigs, 7u);
 }
 
 TEST(HillSuite, DrawsOnThirtySeeds) {
-  for (const std::string& name : load_suite(tree_data(), "hill").scenarios) {
+  std::vector<std::string> names = load_suite(tree_data(), "hill").scenarios;
+  names.push_back("hill_faults");
+  for (const std::string& name : names) {
     const Scenario scenario = load_scenario(tree_data(), name);
     for (std::uint64_t seed = kClippedSeed; seed < kClippedSeed + 30; ++seed)
       EXPECT_NO_THROW(draw(tree_data(), scenario, seed)) << name;

@@ -220,7 +220,9 @@ TEST(ImuSimulation, EachOptionOffIsTheIdealSignalAndOnIsNot) {
       {{"digital_bandwidth_hz", 10.0}},
       {{"time_offset_s", 0.01}},
       {{"time_jitter_s", 0.001}},
-      {{"dropout_share", 0.3}}};
+      {{"dropout_share", 0.3}},
+      {{"start_delay_s", 0.5}},
+      {{"glitch_share", 0.1}}};
   for (const auto& option : options) {
     SensorSpec sensor = ideal();
     for (const auto& [name, value] : option) sensor.values.set(name, value);

@@ -75,6 +75,8 @@ INSTANTIATE_TEST_SUITE_P(
                {{"detection_range_m", 3.0}},
                {{"detection_range_m", 0.0}, {"detection_steepness", 0.5}, {"detection_reflectivity", 1.0}}},
         Option{"dropout", {{"dropout_share", 0.1}}, {{"dropout_share", 0.0}}},
+        Option{"sweep_dropout", {{"sweep_dropout_share", 0.5}}, {{"sweep_dropout_share", 0.0}}},
+        Option{"start_delay", {{"start_delay_s", 0.05}}, {{"start_delay_s", 0.0}}},
         Option{"intensity_quantum", {{"intensity_quantum", 0.1}}, {{"intensity_quantum", 0.0}}},
         Option{"beam_width",
                {{"beam_rays", 7.0}},

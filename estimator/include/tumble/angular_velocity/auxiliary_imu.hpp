@@ -33,7 +33,7 @@ struct AuxiliaryImu {
   double share_error = 2e-3;       ///< scale and misalignment error, as a fraction of the reading; [0, 1]
   double position_error_m = 2e-3;  ///< standard deviation of the position p_IC; [1e-9, 1]
   double clock_error_s = 1e-3;     ///< time error between the clocks of the two IMUs; [0, 0.1]
-  ElementRows gyro_elements = {}, accel_elements = {};  ///< sensing directions; needed if an element clips
+  SensingDirections gyro_elements = {}, accel_elements = {};  ///< sensing directions; needed if an element clips
 };
 
 /// AuxiliaryReading is the reading of an auxiliary IMU at the time of a sample of the primary IMU, in the auxiliary
@@ -43,10 +43,10 @@ struct AuxiliaryImu {
 struct AuxiliaryReading {
   Eigen::Vector3d rate_rad_s, force_m_s2;
   Eigen::Vector3d rate_sigma_rad_s, force_sigma_m_s2;
-  bool rate_by_elements = false, force_by_elements = false;
+  bool rate_along_elements = false, force_along_elements = false;
   /// Creates a reading without information; all components are NaN.
   AuxiliaryReading();
-  bool sees_all_rates() const { return rate_rad_s.allFinite(); }
+  bool measures_all_rates() const { return rate_rad_s.allFinite(); }
   /// Compares two readings bit for bit; NaN equals NaN.
   bool same(const AuxiliaryReading& other) const;
 };

@@ -13,13 +13,13 @@
 
 namespace tumble {
 
-/// KnownRails contains the saturation levels of an IMU.
-struct KnownRails {
-  RailDetector::State upright_rails;  ///< levels found from equal readings, and stated ranges
-  RailPlanes planes;                  ///< saturation planes of the gyro's sensing elements, where observed
-  RailPlanes accel_planes;            ///< saturation planes of the accelerometer
-  bool upright = false;               ///< the gyro clips after compensation, so other axes are unaffected
-  bool accel_upright = false;         ///< the accelerometer clips after compensation
+/// SaturationLevels contains the saturation levels of an IMU.
+struct SaturationLevels {
+  RailDetector::State upright_rails;            ///< levels found from equal readings, and stated ranges
+  RailPlanes planes;                            ///< saturation planes of the gyro's sensing elements, where observed
+  RailPlanes accel_planes;                      ///< saturation planes of the accelerometer
+  bool upright = false;                         ///< the gyro clips after compensation, so other axes are unaffected
+  bool accel_clips_after_compensation = false;  ///< the accelerometer clips after compensation
 
   /// Returns the saturation planes that are used to classify readings. If the device clips its output after
   /// compensation, a run of equal readings identifies clipped samples exactly. If equal readings identify clipped
@@ -27,8 +27,8 @@ struct KnownRails {
   RailPlanes planes_in_use(Triad triad = Triad::gyro) const;
   /// Returns the directions along which the sensing elements of the triad (gyro or accelerometer) measure.
   /// `unknown_sigma` is the standard deviation of a cross-axis sensitivity that no saturation plane determines.
-  ElementRows rows(Triad triad, double unknown_sigma) const;
-  bool operator==(const KnownRails&) const = default;
+  SensingDirections rows(Triad triad, double unknown_sigma) const;
+  bool operator==(const SaturationLevels&) const = default;
 };
 
 /// ElementReading describes what information the reading of one sensing element provides.
@@ -44,11 +44,11 @@ ElementReading element_reading(const ImuSample& sample, const Clipping& clipping
 /// Returns the ClipFlag bits of a classified sample, as a device with correct flags would set the bits.
 std::uint8_t clip_flags(const Clipping& clipping);
 
-/// CertainRails contains the saturation levels that are certain enough for comparing several IMUs that may freeze. A
-/// saturation level that is derived from equal readings alone is not certain. CertainRails excludes flat maxima of slow
-/// motion far below the stated range, and repeated readings without a stated range. CertainRails includes saturation
-/// planes, because slow motion and frozen sensors do not produce planes.
-struct CertainRails {
+/// ConfirmedSaturation contains the saturation levels that are certain enough for comparing several IMUs that may
+/// freeze. A saturation level that is derived from equal readings alone is not certain. ConfirmedSaturation excludes
+/// flat maxima of slow motion far below the stated range, and repeated readings without a stated range.
+/// ConfirmedSaturation includes saturation planes, because slow motion and frozen sensors do not produce planes.
+struct ConfirmedSaturation {
   RailPlanes gyro, accel;                                 ///< saturation planes that are used to classify readings
   double gyro_range_rad_s = 0.0, accel_range_m_s2 = 0.0;  ///< stated range; 0: not stated
   /// Returns the clip flags of a classified sample, in addition to the flags that the device set.
@@ -81,7 +81,7 @@ class ClippingFinder {
     }
   };
   struct Found {
-    KnownRails rails;
+    SaturationLevels rails;
     std::vector<Clipping> clippings;  ///< one per sample
   };
 

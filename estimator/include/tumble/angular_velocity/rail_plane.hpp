@@ -53,18 +53,19 @@ struct RailPlanes {
   bool operator==(const RailPlanes&) const = default;
 };
 
-/// ElementRows contains the directions along which the sensing elements of a triad (gyro or accelerometer) measure, as
-/// determined from saturation planes. Unsaturated sensing elements measure the component of the rate along their
-/// sensing directions. Clipped sensing elements provide a lower bound of the component along their sensing directions.
-struct ElementRows {
+/// SensingDirections contains the directions along which the sensing elements of a triad (gyro or accelerometer)
+/// measure, as determined from saturation planes. Unsaturated sensing elements measure the component of the rate along
+/// their sensing directions. Clipped sensing elements provide a lower bound of the component along their sensing
+/// directions.
+struct SensingDirections {
   Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();
   Eigen::Vector3d slope_sigma = Eigen::Vector3d::Zero();  ///< deviation of both cross-axis sensitivities
   bool tilted() const { return rows != Eigen::Matrix3d::Identity(); }
-  bool operator==(const ElementRows&) const = default;
+  bool operator==(const SensingDirections&) const = default;
 };
 /// Returns the directions along which the sensing elements of a triad (gyro or accelerometer) measure. A sensing
 /// element without a saturation plane has an axis-aligned direction with the standard deviation `unknown_sigma`.
-ElementRows element_rows(const RailPlanes& planes, double unknown_sigma);
+SensingDirections element_rows(const RailPlanes& planes, double unknown_sigma);
 
 /// ElementClipping contains the state of each sensing element in a sample. The state is -1 if clipped at the negative
 /// saturation level, 1 if clipped at the positive saturation level, and 0 if unsaturated.

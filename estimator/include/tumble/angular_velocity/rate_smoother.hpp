@@ -73,16 +73,16 @@ struct RateReport {
   RailPlanes accel_planes;                    ///< saturation planes of the accelerometer's elements, m/s^2
   /// Estimated sensor errors.
   KnownSensorErrors sensor_errors;
-  double in_sheet_probability = 1.0, synchronous_probability = 1.0;  ///< see SensorErrorFit
+  double data_sheet_probability = 1.0, synchronous_probability = 1.0;  ///< see SensorErrorFit
   /// Standard deviation of a delay common to gyro and accelerometer [s]. The standard deviation of the common delay is
   /// above 0 only if the device deviates from its data sheet.
   double common_delay_sigma_s = 0.0;
   double gyro_update_s = 0.0, accel_update_s = 0.0;  ///< update interval of repeated readings; 0: none
   int error_rounds = 0;                              ///< number of optimisations with corrected readings
-  bool rails_axis_aligned = false;       ///< the gyro clips after compensation, so other axes are unaffected
-  std::array<bool, 6> rail_disagrees{};  ///< readings contradict the stated range
-  bool rate_unit_suspect = false;        ///< a reading exceeds RateModelParams::rate_max_rad_s: possibly degrees
-  bool force_unit_suspect = false;       ///< the median specific force is near 1: possibly in g
+  bool clips_after_compensation = false;           ///< the gyro clips after compensation, so other axes are unaffected
+  std::array<bool, 6> contradicts_stated_range{};  ///< readings contradict the stated range
+  bool rate_unit_suspect = false;   ///< a reading exceeds RateModelParams::rate_max_rad_s: possibly degrees
+  bool force_unit_suspect = false;  ///< the median specific force is near 1: possibly in g
   std::size_t samples = 0, clipped = 0, recovered_flight = 0, recovered_contact = 0, bounded_only = 0;
   std::size_t missing_readings = 0;  ///< samples with an overflow (flipped sign)
   double flight_share = 0.0;         ///< fraction of samples classified as free flight

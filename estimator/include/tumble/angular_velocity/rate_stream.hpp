@@ -97,13 +97,13 @@ class RateStream {
   std::ptrdiff_t force_shift(const State& state) const;
   void pair_force(std::size_t k, State& state) const;
   std::size_t pair_newest(State& state) const;
-  void count_strokes(State& state) const;
+  void accumulate_impacts(State& state) const;
   TriadDelay guessed_delay(const State& state) const;
   void seek_delay(State& state) const;
-  void take_delay(double delay_s, bool found, State& state) const;
+  void apply_delay(double delay_s, bool found, State& state) const;
   void refine_delay(State& state) const;
   void consider_errors(const arrow::BorderVector& rig_step, State& state) const;
-  Eigen::Matrix3d of_device(std::size_t k, const State& state) const;
+  Eigen::Matrix3d device_covariance(std::size_t k, const State& state) const;
   void predict_covariance(State& state) const;
   double jump_before(const Knot& oldest, const State& state) const;
   void append(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state) const;
@@ -141,7 +141,7 @@ class RateStream {
   std::size_t capacity_;
   std::size_t samples_per_step_;  ///< number of samples between steps
   double prior_delay_s_;          ///< prior delay of the accelerometer
-  bool delay_open_;               ///< whether the delay may differ from the prior delay
+  bool delay_is_estimated_;       ///< whether the delay may differ from the prior delay
 };
 
 }  // namespace tumble

@@ -55,11 +55,11 @@ class RestDetector {
     // rest.
     Eigen::Vector3d rate_sum_rad_s = Eigen::Vector3d::Zero();
     Eigen::Vector3d force_sum_m_s2 = Eigen::Vector3d::Zero();
-    double weight = 0.0;      ///< weight of the sums: number of readings, with lower weights of older readings
-    TimeNs first_ns = 0;      ///< time of the run's first sample
-    TimeNs last_mean_ns = 0;  ///< time of the last reading
-    TimeNs quiet_ns = 0;      ///< duration of the run with a mean within the bias bound
-    bool rests = false;       ///< whether the run, up to the last reading, is rest
+    double weight = 0.0;              ///< weight of the sums: number of readings, with lower weights of older readings
+    TimeNs first_ns = 0;              ///< time of the run's first sample
+    TimeNs last_mean_ns = 0;          ///< time of the last reading
+    TimeNs within_bias_since_ns = 0;  ///< duration of the run with a mean within the bias bound
+    bool rests = false;               ///< whether the run, up to the last reading, is rest
     // Sums of the samples since the last averaged reading.
     Eigen::Vector3d pending_rate_rad_s = Eigen::Vector3d::Zero();
     Eigen::Vector3d pending_force_m_s2 = Eigen::Vector3d::Zero();
@@ -85,9 +85,9 @@ class RestDetector {
   bool observe_mean(const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& force_m_s2, TimeNs from_ns, TimeNs to_ns,
                     const Eigen::Vector3d& bias_rad_s, State& state) const;
 
-  /// Returns for each sample of a recording whether the sample belongs to a rest, including the start of each rest.
-  /// Cost: O(N).
-  std::vector<bool> find(std::span<const ImuSample> samples) const;
+  /// Returns for each sample of a recording whether it belongs to a rest, including the start of each rest. O(N).
+  std::vector<bool> find(std::span<const ImuSample> samples,
+                         const Eigen::Vector3d& bias_rad_s = Eigen::Vector3d::Zero()) const;
 
  private:
   Params params_;

@@ -28,7 +28,7 @@ struct RigConstants {
   Eigen::Matrix<double, 6, 1> elements = Eigen::Matrix<double, 6, 1>::Zero();
 
   /// Returns the row m_j, the sensing direction of sensing element j.
-  Eigen::Vector3d element_row(int j) const;
+  Eigen::Vector3d sensing_direction(int j) const;
   /// Returns the normalised inertia J, with trace 3.
   Eigen::Matrix3d inertia_matrix() const;
   /// Returns the coordinates `inertia` of a symmetric matrix of any positive scale.

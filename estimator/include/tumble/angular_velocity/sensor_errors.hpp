@@ -40,11 +40,11 @@ struct KnownSensorErrors {
 /// is invalid, because the filter would treat the direction of the eigenvector as perfectly known.
 void require_known(const KnownSensorErrors& learnt);
 
-/// SensorErrorSizes contains the prior standard deviations of sensor errors, for a device as in its data sheet and for
+/// SensorErrorPriors contains the prior standard deviations of sensor errors, for a device as in its data sheet and for
 /// an uncalibrated device. SensorErrorFit determines from the readings whether the data sheet applies. If the standard
 /// deviation of the uncalibrated device does not exceed that of the data sheet, the data sheet always applies. Each
 /// standard deviation is in [0, 0.1], in the units of SensorErrors.
-struct SensorErrorSizes {
+struct SensorErrorPriors {
   /// Standard deviations of scale and misalignment. The defaults of the calibrated device are from the data sheet of
   /// the MTi-300: non-orthogonality 0.05 deg. The defaults of the uncalibrated device are from the MPU-6050: 3 % scale
   /// and 2 % cross-axis error, taken as three standard deviations.
@@ -84,7 +84,7 @@ struct SensorErrorSizes {
 
 /// Returns the prior standard deviations of all sensor errors. `share` is between 0 (data sheet) and 1 (uncalibrated
 /// device). All returned standard deviations are above 0.
-SensorErrors::Vector error_deviations(const SensorErrorSizes& sizes, double share);
+SensorErrors::Vector prior_deviations(const SensorErrorPriors& sizes, double share);
 
 /// SensorErrorEvidence is the log-likelihood of a run's readings as a quadratic function of the sensor errors, expanded
 /// at `about`. `information` is the second derivative of the cost and `gradient` is its negative first derivative, with
@@ -105,7 +105,7 @@ void discount_unobservable(double share, SensorErrorEvidence& evidence);
 /// SensorErrorFit contains the sensor errors that were estimated from readings and prior.
 struct SensorErrorFit {
   KnownSensorErrors known;
-  double in_sheet_probability = 1.0;     ///< probability that scale and misalignment are within the data sheet
+  double data_sheet_probability = 1.0;   ///< probability that scale and misalignment are within the data sheet
   double synchronous_probability = 1.0;  ///< probability that the triads are as synchronous as in the data sheet
 };
 
@@ -116,11 +116,11 @@ struct SensorErrorFit {
 /// data sheet, unobservable sensor errors thereby keep the small uncertainty of the data sheet. Cost: O(1), about 30
 /// systems of 29 unknowns. `learnt` is the information from earlier runs of the device, from calibration_evidence(),
 /// used with full weight.
-SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const SensorErrorSizes& sizes,
+SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const SensorErrorPriors& sizes,
                                  const SensorErrorEvidence& learnt = {});
 
 /// Converts the sensor errors that one run estimated to measurement information for the next run. The function removes
 /// the prior of an uncalibrated device from the covariance, because the next run adds that prior again.
-SensorErrorEvidence calibration_evidence(const KnownSensorErrors& learnt, const SensorErrorSizes& sizes);
+SensorErrorEvidence calibration_evidence(const KnownSensorErrors& learnt, const SensorErrorPriors& sizes);
 
 }  // namespace tumble

@@ -13,10 +13,10 @@
 
 namespace tumble {
 
-/// CarriedElements contains the clipped sensing elements of each sample of a recording, as input of CarriedSmoother.
+/// ClippedReadings contains the clipped sensing elements of each sample of a recording, as input of CarriedSmoother.
 /// The function carried_elements() finds clipped elements from flags of the device, and from plateaus and tilted planes
 /// in the readings.
-struct CarriedElements {
+struct ClippedReadings {
   Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();  ///< sensing directions of the gyro's elements, one per row
   std::vector<ClipSigns> signs;                        ///< one per sample
   std::vector<std::uint8_t> near;                      ///< one per sample: bits of may_meet_rails()
@@ -29,10 +29,10 @@ struct CarriedElements {
 
   /// Marks a rate as a lower bound if its reading may have been saturated during a part of the averaging window.
   /// `rates` contains one rate per sample.
-  void mark_near(std::span<RateState> rates) const;
+  void mark_partly_saturated(std::span<RateState> rates) const;
 };
 
 /// Converts the result of a ClippingFinder to the input of CarriedSmoother. Cost: O(N).
-CarriedElements carried_elements(std::span<const ImuSample> samples, const ClippingFinder::Found& found);
+ClippedReadings carried_elements(std::span<const ImuSample> samples, const ClippingFinder::Found& found);
 
 }  // namespace tumble

@@ -78,7 +78,7 @@ struct CarriedStillParams {
   }
 };
 
-/// CarriedExpertParams contains the parameters of CarriedParams that few users change, grouped by meaning. The fields
+/// CarriedExpertParams contains the parameters of HandHeldParams that few users change, grouped by meaning. The fields
 /// have the names that are used in tables and on command lines.
 struct CarriedExpertParams {
   double node_s = 0.01;  ///< time between two nodes
@@ -108,9 +108,9 @@ struct CarriedExpertParams {
   }
 };
 
-/// CarriedParams contains the parameters of CarriedSmoother and CarriedStream: errors of the IMU, and extent of the
+/// HandHeldParams contains the parameters of CarriedSmoother and CarriedStream: errors of the IMU, and extent of the
 /// hand-held motion.
-struct CarriedParams {
+struct HandHeldParams {
   double gravity_m_s2 = 9.80665;
   double gyro_noise_density = 5e-4;   ///< rad/s/sqrt(Hz)
   double accel_noise_density = 0.01;  ///< m/s^2/sqrt(Hz)

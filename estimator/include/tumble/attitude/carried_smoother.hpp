@@ -56,7 +56,7 @@ struct ClippedElements {
 /// motion, drift of the biases, or heading.
 class CarriedSmoother {
  public:
-  using Params = CarriedParams;
+  using Params = HandHeldParams;
 
   struct Report {
     carried::Constants constants;

@@ -77,7 +77,8 @@ class CarriedStream {
     carried::System::Corner prior_corner;
     carried::Node prior_node;
     carried::Constants prior_constants;
-    double hand_power = 1.0;  ///< measured acceleration power of marginalised nodes, relative to the assumed power
+    double acceleration_power_ratio =
+        1.0;  ///< measured acceleration power of marginalised nodes, relative to the assumed power
     RestDetector::State rests;
     std::int64_t reported_node = -1;  ///< node of the last reported estimate, and its covariance
     Eigen::Matrix3d reported_covariance_rad2_s2 = Eigen::Matrix3d::Zero();
@@ -86,7 +87,7 @@ class CarriedStream {
     std::size_t failures = 0;  ///< number of Gauss-Newton steps skipped because the system was not positive definite
     /// Duration of the current clipped segment of each gyro element up to the last reported sample, and integral of the
     /// rate's standard deviation.
-    Eigen::Vector3d hidden_s = Eigen::Vector3d::Zero(), hidden_rad = Eigen::Vector3d::Zero();
+    Eigen::Vector3d hidden_s = Eigen::Vector3d::Zero(), clipped_angle_sigma_rad = Eigen::Vector3d::Zero();
     std::size_t revolutions_open = 0;  ///< number of segments in which an additional revolution could not be excluded
     std::vector<carried::System::Block> work;  ///< buffer, not part of the state
   };
@@ -121,7 +122,7 @@ class CarriedStream {
   Status check_reading(const Reading& reading, const Reading* before, TimeNs start_ns) const;
   void append(const ImuSample& sample, const RepeatDetector::State& repeated, State& state) const;
   void add(const Reading& reading, State& state) const;
-  bool read_again(const ClippedElements& known, State& state) const;
+  bool reclassify(const ClippedElements& known, State& state) const;
   void rebuild(State& state) const;
   carried::Node begin(const State& state) const;
   void predict(const carried::Node& before, const Eigen::Matrix3d& rows, Knot& knot) const;

@@ -30,7 +30,7 @@ struct ImuMergeParams {
   double accel_range_m_s2 = 1e5;
   double gap_max_s = 1.0;
   /// Directions along which the sensing elements of each unit measure, as found by RailPlaneFinder.
-  std::array<ElementRows, kImus> gyro_elements{}, accel_elements{};
+  std::array<SensingDirections, kImus> gyro_elements{}, accel_elements{};
 
   using Expert = ImuMergeExpertParams;
   Expert expert = {};  ///< parameters that few users change

@@ -93,9 +93,9 @@ class ImuPlausibility {
     double force_sum_m_s2 = 0.0, windows = 0.0;
     double pushed_s = 0.0;                               ///< time with forces that exclude rest
     std::array<double, kAxisLabels> unexplained_rad2{};  ///< residual for each possible assignment of axis labels
-    double by_force_rad2 = 0.0, by_gyro_rad2 = 0.0;      ///< sums over the windows in which the force rotated
-    double rotated_windows = 0.0;                        ///< number of windows in which the force rotated
-    double all_force_rad2 = 0.0, all_gyro_rad2 = 0.0;    ///< sums over the windows in which force or gyro rotated
+    double force_rotation_rad2 = 0.0, gyro_rotation_rad2 = 0.0;  ///< sums over the windows in which the force rotated
+    double rotated_windows = 0.0;                                ///< number of windows in which the force rotated
+    double all_force_rad2 = 0.0, all_gyro_rad2 = 0.0;  ///< sums over the windows in which force or gyro rotated
     TimeNs last_time_ns = 0;
     bool started = false;
     bool operator==(const State&) const = default;
@@ -122,7 +122,7 @@ class ImuPlausibility {
   double force_rotated_share(const State& state) const;
   /// Returns the axis labels for which the rotation of gravity fits the gyro clearly better than for the current labels
   /// (I22).
-  std::optional<AxisLabels> other_labels(const State& state) const;
+  std::optional<AxisLabels> better_axis_labels(const State& state) const;
   /// Returns the longest time for which the gyro or the accelerometer was frozen [s], or 0 if neither was frozen.
   double frozen_s(const State& state) const;
   /// Returns `out_of_range` with the name of the implausible quantity, or `ok`.

@@ -44,7 +44,7 @@ class RegimeSmoother {
   struct Report {
     RateReport rate;
     bool judged = false;               ///< probabilities were estimated; the following members are valid
-    RegimeShares shares{};             ///< mean probabilities over all samples
+    RegimeProbabilities shares{};      ///< mean probabilities over all samples
     double carried_clipped_max = 0.0;  ///< largest probability of hand-held motion in a segment of clipped samples
     bool carried_asked = false;        ///< CarriedSmoother ran successfully; its report follows
     CarriedSmoother::Report carried;
@@ -62,7 +62,7 @@ class RegimeSmoother {
   void join(std::span<const ImuSample> samples, std::vector<RateState>& rates, Report& report) const;
 
  private:
-  std::vector<double> carried_segments(std::span<const RegimeShares> shares, const RateReport& report,
+  std::vector<double> carried_segments(std::span<const RegimeProbabilities> shares, const RateReport& report,
                                        std::span<const RateState> rates) const;
 
   Params params_;

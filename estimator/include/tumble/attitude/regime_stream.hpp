@@ -48,7 +48,7 @@ class RegimeStream {
     }
   };
   /// Time and hand-held probability of a reported sample.
-  struct ReportedShare {
+  struct ReportedProbability {
     TimeNs time_ns = 0;
     double carried = 0.0;
   };
@@ -56,8 +56,8 @@ class RegimeStream {
     RateStream::State rate;
     CarriedStream::State carried;
     std::vector<ClipSigns> signs;  ///< clip signs of RateStream's window; buffer
-    RegimeShares shares{1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0};
-    RegimeShares sum{};          ///< sum over all reported samples
+    RegimeProbabilities shares{1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0};
+    RegimeProbabilities sum{};   ///< sum over all reported samples
     std::size_t reported = 0;    ///< number of reported samples
     std::size_t joined = 0;      ///< number of reported samples combined with CarriedStream
     std::size_t starts = 0;      ///< number of starts of CarriedStream
@@ -66,7 +66,7 @@ class RegimeStream {
     bool carrying = false;       ///< CarriedStream is running
     /// Samples of the last clipped segment within `near_s`, except samples followed by a smaller probability of
     /// hand-held motion. The oldest entry of `near` has the smallest probability.
-    std::vector<ReportedShare> near;
+    std::vector<ReportedProbability> near;
     TimeNs reported_ns = 0;            ///< time of the last reported sample
     std::optional<TimeNs> clipped_ns;  ///< last reported clipped sample
   };
@@ -98,8 +98,8 @@ class RegimeStream {
   ClippedElements known_of(State& state) const;
   std::size_t index_of(const RateState& rate, const State& state) const;
   bool calibration_is_unstable(const State& state) const;
-  RegimeShares next(const RegimeShares& before, double dt_s, std::span<const RateStream::Knot> window, std::size_t k,
-                    const RigCalibration& rig, bool unstable) const;
+  RegimeProbabilities next(const RegimeProbabilities& before, double dt_s, std::span<const RateStream::Knot> window,
+                           std::size_t k, const RigCalibration& rig, bool unstable) const;
   void judge(const RateState& rate, State& state) const;
   double share_of(const RateState& rate, State& state) const;
 

@@ -12,10 +12,10 @@
 
 namespace tumble {
 
-/// RegimeShares contains the probabilities of one sample's kind of motion (regime). The kinds of motion are free flight
-/// (zero specific force at the centre of mass), contact (any force), and hand-held (bounded acceleration about
-/// gravity). The three probabilities of RegimeShares sum to 1.
-struct RegimeShares {
+/// RegimeProbabilities contains the probabilities of one sample's kind of motion (regime). The kinds of motion are free
+/// flight (zero specific force at the centre of mass), contact (any force), and hand-held (bounded acceleration about
+/// gravity). The three probabilities of RegimeProbabilities sum to 1.
+struct RegimeProbabilities {
   double flight = 0.0, contact = 0.0, carried = 0.0;
 };
 
@@ -74,13 +74,13 @@ class RegimeEvidence {
   /// `lever_arm_m` is the vector from the centre of mass to the IMU, in IMU axes.
   /// Returns `ok`, `empty` without samples, or `out_of_range` if `rates` does not have one element per sample.
   Status find(std::span<const ImuSample> samples, std::span<const RateState> rates, const Eigen::Vector3d& lever_arm_m,
-              const Eigen::Matrix3d& lever_arm_covariance_m2, std::vector<RegimeShares>& out) const;
+              const Eigen::Matrix3d& lever_arm_covariance_m2, std::vector<RegimeProbabilities>& out) const;
 
   /// Returns the probabilities after one sample, given the probabilities `before`, which are `dt_s` older. Cost: O(1).
   /// `angular_acceleration_rad_s2` is the time derivative of the rate, in IMU axes.
-  RegimeShares next(const RegimeShares& before, double dt_s, const ImuSample& sample, const RateState& rate,
-                    const Eigen::Vector3d& angular_acceleration_rad_s2, const Eigen::Vector3d& lever_arm_m,
-                    const Eigen::Matrix3d& lever_arm_covariance_m2) const;
+  RegimeProbabilities next(const RegimeProbabilities& before, double dt_s, const ImuSample& sample,
+                           const RateState& rate, const Eigen::Vector3d& angular_acceleration_rad_s2,
+                           const Eigen::Vector3d& lever_arm_m, const Eigen::Matrix3d& lever_arm_covariance_m2) const;
 
  private:
   Eigen::Vector3d likelihood(double dt_s, const ImuSample& sample, const RateState& rate, const Eigen::Vector3d& alpha,

@@ -55,14 +55,15 @@ class SampleClock {
   static constexpr std::size_t kStart = 32;  ///< number of stamps used for the first fit
 
   struct State {
-    std::size_t samples = 0;                      ///< number of valid entries of `start` while no line is fitted
-    std::array<TimeNs, kStart> start{};           ///< stamps collected for the first fit
-    std::optional<TimeNs> stamp_ns;               ///< last stamp
-    TimeNs time_ns = 0;                           ///< last estimated sample time
-    bool line_fitted = false;                     ///< whether a line is fitted; the members below describe it
-    double period_ns = 0.0;                       ///< slope of the line
-    double fit_minus_stamp_ns = 0.0;              ///< value of the line at the last sample minus its stamp
-    double sum = 0.0, sum_n = 0.0, sum_nn = 0.0;  ///< sums of weights; sample numbers count from the last sample
+    std::size_t samples = 0;             ///< number of valid entries of `start` while no line is fitted
+    std::array<TimeNs, kStart> start{};  ///< stamps collected for the first fit
+    std::optional<TimeNs> stamp_ns;      ///< last stamp
+    TimeNs time_ns = 0;                  ///< last estimated sample time
+    bool line_fitted = false;            ///< whether a line is fitted; the members below describe it
+    double period_ns = 0.0;              ///< slope of the line
+    double fit_residual_ns = 0.0;        ///< value of the line at the last sample minus its stamp
+    double sum = 0.0, weighted_sum_number = 0.0,
+           sum_nn = 0.0;  ///< sums of weights; sample numbers count from the last sample
     double mean_square_error_ns2 = 0.0,
            mean_error_product_ns2 = 0.0;  ///< mean square prediction error; mean product of successive errors
     double error_ns = 0.0;                ///< last prediction error

@@ -11,8 +11,11 @@ namespace tumble {
 /// stamp t0 + k * period.
 using TimeNs = std::int64_t;
 
-/// Converts a duration from nanoseconds to seconds. For durations below 104 days, the relative error of the result is
-/// at most 2^-53.
+/// Largest time stamp that the odometry classes accept, in either direction: 97 years. Twice the difference of two
+/// stamps then fits into 64 bits.
+inline constexpr TimeNs kStampMax_ns = 3'070'000'000'000'000'000;
+
+/// Converts a duration to seconds. The result is exact to 2^-53 relative for durations below 104 days.
 constexpr double seconds(TimeNs span_ns) {
   return static_cast<double>(span_ns) * 1e-9;
 }

@@ -53,9 +53,9 @@ void apply_calibration(const SweepCalibration& calibration, double later_s, std:
 void apply_calibration(const SweepCalibration& calibration, double later_s, std::span<SweepPoint> points);
 
 /// Computes the lever arm vector u_i = S(t_i) + R(t_i) x_i of SweepTrajectory for each point i. Cost: O(n). The
-/// position of point i in the world is trajectory.base_m(t_i) + u_i.
-void compute_levers(const SweepTrajectory& trajectory, std::span<const SweepPoint> points,
-                    std::vector<Eigen::Vector3f>& levers_W_m);
+/// position of point i in the world is trajectory.common_position_m(t_i) + u_i.
+void compute_lever_arm_vectors(const SweepTrajectory& trajectory, std::span<const SweepPoint> points,
+                               std::vector<Eigen::Vector3f>& levers_W_m);
 
 /// Transforms points to the IMU's axes at `target_s` after the start of the trajectory, usually at its end. Each point
 /// is moved from the time of its firing to `target_s`, so the result is what a stationary sensor would measure at

@@ -61,9 +61,15 @@ class LidarInertialOdometry {
   LidarInertialOdometry(const LidarInertialOdometry&);
   LidarInertialOdometry& operator=(const LidarInertialOdometry&);
 
-  /// Processes an IMU sample, with the angular velocity that a rate method estimated for the sample. Returns
-  /// `non_finite`, `time_order`, or `out_of_range` if `rate` has another time stamp than `sample`. On error the state
-  /// is unchanged. The first sample after a gap bridges the gap, which increases the uncertainty of the predicted pose.
+  /// Sets position and heading of the IMU at the start of the map. The tilt is levelled at rest. Covariances are
+  /// relative to this pose. Call start_at() before the first sweep. Without start_at(), the map starts at the origin.
+  void start_at(const Eigen::Isometry3d& T_WI);
+  /// Returns the pose given to start_at(), if any.
+  const std::optional<Eigen::Isometry3d>& start() const;
+
+  /// Processes a sample with the angular velocity that a rate method estimated for the sample. On error the state is
+  /// unchanged: `non_finite`, `time_order`, or `out_of_range` if `rate` has another time stamp. The first sample after
+  /// a gap bridges the gap, with correspondingly larger uncertainty of the prior.
   Status add_imu(const ImuSample& sample, const RateState& rate);
 
   /// Sets an odometer's velocity at the start of the next sweep, which is the end of the last sweep. The velocity is in
@@ -77,9 +83,9 @@ class LidarInertialOdometry {
   /// reading that does not cover the next sweep has no effect.
   Status add_reading(const OdometerReading& reading);
   /// Excludes the accelerometer from the prediction of the next sweep. Without the accelerometer, the velocity is
-  /// predicted as in a gap; the gyro is still used. A call of exclude_force() replaces earlier odometer readings for
-  /// the next sweep.
-  void exclude_force();
+  /// predicted as in a gap; the gyro is still used. A call of exclude_accelerometer() replaces earlier odometer
+  /// readings for the next sweep.
+  void exclude_accelerometer();
 
   /// Registers a sweep of points fired in [start_ns, end_ns]. Sweeps must not overlap. Points with NaN coordinates are
   /// misses.
@@ -106,7 +112,11 @@ class LidarInertialOdometry {
   /// Returns the covariance with which the calibration is weighted against the next sweep. The weighting covariance is
   /// larger than the covariance of the errors, because points are correlated and therefore weighted less. A second run
   /// over the recording starts from the weighting covariance.
-  SweepCalibration::Covariance calibration_weight() const;
+  SweepCalibration::Covariance calibration_weighting_covariance() const;
+
+  /// Returns `out_of_range` while the vertical of the map is uncertain: the standard deviation of gravity's direction
+  /// exceeds 0.02 rad. The reason is a start in motion. The finding ends when the motion has determined gravity.
+  Status vertical() const;
 
   /// Returns the pose at any time within the window of sweeps, from all data so far. Returns `out_of_range` for a time
   /// outside of the window.

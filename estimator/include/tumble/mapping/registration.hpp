@@ -62,7 +62,7 @@ class Registration {
  private:
   struct Match {
     PlaneFit plane;
-    Eigen::Vector3f searched_at_W_m = Eigen::Vector3f::Zero();
+    Eigen::Vector3f search_position_W_m = Eigen::Vector3f::Zero();
     float map_variance_m2 = 0.0f;
     float reach_m = std::numeric_limits<float>::infinity();  // distance to the farthest neighbour, if all were found
     bool searched = false;
@@ -110,7 +110,7 @@ class Registration {
   std::vector<float> distances_, sorted_;
   std::vector<Sums> parts_;  // one per block of points
   SpatialHash cluster_of_{1 << 10};
-  std::vector<Vector> pulls_;  // gradients of the clusters
+  std::vector<Vector> cluster_gradients_;  // gradients of the clusters
 };
 
 }  // namespace tumble

@@ -31,7 +31,7 @@ struct RegistrationResult {
   /// the errors of the normals add apparent information in every direction of a plane. Source: errors in variables
   /// (Fuller, Measurement Error Models, 1987, section 2.2). The apparent information stabilises the iterations, but
   /// contains no information about the motion.
-  SweepUnknowns::Matrix errors_in_variables_information = SweepUnknowns::Matrix::Zero();
+  SweepUnknowns::Matrix normal_noise_information = SweepUnknowns::Matrix::Zero();
   std::size_t points = 0, matches = 0, inliers = 0;
   double correction_m = 0.0;  ///< position correction at the start, even if above its limit
   double correction_rad = 0.0;

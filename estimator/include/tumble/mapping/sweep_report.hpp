@@ -39,6 +39,9 @@ struct SweepReport {
   /// by the root of nine (the number of unknowns). The mean innovation is at most 1 if inertial prediction and surfaces
   /// have the stated accuracy. An innovation of zero means that the sweep was not aligned.
   double innovation = 0.0;
+  /// Standard deviation of the position relative to the map around the robot. The covariance of `pose` also contains
+  /// the map's drift and tilt, which grow with the path.
+  double map_sigma_m = 0.0;
   int iterations = 0;
   int lost_sweeps = 0;  ///< consecutive rejected sweeps, including the current sweep
   /// True if the sweep relocalised after tracking failure, at a pose that inertial prediction did not expect, without

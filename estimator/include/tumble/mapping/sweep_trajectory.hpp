@@ -26,9 +26,9 @@ struct MotionSample {
   Eigen::Vector3d f_I_m_s2 = Eigen::Vector3d::Zero();
   Eigen::Vector3d rate_sigma_rad_s = Eigen::Vector3d::Zero();  ///< standard deviation of the rate, IMU axes
   std::uint8_t clipped_axes = 0;                               ///< bit j: axis j of the gyro was saturated
-  std::uint8_t railed_axes = 0;                                ///< bit j: axis j of the accelerometer was saturated
+  std::uint8_t accel_saturated_axes = 0;                       ///< bit j: axis j of the accelerometer was saturated
   bool at_rest = false;                                        ///< the sample belongs to the rest at the start
-  std::optional<TimeNs> rests_since_ns;                        ///< first sample of the current rest, from the IMU alone
+  std::optional<TimeNs> rest_start_ns;                         ///< first sample of the current rest, from the IMU alone
   bool in_flight = false;    ///< f_I_m_s2 is that of free flight, not the accelerometer's
   bool bridges_gap = false;  ///< the sample bridges a gap: force unknown; velocity is kept
 };
@@ -68,7 +68,7 @@ class SweepTrajectory {
   static constexpr int kKnots = 3;
   static constexpr int kDeficit = 3 * kKnots;  ///< number of unknowns, axis by axis within a knot
   using Deficit = Eigen::Matrix<double, 3, kKnots>;
-  using ByDeficit = Eigen::Matrix<double, 3, kDeficit>;
+  using DeficitJacobian = Eigen::Matrix<double, 3, kDeficit>;
 
   /// Instant is the motion at the time of a lidar point: attitude R(t) and double integral S(t) of the specific force.
   struct Instant {
@@ -76,10 +76,10 @@ class SweepTrajectory {
     Eigen::Vector3d preintegrated_position_m;
   };
   /// DeficitDerivative contains the first-order derivatives of the attitude and of S(t) by the saturation deficit e.
-  /// The attitude error is attitude_s * e, and the error of S is preintegrated_position_m_s * e.
+  /// The attitude error is attitude_jacobian_s * e, and the error of S is position_jacobian_m_s * e.
   struct DeficitDerivative {
-    ByDeficit attitude_s;
-    ByDeficit preintegrated_position_m_s;
+    DeficitJacobian attitude_jacobian_s;
+    DeficitJacobian position_jacobian_m_s;
   };
 
   /// Integrates the motion from `start` to `end_ns`. The samples must be contiguous and in time order, beginning at the
@@ -98,9 +98,9 @@ class SweepTrajectory {
   double duration_s() const { return duration_s_; }
 
   /// Evaluates the motion at `t_s` seconds after the start. Outside of the segment, the motion is extrapolated by up to
-  /// kBeyond_s, which covers errors of the time offset. `hint` is the interval of the previous call, and speeds up
-  /// calls in time order. Any hint in [0, intervals()) is valid.
-  static constexpr double kBeyond_s = 0.02;
+  /// kExtrapolation_s, which covers errors of the time offset. `hint` is the interval of the previous call, and speeds
+  /// up calls in time order. Any hint in [0, intervals()) is valid.
+  static constexpr double kExtrapolation_s = 0.02;
   Instant at(double t_s, std::size_t& hint) const;
   /// Computes the lever arm vector S(t) + R(t) x of each point. The result equals that of at(), bit for bit. For
   /// several points, levers() is faster than at().
@@ -111,8 +111,8 @@ class SweepTrajectory {
   double interval_end_s(std::size_t i) const { return intervals_[i].start_s + intervals_[i].length_s; }
 
   /// Returns the common part p_0 + v_0 t + g t^2 / 2 of the positions of all points at time t. The position of a point
-  /// x is base_m(t) plus the lever arm vector u(t) = S(t) + R(t) x.
-  Eigen::Vector3d base_m(double t_s) const {
+  /// x is common_position_m(t) plus the lever arm vector u(t) = S(t) + R(t) x.
+  Eigen::Vector3d common_position_m(double t_s) const {
     return start_.p_WI_m + t_s * start_.v_WI_m_s + (0.5 * t_s * t_s) * gravity_W_m_s2_;
   }
 
@@ -125,16 +125,16 @@ class SweepTrajectory {
   /// Transition contains the first-order derivatives of the state (position, attitude, velocity) at t_s by the start
   /// state, the saturation deficit, and gravity.
   struct Transition {
-    Eigen::Matrix<double, 9, 9> by_start;
-    Eigen::Matrix<double, 9, kDeficit> by_deficit_s;
-    Eigen::Matrix<double, 9, 3> by_gravity;
+    Eigen::Matrix<double, 9, 9> jacobian_start;
+    Eigen::Matrix<double, 9, kDeficit> jacobian_deficit_s;
+    Eigen::Matrix<double, 9, 3> jacobian_gravity;
   };
   Transition transition(double t_s) const;
 
   /// Return the magnitude |s_j| of the saturation deficit's factor in the first and in the last interval. The magnitude
   /// |s_j| is 0 if axis j is not clipped in the interval.
-  Eigen::Vector3d deficit_share_at_start() const { return intervals_.front().deficit_share.cwiseAbs(); }
-  Eigen::Vector3d deficit_share_at_end() const { return intervals_.back().deficit_share.cwiseAbs(); }
+  Eigen::Vector3d deficit_factor_at_start() const { return intervals_.front().deficit_share.cwiseAbs(); }
+  Eigen::Vector3d deficit_factor_at_end() const { return intervals_.back().deficit_share.cwiseAbs(); }
 
   /// Returns the axes that were clipped anywhere in the segment: bit j for axis j.
   std::uint8_t clipped_axes() const { return clipped_axes_; }
@@ -143,15 +143,16 @@ class SweepTrajectory {
   struct Interval {
     double start_s, length_s;
     Eigen::Quaterniond q_WI;
-    Eigen::Vector3d w_I, a_W;                          // rate in body axes; mean specific force in W
-    Eigen::Vector3d preintegrated_v, preintegrated_p;  // integrals of the specific force up to start_s
-    Eigen::Vector3d deficit_share;                     // factor s_j where axis j is clipped, 0 elsewhere
+    Eigen::Vector3d w_I, a_W;                                     // rate in body axes; mean specific force in W
+    Eigen::Vector3d preintegrated_velocity_m_s, preintegrated_p;  // integrals of the specific force up to start_s
+    Eigen::Vector3d deficit_share;                                // factor s_j where axis j is clipped, 0 elsewhere
     Eigen::Matrix<double, kKnots, 1> knot_weight =
-        Eigen::Matrix<double, kKnots, 1>::Zero();                 // weight of each knot's deficit in the interval
-    ByDeficit deficit_attitude, deficit_v, deficit_p, deficit_a;  // derivatives at start_s
+        Eigen::Matrix<double, kKnots, 1>::Zero();  // weight of each knot's deficit in the interval
+    DeficitJacobian attitude_jacobian, velocity_jacobian, position_jacobian,
+        acceleration_jacobian;  // derivatives at start_s
   };
   const Interval& interval_at(double t_s, std::size_t& hint) const;
-  static ByDeficit gained_by_deficit(const Interval& now, double s);
+  static DeficitJacobian deficit_jacobian_within(const Interval& now, double s);
 
   MotionState start_;
   double duration_s_ = 0.0;

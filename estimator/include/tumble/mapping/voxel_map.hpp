@@ -64,7 +64,7 @@ class VoxelMap {
   std::uint32_t add(const Eigen::Vector3f& position_W_m, float sigma_m, std::uint32_t sweep, std::uint32_t line);
   /// Returns whether add() would reject a point, because its cube already has a point or the position is out of the
   /// map's range. A caller can thereby avoid computing the properties of a rejected point.
-  bool is_taken(const Eigen::Vector3f& position_W_m) const;
+  bool is_occupied(const Eigen::Vector3f& position_W_m) const;
 
   /// Moves a point to a refined position. If the refined position is in another cell, move() returns false and leaves
   /// the point unchanged.
@@ -72,7 +72,7 @@ class VoxelMap {
 
   /// Counts a sweep that saw through a point's position (`through`) or that observed the point again. An observation
   /// through the point and an observation of the point cancel each other.
-  void count_sight(std::uint32_t index, bool through);
+  void count_observation(std::uint32_t index, bool through);
 
   /// Finds the k <= Neighbours::kMax nearest points within `radius_m`. Points of a cell at equal distances are in order
   /// of insertion. The search is exact and does not allocate. The cost grows with the number of cells within the
@@ -82,11 +82,11 @@ class VoxelMap {
   /// Deletes the points farther than `radius_m` from `centre_W_m` and frees their memory. Cost: O(number of points).
   /// The indices of points change. The remaining sweeps are renumbered in order. Returns the old number of each
   /// remaining sweep.
-  std::vector<std::uint32_t> keep_within(const Eigen::Vector3f& centre_W_m, float radius_m);
+  std::vector<std::uint32_t> remove_beyond(const Eigen::Vector3f& centre_W_m, float radius_m);
 
   /// Deletes the points of `first_sweep` and of later sweeps. Cost: O(number of points). The indices of points change;
   /// sweeps keep their numbers.
-  void keep_before(std::uint32_t first_sweep);
+  void remove_sweeps_from(std::uint32_t first_sweep);
 
   /// Returns the memory in use [bytes].
   std::size_t bytes() const;
@@ -99,7 +99,7 @@ class VoxelMap {
   void load(StateReader& in);
   static void describe(StateLayout& out);
 
-  std::size_t size() const { return sigma_m_.size() - vacant_; }
+  std::size_t size() const { return sigma_m_.size() - free_slots_; }
   /// Returns the upper limit of the indices in use. An index for which exists() is false is a free slot of a chunk.
   std::uint32_t index_end() const { return static_cast<std::uint32_t>(sigma_m_.size()); }
   bool exists(std::uint32_t index) const { return sigma_m_[index] >= 0.0f; }
@@ -149,7 +149,7 @@ class VoxelMap {
   std::vector<float> sigma_m_;  // one per slot of the chunks; negative: free slot
   std::vector<std::uint32_t> sweep_, line_;
   std::vector<std::uint8_t> seen_through_;
-  std::size_t vacant_ = 0;
+  std::size_t free_slots_ = 0;
 };
 
 }  // namespace tumble

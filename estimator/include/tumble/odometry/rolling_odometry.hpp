@@ -18,6 +18,7 @@
 #include "tumble/common/sample_clock.hpp"
 #include "tumble/odometry/detail/merge_recordings.hpp"
 #include "tumble/odometry/detail/unit_alignment.hpp"
+#include "tumble/odometry/detail/stamp_order.hpp"
 #include "tumble/odometry/detail/unit_rails.hpp"
 #include "tumble/odometry/imu_sheet.hpp"
 #include "tumble/rolling/rolling_smoother.hpp"
@@ -97,7 +98,7 @@ class RollingOdometry {
     Eigen::Vector3d angular_velocity_rad_s = Eigen::Vector3d::Zero();  ///< of the sphere, sphere axes
     RollingMode mode = RollingMode::grip;
     bool at_rest = false;
-    bool uncertain = false;  ///< the position is uncertain after an event (RollingModeParams::uncertain_m)
+    bool uncertain = false;  ///< an event (RollingModeParams::uncertain_m) or a restart made the position uncertain
   };
 
   /// Throws InvalidParams if a parameter is out of bounds.
@@ -108,14 +109,16 @@ class RollingOdometry {
   RollingOdometry& operator=(RollingOdometry&&) noexcept = default;
   ~RollingOdometry() = default;
 
-  /// Processes simultaneous readings of all IMUs (units). The time stamp of the first unit counts, corrected by
-  /// SampleClock if a host computer assigned irregular stamps. Pass NaN for a unit without a reading. OutlierFilter
-  /// rejects single wild readings of each unit. OutlierFilter may delay the samples of all units by one sample;
-  /// newest() then returns the pose of the previous sample. On error the state is unchanged. Returns `too_few` (wrong
-  /// number of units, or no reading), `time_order`, `degenerate` (no gravity in the first sample), `gap` or
-  /// `out_of_range` on error. The error `gap` means more than a second without samples; add_imus() then rejects all
-  /// samples until reset(). The error `out_of_range` means that finish() was called, or that a gyro or accelerometer
-  /// axis of the only unit with readings is frozen.
+  /// Processes simultaneous readings of all units. The stamp of the first unit counts, corrected by SampleClock if a
+  /// host's stamps jitter. A unit without a reading is passed as NaN. OutlierFilter rejects single wild readings of
+  /// each unit. OutlierFilter may delay the samples of all units by one; newest() is then one sample older. On error
+  /// the state is unchanged. Errors are `too_few` (wrong number of units, or no reading), `time_order`, `degenerate`
+  /// (no gravity in the first sample), `gap` and `out_of_range`. `out_of_range`: finish() was called, the stamp is beyond
+  /// kStampMax_ns, or the only unit with readings has a frozen axis.
+  ///
+  /// A single wrong stamp costs one sample (StampOrder). After a gap of more than a second, the second sample restarts
+  /// the run. If the clock steps back, samples are rejected with `time_order` for 0.2 s, and then the run restarts. A
+  /// restart finishes the poses so far and continues as by reset(pose), at the newest pose. Later poses are `uncertain`.
   Status add_imus(std::span<const ImuSample> samples);
   /// Processes a sample of a sphere with one IMU. Returns the errors of add_imus().
   Status add_imu(const ImuSample& sample) { return add_imus({&sample, 1}); }
@@ -123,7 +126,7 @@ class RollingOdometry {
   /// Adds a sample of one unit whose stamps differ from the other units' stamps. UnitAlignment resamples the units to
   /// common times, at most 0.05 s late; a unit without readings is absent. The errors are those of add_imus();
   /// `time_order` also if the stamp is not later than the unit's last stamp, and `out_of_range` if there is no such
-  /// unit.
+  /// unit. After a clock steps back, this function rejects samples until reset().
   Status add_imu(std::size_t unit, const ImuSample& sample);
 
   /// Returns the pose at the newest sample, from all data so far. The result is empty before the first sample.
@@ -138,9 +141,12 @@ class RollingOdometry {
   /// processes. With kWholeRecording, finish() also returns the errors of merge_recordings().
   Status finish();
 
-  /// Starts a new run with the sphere at the origin and at rest. Poses that take() has not yet returned remain
-  /// available.
+  /// Starts a new run at the origin and at rest. Poses not yet fetched by take() remain available, and the counts
+  /// continue.
   void reset();
+  /// Starts a new run as reset() does, at a known pose of the sphere. Position and heading are those of `T_WG`; the tilt
+  /// is levelled at rest. Covariances are relative to this pose.
+  void reset(const Eigen::Isometry3d& T_WG);
 
   /// Reports whether the readings of the IMUs are currently plausible. Returns `ok`, or `out_of_range` with one
   /// finding. A finding is a frozen axis (FrozenAxes) with its unit and duration, or a force at rest that differs from
@@ -152,7 +158,7 @@ class RollingOdometry {
   Calibration calibration() const;
 
   /// Returns the number of gaps in the samples that were bridged, and the longest one [s].
-  std::int64_t gaps() const { return state_->live.gaps; }
+  std::int64_t bridged_gaps() const { return state_->live.gaps; }
   double longest_gap_s() const { return state_->live.gap_longest_s; }
   /// Returns true if the first samples were not at rest.
   bool started_in_motion() const { return state_->live.started_in_motion; }
@@ -162,6 +168,8 @@ class RollingOdometry {
 
   /// Returns the number of readings of all units that OutlierFilter rejected.
   std::size_t rejected_readings() const;
+  /// Returns the number of restarts after a gap or after a clock that stepped back.
+  std::size_t gaps() const { return gaps_; }
   /// Returns the jitter of the stamps [s]; see TumblingOdometry::estimated_jitter_s.
   std::optional<double> estimated_jitter_s() const;
 
@@ -184,6 +192,11 @@ class RollingOdometry {
 
   RollingOdometry(const Params& params, const ImuMerge::Params& merged);
 
+  void restart_at_newest();
+  void end_run();
+  void start_run();
+  void place_start();
+  RollingEstimate in_world(RollingEstimate estimate) const;
   Status add_held(std::span<const ImuSample> next);
   Status add_inliers(std::span<const ImuSample> samples);
   Status take_in(const ImuSample& merged);
@@ -195,6 +208,8 @@ class RollingOdometry {
   Status frozen_axis(const Frozen& frozen) const;
 
   Params params_;
+  StampOrder order_;
+  StampOrder::State order_state_;
   SampleClock clock_;
   SampleClock::State stamps_;  ///< state of the clock from accepted samples
   ImuMerge merge_;
@@ -216,6 +231,10 @@ class RollingOdometry {
   std::array<RestGravity::Size, ImuMerge::kImus> gravity_state_{};
   std::vector<RollingEstimate> done_;
   std::size_t taken_ = 0;
+  std::optional<Eigen::Isometry3d> start_;  ///< pose given to reset(), until the first sample
+  std::optional<Eigen::Isometry3d> T_WR_;   ///< pose of the run's origin; nothing: the world's origin
+  std::size_t gaps_ = 0;
+  bool restarted_ = false;  ///< the run continues after a gap or a step of the clock, so its position is uncertain
   bool live_ = true, finished_ = false;
 };
 

@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Geometry>
 #include <cstddef>
 #include <deque>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "tumble/angular_velocity/detail/gyro_offset.hpp"
 #include "tumble/common/detail/outlier_filter.hpp"
 #include "tumble/common/sample_clock.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 #include "tumble/odometry/detail/odometry_pass.hpp"
 #include "tumble/odometry/detail/second_pass.hpp"
+#include "tumble/odometry/detail/stamp_order.hpp"
 #include "tumble/odometry/detail/waiting_input.hpp"
 #include "tumble/odometry/tumbling_params.hpp"
 
@@ -23,13 +26,13 @@ namespace tumble {
 /// samples and the sweeps.
 ///
 /// TumblingOdometry reports three poses of increasing accuracy. The function newest() predicts the IMU's pose at the
-/// newest sample by inertial integration from the last registered sweep. The function take() returns a pose registered
-/// to the map (`report.pose`), at most lag_s after the end of the sweep. The report of the following sweep contains the
-/// final pose (`report.smoothed`). With ten sweeps per second, the final pose is available at most 0.3 s after the end
-/// of its sweep. The time stamps of poses are in the IMU's clock. The axes of the world are those of
-/// LidarInertialOdometry. The earliest sweep with enough points starts the map, and its pose is exact by definition.
-/// Before the map starts, TumblingOdometry reports no poses. The body should be at rest for at least half a second at
-/// the start, so that the attitude can be levelled.
+/// newest sample by inertial integration from the last registered sweep. The function take() returns a sweep registered
+/// to the map (`report.pose`), at most lag_s after the sweep's end. The report of the following sweep contains the
+/// final pose (`report.smoothed`), at most 0.3 s after the sweep's end at ten sweeps per second. Stamps of poses are in
+/// the IMU's clock. World: see LidarInertialOdometry. The earliest sweep with enough points starts the map and has no
+/// pose error. Before the map starts, there are no poses. Start with at least half a second at rest, which levels the
+/// attitude. If the gyro's zero offset at this rest is above 0.05 rad/s, the run restarts with the offset removed
+/// (GyroOffset); start with a second at rest for such a gyro.
 ///
 /// Some seconds after motion starts, SecondPass processes the first seconds of motion again with the calibration
 /// estimated so far. TumblingOdometry then continues with the map and pose of SecondPass; poses that were already
@@ -56,13 +59,15 @@ class TumblingOdometry {
   /// Throws InvalidParams if a parameter is out of bounds, the lever arm is not set, or the own-body box is invalid.
   explicit TumblingOdometry(const Params& params);
 
-  /// Processes an IMU sample; time stamps must increase. The function registers the sweeps whose rates become
-  /// available. If add_imu() returns `non_finite`, `time_order` or `gap`, the state is unchanged, except for a sample
-  /// after a gap. The first sample after a gap of more than a second waits until the next sample confirms its time
-  /// stamp. After a confirmed gap, the rate estimation restarts with the current calibration, and the mapper bridges
-  /// the gap by inertial integration. The function gaps() counts the restarts. A single sample with a wrong time stamp
-  /// is therefore lost without a restart. OutlierFilter rejects single wild readings. OutlierFilter may delay a sample
-  /// by one sample; newest() then returns the pose of the previous sample.
+  /// Processes an IMU sample; stamps must increase. Registers the sweeps whose rates become available. Samples with
+  /// `non_finite`, `out_of_range`, `time_order` or `gap` are rejected. A single wrong stamp costs one sample
+  /// (StampOrder).
+  /// - After a gap of more than a second, the second sample restarts the rates with the current calibration. The mapper
+  ///   bridges the gap by inertial integration.
+  /// - If the clock steps back, samples are rejected with `time_order` for 0.2 s. The run then restarts as by
+  ///   reset(pose), at the newest pose.
+  /// OutlierFilter rejects single wild readings. OutlierFilter may delay a sample by one; newest() is then one sample
+  /// older.
   Status add_imu(const ImuSample& sample);
   /// Processes a sweep of points fired in [start_ns, end_ns], at any time after the sweep's last point. The function
   /// copies the points. Points from before the end of the last sweep are dropped, because time stamps of sweeps may
@@ -86,17 +91,26 @@ class TumblingOdometry {
   /// mapper().window_trajectories(). If more samples are added after finish(), the rate estimation restarts with the
   /// current calibration.
   void finish();
+  /// Starts a new run with a new map, at the origin and at rest. Sweeps not yet fetched by take() remain available, and
+  /// the counts continue.
+  void reset();
+  /// Starts a new run as reset() does, at a known pose of the IMU. Position and heading are those of `T_WI`; the tilt
+  /// is levelled at rest. Covariances are relative to this pose.
+  void reset(const Eigen::Isometry3d& T_WI);
 
   /// Predicts pose and velocity of the IMU at its newest sample, with covariance, by inertial integration from the last
   /// registered sweep. Returns `empty` before the first sweep. The function newest() allocates memory. Cost: O(samples
   /// since the last sweep).
   Status newest(PoseState& pose) const;
-  /// Reports whether inputs and pose are currently plausible. Estimation continues after any finding of health().
-  /// Returns `ok`, or `out_of_range` with one finding. A finding of health() can be a frozen axis of the IMU, with the
-  /// duration of the freeze. A finding of health() can be an accelerometer with inverted sign (FlightSense), or with a
-  /// wrong unit after a second of rest (RestGravity). A finding of health() can be a wrong scale of the lidar's ranges
-  /// (SweepScale), or too large a change of the lidar's calibration (StatedCalibration). A tracking failure
-  /// (Localisation) is reported by health() until the end of the run.
+  /// Reports whether the inputs and the pose are plausible now. Estimation continues after any finding, and a finding
+  /// ends when its cause ends (at the latest a minute later). Returns `ok`, or `out_of_range` with a finding:
+  /// - a frozen IMU axis and the duration of the freeze,
+  /// - an inverted accelerometer (FlightSense),
+  /// - a wrong unit of the accelerometer after a second of rest (RestGravity),
+  /// - a wrong scale of the lidar's ranges (SweepScale),
+  /// - an uncertain vertical after a start in motion (LidarInertialOdometry::vertical),
+  /// - tracking failure (Localisation::present),
+  /// - too large a change of the lidar's calibration (StatedCalibration).
   Status health() const;
   /// Returns the estimated scale of the lidar's ranges relative to the IMU, as far as the motion determines the scale.
   const SweepScale& sweep_scale() const { return pass_.sweep_scale(); }
@@ -109,8 +123,8 @@ class TumblingOdometry {
   const std::optional<RateState>& smoothed_rate() const { return pass_.smoothed_rate(); }
   /// Returns the estimated calibration of the IMU on the body: lever arm, biases, inertia and sensing directions.
   RigCalibration rig() const { return pass_.rates().rate().calibration(pass_.rate_state().rate); }
-  const KnownRails& rails() const { return pass_.rate_state().rate.rails.known; }
-  /// Returns the number of IMU gaps after which the rate estimation restarted.
+  const SaturationLevels& rails() const { return pass_.rate_state().rate.rails.known; }
+  /// Returns the number of restarts after a gap or after a clock that stepped back.
   std::size_t gaps() const { return gaps_; }
   /// Returns the number of samples that OutlierFilter rejected because of wild readings or time stamps.
   std::size_t rejected_readings() const { return outliers_.rejected; }
@@ -151,16 +165,24 @@ class TumblingOdometry {
  private:
   Status check_state() const;
   Status add_reading(const OdometerReading& reading);
-  Status add_inlier(const ImuSample& sample);
   Status take_in(const ImuSample& sample);
   void register_sweep(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points);
   bool is_due(TimeNs end_ns) const;
   void register_covered();
   void flush_all();
-  void restart();
+  void restart_rates();
+  void restart_at_newest();
+  void restart_without_first();
+  void restart_with_offset(const Eigen::Vector3d& offset_rad_s);
+  void set_gyro_offset(const Eigen::Vector3d& offset_rad_s);
+  const Eigen::Vector3d& gyro_offset_rad_s() const { return pass_.rates().params().rate.model.nominal.gyro_bias_rad_s; }
   void begin_rates();
 
   Params params_;
+  StampOrder order_;
+  StampOrder::State order_state_;
+  GyroOffset gyro_offset_;
+  GyroOffset::State gyro_offset_state_;
   OutlierFilter filter_;
   OutlierFilter::State outliers_;
   SampleClock clock_;
@@ -168,8 +190,8 @@ class TumblingOdometry {
   OdometryPass pass_;
   SecondPass second_pass_;
   std::optional<TimeNs> newest_ns_;      ///< time of the newest accepted sample
-  std::optional<ImuSample> after_gap_;   ///< first sample after a gap, not yet confirmed
-  std::optional<TimeNs> registered_ns_;  ///< end of the last registered sweep, else time of the first sample
+  std::optional<TimeNs> registered_ns_;  ///< end of the last registered sweep; until a sweep is registered, time of the
+                                         ///< first sample
   std::size_t gaps_ = 0, dropped_sweeps_ = 0, early_sweeps_ = 0;
   std::deque<WaitingSweep> waiting_;
   WaitingReadings readings_;

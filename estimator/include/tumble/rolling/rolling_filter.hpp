@@ -50,10 +50,10 @@ class RollingFilter {
   struct Hypothesis {
     Vector x = Vector::Zero();  ///< errors: attitude (W), velocity and position of the IMU, constants
     Covariance P = Covariance::Zero();
-    Eigen::Vector3d u_W_m_s = Eigen::Vector3d::Zero();  ///< contact velocity at the last node
-    double log_weight = 0.0;                            ///< log probability relative to the most probable hypothesis
-    std::int64_t switched_node = 0;                     ///< node at which the current contact mode began
-    std::int32_t parent = 0;                            ///< index of the hypothesis' parent at the previous node
+    Eigen::Vector3d contact_velocity_W_m_s = Eigen::Vector3d::Zero();  ///< contact velocity at the last node
+    double log_weight = 0.0;         ///< log probability relative to the most probable hypothesis
+    std::int64_t switched_node = 0;  ///< node at which the current contact mode began
+    std::int32_t parent = 0;         ///< index of the hypothesis' parent at the previous node
     RollingMode mode = RollingMode::grip;
     bool operator==(const Hypothesis&) const = default;
   };
@@ -134,7 +134,7 @@ class RollingFilter {
   void choose_modes(const Eigen::Vector3d& rate_I_rad_s, bool lost_heading, State& state) const;
   void rebase(bool lost_heading, State& state) const;
   void report(State& state) const;
-  void call_uncertain(State& state) const;
+  void flag_uncertain(State& state) const;
   void constrain_position(State& state) const;
   static RollingMode most_probable_mode(const State& state);
   static const Eigen::Vector3d& newest_rate_rad_s(const State& state);

@@ -58,9 +58,10 @@ struct RollingNominal {
 /// R, R f, R (x) f^T, R (x) w^T, R (w x f), w, f and |w|^2.
 struct RollingSums {
   Eigen::Matrix3d R_s = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d R_force_s = Eigen::Matrix3d::Zero();  ///< integral of R over the readings whose force is used
   Eigen::Vector3d f_W_m_s = Eigen::Vector3d::Zero();
   Eigen::Matrix<double, 3, 9> R_f = Eigen::Matrix<double, 3, 9>::Zero(), R_w = Eigen::Matrix<double, 3, 9>::Zero();
-  Eigen::Vector3d R_wxf = Eigen::Vector3d::Zero();
+  Eigen::Vector3d rotated_rate_cross_force = Eigen::Vector3d::Zero();
   Eigen::Vector3d w_I_rad = Eigen::Vector3d::Zero(), f_I_m_s = Eigen::Vector3d::Zero();
   double rotated_rad2_s = 0.0;
   double rate_clipped_s = 0.0, force_clipped_s = 0.0;  ///< duration of saturated readings

@@ -25,7 +25,8 @@ from evalio import types  # noqa: E402
 from evalio.datasets import Dataset, RawDataIter  # noqa: E402
 
 #: All scenarios of the rig with a lidar (checked by tests/architecture/registration_test.cpp).
-SCENARIOS = ("hill", "scree", "forest", "stairs", "cliff", "bare", "throw", "drop", "stroll", "hill_upright", "hill_consumer")
+SCENARIOS = ("hill", "scree", "forest", "stairs", "cliff", "bare", "throw", "drop", "stroll", "hill_upright", "hill_consumer",
+             "hill_faults")
 
 
 def seeds() -> range:

@@ -8,7 +8,7 @@
 namespace tumble {
 
 /// Computes the uncertainty of a device's sensor errors from measurement information that grows during a run. The prior
-/// is a mixture of two devices: a device that matches its data sheet, and an uncalibrated device (SensorErrorSizes). A
+/// is a mixture of two devices: a device that matches its data sheet, and an uncalibrated device (SensorErrorPriors). A
 /// stream uses DeviceUncertainty instead of fit_sensor_errors(), which needs more computation. See rate_stream.md
 /// (R102), (R103).
 class DeviceUncertainty {
@@ -30,7 +30,7 @@ class DeviceUncertainty {
   };
 
   /// `uncalibrated` is the prior probability of an uncalibrated device.
-  DeviceUncertainty(const SensorErrorSizes& sizes, double uncalibrated);
+  DeviceUncertainty(const SensorErrorPriors& sizes, double uncalibrated);
 
   /// Computes `posterior` from the measurement information. Cost: O(1), two systems of 29 unknowns, no allocation. If
   /// the information is not finite, `posterior` is the prior. `unlike` states that the device is known not to match its

@@ -30,6 +30,8 @@ namespace tumble {
 /// or two gyro axes clip in all flights. A lever arm with the wrong sign looks like an inverted accelerometer.
 class FlightSense {
  public:
+  static constexpr double kMemory_s = 60.0;
+
   /// Number of alternatives, and index of the gyro with half scale. Alternative 0 is the true sensor. Errors of the
   /// accelerometer follow, then errors of the gyro: all axes flipped, one axis flipped, two axes swapped.
   static constexpr std::size_t kSenses = 17, kHalfScaleGyro = 16;
@@ -91,6 +93,7 @@ class FlightSense {
     int readings = 0;                       ///< consecutive readings, at most two
     std::array<double, kSenses> run_s{};    ///< current flight duration of each alternative
     std::array<double, kSenses> flown_s{};  ///< total flight duration of each alternative
+    TimeNs flown_ns = 0;                    ///< end of the last flight of an alternative
     TimeNs last_time_ns = 0;
     bool started = false;
     bool operator==(const State&) const = default;
@@ -104,6 +107,8 @@ class FlightSense {
 
   /// Returns `out_of_range` if the flights match a sensor with wrong signs, axes or scale.
   Status verdict(const State& state) const;
+  /// Returns verdict() until the last flight of an alternative is kMemory_s old.
+  Status present(const State& state) const;
 
  private:
   Reading reading_of(const ImuSample& mean, double rate_peak_rad_s) const;

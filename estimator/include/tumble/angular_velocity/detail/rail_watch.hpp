@@ -45,7 +45,7 @@ class RailWatch {
     bool operator==(const Memory&) const = default;
   };
   struct State {
-    KnownRails known;
+    SaturationLevels known;
     std::array<Memory, 2> memory;     ///< gyro and accelerometer
     RailPlaneFinder::Workspace work;  ///< buffer, not part of the state
   };

@@ -93,7 +93,7 @@ struct RateModelExpertParams {
   /// Standard deviation of the rate from zero at rest, independent for each sample. The rate deviation at rest covers
   /// vibration and false detections of rest.
   double rest_sigma_rad_s = 0.01;
-  SensorErrorSizes error_sizes = {};  ///< uncertainty of RateModelParams::errors
+  SensorErrorPriors error_sizes = {};  ///< uncertainty of RateModelParams::errors
   RateReadingParams readings = {};
   RateFlightParams flight = {};
   RateContactParams contact = {};

@@ -31,7 +31,7 @@ struct RateObservation {
   /// previous reading.
   double gyro_age_s = 0.0, accel_age_s = 0.0;
   bool gyro_repeats = false;
-  ElementRows accel_rows = {};  ///< sensing directions of the accelerometer; needed if an element clips
+  SensingDirections accel_rows = {};  ///< sensing directions of the accelerometer; needed if an element clips
   std::array<AuxiliaryReading, kAuxiliaryImusMax> auxiliary_imus =
       {};  ///< readings in the order of RateModelParams::auxiliary_imus
 
@@ -47,7 +47,7 @@ struct RateObservation {
   /// Returns the axes whose rate is not measured, or has only a lower bound.
   std::uint8_t unseen() const {
     for (const AuxiliaryReading& auxiliary_imu : auxiliary_imus) {
-      if (auxiliary_imu.sees_all_rates()) return 0;
+      if (auxiliary_imu.measures_all_rates()) return 0;
     }
     return static_cast<std::uint8_t>((clipping.gyro | clipping.missing_gyro) &
                                      ~(subsample_saturated & ~clipping.missing_gyro));

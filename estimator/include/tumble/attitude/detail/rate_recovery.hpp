@@ -56,7 +56,7 @@ class RateRecovery {
     /// Sensing directions of the units' sensing elements. While a sensing element clips, its saturation deficit
     /// corrupts the readings of all axes of the triad. RateRecovery then uses the unsaturated sensing elements along
     /// their sensing directions.
-    std::array<ElementRows, kUnits> gyro_elements{}, accel_elements{};
+    std::array<SensingDirections, kUnits> gyro_elements{}, accel_elements{};
   };
   struct State {
     Vector x = Vector::Zero();  ///< rate, angular acceleration, force, lever arm errors (axes C)

@@ -97,6 +97,9 @@ class RestGravity {
   /// Processes a sample without a rate, only for the magnitude of the force at rest.
   void step(const ImuSample& sample, Size& state) const { (void)follow(sample, state); }
 
+  /// Limits the memory of the force at rest to a minute of rest, so that a finding ends.
+  static void limit_memory(Size& state);
+
   /// Returns the mean magnitude of the force at rest as a fraction of gravity. Returns 0 if every rest of a second was
   /// without force, and 1 if the body never rested.
   double size_share(const Size& state) const;

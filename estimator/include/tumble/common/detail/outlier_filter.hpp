@@ -18,10 +18,11 @@ namespace tumble {
 /// the accelerometer. A time stamp that is later than the next time stamp is also an outlier. The equations of
 /// OutlierFilter are outliers.md (O1) to (O6).
 ///
-/// OutlierFilter is causal. OutlierFilter delays a suspicious reading by one sample, until the next reading confirms or
-/// contradicts the reading. All other readings pass immediately and unchanged. Readings beyond kRateMax_rad_s or
-/// kForceMax_m_s2 never pass. Cost: O(1) per reading, no allocation. OutlierFilter does not model two wild readings in
-/// succession, a wild first reading, or a wild reading during a hard impact.
+/// The filter is causal. OutlierFilter delays a reading that jumps further than the other triad explains until the next
+/// reading confirms or refutes it. All other readings pass at once, unchanged. Readings beyond kRateMax_rad_s or
+/// kForceMax_m_s2 never pass. A wild first reading passes, but the next two readings refute it (first_is_refuted()).
+/// Cost: O(1) per reading, no allocation. OutlierFilter does not model two wild readings in a row, or a wild reading
+/// during an impact that is hard enough to explain it.
 class OutlierFilter {
  public:
   /// Limits of plausible readings. No gyro measures rates above kRateMax_rad_s (57 000 deg/s), and no accelerometer of
@@ -52,8 +53,15 @@ class OutlierFilter {
   /// sample was delayed. After the call, no sample is delayed.
   std::optional<ImuSample> settle(const ImuSample& next, State& state) const;
 
-  /// Returns true if a finite sample must not be used now. An unusable sample is delayed, or rejected because no sensor
-  /// reads such large values. Call settle() before keeps_back().
+  /// Returns whether settle() confirms the second sample of a run, which was delayed because it contradicts the first.
+  /// The first sample is then an outlier, and the run should restart with the second. Call this function before
+  /// settle().
+  bool first_is_refuted(const ImuSample& next, const State& state) const {
+    return state.count == 1 && state.held && jumps(*state.held, state) && confirms(next, state);
+  }
+
+  /// Returns true if a finite sample must not be used now, because it is delayed, or rejected as larger than any sensor
+  /// reads. Call settle() before keeps_back().
   bool keeps_back(const ImuSample& sample, State& state) const;
 
   /// Records that a sample was used: a sample that settle() returned, or a sample for which keeps_back() returned
@@ -64,7 +72,11 @@ class OutlierFilter {
   static void finish(State& state);
 
  private:
+  bool confirms(const ImuSample& next, const State& state) const {
+    return next.time_ns > state.held->time_ns && !is_outlier(*state.held, next, state);
+  }
   double period_s(const State& state) const;
+  bool jumps(const ImuSample& sample, const State& state) const;
   bool is_suspicious(const ImuSample& sample, const State& state) const;
   bool is_outlier(const ImuSample& held, const ImuSample& after, const State& state) const;
 

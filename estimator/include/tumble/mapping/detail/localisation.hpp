@@ -1,25 +1,32 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
+
 #include "tumble/common/status.hpp"
+#include "tumble/common/time.hpp"
 #include "tumble/mapping/sweep_report.hpp"
 
 namespace tumble {
 
-/// Detects tracking failure from the SweepReport of each sweep (docs/maths/mapping.md, section 11). Tracking has failed
-/// permanently if one of two findings applies.
-/// First, tracking has failed if the position's standard deviation exceeded the matching distance of surfaces. A sweep
-/// can then match any nearby surface, and a relocalisation is ambiguous.
-/// Second, tracking has failed if surfaces corrected two or more sweeps by more than their priors allow. A single large
-/// correction may come from saturation that the rates underestimated.
-/// An IMU or a lidar that does not meet its data sheet causes several large corrections.
+/// Detects tracking failure from what the mapper reports for each sweep (docs/maths/mapping.md, section 11). Either of
+/// two findings of verdict() is sufficient and permanent:
+///  - The position's standard deviation exceeded the matching distance of surfaces. A sweep can then match any nearby
+///    surface, and a relocalisation is ambiguous.
+///  - Surfaces corrected two or more sweeps beyond their priors. A single correction may come from saturation that the
+///    rates underestimated. An IMU or a lidar that does not meet its data sheet causes more.
 ///
-/// Before the first sweep with surfaces there is no map, so tracking cannot fail. Localisation does not use the number
-/// of well constrained sweeps, because the standard deviation accounts for the number. Localisation does not detect a
-/// map of another scale (see SweepScale), or errors of clocks or mounting that the calibration explains.
+/// Before the first sweep with surfaces there is no map, so tracking cannot fail. The number of well constrained sweeps
+/// is not used because the standard deviation accounts for it. Localisation does not detect a map of another scale (see
+/// SweepScale), or errors of clocks or mounting that the calibration explains.
+///
+/// The function present() judges the pose relative to the map at the newest sweep. Its findings end: the position relative
+/// to the map is again certain, or the contradictions are older than kMemory_s.
 class Localisation {
  public:
-  /// `matched_m` is MatchingParams::distance_m of the mapper.
+  static constexpr double kMemory_s = 30.0;
+
+  /// `matched_m`: MatchingParams::distance_m of the mapper.
   explicit Localisation(double matched_m) : matched_m_(matched_m) {}
 
   /// Processes a sweep that has a pose. Cost: O(1). Sweeps must be in time order.
@@ -30,6 +37,8 @@ class Localisation {
   double second_innovation() const { return second_innovation_; }
   /// Returns `out_of_range` with the finding and the violated limit, or `ok` without a finding.
   Status verdict() const;
+  /// Returns `out_of_range` with the present finding and the violated limit. Returns `ok` without a finding.
+  Status present() const;
 
   /// Passes every member of the state to the visitor. The source file state_visitor.hpp defines the function.
   template <class Self, class Visitor>
@@ -39,6 +48,9 @@ class Localisation {
   double matched_m_;
   bool mapped_ = false;
   double largest_sigma_m_ = 0.0, largest_innovation_ = 0.0, second_innovation_ = 0.0;
+  double sigma_m_ = 0.0;  ///< of the newest sweep, relative to the map
+  TimeNs newest_ns_ = 0;
+  std::optional<TimeNs> contradicted_ns_, before_ns_;  ///< the last two sweeps that surfaces corrected beyond the prior
 };
 
 }  // namespace tumble

@@ -28,25 +28,27 @@ struct SweepScale {
   Status verdict() const;
 };
 
-/// Estimates the scale of the lidar's ranges over the sweeps of a run. Cost: O(N). The function compares the mean
-/// velocities of two consecutive spans of 0.4 s. The difference of the two mean velocities equals the integrated
-/// acceleration, from gravity in flight and from impacts, for any velocity. The function regresses the lidar's velocity
-/// differences on the IMU's velocity differences robustly (Huber, 1964); the expected slope is 1. Ranges that are 10 %
-/// too long give a slope of 1.1, reduced by the weight of the IMU in the mapper. The attitudes come from the estimate
-/// of the run. Intervals with a saturated accelerometer or with unconstrained sweeps are skipped. The standard
-/// deviation of the slope is heteroscedasticity-consistent (White, 1980). `gravity_m_s2` is the magnitude of gravity.
-/// Without acceleration, the scale is not observable. RestGravity detects an accelerometer's scale error from gravity
-/// at rest.
+/// Estimates the lidar's range scale over the sweeps of a run. The function compares the mean velocities of two
+/// consecutive spans of 0.4 s. The difference of the two velocities equals the integrated acceleration, from gravity in
+/// flight and from impacts, for any velocity. A robust regression (Huber, 1964) of the lidar's differences on the IMU's
+/// differences has slope 1. Ranges 10 % too long give a slope of 1.1, reduced by the mapper's confidence in the IMU.
+/// The attitudes come from the run's estimate. Intervals with a saturated accelerometer or with unconstrained sweeps
+/// are skipped. The standard deviation is heteroscedasticity-consistent (White, 1980). `gravity_m_s2` is the magnitude
+/// of gravity. Without acceleration, the scale is not observable. Gravity at rest detects an accelerometer's scale
+/// error instead. The standard deviation includes a constant acceleration error of 0.05 m/s^2, from bias and tilt, which
+/// changes in one direction do not average out. O(N).
 SweepScale find_sweep_scale(std::span<const ImuSample> samples, std::span<const SweepReport> sweeps,
                             double gravity_m_s2);
 
-/// Estimates the scale of the lidar's ranges while samples and sweeps arrive, from the newest 1000 changes of velocity.
-/// SweepScaleWatch uses the first pose of each sweep, and is therefore less accurate than find_sweep_scale() with the
-/// final poses of a whole run.
+/// Estimates the lidar's range scale while samples and sweeps arrive, from the changes of velocity of the last minute, at
+/// most 1000. The
+/// estimate uses the first pose of each sweep and is therefore less accurate than an estimate from the final poses of a
+/// whole run.
 class SweepScaleWatch {
  public:
   /// Change is the change of velocity from one span to the next span.
   struct Change {
+    TimeNs time_ns = 0;
     Eigen::Vector3d by_imu_m_s = Eigen::Vector3d::Zero(), by_sweeps_m_s = Eigen::Vector3d::Zero();
   };
 

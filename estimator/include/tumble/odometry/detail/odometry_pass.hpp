@@ -36,7 +36,9 @@ class OdometryPass {
 
   /// Processes a sample like RegimeStream::push, and passes the rate that becomes available to the mapper.
   Status add_imu(const ImuSample& sample);
-  /// Returns whether rates are available up to `end_ns` in the lidar's clock.
+  /// Sets the pose at which the map starts; see LidarInertialOdometry::start_at().
+  void start_at(const Eigen::Isometry3d& T_WI) { mapper_.start_at(T_WI); }
+  /// Returns whether rates are available up to this time of the lidar's clock.
   bool covers(TimeNs end_ns) const;
   /// Returns the lidar time up to which rates are available, or nothing before the first rate.
   std::optional<TimeNs> covered_ns() const;

@@ -62,7 +62,12 @@ class SecondPass {
   /// `rate` and `mapping` are the parameters of the first pass. Throws InvalidParams if a parameter is out of bounds.
   SecondPass(const Params& params, const RegimeStream::Params& rate, const LidarInertialOdometry::Params& mapping);
 
-  /// Buffers a sample that the first pass has processed. The function does not allocate.
+  /// Sets the gyro's zero offset, before the first sample.
+  void set_gyro_offset(const Eigen::Vector3d& offset_rad_s) {
+    rate_.rate.model.nominal.gyro_bias_rad_s = offset_rad_s;
+  }
+
+  /// Buffers a sample that the first pass has processed. No allocation.
   void store(const ImuSample& sample);
   /// Buffers a sweep that the first pass has registered, with the odometer reading of the sweep, if any.
   void store(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points,

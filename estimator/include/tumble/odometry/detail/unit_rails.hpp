@@ -16,7 +16,8 @@ namespace tumble {
 
 /// Detects the saturation levels of several IMUs (units) on one body from their readings, causally. UnitRails flags
 /// readings that a device clips without reporting saturation, before ImuMerge processes the readings. Each unit has a
-/// RailWatch with the rule of CertainRails. ClippingFinder applies the rule of CertainRails to whole recordings.
+/// RailWatch with the rule of ConfirmedSaturation. ClippingFinder applies the rule of ConfirmedSaturation to whole
+/// recordings.
 ///
 /// A sample is classified by the saturation levels that earlier samples revealed. The first two to ten samples at a
 /// saturation level are therefore not flagged. UnitRails does not report sensing directions of the units to ImuMerge.

@@ -25,7 +25,7 @@ class WaitingReadings {
   /// Maximum number of waiting readings: 500 Hz over the longest silence of the lidar plus a lag of a second.
   static constexpr std::size_t kMost = 1024;
   /// Time by which a reading may extend beyond its sweep, because clocks differ.
-  static constexpr auto kBeyond_ns = static_cast<TimeNs>(1e9 * SweepTrajectory::kBeyond_s);
+  static constexpr auto kBeyond_ns = static_cast<TimeNs>(1e9 * SweepTrajectory::kExtrapolation_s);
 
   /// Stores a reading; readings may arrive in any order. The reading's time must be after `done_ns`, the end of the
   /// last registered sweep, and at most `latest_ns`. Returns an error of check_reading(), `time_order` if the reading's

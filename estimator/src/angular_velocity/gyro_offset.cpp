@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/angular_velocity/detail/gyro_offset.hpp"
+
+namespace tumble {
+
+GyroOffset::GyroOffset() : rests_({.rate_max_rad_s = kMost_rad_s, .rest_s = 0.5}) {}
+
+std::optional<Eigen::Vector3d> GyroOffset::observe(const ImuSample& sample, State& state) const {
+  if (state.decided) return std::nullopt;
+  if (!state.first_ns) state.first_ns = sample.time_ns;
+  const bool rests = rests_.observe(sample, state.rest);
+  state.decided = rests || check_follows(sample.time_ns, *state.first_ns, kWithin_s).trouble == Trouble::gap;
+  if (!rests) return std::nullopt;
+  const Eigen::Vector3d offset = state.rest.mean_rate_rad_s();
+  if (offset.cwiseAbs().maxCoeff() <= kLeast_rad_s) return std::nullopt;
+  return offset;
+}
+
+Eigen::Vector3d GyroOffset::find(std::span<const ImuSample> samples) const {
+  State state;
+  for (const ImuSample& sample : samples) {
+    if (const std::optional<Eigen::Vector3d> offset = observe(sample, state)) return *offset;
+    if (state.decided) break;
+  }
+  return Eigen::Vector3d::Zero();
+}
+
+}  // namespace tumble

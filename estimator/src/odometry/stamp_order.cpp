@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/odometry/detail/stamp_order.hpp"
+
+#include "tumble/common/detail/sample_check.hpp"
+
+namespace tumble {
+
+Status StampOrder::judge(TimeNs stamp_ns, State& state, Verdict& verdict) const {
+  verdict = Verdict::continues;
+  if (const Status status = check_stamp(stamp_ns, "time_ns"); !status.ok()) return status;
+  if (!state.newest_ns) return {};
+  const Status status = check_follows(stamp_ns, *state.newest_ns, gap_max_s_);
+  if (status.ok()) {
+    state.rejected.reset();
+    return {};
+  }
+  const bool gap = status.trouble == Trouble::gap;
+  if (!state.rejected || !check_follows(stamp_ns, state.rejected->last_ns, gap_max_s_).ok()) {
+    state.rejected = Rejected{stamp_ns, stamp_ns};
+    return status;
+  }
+  state.rejected->last_ns = stamp_ns;
+  const bool confirmed = check_follows(stamp_ns, state.rejected->first_ns, kStepBack_s).trouble == Trouble::gap;
+  if (!gap && !state.single && !confirmed) return status;
+  verdict = gap ? Verdict::restarts_after_gap : Verdict::restarts_after_step_back;
+  return {};
+}
+
+void StampOrder::accept(TimeNs stamp_ns, State& state) {
+  state = {.newest_ns = stamp_ns, .single = !state.newest_ns, .rejected = std::nullopt};
+}
+
+}  // namespace tumble

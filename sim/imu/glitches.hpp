@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <string>
+
+#include "sim/imu/imu_chain.hpp"
+#include "sim/parameters.hpp"
+#include "sim/random/stream.hpp"
+
+namespace tumble::sim {
+
+/// Replaces one axis of single samples by a wild reading, as an error on the device's bus does. The wild reading is
+/// uniform within 1.5 times the stated range and independent of the signal. It is no saturation, so that the truth's
+/// unclipped reading has the same value. Not modelled: several wild samples in a row, and wrong time stamps.
+class Glitches {
+ public:
+  /// Reads `glitch_share` and the stated ranges. A share of 0 draws no random numbers.
+  Glitches(const Values& values, const Stream& stream);
+  /// Must be called once for each sample, delivered or lost.
+  void spoil(TriadReading& gyro, TriadReading& accel);
+
+ private:
+  double share_, gyro_range_rad_s_, accel_range_m_s2_;
+  Stream stream_;
+};
+
+}  // namespace tumble::sim
