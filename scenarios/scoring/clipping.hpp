@@ -58,9 +58,9 @@ class ClippingTruth {
   std::size_t known_samples() const;
   /// Returns the clipped axes of a sample, or 0 if its rate is unknown.
   std::uint8_t clipped_axes(std::size_t index) const;
-  /// Returns the axes of a sample with a cross-axis error; no axis is in both sets.
+  /// Returns the axes of a sample with a cross-axis error. A clipped axis never has a cross-axis error.
   std::uint8_t cross_axes(std::size_t index) const;
-  /// Returns the largest difference of an axis to the unclipped reading, or to the reference.
+  /// Returns the largest difference over the axes between the reading and the unclipped reading or reference.
   double depth_rad_s(std::size_t index) const;
 
  private:
