@@ -24,8 +24,9 @@ std::string bench_suite_digest(const Suite& suite);
 /// if a simulated run of the suite has no outcome.
 BenchResult collect_bench_result(const Results& results, const Suite& suite, const MethodInfo& method);
 
-/// Stores published results in a database next to measured results, each with a note of its build and date. Omits the
-/// cost, which is only comparable on one machine. The results must belong to other methods than the database's.
+/// Stores published results in a database next to measured results, each with a note of its build and date. The cost is
+/// omitted, because it is only comparable on one machine. The database must not contain results of the published
+/// methods.
 void add_published(std::span<const BenchResult> published, Results& results);
 
 /// Throws BadInput unless the result belongs to this suite and has an outcome for every simulated run.

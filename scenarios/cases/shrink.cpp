@@ -106,7 +106,7 @@ class Shrinking {
   }
 
  private:
-  /// Finds the first single input whose truth cures the original run; the last input replaces all inputs.
+  /// Finds the first single input whose truth removes the original failure. The last input replaces all inputs.
   void find_cure(const Run& run) {
     const std::span<const TrueInput> single = true_inputs().first(true_inputs().size() - 1);
     const auto cure = std::find_if(single.begin(), single.end(),
@@ -116,7 +116,7 @@ class Shrinking {
     shrunk_.cure = cure->name;
   }
 
-  /// Returns why a run that fails is not the failure of the original run, or an empty text.
+  /// Returns why the failure of a run differs from the failure of the original run. Empty if both failures are equal.
   std::string other_cause(const Run& run) const {
     if (shrunk_.controlled && options_.failure.holds(run.outcome(*options_.control, options_.timeout_s)))
       return "the control method fails too: " + options_.control->info.name;

@@ -55,7 +55,7 @@ struct Shrunk {
 };
 
 /// Simplifies a simulated run on which `method` fails, while the method still fails. The search first reduces the
-/// duration, which makes further trials cheap. Then the search removes complications (complication.hpp) by delta
+/// duration, which makes further trials cheap. The search then removes complications (complication.hpp) by delta
 /// debugging (delta_debugging.hpp), reduces the remaining sizes and counts, and reduces the duration again. Each trial
 /// is simulated and estimated, and is accepted if it fails like the original run (same_failure.hpp). The true input
 /// that removes the original failure must also remove the failure of the trial; otherwise the search could end at

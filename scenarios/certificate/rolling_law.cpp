@@ -69,7 +69,7 @@ std::vector<CertificateEntry> certify_rolling(const CertificateInput& input, con
   std::vector<CertificateEntry> entries = {entry(input, setup, sim::resolve(plane), "plane", 1e-3)};
   if (!setup.terrains) return entries;
   // A sphere crosses edges of patches or obstacles within the 10 ms window of a contact label, and a label allows 0.02
-  // m/s of slip. These two effects cause errors of 2e-4 to 5.1e-4 on the catalogue's terrains.
+  // m/s of slip. Edges and the slip limit of the label cause errors of 2e-4 to 5.1e-4 on the catalogue's terrains.
   constexpr double kTerrainHigh = 1e-3;
   for (const std::string& name : scenario_names(input.data)) {
     const Scenario scenario = load_scenario(input.data, name);

@@ -37,8 +37,8 @@ struct FreeFallSetup {
 };
 std::vector<CertificateEntry> certify_free_fall(const CertificateInput& input, const FreeFallSetup& setup = {});
 
-/// The velocity of the rolling sphere's centre must equal r w x n. This law is tested on a plane and on the ground of
-/// each sphere scenario.
+/// The velocity of the rolling sphere's centre must equal r w x n. The rolling law is tested on a plane and on the
+/// ground of each sphere scenario.
 struct RollingSetup {
   double stated_radius_m = 0.0;  ///< 0: the sphere's true radius
   bool terrains = true;          ///< also tests the sphere scenarios
@@ -54,8 +54,9 @@ struct SlipToGripSetup {
 std::vector<CertificateEntry> certify_slip_to_grip(const CertificateInput& input, const SlipToGripSetup& setup = {});
 
 /// The measurement drops the rig on its corners and records the first peak of the specific force, averaged over 2 ms.
-/// It reports the relative change of the peak when the engine's step is reduced to a quarter. It also reports the
-/// exponent of the peak as a function of the contact time constant; an ideal spring has exponent -1.
+/// The measurement reports the relative change of the peak when the engine's step is reduced to a quarter. The
+/// measurement also reports the exponent of the peak as a function of the contact time constant; an ideal spring has
+/// exponent -1.
 struct ImpactSetup {
   double height_m = 1.0;
   double step_s = 0.0;                  ///< 0: the simulation's step
@@ -88,8 +89,9 @@ struct ImuNoiseSetup {
 };
 std::vector<CertificateEntry> certify_imu_noise(const CertificateInput& input, const ImuNoiseSetup& setup = {});
 
-/// The measurement fits planes to the clipped readings of IMUs with tilted sensing elements, and compares them with the
-/// simulated planes. `assumed_tilt` is added to one entry of the misalignment matrix in the closed form.
+/// The measurement fits planes to the clipped readings of IMUs with tilted sensing elements, and compares the fitted
+/// planes with the simulated planes. `assumed_tilt` is added to one entry of the misalignment matrix in the closed
+/// form.
 struct TiltedRailSetup {
   double misalignment = 0.02;  ///< distribution of the elements; scales use half of it, offsets 0.5 % of the limit
   double assumed_tilt = 0.0;

@@ -9,7 +9,7 @@
 namespace tumble::scenarios {
 
 /// A number of a scenario, either constant or random. Each random number has its own named random stream, so an added
-/// number does not change the others.
+/// number does not change the existing numbers.
 struct Distribution {
   enum class Shape { constant, uniform, normal, log_uniform, choice };
   Shape shape = Shape::constant;

@@ -8,8 +8,8 @@
 namespace tumble::scenarios {
 
 /// Returns the scenario with every number fixed to its value in `situation`, which was drawn from the scenario. The
-/// fixed numbers include defaults and data sheets. With the seed of `situation`, the fixed scenario reproduces the
-/// simulated run, even if the catalogue, data sheets or defaults change later.
+/// fixed numbers include defaults and numbers of data sheets. With the seed of `situation`, the fixed scenario
+/// reproduces the simulated run, even if the catalogue, data sheets or defaults change later.
 Scenario fixed_as(Scenario scenario, const sim::Situation& situation);
 
 /// Returns a scenario without random numbers as YAML. Parsing the text gives an equal scenario. Throws BadInput if a

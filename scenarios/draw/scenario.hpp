@@ -54,8 +54,8 @@ Scenario load_scenario(const DataRoot& data, const std::string& name);
 sim::ResolvedSituation draw(const DataRoot& data, const Scenario& scenario, std::uint64_t seed);
 
 /// These functions convert a resolved situation to and from YAML without loss; doubles are restored bit-exactly.
-/// Reading rejects unknown keys. sim::resolve checks that this build has the named types and numbers. Both functions
-/// throw BadInput with a message that starts with `place`.
+/// Reading rejects unknown keys. sim::resolve checks that this build has the named types and numbers. On invalid text
+/// or numbers, to_yaml and situation_from_yaml throw BadInput with a message that starts with `place`.
 std::string to_yaml(const sim::Situation& situation);
 sim::Situation situation_from_yaml(const std::string& text, const std::string& place);
 

@@ -24,8 +24,8 @@ constexpr std::size_t kLeastPairs = 12;
 /// Largest accepted error relative to the median rotation. Above this limit, lidar and gyro do not measure the same
 /// motion. The error of the lidar's rotation is about 0.1.
 constexpr double kAgrees = 0.3;
-/// Largest ratio of the errors with and without a correction of the gyro that is reported. kConclusive applies to units
-/// and axes, kDelayConclusive to a delay.
+/// A correction of the gyro is only reported if the remaining error is below this fraction of the original error.
+/// kConclusive applies to units and axes, and kDelayConclusive applies to a delay.
 constexpr double kConclusive = 0.5, kDelayConclusive = 0.6;
 constexpr double kDegreesPerRadian = 57.29577951308232;
 constexpr double kDelayMost_s = 0.5, kDelayStep_s = 0.01, kDelaySaid_s = 0.03;

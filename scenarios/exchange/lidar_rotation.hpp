@@ -14,7 +14,7 @@
 #include "sim/recording.hpp"
 
 /// Checks unit, signs, axes, mounting and clock of a gyro against the lidar's rotation between sweeps. For hand-held or
-/// driven bodies with little tilt, gravity does not reveal wrong axes or units, but this check does.
+/// driven bodies with little tilt, gravity does not reveal wrong axes or units, but the lidar does.
 namespace tumble::scenarios {
 
 /// Rotation of a lidar between two instants.

@@ -42,8 +42,8 @@ class AnswerBounds {
   /// fit another unit.
   void require_unit(std::span<const double> stamps_s, const char* unit, const Place& place) const;
   void require_unit(const Estimate& estimate, const char* unit, const Place& place) const;
-  /// Checks the pose and trajectory of each sweep, and the points of the map. The limits are those for positions and
-  /// quaternions.
+  /// Checks the pose and trajectory of each sweep, and the points of the map. The limits of positions and quaternions
+  /// apply.
   void require_slam(const Estimate& estimate) const;
 
  private:

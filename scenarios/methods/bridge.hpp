@@ -47,9 +47,9 @@ ImuSheet imu_sheet(const sim::ImuRecord& record);
 Status check_range(const sim::ImuRecord& record, const Eigen::Vector3d& gyro_rad_s, const Eigen::Vector3d& accel_m_s2);
 
 /// Tests the samples of an IMU. Element k is false if sample k is not finite, exceeds the values of any sensor, or has
-/// a stamp that is not in order. These three faults only count if few samples have them (may_leave_out). Element k is
-/// also false if the library's OutlierFilter rejects the sample. All samples pass if the record's arrays differ in
-/// length. O(N log N).
+/// a stamp that is not in order. Samples with one of these faults are only rejected if the faults are rare
+/// (may_leave_out). Element k is also false if the library's OutlierFilter rejects the sample. All samples pass if the
+/// record's arrays differ in length. O(N log N).
 std::vector<bool> find_inliers(const sim::ImuRecord& record);
 
 /// Converts the samples of an IMU, in order, and drops the single faulty readings that find_inliers rejects. Returns

@@ -8,8 +8,8 @@
 
 #include "scenarios/recordings/table_file.hpp"
 
-/// Reads and writes covariances of an estimate's poses or attitudes, one row per stamp. These covariances have their
-/// own file, because TUM files have no columns for covariances. ESTIMATE.md describes the columns.
+/// Reads and writes covariances of an estimate's poses or attitudes, one row per stamp. The covariances have their own
+/// file, because TUM files have no columns for covariances. ESTIMATE.md describes the columns.
 namespace tumble::scenarios {
 
 /// Writes one covariance per stamp: the upper triangle, row by row. If all covariances are zero (not estimated), no

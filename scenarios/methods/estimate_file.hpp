@@ -36,9 +36,9 @@ void write_estimate(const std::filesystem::path& folder, const std::string& meth
 std::string estimated_sensors(const std::filesystem::path& path);
 
 /// Reads the folder of an estimate, or a single file of another program: TUM, or a table of poses (read_pose_table).
-/// The estimate of a file has kind position, the frame `tum_frame` and the file's name; all numbers must be finite. The
-/// folder of an estimate may contain NaN, because a diverged method writes NaN. Throws BadInput with path, line and
-/// reason.
+/// The estimate of a file has kind position, the frame `tum_frame` and the file's name. All numbers of a single file
+/// must be finite. The folder of an estimate may contain NaN, because a diverged method writes NaN. Throws BadInput
+/// with path, line and reason.
 Estimate read_estimate(const std::filesystem::path& path, Kind& kind, std::string& method, Frame tum_frame);
 
 }  // namespace tumble::scenarios

@@ -40,9 +40,9 @@ class RefusedAnswer : public BadInput {
 };
 
 /// Returns the method described by NAME.yaml or NAME.py (EXTERNAL.md). A command receives the sensor data in a separate
-/// folder in the requested formats. It runs in its own process with its limits and writes its result to a file. A
-/// Python function exchanges the sensor data and the result through shared memory. The external program never receives
-/// the truth.
+/// folder in the requested formats. The command runs in its own process with its limits and writes its result to a
+/// file. A Python function exchanges the sensor data and the result through shared memory. The external program never
+/// receives the truth.
 ///
 /// The time limit is the limit in the description, but at most `time_limit_s`. Throws BadInput if the description is
 /// invalid or if the version command fails. Running the method throws NoAnswer, or RefusedAnswer if the result is

@@ -32,7 +32,8 @@ RateSmoother::Params stated_params(const sim::ImuRecord& record, RateSmoother::P
 RateSmoother::Params smoother_params(const sim::ImuRecord& record, const Settings<RateSmoother::Params>& settings,
                                      const sim::Values& parameters);
 
-/// Result of the rate smoother on a recording. The result includes the hand-held smoother where it ran (join_regimes).
+/// Result of the rate smoother on a recording. The result includes the rates of the hand-held smoother if the hand-held
+/// smoother ran (join_regimes).
 struct SmoothedRates {
   std::vector<RateState> rates;  ///< one per sample
   RateReport report;
@@ -81,7 +82,8 @@ struct Learning {
 
 /// Returns the distance between two calibrations: the larger of the Mahalanobis distances of lever arm and inertia,
 /// each divided by the square root of the number of unknowns. Two runs on an unchanged rig gave 0.14 to 1.0 in 18
-/// pairs. An inertia error of 30 % gave at least 2.3. `trust` multiplies the covariance of `before`, as in start_from.
+/// pairs. An inertia error of 30 % gave at least 2.3. Like start_from, the function multiplies the covariance of
+/// `before` by `trust`.
 double distance_of_rigs(const RigCalibration& before, const RigCalibration& now, double trust);
 
 /// Returns `method` with a calibration that starts from and updates `learning`. `learning` must outlive the returned

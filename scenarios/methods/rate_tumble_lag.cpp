@@ -155,7 +155,8 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
     if (std::optional<LearntRig> rig = learnt_by(stream, params.rate, given, at_prior, state)) *found = std::move(rig);
   }
   if (estimate.status.ok()) {
-    (void)check_rates(sensors, samples, carried_share, estimate);  // reported only: the answers were given before
+    (void)check_rates(sensors, samples, carried_share,
+                      estimate);  // reported only, because the results are already final
     (void)report_frozen_axes(sensors, samples, estimate);
   }
   count_sources(estimate.rates, estimate.health);

@@ -22,9 +22,9 @@ struct RecoveredRates {
 };
 
 /// Replaces all three axes of clipped samples by the rates of rate/tumble, because a tilted saturation plane also
-/// corrupts the unclipped axes. The function adds the gyro bias to these rates, estimated as the mean difference of
-/// unclipped samples. The samples are unchanged if no reading clips or if the smoother fails. `samples` are the samples
-/// of the primary IMU.
+/// corrupts the unclipped axes. The function adds the gyro bias to the recovered rates, estimated as the mean
+/// difference of unclipped samples. The samples are unchanged if no reading clips or if the smoother fails. `samples`
+/// are the samples of the primary IMU.
 RecoveredRates recover_clipped(const sim::Sensors& sensors, std::vector<ImuSample>& samples,
                                std::map<std::string, double>& health);
 

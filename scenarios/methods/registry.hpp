@@ -65,7 +65,7 @@ Method slam_poses_autogain_fusion();
 Method slam_poses_tumble();
 Method slam_rolling_prior();
 
-/// These rate stages are shared by the rate methods and the slam chains. Each stage returns one RateState per sample.
+/// The rate methods and the slam chains share the following rate stages. Each stage returns one RateState per sample.
 /// On error, `out` is empty.
 Status raw_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, std::vector<RateState>& out);
 Status unclipped_rates(const sim::Sensors& sensors, const sim::Truth& truth, std::vector<RateState>& out);
@@ -73,9 +73,9 @@ Status unclipped_rates(const sim::Sensors& sensors, const sim::Truth& truth, std
 /// Counts the rates in `health` by their source, for example measured or estimated.
 void count_sources(std::span<const RateState> rates, std::map<std::string, double>& health);
 
-/// Motion that an odometer measures beside the IMU.
+/// Motion that an odometer measures in addition to the IMU.
 struct KnownMotion {
-  /// Returns the motion of the IMU between two times; empty if the odometer does not cover both.
+  /// Returns the motion of the IMU between two times. Empty unless the odometer covers both times.
   std::function<std::optional<MotionReading>(TimeNs from_ns, TimeNs to_ns)> between;
   double correction_max_m = 1.0;  ///< registrations with a larger correction are rejected
   double correction_max_rad = 1.0;

@@ -10,8 +10,8 @@
 #include "sim/parameters.hpp"
 #include "tumble/common/imu.hpp"
 
-/// Building blocks of the rigid registration methods. A trajectory model predicts the motion
-/// within a sweep, and RigidOdometry registers the sweep. The file of each method defines its trajectory model.
+/// Declares building blocks of the rigid registration methods. A trajectory model predicts the motion within a sweep,
+/// and RigidOdometry registers the sweep. The file of each method defines its trajectory model.
 namespace tumble::scenarios {
 
 /// Predicts the motion of each sweep. The registration result updates the model.
@@ -34,8 +34,8 @@ struct StartAtRest {
 /// second. Returns `too_few` or `degenerate` if the readings do not determine an attitude.
 Status start_at_rest(std::span<const ImuSample> samples, StartAtRest& out);
 
-/// Returns the IMU averaging windows that overlap the interval, with constant body rate and acceleration (body axes,
-/// without gravity).
+/// Returns the IMU averaging windows that overlap the interval, with constant rate and acceleration in body axes. The
+/// acceleration excludes gravity.
 std::vector<MotionSample> steady_motion(std::span<const ImuSample> samples, const Eigen::Vector3d& rate_I_rad_s,
                                         const Eigen::Vector3d& force_I_m_s2, TimeNs from_ns, TimeNs to_ns);
 

@@ -99,7 +99,8 @@ sim::Values resolve_settings(const std::string& place, const sim::Values& given,
 /// number of frequently used rows.
 std::vector<sim::Parameter> joined_rows(std::span<const SettingsTable* const> stages, std::size_t& first);
 
-/// Parameters of one stage of a method. The object must be static, because methods keep references to its rows.
+/// Parameters of one stage of a method. A Settings object must be static, because methods keep references to its table
+/// rows.
 template <class Params>
 class Settings : public SettingsTable {
  public:

@@ -11,18 +11,18 @@
 #include "scenarios/methods/slam_settings.hpp"
 #include "scenarios/methods/sphere_attitude.hpp"
 
-/// Builds maps from a rolling sphere with the rig's registration and with rolling as an odometer (add_reading).
+/// Builds maps of a rolling sphere with the rig's registration and with rolling as an odometer (add_reading).
 namespace tumble::scenarios {
 
 namespace {
 
-/// Returns the chain's parameters; the odometer sets the limits of a correction.
+/// Returns the chain's parameters. The odometer sets the limits of a correction.
 const Settings<SlamParams>& prior_settings() {
   static const Settings<SlamParams> all = slam_settings({}, {"correction_max_m", "correction_max_rad"});
   return all;
 }
 
-/// Parameters of rolling as an odometer.
+/// Parameters of the odometer that rolling provides.
 struct AlongParams {
   double grip_sigma_share = 4e-3, still_sigma_m_s = 3e-4, loose_sigma_share = 0.1, loose_sigma_m_s = 0.03;
   double rotation_sigma_rad = 2e-4;
@@ -72,7 +72,7 @@ const Settings<AlongParams>& along_settings() {
   return all;
 }
 
-/// Position method whose poses are the prior of the registration.
+/// Position method whose poses the rolling odometer uses.
 const Method& followed() {
   static const Method method = position_tumble();
   return method;
@@ -136,7 +136,8 @@ Estimate roll(const sim::Sensors& sensors, const sim::Values& parameters, double
   return followed().run(own, values, {});
 }
 
-/// Rolling as an odometer of the primary IMU. `loosely` increases the uncertainty to allow for an uncertain radius.
+/// Uses rolling as an odometer of the primary IMU. `loosely` increases the uncertainty to allow for an uncertain
+/// radius.
 class RolledMotion {
  public:
   RolledMotion(const Estimate& rolled, const sim::Sensors& sensors, const AlongParams& params, bool loosely)
@@ -224,7 +225,8 @@ Estimate register_along(const Estimate& rolled, const sim::Sensors& sensors, std
   return estimate;
 }
 
-/// Runs the method twice: with a weak prior to estimate the radius, then with a tight prior and the estimated radius.
+/// Runs the method twice: with a loose odometer to estimate the radius, then with a tight odometer and the estimated
+/// radius.
 Estimate run_rolling_prior(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   Estimate estimate;
   estimate.frame = Frame::imu;

@@ -33,7 +33,7 @@ const Settings<TumblingOdometry::Params>& slam_tumble_lag_settings() {
       lag_defaults(),
       {.stated = {"imu_*", "lever_arm_x_m", "lever_arm_y_m", "lever_arm_z_m", "gravity_m_s2",
                   "mapping_accel_rail_m_s2"},
-       // Parameters of TumblingOdometry replace these parameters.
+       // TumblingOdometry has its own parameters for these quantities, so the rate stage's parameters are fixed.
        .fixed = {"rate_lever_arm_sigma_m", "rate_gyro_noise_density", "rate_accel_noise_density", "rate_rails_stated_*",
                  "rate_period_s", "rate_lag_s", "rate_evidence_gravity_m_s2", "rate_carried_gravity_m_s2",
                  "rate_carried_gap_max_s", "rate_carried_period_s", "rate_carried_lag_s", "rate_carried_iterations_max",

@@ -13,7 +13,7 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr double kTurnsOtherwise = 0.5, kTurnsAsSaid = 0.15;
-/// Largest rotation difference that remains once a delay is corrected; the limit for references (reference_check.cpp).
+/// Largest accepted rotation difference after the correction of a delay, equal to the limit in reference_check.cpp.
 constexpr double kTurnsOnceCorrected = 0.3;
 
 std::vector<TimedAttitude> attitudes_of(const Estimate& estimate) {
@@ -26,7 +26,7 @@ std::vector<TimedAttitude> attitudes_of(const Estimate& estimate) {
 }
 
 /// Returns the rotation from IMU coordinates to the coordinates of the frame. Returns empty if the recording has no
-/// sensor of this frame.
+/// sensor with the frame.
 std::optional<Eigen::Quaterniond> q_AI(Frame frame, const sim::Sensors& sensors) {
   const Eigen::Quaterniond q_BI(sensors.imus.front().T_BI.linear());
   if (frame == Frame::imu) return Eigen::Quaterniond::Identity();

@@ -19,8 +19,8 @@ namespace tumble::scenarios {
 /// is proportional to the number of samples and poses.
 std::string turning_complaint(const Estimate& estimate, const sim::Sensors& sensors);
 
-/// Returns a message if the stamps of the attitudes or poses are wrong by a constant time from 0.15 to 5 s, or "" if no
-/// such delay is detected. Uses the check of references (recordings/trajectories/reference_check.hpp). Cost: half a
+/// Returns a message if the stamps of the attitudes or poses have a constant error of 0.15 to 5 s, or "" if no such
+/// error is detected. The check is that of references (recordings/trajectories/reference_check.hpp). Cost: half a
 /// second.
 std::string clock_complaint(const Estimate& estimate, const sim::Sensors& sensors);
 

@@ -21,10 +21,10 @@ struct ExportNames {
   std::set<std::string> taken;  ///< these names, and the export's own topics and frames
 };
 
-/// Returns unique names of letters, digits, - and _, safe as file names. The names differ from the export's own topics
-/// and frames (truth, body, world, tf …) and from frames that readers reserve (map, odom, base_link). A sensor keeps
-/// its name if no earlier sensor has this name; else a number is appended. For a truth, returns the names of the
-/// sensors in the truth.
+/// Returns unique names of letters, digits, - and _, which are safe as file names. The names differ from the export's
+/// own topics and frames (truth, body, world, tf …) and from frames that readers reserve (map, odom, base_link). A
+/// sensor keeps its name if no earlier sensor has an equal name. Otherwise, a number is appended. For a truth, returns
+/// the names of the sensors in the truth.
 ExportNames export_names(const sim::Sensors& sensors);
 ExportNames export_names(const sim::Truth& truth);
 

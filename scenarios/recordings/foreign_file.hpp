@@ -5,8 +5,9 @@
 
 namespace tumble::scenarios {
 
-/// Throws BadInput if `path` is not a regular file, or if it is a folder, bag, table or other file that `tumble import`
-/// converts to a recording; the message contains this command. Reads the first 16 bytes and the extension.
+/// Throws BadInput if `path` is not a regular file. Throws BadInput also for a folder, bag, table or other file that
+/// `tumble import` converts to a recording. The message contains the import command. Reads the first 16 bytes and the
+/// extension.
 void require_recording_file(const std::filesystem::path& path);
 
 }  // namespace tumble::scenarios

@@ -38,8 +38,8 @@ class MemoryFile {
   MemoryFile& operator=(const MemoryFile&) = delete;
 
   const Group& root() const { return root_; }
-  /// Closes the file with all HDF5 objects and returns the file's bytes, which are valid during the lifetime of this
-  /// object.
+  /// Closes the file with all HDF5 objects and returns the file's bytes. The bytes are valid during the lifetime of
+  /// this object.
   std::span<const std::byte> close();
 
  private:
@@ -50,8 +50,8 @@ class MemoryFile {
   Group root_;
 };
 
-/// An HDF5 file that is written directly to disk, in place of an empty file. Reserves the maximum disk space first, so
-/// that the HDF5 library never writes to a full disk.
+/// An HDF5 file that is written directly to disk and replaces an empty file. The maximum disk space is reserved first,
+/// so that the HDF5 library never writes to a full disk.
 class DiskFile {
  public:
   /// Error messages start with `name`. Throws BadInput if there is not enough space.

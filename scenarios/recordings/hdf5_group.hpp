@@ -12,7 +12,7 @@
 #include "scenarios/recordings/hdf5_layout.hpp"
 #include "scenarios/recordings/scratch_file.hpp"
 
-/// Reads and writes the content of an HDF5 file. Every error is a BadInput with the message "FILE: PLACE: what"; the
+/// Reads and writes the content of an HDF5 file. Every error is a BadInput with the message "FILE: PLACE: what". The
 /// HDF5 library never prints its error stack. Used only within scenarios/recordings.
 namespace tumble::scenarios::hdf5 {
 
@@ -39,7 +39,7 @@ class Group {
   std::int64_t int_attribute(const std::string& name) const;
   std::uint64_t uint_attribute(const std::string& name) const;
 
-  /// Writes a dataset of `rows.size()` rows; the dataset is one-dimensional if a row has one column. `compressed`
+  /// Writes a dataset of `rows.size()` rows. The dataset is one-dimensional if a row has one column. `compressed`
   /// applies the filters shuffle and deflate.
   template <class Row>
   void write(const std::string& name, const std::vector<Row>& rows, const std::string& unit, const std::string& columns,
@@ -65,7 +65,7 @@ class Group {
     rows.resize(count_rows(dataset, name, RowLayout<Row>::columns, RowLayout<Row>::scalar));
     read_rows(dataset, name, rows.data(), rows.size(), RowLayout<Row>::scalar);
   }
-  /// Reads a dataset to disk, chunk by chunk; `rows` must be empty and have a folder.
+  /// Reads a dataset to disk, chunk by chunk. `rows` must be empty and have a folder.
   template <class Row>
   void read(const std::string& name, ColumnFile<Row>& rows) const {
     const Handle dataset = open_dataset(name);

@@ -14,7 +14,7 @@
 /// RAII handles of the HDF5 C library, and the memory layout of rows. Used only within scenarios/recordings.
 namespace tumble::scenarios::hdf5 {
 
-/// An identifier of the HDF5 library, closed by the matching function on destruction.
+/// An identifier of the HDF5 library. The destructor closes it with the matching function.
 class Handle {
  public:
   using Close = herr_t (*)(hid_t);
@@ -80,16 +80,16 @@ template <>
 struct RowLayout<Eigen::Quaterniond> : Layout<Scalar::float64, 4> {};
 static_assert(sizeof(Eigen::Vector3d) == 24 && sizeof(Eigen::Vector3f) == 12 && sizeof(Eigen::Quaterniond) == 32);
 
-/// Chunk size of a deflated dataset.
+/// Size of a chunk of a deflated dataset in bytes.
 inline constexpr std::size_t kChunkBytes = std::size_t{1} << 20;
 constexpr std::size_t rows_in_chunk(std::size_t row_bytes) {
   return std::max<std::size_t>(kChunkBytes / row_bytes, 1);
 }
 
-/// Returns the HDF5 library's type of a scalar in memory.
+/// Returns the HDF5 type of a scalar in memory.
 hid_t memory_type(Scalar scalar);
 
-/// Returns " (reason)" for the last error of the HDF5 library, or an empty text if unknown.
+/// Returns " (reason)" for the last error of the HDF5 library. Empty if the reason is unknown.
 std::string last_error();
 
 }  // namespace tumble::scenarios::hdf5

@@ -22,48 +22,49 @@ struct Imported {
   std::vector<std::string> notes;       ///< remarks for the user about omissions and assumptions
 };
 
-/// Unit of the accelerometer columns of a CSV file; g is 9.80665 m/s^2.
+/// Unit of the accelerometer columns of a CSV file. One g is 9.80665 m/s^2.
 enum class AccelUnit { m_s2, g };
 enum class GyroUnit { rad_s, deg_s };
 
 /// Reads the readings of one IMU from a text table. The separator is the most frequent of comma, semicolon and tab in
-/// the first line that is no comment; blanks if the line has none. Comments, a row of units below the names, and a
-/// separator at the end of a line are accepted (tables/logged_table.hpp). Numbers may be in scientific notation.
+/// the first line that is no comment. If the first line contains none of the three, blanks are the separator. Comments,
+/// a row of units below the names, and a separator at the end of a line are accepted (tables/logged_table.hpp). Numbers
+/// may be in scientific notation.
 ///
-/// The names in the header identify the columns:
-/// - the names that export_csv writes (each once, no other names);
-/// - the short forms of the export_csv names (sec nsec wx.. fx.. or ax..);
+/// The names in the header identify the columns. The following names are known.
+/// - the names that export_csv writes (each once, no other names)
+/// - the short forms of the export_csv names (sec nsec wx.. fx.. or ax..)
 /// - flattened ROS messages: ".../header/stamp" (seconds), ".../angular_velocity/x", ".../linear_acceleration/x", and y
-///   and z; also with points, as written by `rostopic echo -p` and bagpy. The header's stamps are used, not the times
-///   of recording;
+///   and z. Names with points, as written by `rostopic echo -p` and bagpy, are also known. The header's stamps are
+///   used, not the times of recording.
 /// - names of loggers and data sets (tables/logger_columns.hpp): "time,gyro_x,...,accel_x,...", "#timestamp
-///   [ns],w_RS_S_x [rad s^-1],...".
+///   [ns],w_RS_S_x [rad s^-1],..."
 ///
 /// Units that column names state are used. If the unit of times is not stated, the unit is inferred from the time steps
-/// and noted. If the first line has numbers, the line is a sample and columns are identified by position (from 0): 0
-/// stamp s, 1 stamp ns, 8-10 rate, 12-14 specific force. `columns` names the columns instead ("time=t,gyro=gx,gy,gz,
-/// accel=ax,ay,az" without blanks; positions from 0 are possible too).
+/// and noted. If the first line has numbers, the line is a sample, and columns are identified by position. The
+/// positions count from 0: 0 stamp s, 1 stamp ns, 8-10 rate, 12-14 specific force. If not empty, `columns` names the
+/// columns instead: "time=t,gyro=gx,gy,gz,accel=ax,ay,az". Each column name may also be a position, counted from 0.
 ///
-/// `device` supplies properties that the file lacks: name, device, ranges, noise, T_BI; the period and the readings of
-/// `device` are replaced. Times count from the first stamp; the period is the median step. Stamps in whole milliseconds
-/// of an IMU with another period are resampled to the IMU's rate and noted (rounded_stamps.hpp). Units are checked
-/// against the size and rotation of gravity, with a note if the motion allows the check.
+/// `device` supplies properties that the file does not contain: name, device, ranges, noise, T_BI. The period and the
+/// readings of `device` are replaced. Times count from the first stamp, and the period is the median step. If an IMU
+/// with another period has stamps in whole milliseconds, they are resampled to the IMU's rate and noted
+/// (rounded_stamps.hpp). Units are checked against the size and rotation of gravity, with a note if the motion allows
+/// the check.
 ///
-/// Single lines with an invalid or non-finite number, another number of columns, or a stamp that does not increase are
-/// left out and noted (left_out.hpp), and so are readings whose values are all 0.
+/// Single lines with an invalid or non-finite number, a wrong number of columns, or a stamp that does not increase are
+/// left out and noted (left_out.hpp). Readings whose values are all 0 are also left out.
 ///
 /// Throws BadInput with file and line for unknown, repeated or missing columns, an unexpected unit, or a truncated last
-/// line. Also throws if more than 5 % of the lines are faulty. Throws BadInput for fewer than two samples, a median
-/// specific force outside 3 to 30 m/s^2, or a period outside 20 us to 2 s. Also throws if more than 1 % of the rates
-/// exceed twice the device's range (100 rad/s if not stated). Finally, throws if gravity rotates 57 times too fast or
-/// too slowly for the rates.
+/// line. Throws BadInput also if more than 5 % of the lines are faulty, or for fewer than two samples. The median
+/// specific force must be 3 to 30 m/s^2, and the period 20 us to 2 s. At most 1 % of the rates may exceed twice the
+/// device's range (100 rad/s if not stated). Gravity must not rotate 57 times too fast or too slowly for the rates.
 Imported import_imu_csv(const std::filesystem::path& path, const sim::ImuRecord& device,
                         AccelUnit unit = AccelUnit::m_s2, GyroUnit gyro_unit = GyroUnit::rad_s,
                         const std::string& columns = "");
 
-/// Reads all IMU tables (.csv) of a folder, such as a folder of `export --format csv`. The IMUs have the names of their
-/// files, and the first by name is the primary IMU. Other tables are left out with a note; tables of poses without.
-/// Throws BadInput like import_imu_csv, and if no table has IMU readings.
+/// Reads all IMU tables (.csv) of a folder, for example a folder of `export --format csv`. The IMUs have the names of
+/// their files, and the first IMU by name is the primary IMU. Tables of poses are skipped. Other tables are left out
+/// with a note. Throws BadInput like import_imu_csv, and if no table has IMU readings.
 Imported import_csv_folder(const std::filesystem::path& folder, const sim::ImuRecord& device, AccelUnit unit,
                            GyroUnit gyro_unit);
 
@@ -74,66 +75,67 @@ struct SweepSource {
   std::string stem;             ///< file name before the number: "lidar"; "": must be equal for all files
   std::filesystem::path times;  ///< file with a stamp per sweep; "": STEM_times.txt or times.txt in the folder, if
                                 ///< present
-  std::int64_t steady_ns = 0;   ///< sweep period if no times are available; 0: throws then
+  std::int64_t steady_ns = 0;   ///< sweep period if no times are available; 0: missing times throw
   std::string bin_columns;      ///< columns of .bin files: see read_cloud
   SweepReading reading;
 };
 
 /// Reads the sweeps of a lidar from one file per sweep, in natural order of the file names (sweep_stamps.hpp,
 /// cloud_file.hpp, sweep_builder.hpp). The stamp of a sweep comes from `times`, else from file names, else from
-/// absolute point times, else from `steady_ns`. Time 0 is the start of the first sweep, or the zero of the clock if the
-/// clock's zero is less than a second earlier. Single files that cannot be read or used are left out and noted. Throws
-/// BadInput with the file if more than 5 % of the files are faulty. Also throws for different numbers of stamps and
-/// files, files of several lidars, or sweeps without times.
+/// absolute point times, else from `steady_ns`. Time 0 is the start of the first sweep. If the zero of the clock is
+/// less than a second earlier, time 0 is the zero of the clock. Single files that cannot be read or used are left out
+/// and noted. Throws BadInput with the file if more than 5 % of the files are faulty. Throws BadInput also for
+/// different numbers of stamps and files, files of several lidars, or sweeps without times.
 Imported import_sweeps(const SweepSource& source);
 
 /// A pose file of another program.
 struct ReferenceSource {
   std::filesystem::path file;
   std::string format;           ///< "tum", "kitti" or "odometry"
-  bool of_body = false;         ///< poses of the body; else of the first lidar, converted with its T_BL
+  bool of_body = false;         ///< poses of the body; else poses of the first lidar, converted with its T_BL
   bool sorted = false;          ///< lines may be unsorted: read_tum_poses
   std::filesystem::path times;  ///< times of a KITTI file without sweeps
   std::int64_t steady_ns = 0;   ///< pose period of a KITTI file without sweeps
 };
 
-/// Reads a pose file as a recording that only has a truth; the poses are those of the body. Time 0 is chosen as for
-/// sweeps (import_sweeps). Throws BadInput if the file is invalid.
+/// Reads a pose file as a recording that only has a truth. The poses are those of the body. Time 0 follows the rule of
+/// import_sweeps. Throws BadInput if the file is invalid.
 Imported import_trajectory(const ReferenceSource& source);
 
-/// Uses the poses as truth of `recording`; the stamps are in the clock of the recording's source (`origin_ns`). A KITTI
+/// Uses the poses as truth of `recording`. The stamps are in the clock of the recording's source (`origin_ns`). A KITTI
 /// file must have one pose per sweep. The truth ends with the sensor data. Throws BadInput for errors of the reader,
 /// lidar poses without a lidar, or no overlap in time.
 void attach_reference(Imported& recording, const ReferenceSource& source);
 
-/// Adds the IMUs of `imu`, which must use the clock of `recording`, to `recording`; the earlier time 0 is kept. Throws
+/// Adds the IMUs of `imu` to `recording`. `imu` and `recording` must use one clock. The earlier time 0 is kept. Throws
 /// BadInput if the times of `imu` and `recording` do not overlap.
 void attach_imus(Imported& recording, Imported imu);
 
 /// Reads a trial of BROAD (Laidig et al., Data 2021, 6(7), 72) from its HDF5 file: imu_gyr, imu_acc, imu_mag (converted
-/// to tesla), sampling_rate. If opt_quat and opt_pos exist, these two become the reference, which is unknown where the
-/// cameras lost the markers. Reference rates and velocities are differences over 140 ms, which are sufficient to detect
-/// rest but blur fast rotations. Reference rates at the IMU's samples use 40 ms (reference_rate.hpp). Sample k has time
-/// k / sampling_rate. The file does not state ranges and noise, so both stay 0. Throws BadInput if the file is invalid.
+/// to tesla), sampling_rate. If opt_quat and opt_pos exist, they become the reference, which is unknown where the
+/// cameras lost the markers. Reference rates and velocities are differences over 140 ms. A window of 140 ms is
+/// sufficient to detect rest but blurs fast rotations. Reference rates at the IMU's samples use 40 ms
+/// (reference_rate.hpp). Sample k has time k / sampling_rate. The file does not state ranges and noise, so ranges and
+/// noise are 0. Throws BadInput if the file is invalid.
 Imported import_broad(const std::filesystem::path& path);
 
 /// Reads a recording of RepoIMU (Szczesna et al., ICCVG 2016) in its published form. Columns are separated by ';' after
-/// two header lines (group, column): time s, "Vicon Orientation" W X Y Z, "IMU Acceleration" m/s^2, "IMU Gyroscope"
-/// rad/s, "IMU Magnetometer" (without unit, omitted).
+/// two header lines (group, column). The columns are time s, "Vicon Orientation" W X Y Z, "IMU Acceleration" m/s^2,
+/// "IMU Gyroscope" rad/s, and "IMU Magnetometer" (without unit, omitted).
 ///
-/// The following defects are detected, corrected and noted:
-/// - coarsely printed stamps are regularised within their rounding (steady_stamps.hpp);
-/// - sample and hold: repeated readings are dropped, and the other readings are moved to the gyro's rate. A slower
-///   accelerometer is interpolated between its own readings (repeated_readings.hpp);
-/// - glitches of the optical reference are removed (reference_glitches.hpp);
-/// - delay, rotation and tilt between reference and IMU are estimated (align_reference.hpp). If `align` is set, these
-///   alignment errors are removed, so that the truth is the IMU's attitude in a world with z up.
+/// The following defects are detected, corrected and noted.
+/// - Coarsely printed stamps are regularised within their rounding (steady_stamps.hpp).
+/// - Repeated readings (sample and hold) are dropped, and the remaining readings are moved to the gyro's rate. A slower
+///   accelerometer is interpolated between its own readings (repeated_readings.hpp).
+/// - Glitches of the optical reference are removed (reference_glitches.hpp).
+/// - Delay, rotation and tilt between reference and IMU are estimated (align_reference.hpp). If `align` is set, these
+///   alignment errors are removed. The truth is then the IMU's attitude in a world with z up.
 ///
-/// The true rates at the IMU's stamps are derived from the attitudes (reference_rate.hpp); positions are unknown.
+/// The true rates at the IMU's stamps are derived from the attitudes (reference_rate.hpp). Positions are unknown.
 ///
 /// Throws BadInput with file, line, value and limit for unknown, missing or repeated columns, invalid numbers,
-/// non-finite IMU readings, a stamp that does not increase, or a truncated last line. Also throws if the norm of more
-/// than a fifth of the quaternions differs from 1 by more than 1 %.
+/// non-finite IMU readings, a stamp that does not increase, or a truncated last line. Throws BadInput also if the norm
+/// of more than a fifth of the quaternions differs from 1 by more than 1 %.
 Imported import_repoimu(const std::filesystem::path& path, bool align);
 
 /// Returns true if the file starts like a recording of RepoIMU.
@@ -141,7 +143,7 @@ bool is_repoimu(const std::filesystem::path& path);
 
 /// Reads a flight log of AirbrakesV2 (NCSU High-Powered Rocketry Club, MIT). Columns are identified by name:
 /// timestamp_seconds, raw_acceleration_{x,y,z}_gs, raw_angular_rate_{x,y,z}_deg_per_s, and optionally
-/// magnetic_field_{x,y,z}_microteslas; other columns are ignored. There is no truth, because the filter of the log is
+/// magnetic_field_{x,y,z}_microteslas. Other columns are ignored. There is no truth, because the filter of the log is
 /// not a reference instrument. Rows with repeated stamps are dropped and counted. If the log has segments more than a
 /// second apart, the longest segment is used, with a note. Throws BadInput with file and line if the file is invalid.
 Imported import_airbrakes(const std::filesystem::path& path);

@@ -15,9 +15,9 @@ namespace tumble::scenarios {
 /// Returns false for any other text. All readers of text tables use this function.
 bool parse_number(std::string_view text, double& value);
 
-/// Parses a time in the unit that has `decimals` decimals per nanosecond: 9 for s, 6 for ms, 3 for us, 0 for ns. The
-/// notation is that of parse_number, and the result is exact: digits below a nanosecond are rounded. Returns empty for
-/// another text, or for a time beyond the year 2255.
+/// Parses a time in a unit with `decimals` decimals per nanosecond: 9 for s, 6 for ms, 3 for us, 0 for ns. The notation
+/// is that of parse_number. The result is exact, with digits below a nanosecond rounded. Returns empty for another
+/// text, or for a time beyond the year 2255.
 std::optional<std::int64_t> parse_time_ns(std::string_view text, int decimals);
 
 /// Parses a stamp since 1970 as data sets write it: decimal seconds, a whole number of 13, 16 or 19 digits (ms, us,
@@ -39,7 +39,7 @@ inline std::string rounded(double value) {
   return text.data();
 }
 
-/// Appends seconds with nine decimals, exactly, from whole nanoseconds.
+/// Appends a time in whole nanoseconds as seconds with nine decimals, exactly.
 inline void append_seconds(std::string& text, std::int64_t time_ns) {
   const std::uint64_t size =
       time_ns < 0 ? 0 - static_cast<std::uint64_t>(time_ns) : static_cast<std::uint64_t>(time_ns);

@@ -10,7 +10,7 @@
 
 namespace tumble::scenarios {
 
-/// The points of one lidar on disk: each column of a sim::LidarRecord is one file. The record itself then has no
+/// The points of one lidar on disk. Each column of a sim::LidarRecord is one file. The record itself then has no
 /// points.
 struct PointStore {
   PointStore() = default;
@@ -27,7 +27,7 @@ struct PointStore {
   ColumnFile<std::uint16_t> ring;
 };
 
-/// Returns a record with a single sweep, whose points come from `lidar`, or from `aside` if `aside` is not null.
+/// Returns a record with a single sweep. The points come from `lidar`, or from `aside` if `aside` is not null.
 sim::LidarRecord sweep_alone(const sim::LidarRecord& lidar, const PointStore* aside, std::size_t sweep);
 
 }  // namespace tumble::scenarios

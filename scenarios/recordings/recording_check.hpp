@@ -11,10 +11,10 @@
 
 namespace tumble::scenarios {
 
-/// Returns a description of an inconsistency, such as "sensors/imus/0: gyro has 5 rows, time_ns 6", or an empty text if
-/// there is none. Checks lengths, periods, calibrations (rotations), sweep order, labels and surface ids. Readings are
-/// not checked; the estimator reports NaN, gaps and time order. `points` has one store per lidar if the points are on
-/// disk, else `points` is empty.
+/// Returns a description of an inconsistency, for example "sensors/imus/0: gyro has 5 rows, time_ns 6". Returns an
+/// empty text if there is none. Checks lengths, periods, calibrations (rotations), sweep order, labels and surface ids.
+/// Readings are not checked, because the estimator reports NaN, gaps and time order. `points` has one store per lidar
+/// if the points are on disk, else `points` is empty.
 std::string find_problem(const sim::Sensors& sensors, const std::vector<PointStore>& points = {});
 std::string find_problem(const sim::Truth& truth);
 std::string find_problem(const StoredTruth& truth);

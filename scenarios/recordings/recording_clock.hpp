@@ -13,24 +13,24 @@
 /// Converts stamps of imported files to the recording's clock.
 namespace tumble::scenarios {
 
-/// Returns the first and last time of the IMU samples and sweeps; a sweep lasts one period. Throws BadInput if the
-/// recording has neither IMU samples nor sweeps.
+/// Returns the first and last time of the IMU samples and sweeps, where a sweep lasts one period. Throws BadInput if
+/// the recording has neither IMU samples nor sweeps.
 std::pair<std::int64_t, std::int64_t> span_of(const sim::Sensors& sensors);
 
-/// First and last stamp.
+/// First and last stamp of a recording or trajectory.
 using StampSpan = std::pair<std::int64_t, std::int64_t>;
 
-/// Returns the first of `shifts_ns` that moves the stamps `moved` so that they overlap with `fixed`; empty if there is
-/// none. Exports of a simulated recording count from kExportOrigin_ns, but other files of the same recording may count
-/// from zero. This offset of 31 years is certain, because no recording lasts longer than a day.
+/// Returns the first of `shifts_ns` for which the shifted stamps `moved` overlap with `fixed`. Returns empty if no
+/// shift fits. Exports of a simulated recording count from kExportOrigin_ns, but other files of this recording may
+/// count from zero. No recording lasts longer than a day, so an offset of 31 years is unambiguous.
 std::optional<std::int64_t> clock_shift_ns(const StampSpan& moved, const StampSpan& fixed,
                                            std::initializer_list<std::int64_t> shifts_ns);
 
 /// Returns a note on a shift that clock_shift_ns found.
 std::string clock_note(const std::string& what, std::int64_t shift_ns);
 
-/// Returns time 0 for a first stamp: the first stamp, or the zero of the clock if the clock's zero is less than a
-/// second earlier. Zeros are 0 and the start of exports, kExportOrigin_ns.
+/// Returns time 0 for a first stamp. Time 0 is the first stamp, or the zero of the clock if that zero is less than a
+/// second earlier. The zero of a clock is 0 or the start of exports, kExportOrigin_ns.
 std::int64_t origin_of(std::int64_t first_ns);
 
 /// Converts stamps from the source's clock to the recording's clock, and stores the origin.
@@ -39,8 +39,8 @@ void start_clock(Imported& recording);
 /// Adds a lidar with its points to the recording.
 void add_lidar(Imported& recording, BuiltSweeps built);
 
-/// Uses poses of a frame A, mounted at T_BA on the body, as the truth of a recording; stamps are in the clock of the
-/// recording's source. Error messages start with `where`. Throws BadInput if the poses are invalid.
+/// Uses poses of a frame A, mounted at T_BA on the body, as the truth of a recording. The stamps are in the clock of
+/// the recording's source. Error messages start with `where`. Throws BadInput if the poses are invalid.
 void attach_poses(Imported& recording, std::vector<ReferencePose> poses, const Eigen::Isometry3d& T_BA,
                   const std::string& where);
 

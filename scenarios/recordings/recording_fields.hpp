@@ -16,16 +16,15 @@
 /// An archive has the members value(name, text | double | int64), pose(name, isometry), point(name, vector, unit),
 /// rows(name, vector, unit, columns, storage), texts(name, strings), list(name, records, fields) and group(name,
 /// record, fields). The members optional_rows, optional_point, optional_list and point_times are for later additions to
-/// the format. Later additions are absent, and not hashed, if they are empty, zero or have the default value
-/// "measured", so that older files keep their digests. The rows of a field are a std::vector, or a ColumnFile if points
-/// are on disk.
+/// the format. An addition that is empty, zero or has the default value "measured" is neither stored nor hashed, so
+/// that older files keep their digests. The rows of a field are a std::vector, or a ColumnFile if points are on disk.
 namespace tumble::scenarios {
 
-/// Storage of rows in the file: deflated where measurements showed a smaller file, plain for the noise-like floats of a
-/// lidar (FORMAT.md).
+/// Storage of rows in the file. Rows are deflated if measurements showed a smaller file. The noise-like floats of a
+/// lidar are plain (FORMAT.md).
 enum class Storage { plain, deflated };
 
-/// A lidar with its points on disk, for the lists of fields. Views have references to const.
+/// A lidar with its points on disk, for the lists of fields. A StoredLidarView contains const references.
 struct StoredLidar {
   sim::LidarRecord sweeps;
   PointStore points;
@@ -80,7 +79,7 @@ void point_fields(Archive& archive, Points& points) {
   archive.rows("ring", points.ring, "1", "", Storage::deflated);
 }
 
-/// Visits the sweeps and points of a lidar, whose points are in the record or on disk (`lidar.sweeps`, `lidar.points`).
+/// Visits the sweeps and points of a lidar. The points are in the record or on disk (`lidar.sweeps`, `lidar.points`).
 template <class Archive, class Lidar>
 void lidar_fields(Archive& archive, Lidar& lidar) {
   if constexpr (requires { lidar.sweeps; }) {
@@ -112,7 +111,7 @@ void series_fields(Archive& archive, Series& series) {
   });
 }
 
-/// `lidars` are sensors.lidars or views of these lidars.
+/// Visits the fields of all sensors. `lidars` are sensors.lidars or views of these lidars.
 template <class Archive, class Sensors, class Lidars>
 void sensors_fields(Archive& archive, Sensors& sensors, Lidars& lidars) {
   archive.value("robot", sensors.robot);

@@ -12,7 +12,7 @@
 
 namespace tumble::scenarios {
 
-/// Name of the file format in the attribute `format`; the version is in the attribute `format_version`.
+/// Name of the file format in the attribute `format`. The version is in the attribute `format_version`.
 inline constexpr const char* kRecordingFormat = "tumble recording";
 inline constexpr int kRecordingVersion = 1;
 
@@ -30,20 +30,20 @@ struct RecordingInfo {
   bool has_truth = false;
 };
 
-/// Stamp of time 0 in every export of a recording without `origin_ns`, such as a simulated one: 1 000 000 000 s after
-/// 1970, because ROS treats a stamp of 0 as unset.
+/// Stamp of time 0 in every export of a recording without `origin_ns`, such as a simulated recording. The stamp is 1
+/// 000 000 000 s after 1970, because ROS treats a stamp of 0 as unset.
 inline constexpr std::int64_t kExportOrigin_ns = 1'000'000'000'000'000'000;
 
-/// Returns the stamp of time 0 in every export of a recording: `origin_ns`, or kExportOrigin_ns if `origin_ns` is
-/// unknown or before 1970, because bags cannot store such stamps.
+/// Returns the stamp of time 0 in every export of a recording. The stamp is `origin_ns`, or kExportOrigin_ns if
+/// `origin_ns` is unknown or before 1970, because bags cannot store such stamps.
 inline std::int64_t export_origin_ns(std::int64_t origin_ns) {
   return origin_ns > 0 ? origin_ns : kExportOrigin_ns;
 }
 
-/// Returns the XXH3 digest (128 bit) of every field of sensors and truth in a fixed order; equal data have equal
+/// Returns the XXH3 digest (128 bit) of every field of sensors and truth in a fixed order. Equal data have equal
 /// digests.
 std::string digest(const sim::Sensors& sensors, const sim::Truth* truth);
-/// Returns the digest for points on disk, with one store per lidar.
+/// Returns the digest of sensors and truth if the points are on disk, with one store per lidar.
 std::string digest(const sim::Sensors& sensors, const std::vector<PointStore>& points, const sim::Truth* truth);
 /// Returns the digest of the truth only.
 std::string digest(const sim::Truth& truth);
@@ -51,27 +51,27 @@ std::string digest(const StoredTruth& truth);
 
 /// Writes a recording as HDF5 (scenarios/recordings/FORMAT.md) to a temporary file in the output folder, then renames
 /// the file. `truth` may be null. The writer sets format_version, digest and has_truth of `info`. The file is composed
-/// in memory, which doubles the memory use. Throws BadInput if the folder is not writable or the disk is full (no
-/// partial file remains). Throws std::invalid_argument for inconsistent data (find_problem in recording_check.hpp).
+/// in memory, which doubles the memory use. Throws BadInput if the folder is not writable or the disk is full; no
+/// partial file remains. Throws std::invalid_argument for inconsistent data (find_problem in recording_check.hpp).
 void write_recording(const std::filesystem::path& path, const RecordingInfo& info, const sim::Sensors& sensors,
                      const sim::Truth* truth);
 
-/// Writes a recording whose points are on disk; the file has the bytes that the version for points in memory writes.
-/// The file is written directly to disk after the maximum size is reserved. Memory holds the sensors without points,
-/// the truth, and some MiB.
+/// Writes a recording whose points are on disk. The file is bit-identical to the file for points in memory. The file is
+/// written directly to disk after the maximum size is reserved. Memory holds the sensors without points, the truth, and
+/// some MiB.
 void write_recording(const std::filesystem::path& path, const RecordingInfo& info, const sim::Sensors& sensors,
                      const std::vector<PointStore>& points, const sim::Truth* truth);
 
 /// Reads the metadata. Each reader function opens only the group that it needs. All reader functions throw BadInput
-/// with path and reason if the file is missing, truncated or not HDF5, if a dataset is missing or has a wrong shape, or
-/// if format version, lengths or digest do not match.
+/// with path and reason if the file is missing, truncated or not HDF5. The reader functions throw BadInput also if a
+/// dataset is missing or has a wrong shape, or if format version, lengths or digest do not match.
 RecordingInfo read_info(const std::filesystem::path& path);
 sim::Sensors read_sensors(const std::filesystem::path& path);
-/// Reads the sensors with the points on disk in `scratch`, one store per lidar; the records then have no points.
+/// Reads the sensors and stores the points on disk in `scratch`, one store per lidar. The records then have no points.
 sim::Sensors read_sensors(const std::filesystem::path& path, const std::filesystem::path& scratch,
                           std::vector<PointStore>& points);
 sim::Truth read_truth(const std::filesystem::path& path);
-/// Reads the truth with its rows on disk in `scratch`; memory holds one MiB at a time.
+/// Reads the truth and stores its rows on disk in `scratch`. Memory holds one MiB at a time.
 StoredTruth read_truth(const std::filesystem::path& path, const std::filesystem::path& scratch);
 
 }  // namespace tumble::scenarios

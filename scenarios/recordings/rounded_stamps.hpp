@@ -9,14 +9,14 @@
 /// milliseconds.
 namespace tumble::scenarios {
 
-/// Returns true if stamps are rounded to milliseconds: all stamps are whole milliseconds after the first stamp, and
-/// their steps are n or n + 1 milliseconds, n up to 4. Both step lengths must occur at least once in fifty steps.
-/// Longer steps are gaps. The stamps of a 500 Hz IMU are whole milliseconds and not rounded. Periods within 0.02 ms of
-/// a whole millisecond are not detected. O(N).
+/// Returns true if stamps are rounded to milliseconds. Rounded stamps are whole milliseconds after the first stamp, and
+/// their steps are n or n + 1 milliseconds, n up to 4. The steps n and n + 1 must each occur at least once in fifty
+/// steps. Longer steps are gaps. The stamps of a 500 Hz IMU are whole milliseconds and not rounded. Periods within 0.02
+/// ms of a whole millisecond are not detected. O(N).
 bool are_rounded(std::span<const std::int64_t> stamps_ns);
 
-/// Returns stamps on the IMU's true period: each stamp moves to a line that is fitted within half a second on either
-/// side, not across gaps, and moves by at most a millisecond. The returned stamps increase. O(N).
+/// Returns stamps on the IMU's true period. Each stamp moves to a line that is fitted within half a second on either
+/// side, not across gaps. A stamp moves by at most a millisecond. The returned stamps increase. O(N).
 std::vector<std::int64_t> evened(std::span<const std::int64_t> stamps_ns);
 
 /// Returns the mean step between stamps, without gaps. O(N).

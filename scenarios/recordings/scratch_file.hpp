@@ -16,8 +16,8 @@ namespace tumble::scenarios {
 /// Returns the nearest existing folder of an output path, so that temporary data are on the disk of the output.
 std::filesystem::path scratch_folder_of(const std::filesystem::path& output);
 
-/// An unnamed file that disappears with the object or the process. Grows at its end. Throws BadInput with the folder
-/// and the system's reason (missing folder, no permission, disk full).
+/// An unnamed file that disappears with the object or the process, and that grows at its end. Throws BadInput with the
+/// folder and the system's reason (missing folder, no permission, disk full).
 class ScratchFile {
  public:
   explicit ScratchFile(std::filesystem::path folder);
@@ -62,7 +62,7 @@ class ColumnFile {
     read(first, out);
     return out;
   }
-  /// Calls `take(first, rows)` for segments of `length` rows; the final segment may be shorter.
+  /// Calls `take(first, rows)` for segments of `length` rows. The final segment may be shorter.
   template <class Take>
   void for_segments(std::size_t length, Take&& take) const {
     std::vector<Row> rows;

@@ -42,10 +42,10 @@ struct StoredLidarTruth {
   ColumnFile<std::int32_t> surface_id;
 };
 
-/// A sim::Truth on disk: rows are columns of scratch files; the other members are those of sim::Truth.
+/// A sim::Truth on disk. Lists of rows are columns of scratch files. All other members are those of sim::Truth.
 struct StoredTruth {
-  /// Returns the body states from row `first` to row `last` - 1, with the mountings and `p_BG_m`, without sensors and
-  /// contacts.
+  /// Returns the body states from row `first` to row `last` - 1. The result contains the mountings and `p_BG_m`, but
+  /// neither sensors nor contacts.
   sim::Truth states(std::size_t first, std::size_t last) const;
   std::size_t size() const { return p_WB_m.size(); }
 

@@ -71,7 +71,7 @@ void series_truth_fields(Archive& archive, Series& series) {
   });
 }
 
-/// `contacts` contains truth.contacts by column; truth.contacts itself is not visited.
+/// Visits the fields of the truth. `contacts` contains truth.contacts by column; truth.contacts itself is not visited.
 template <class Archive, class Truth, class Contacts>
 void truth_fields(Archive& archive, Truth& truth, Contacts& contacts) {
   archive.value("period_ns", truth.period_ns);

@@ -7,13 +7,13 @@
 namespace tumble::scenarios {
 
 /// An incomplete file or folder. During the object's lifetime, a signal of `remove_unfinished_on_signals` removes the
-/// file or folder, with all content of a folder. Only the process that created the object removes the path; its child
-/// processes do not.
+/// file, or the folder with its content. Only the process that created the object removes the path; its child processes
+/// do not.
 class Unfinished {
  public:
   enum class Kind { file, folder, contents };  ///< contents: an existing folder that itself remains
   Unfinished() = default;
-  /// Paths longer than 4095 bytes, and more than 64 at a time, are not removed on signals.
+  /// Signals do not remove paths longer than 4095 bytes, and remove at most 64 paths.
   Unfinished(const std::filesystem::path& path, Kind kind);
   ~Unfinished();
   Unfinished(const Unfinished&) = delete;
@@ -25,8 +25,8 @@ class Unfinished {
   int place_ = -1;
 };
 
-/// Blocks the signals of `remove_unfinished_on_signals` during the object's lifetime, while a new path has no
-/// Unfinished object yet.
+/// Blocks the signals of `remove_unfinished_on_signals` during the object's lifetime. The object protects a new path
+/// that has no Unfinished object yet.
 class SignalsWait {
  public:
   SignalsWait();
@@ -35,8 +35,8 @@ class SignalsWait {
   SignalsWait& operator=(const SignalsWait&) = delete;
 };
 
-/// Installs signal handlers: SIGINT, SIGTERM and SIGHUP, unless ignored, remove incomplete outputs and then have their
-/// usual effect. The handlers are async-signal-safe: only system calls on static storage.
+/// Installs signal handlers. SIGINT, SIGTERM and SIGHUP, unless ignored, remove incomplete outputs and then have their
+/// usual effect. The handlers are async-signal-safe: they only make system calls on static storage.
 void remove_unfinished_on_signals();
 
 }  // namespace tumble::scenarios

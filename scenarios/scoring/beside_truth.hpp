@@ -34,7 +34,7 @@ struct PairedRate {
   std::uint8_t clipped_axes() const { return truth ? truth->clipped_axes : std::uint8_t{0}; }
   /// Returns the axes with a cross-axis error of a clipped element, or 0 if the truth is unknown.
   std::uint8_t cross_axes() const { return truth ? truth->cross_axes : std::uint8_t{0}; }
-  /// Returns the estimated minus the true rate in true IMU axes; the truth must be known.
+  /// Returns the estimated minus the true rate, in true IMU axes. The truth must be known.
   Eigen::Vector3d error_rad_s() const { return estimate->w_WI_I_rad_s - truth->rate_rad_s; }
 };
 

@@ -16,19 +16,19 @@ inline constexpr std::uint8_t kGyroClipFlags = 0b000111;
 /// Determines the true rates of the primary gyro, and which of its samples are clipped.
 ///
 /// All scores use one definition: axis j of a sample is clipped if the sensing element of this axis is beyond its rail.
-/// The deficit of element j is row j of the misalignment matrix M times the unclipped minus the delivered reading. The
-/// unclipped reading has the errors of the delivered reading but no saturation. Element j is beyond its rail where the
-/// deficit exceeds a tolerance: one standard deviation of the gyro's white noise per sample, sqrt(density^2 / period),
-/// but at least 1e-6 rad/s; smaller losses do not matter.
+/// The saturation deficit of element j is row j of the misalignment matrix M times the unclipped minus the delivered
+/// reading. The unclipped reading has the errors of the delivered reading but no saturation. Element j is beyond its
+/// rail if the deficit exceeds a tolerance. The tolerance is one standard deviation of the gyro's white noise per
+/// sample, sqrt(density^2 / period), but at least 1e-6 rad/s. Smaller deficits do not matter.
 ///
-/// With tilted elements (sim/imu/elements.hpp), a saturated element also changes the readings of the other axes, by
-/// entries of the inverse of M times the deficit. An axis has a cross-axis error if its own element is not beyond its
-/// rail, another element is, and its reading changes by more than the tolerance. Such an axis does not count as
-/// clipped.
+/// With tilted elements (sim/imu/elements.hpp), a saturated element also changes the readings of the other axes. The
+/// change is the deficit times entries of the inverse of M. An axis has a cross-axis error if another element changes
+/// its reading by more than the tolerance while its own element is not beyond its rail. An axis with a cross-axis error
+/// does not count as clipped.
 ///
-/// If the truth comes from a reference instrument (rates without unclipped readings: FORMAT.md, "References"), an axis
-/// is clipped where the reference confirms saturation (reference_clipping.hpp); cross-axis errors are unknown. Samples
-/// without a reference rate are not scored.
+/// If the truth comes from a reference instrument, it has rates without unclipped readings (FORMAT.md, "References").
+/// In this case, an axis is clipped if the reference confirms saturation (reference_clipping.hpp). Cross-axis errors
+/// are then unknown. Samples without a reference rate are not scored.
 class ClippingTruth {
  public:
   struct Sample {
@@ -58,9 +58,9 @@ class ClippingTruth {
   std::size_t known_samples() const;
   /// Returns the clipped axes of a sample, or 0 if its rate is unknown.
   std::uint8_t clipped_axes(std::size_t index) const;
-  /// Returns the axes of a sample with a cross-axis error; no axis is in both sets.
+  /// Returns the axes of a sample with a cross-axis error. A clipped axis never has a cross-axis error.
   std::uint8_t cross_axes(std::size_t index) const;
-  /// Returns the largest difference of an axis to the unclipped reading, or to the reference.
+  /// Returns the largest difference over the axes between the reading and the unclipped reading or reference.
   double depth_rad_s(std::size_t index) const;
 
  private:

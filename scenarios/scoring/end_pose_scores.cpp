@@ -14,13 +14,14 @@ namespace tumble::scenarios {
 
 namespace {
 
-// Returns the time up to which sweeps enter the comparison: a quarter of a period after the end of the last sweep that
-// the primary IMU covers completely. Some methods drop a sweep that the IMU covers in part, others shorten the sweep.
+// Returns the time up to which sweeps enter the comparison. The time is a quarter of a period after the end of the last
+// sweep that the primary IMU covers completely. If the IMU covers a sweep in part, some methods drop the sweep and
+// other methods shorten it.
 std::int64_t last_sweep_before_ns(const sim::Sensors& sensors) {
   constexpr std::int64_t kAll = std::numeric_limits<std::int64_t>::max();
   if (sensors.lidars.empty() || sensors.imus.empty() || sensors.imus.front().time_ns.empty()) return kAll;
   const sim::LidarRecord& lidar = sensors.lidars.front();
-  // deskewed sweeps belong to one instant
+  // The points of a deskewed sweep belong to one instant.
   const std::int64_t length_ns = lidar.point_times == sim::PointTimes::measured ? lidar.sweep_period_ns : 0;
   const std::int64_t covered_ns = sensors.imus.front().time_ns.back() - length_ns;
   const auto after = std::upper_bound(lidar.sweep_start_ns.begin(), lidar.sweep_start_ns.end(), covered_ns);
@@ -28,8 +29,8 @@ std::int64_t last_sweep_before_ns(const sim::Sensors& sensors) {
   return *(after - 1) + length_ns + lidar.sweep_period_ns / 4;
 }
 
-// Returns the last sweep within the time of the truth that the IMU covers. A delayed clock can stamp the last sweeps of
-// a recording beyond the truth. All methods end at this sweep.
+// Returns the last sweep within the time of the truth that the IMU covers. The comparison ends at this sweep for all
+// methods. If a clock is delayed, the last sweeps of a recording may have stamps after the truth.
 const LidarInertialOdometry::SweepReport* last_covered(const ScoredEstimate& scored) {
   const Estimate& estimate = scored.estimate();
   const TruthTrack& truth = truth_track(scored);

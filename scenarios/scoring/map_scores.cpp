@@ -13,8 +13,8 @@ namespace {
 constexpr float kToleranceM = 0.25f;     // Deschenes et al.: map points farther from the surface are outliers
 constexpr float kFineToleranceM = 0.1f;  // stricter tolerance for a sharp map
 constexpr double kOutliersMax = 0.15;    // Deschenes et al.: a larger share of outliers is a failed map
-constexpr double kCoverageMin = 0.5;     // a map of less than half of what was seen is a failed map
-constexpr float kSurfaceCellM = 0.1f;    // each cell of the seen surface counts once, however often it was hit
+constexpr double kCoverageMin = 0.5;     // a map of less than half of the seen surface is a failed map
+constexpr float kSurfaceCellM = 0.1f;    // each cell of the seen surface counts once
 constexpr float kErrorLimitM = 0.5f;     // the distance of outliers is limited to this
 constexpr float kSamePointM = 1e-3f;     // points in one cell of this size are duplicates
 constexpr double kSeenRangeM = 100.0;    // hits farther from the start are not expected in maps
@@ -90,7 +90,7 @@ bool unique_share(const ScoredEstimate& scored, double& value) {
   return true;
 }
 
-// Returns the share of the seen surface that the map covers; empty without a map or without the true hits.
+// Returns the fraction of the seen surface that the map covers. Empty without a map or without the true hits.
 std::optional<double> covered_share(const ScoredEstimate& scored) {
   if (scored.estimate().map.empty() || scored.truth().lidars.empty()) return std::nullopt;
   const std::vector<Eigen::Vector3f> surface = seen_surface(scored.truth());

@@ -71,8 +71,8 @@ double how_bad(const MetricInfo& metric, double value);
 /// unranked metrics, returns NaN, which statistics ignore.
 double worst_value(const MetricInfo& metric);
 
-/// The first function returns the headline metrics of a kind. The second function returns all gate metrics, including
-/// the headline metrics. Both lists are in order of registration.
+/// headline_metrics returns the headline metrics of a kind. held_metrics returns all gate metrics of a kind, including
+/// the headline metrics. The metrics are in order of registration.
 std::vector<std::string> headline_metrics(Kind kind);
 std::vector<std::string> held_metrics(Kind kind);
 

@@ -22,11 +22,10 @@ struct MotionSummary {
   std::size_t clipped_samples = 0;  ///< samples with at least one clipped gyro axis (ClippingTruth)
   std::array<std::size_t, 3> axis_clipped_samples = {};  ///< per axis x, y, z
   std::size_t several_axes_samples = 0;                  ///< samples with at least two clipped axes
-  std::size_t cross_axis_samples = 0;  ///< clipped samples in which an axis that is not clipped has a cross-axis error
-  double clip_depth_max_rad_s = 0.0;   ///< largest loss of an axis to saturation (ClippingTruth)
-  double clip_length_max_s = 0.0;      ///< longest run of consecutive clipped samples
-  std::size_t accel_clipped_samples = 0;  ///< samples with a clipped accelerometer axis, by the same tolerance of its
-                                          ///< own noise
+  std::size_t cross_axis_samples = 0;     ///< clipped samples in which an unclipped axis has a cross-axis error
+  double clip_depth_max_rad_s = 0.0;      ///< largest loss of an axis to saturation (ClippingTruth)
+  double clip_length_max_s = 0.0;         ///< longest run of consecutive clipped samples
+  std::size_t accel_clipped_samples = 0;  ///< samples with a clipped accelerometer axis
 };
 
 /// Summarises a motion in O(N). Throws BadInput if sensors and truth do not belong together or if there is no IMU.

@@ -11,8 +11,8 @@
 
 namespace tumble::scenarios {
 
-/// Tests whether any point of a set is within a fixed distance of a query point. The test is exact. It uses a hash of
-/// cells as wide as the distance and checks 27 cells. Points that are not finite are ignored.
+/// Tests whether any point of a set is within a fixed distance of a query point. The test is exact. The test uses a
+/// hash of cells as wide as the distance and checks 27 cells. Points that are not finite are ignored.
 class Nearness {
  public:
   Nearness(std::span<const Eigen::Vector3f> points_m, float distance_m);

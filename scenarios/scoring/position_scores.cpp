@@ -21,8 +21,9 @@ bool end_error(const ScoredEstimate& scored, double& value) {
   return true;
 }
 
-/// Divides by the path of the body's centre (of a sphere's shell, else of mass), whatever the frame of the estimate:
-/// the path of a sensor that turns around the centre is longer, so shares in different frames would not be comparable.
+/// Divides the error by the path of the body's centre: the centre of a sphere's shell, else the centre of mass. The
+/// path of a sensor that turns around the centre is longer. Relative errors in different frames would thus not be
+/// comparable.
 bool end_error_share(const ScoredEstimate& scored, double& value) {
   const std::vector<PairedPose>& poses = paired_track(scored).poses;
   if (poses.empty()) return false;

@@ -80,8 +80,8 @@ bool in_contact(const ScoredEstimate& scored, std::int64_t time_ns) {
   return false;
 }
 
-// Squared errors divided by their reported variances: of clipped axes, for all samples, in flight, and in contact; and
-// of axes with a cross-axis error.
+// Squared errors divided by their reported variances. `all`, `flight` and `impact` contain errors of clipped axes for
+// all samples, in flight and in contact. `cross_axis` contains errors of axes with a cross-axis error.
 struct NormalisedErrors {
   std::vector<double> all, flight, impact, cross_axis;
 };

@@ -62,8 +62,8 @@ bool reference_error(const ScoredEstimate& scored, double& value) {
   return quantile_of(errors, 0.01 * kPercent, value);
 }
 
-/// Returns the variances of the reference's axes. They follow from the interquartile range of the difference between
-/// reference and unclipped gyro, which is assumed normal.
+/// Returns the variances of the reference's axes. The variances follow from the interquartile range of the difference
+/// between reference and unclipped gyro. The difference is assumed normal.
 Eigen::Vector3d reference_variance(const ScoredEstimate& scored, const ClippingTruth& truth) {
   const auto& reading = scored.sensors().imus.front().gyro_rad_s;
   Eigen::Vector3d variance = Eigen::Vector3d::Zero();
@@ -139,7 +139,7 @@ void add_pair(const std::string& name, const std::string& doc, std::vector<Metri
                  clipped_error<kError, 90, kAxes>});
 }
 
-/// These metrics are properties of the reference instead of a method, and are not ranked.
+/// Metrics of the reference are properties of the reference instead of a method, and are not ranked.
 template <ErrorOf kError>
 void add_reference(const std::string& name, const std::string& doc, std::vector<Metric>& all) {
   all.push_back({{"rate_" + name + "_median_rad_s", Unit::rad_s, "median " + doc, Sense::none},

@@ -18,13 +18,13 @@
 /// kShortest_ns and the contact speed reaches kLeastSpeed_m_s. Weaker events cannot be distinguished from grip and
 /// cause no position error. Slip and slide are not distinguished.
 ///
-/// An estimated event is correct if at least half of the event overlaps true events. For this test, weak and short true
-/// events count too, and each true event is widened by kMargin_ns. A true event is detected if correct estimated events
-/// cover at least half of the true event.
+/// An estimated event is correct if at least half of the event overlaps true events. The overlap test also includes
+/// weak and short true events, and widens each true event by kMargin_ns. A true event is detected if correct estimated
+/// events cover at least half of the true event.
 ///
 /// The position is lost in a true event if the horizontal error grows by more than kLost_m from the start to the end of
-/// the event. The event is flagged if the reported horizontal sigma grows by more than kFlagged_m. For these two
-/// criteria, the event is widened by kMargin_ns on either side.
+/// the event. The event is flagged if the reported horizontal sigma grows by more than kFlagged_m. For the loss and the
+/// flag, the event is widened by kMargin_ns on either side.
 namespace tumble::scenarios {
 
 namespace {

@@ -63,7 +63,7 @@ class TruthTrack {
   std::vector<bool> rest_;
 };
 
-/// Estimated and true pose at one instant. Both poses are in W, after alignment of the estimate.
+/// Estimated and true pose at one instant. The two poses are in W, after alignment of the estimate with the truth.
 struct PairedPose {
   std::int64_t time_ns = 0;
   PoseState estimate;

@@ -20,8 +20,8 @@ class MedianBootstrap {
   explicit MedianBootstrap(std::size_t size, std::size_t resamples = 4000);
 
   /// Returns the median with its interval of level 1 - `risk`. Infinite values are ranked like finite values, so an end
-  /// of the interval may be infinite. For fewer than six values, both ends are infinite, as in `median_interval`.
-  /// Throws BadInput for NaN, a wrong number of values, or a risk outside (0, 1).
+  /// of the interval may be infinite. For fewer than six values, the interval is infinite on either side, like the
+  /// result of `median_interval`. Throws BadInput for NaN, a wrong number of values, or a risk outside (0, 1).
   Interval interval(std::span<const double> values, double risk = 0.05) const;
 
  private:

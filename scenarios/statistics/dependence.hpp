@@ -34,7 +34,7 @@ struct FirstOrder {
 
 /// Estimates the first-order (Sobol') index of y by x from existing data; y may depend on other numbers. The index is
 /// the variance of class means over equally large classes of x, equation (S18) of statistics.md, minus a correction.
-/// The correction is the expected value of this variance without dependence, equation (S19). Source: Plischke,
+/// The correction is the expected variance of class means without dependence, equation (S19). Source: Plischke,
 /// Borgonovo, Smith, EJOR 226:536, 2013. If x takes few values, each value is a class. If y contains ranks, the p-value
 /// of equation (S20) is that of the Kruskal-Wallis test.
 ///

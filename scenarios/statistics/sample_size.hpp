@@ -15,8 +15,8 @@ struct Plan {
 
 /// Returns the number of pairs for the two-sided signed-rank test (Noether, JASA 82:645, 1987), equations (S10) and
 /// (S11) of statistics.md. The formula assumes that the fraction of zero differences stays as observed. The result is
-/// at least the minimum number of pairs that can be significant. It is infinite if the differences have no tendency.
-/// O(n log n). Throws BadInput for an invalid plan.
+/// at least the minimum number of pairs that can be significant. The number of pairs is infinite if the differences
+/// have no tendency. O(n log n). Throws BadInput for an invalid plan.
 double pairs_for_signed_rank(std::span<const double> differences, const Plan& plan);
 
 /// Returns the number of pairs for the paired test of failures (Connor, Biometrics 43:207, 1987), equation (S12) of

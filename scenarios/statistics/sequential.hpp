@@ -33,7 +33,7 @@ class SequentialSignTest {
   /// Returns how many pairs of one sign the last analysis needed for a verdict. If the needed number exceeds the
   /// available pairs, no outcome could have been significant.
   std::int64_t needed() const { return needed_; }
-  /// Returns the probability of a false verdict so far. This probability never exceeds the risk.
+  /// Returns the probability of a false verdict so far. The probability never exceeds the risk.
   double spent() const { return 2.0 * spent_a_side_; }
 
  private:

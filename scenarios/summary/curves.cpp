@@ -35,7 +35,8 @@ struct Run {
     std::size_t place = 0;
     return find(metric, place);
   }
-  /// Finds a score. Tries index `place` first, at which the method's previous run had this score, and updates `place`.
+  /// Finds a score. Index `place` is tried first, because the method's previous run had the score at this index.
+  /// Updates `place`.
   const double* find(const std::string* metric, std::size_t& place) const {
     if (place < scores.size() && scores[place].metric == metric) return &scores[place].value;
     const auto found = std::find_if(scores.begin(), scores.end(), [&](const auto& s) { return s.metric == metric; });
@@ -196,8 +197,8 @@ std::string bin_label(const BinnedMetric& bin, double factor) {
 using Bins =
     std::map<std::pair<std::string, std::string>, std::map<double, std::pair<BinnedMetric, const std::string*>>>;
 
-/// Returns the bins of the measures that any run has. Registered bins without samples are included, so that a curve
-/// shows where samples are missing.
+/// Returns the bins of all measures for which any run has a value. Registered bins without samples are included, so
+/// that a curve shows where samples are missing.
 Bins bins_of(const Runs& runs, Names& names) {
   std::set<const std::string*> metrics;
   for (const auto& [method, own] : runs) {

@@ -38,7 +38,7 @@ struct Curve {
   Kind kind = Kind::rate;
   std::string metric;
   std::vector<CurveLine> lines;  ///< in the order of the registry
-  /// For samples: the labels of all bins of the measure, also of bins without samples; point x is at bins[x - 1].
+  /// For samples: the labels of all bins of the measure, including empty bins. The point x belongs to bins[x - 1].
   std::vector<std::string> bins = {};
 };
 

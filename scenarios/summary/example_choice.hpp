@@ -48,10 +48,10 @@ std::vector<FailedOn> rank_failures(const Summary& summary);
 std::vector<ExampleDraw> choose_failures(const Summary& summary, std::span<const ExampleCandidate> candidates,
                                          std::size_t count);
 
-/// Returns the scored rows of a simulated run, without points of curves.
+/// Returns the scored outcomes of a simulated run, without points of curves.
 std::vector<Outcome> rows_to_show(const Results& results, const ExampleDraw& draw);
 
-/// Returns a digest of the shown rows and their build. If an example has a different digest, it belongs to other
+/// Returns a digest of the shown outcomes and their build. If an example has a different digest, it belongs to other
 /// results.
 std::string digest_of_rows(const Results& results, const ExampleDraw& draw);
 

@@ -31,7 +31,7 @@ struct InputWorth {
 };
 
 /// Evaluates the inputs for each scenario, and for all scenarios together if there are several. The result is sorted by
-/// the fraction of removed failures, then by p-value. Simulated runs without triage rows are omitted.
+/// the fraction of removed failures, then by p-value. Simulated runs without triage results are omitted.
 std::vector<InputWorth> worth_of_inputs(std::span<const DrawTriage> draws, const std::string& metric);
 
 }  // namespace tumble::scenarios

@@ -41,9 +41,9 @@ struct MotionMap {
 };
 
 /// Counts simulated runs in cells, then smooths the counts along both axes by a Gaussian of Scott's width in
-/// logarithms, but at least half a cell. Scott's width is sigma n^(-1/6) (Multivariate Density Estimation, 1992,
-/// section 6.3). The part of a kernel beyond the grid is redistributed. The two maxima of a run need not occur at the
-/// same time. O(draws + cells^(3/2)).
+/// logarithms, with a width of at least half a cell. Scott's width is sigma n^(-1/6) (Multivariate Density Estimation,
+/// 1992, section 6.3). The part of a kernel beyond the grid is redistributed. The two maxima of a run need not occur at
+/// the same time. O(draws + cells^(3/2)).
 MotionMap motion_map(std::span<const DrawValues> draws);
 
 }  // namespace tumble::scenarios

@@ -26,7 +26,8 @@ struct Question {
   std::uint64_t first_seed = 1, last_seed = 1;
   std::vector<std::string> scenarios;
 
-  /// Returns the seeds after which the results are analysed, ascending. The last of them is the sweep's last seed.
+  /// Returns the seeds after which the results are analysed, ascending. The last analysis is after the sweep's last
+  /// seed.
   std::vector<std::uint64_t> look_seeds() const;
   /// Returns the question as one line of text. Equal questions give equal lines.
   std::string describe() const;

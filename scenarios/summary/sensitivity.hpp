@@ -39,8 +39,8 @@ struct Influence {
   double median_low = 0.0, median_high = 0.0;
   /// Partial dependence: median of the score, or fraction of failures, over classes of the number.
   std::vector<DependenceClass> dependence = {};
-  /// Returns the larger of the first-order index and the square of the rank correlation. The influences are sorted by
-  /// this value.
+  /// Returns the larger of the first-order index and the square of the rank correlation. Influences are sorted by their
+  /// strength.
   double strength() const;
 };
 
@@ -58,9 +58,9 @@ struct SensitivityOptions {
   std::vector<std::string> metrics;  ///< empty: the headline metrics of each kind
 };
 
-/// The first constant is the minimum number of simulated runs for a row of the table. The second constant is the
-/// minimum number of failures, and of successes, for "not ok". Below 24 simulated runs, only the rank correlation is
-/// used.
+/// kSensitivityDrawsMin is the minimum number of simulated runs for a row of the table. kSensitivityFailuresMin is the
+/// minimum number of failures, and of successes, for the row "not ok". Below 24 simulated runs, only the rank
+/// correlation is used.
 inline constexpr std::size_t kSensitivityDrawsMin = 12, kSensitivityFailuresMin = 5;
 
 /// Analyses the sections whose scenarios are in `numbers`, in the order of the sections. Rows with too few simulated

@@ -22,7 +22,8 @@ inline MetricStyle metric_style(const std::string& metric) {
 /// Returns the position of a method in the registry. Unknown names come last.
 std::size_t method_rank(Kind kind, const std::string& name);
 
-/// Number of simulated runs on which one method was better than the baseline, among the runs on which both have values.
+/// Number of simulated runs on which one method was better than the baseline, among the runs on which both methods have
+/// values.
 struct Wins {
   std::int64_t count = 0, pairs = 0;
 };

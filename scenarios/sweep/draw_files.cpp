@@ -43,7 +43,7 @@ void DrawFiles::finish(const SimulatedDraw& draw, bool failed) {
     trouble_.clear();
     return folder_.reset();
   }
-  // a draw without one of its estimates, for example because the disk is full, is not kept at all
+  // If an estimate of a run could not be written, for example because the disk is full, the run is not kept.
   if (!trouble_.empty()) return folder_.reset();
   try {
     RecordingInfo info = keeping_.versions;

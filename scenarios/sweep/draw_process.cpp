@@ -217,7 +217,7 @@ Outcome run_isolated(const Method& method, const SimulatedDraw& draw, const Simu
                      const sim::Surface* surface, double timeout_s, const std::filesystem::path& folder,
                      std::string* not_kept) {
   const double before_mib = resident_mib();
-  // a child that is killed cannot remove its temporary files
+  // A child that is killed cannot remove its temporary files.
   const ScratchFolder temporary("run");
   Process process(
       [&](int fd) {

@@ -36,8 +36,8 @@ void serve(const WorkerTerms& terms, int tasks, int fd) {
     if (line->empty()) return;
     run_draw(terms.data, terms.plan.from_line(*line), terms.timeout_s, fd, terms.recordings_unseen);
     malloc_trim(0);  // An idle worker must not hold memory of its last draw.
-    // The last message is sent after all destructors. If the process dies before this message, its death is assigned to
-    // this task.
+    // The last message is sent after all destructors. If the process dies before the last message, its death is
+    // assigned to the current task.
     write_all(fd, to_line({}));
   }
 }

@@ -56,8 +56,8 @@ struct GatePair {
   double before = 0.0, now = 0.0;  ///< infinite (worst) if the run was not ok
 };
 
-/// Pairs of accepted and new values of a metric. Runs without a value in both results are omitted; runs that lost their
-/// value are in `lost`.
+/// Pairs of accepted and new values of a metric. Runs without an accepted value are omitted. Runs that are ok in both
+/// results, but without a new value, are in `lost`.
 struct GatePairs {
   std::vector<GatePair> pairs;
   std::vector<std::uint64_t> lost;

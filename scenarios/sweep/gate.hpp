@@ -60,7 +60,7 @@ struct GatePolicy {
 };
 
 /// The accepted results of a suite. The file scenarios/gates/SUITE.yaml states the policy, and SUITE.csv contains the
-/// results. Both files are kept in git.
+/// results. The two files of a gate are kept in git.
 struct Gate {
   std::string suite;
   GatePolicy policy;

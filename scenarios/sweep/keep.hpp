@@ -41,10 +41,10 @@ struct DrawName {
   auto operator<=>(const DrawName&) const = default;
 };
 
-/// Returns the simulated runs to keep. `all` keeps every run with a row. `failed` keeps runs with a status that is not
-/// ok. `worst` keeps the worst runs of each scenario and each method that does not use the truth. The runs are ranked
-/// by the first headline metric of the method's kind. Runs that are not ok rank worst. Among equally bad runs, lower
-/// seeds are kept first. Rejected runs have no recording and are never kept.
+/// Returns the simulated runs to keep. `all` keeps every run that has a row in the results. `failed` keeps runs with a
+/// status that is not ok. `worst` keeps the worst runs of each scenario and each method that does not use the truth.
+/// The runs are ranked by the first headline metric of the method's kind. Runs that are not ok rank worst. Among
+/// equally bad runs, lower seeds are kept first. Rejected runs have no recording and are never kept.
 std::set<DrawName> draws_to_keep(const Results& results, const Keep& keep);
 
 /// The folder of kept runs next to a database, FILE.db.files/kept. Each run has a folder SCENARIO/SEED/ with
@@ -55,7 +55,7 @@ class KeptDraws {
   explicit KeptDraws(const std::filesystem::path& database);
 
   std::filesystem::path folder_of(const DrawName& draw) const;
-  /// Returns true if the run is stored completely, with the estimates of all rows in `estimated`.
+  /// Returns true if the run is stored completely, with the estimates of all outcomes in `estimated`.
   bool holds(const DrawName& draw, std::span<const Outcome> estimated) const;
   std::vector<DrawName> found() const;
   void remove(const DrawName& draw) const;
@@ -72,9 +72,9 @@ class KeptDraws {
 /// Returns the folder of a method's estimate in the folder of a run.
 std::filesystem::path estimate_folder(const std::filesystem::path& draw, Kind kind, const std::string& method);
 
-/// Joins the kept runs of a merge, after the rows were joined (merge.hpp). If all inputs and `out` have one keep rule,
-/// the result equals the kept runs of a single sweep. Returns the number of kept runs in `out` after the merge. If the
-/// rules differ or nothing is kept, `out` is unchanged.
+/// Joins the kept runs of a merge, after the rows of the databases were joined (merge.hpp). If all inputs and `out`
+/// have one keep rule, the result equals the kept runs of a single sweep. Returns the number of kept runs in `out`
+/// after the merge. If the rules differ or nothing is kept, `out` is unchanged.
 std::size_t merge_kept(const DatabaseOwner& out, std::span<const std::filesystem::path> in);
 
 }  // namespace tumble::scenarios

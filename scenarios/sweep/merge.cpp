@@ -61,7 +61,7 @@ void join_place_notes(const Notes& shard, Results& into) {
   }
 }
 
-/// Joins the commands that produced the rows.
+/// Joins the commands that produced the rows of the databases.
 void join_command_notes(const std::vector<Notes>& notes, Results& into) {
   std::string commands = into.note(kCommandNote);
   for (const Notes& own : notes) commands = with_commands(commands, text_of(own, kCommandNote));
@@ -123,7 +123,7 @@ MergeCounts merge_results(const DatabaseOwner& owner, std::span<const fs::path> 
       }
       for (const Notes& own : notes) join_place_notes(own, results);
       join_command_notes(notes, results);
-      // The result keeps the origin of its rows. The program that joined the rows is not recorded.
+      // The merged database keeps the origin of its rows. The program that joined the rows is not recorded.
       for (const char* key : {"suite", "build", "data"}) {
         std::string text;
         for (std::size_t i = 0; i < notes.size() && text.empty(); ++i) text = text_of(notes[i], key);

@@ -10,7 +10,7 @@
 namespace tumble::scenarios {
 
 /// Joins results databases into `out`, which may be new or existing, in one transaction. A failed merge leaves `out`
-/// unchanged. If two rows have equal scenario, seed and method, the row that `outranks` the other row is kept,
+/// unchanged. If two rows have equal scenario, seed and method, the row with the higher rank is kept (`outranks`),
 /// independent of their order.
 ///
 /// Throws BadInput if two scored rows differ in status, digest or a score other than cost, because one build must give

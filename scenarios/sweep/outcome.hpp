@@ -11,8 +11,8 @@
 
 namespace tumble::scenarios {
 
-/// The point of a curve to which a row belongs (variation.hpp): the varied key and its value. An empty key means an
-/// unmodified scenario and unmodified methods.
+/// The point of a curve to which a row of the results belongs (variation.hpp): the varied key and its value. An empty
+/// key means an unmodified scenario and unmodified methods.
 struct Setting {
   std::string key;
   double value = 0.0;
@@ -35,7 +35,8 @@ struct Outcome {
   Setting setting = {};
 };
 
-/// Motion values of one simulated run. They do not depend on the methods (scenarios/scoring/motion_summary.hpp).
+/// Motion values of one simulated run. Motion values do not depend on the methods
+/// (scenarios/scoring/motion_summary.hpp).
 struct DrawValues {
   std::string scenario;
   std::uint64_t seed = 0;
@@ -50,7 +51,7 @@ bool was_scored(OutcomeStatus status);
 /// then crashed and timeout, then killed.
 bool outranks(OutcomeStatus status, OutcomeStatus other);
 
-/// Returns true if a sweep may repeat rows with this status: crashed, timeout or killed.
+/// Returns true if a sweep may repeat a method that ended with this status: crashed, timeout or killed.
 bool may_run_again(OutcomeStatus status);
 
 /// A scenario and seed that cannot be drawn or simulated on any machine. Kind and method are empty in the database. If

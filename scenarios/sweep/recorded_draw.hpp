@@ -29,7 +29,7 @@ struct RecordedDraw {
 /// one name, and unreadable files.
 std::vector<RecordedDraw> find_recordings(std::span<const std::string> patterns, const std::filesystem::path& folder);
 
-/// Returns the methods that can run on a recording, in the order of `methods`. These methods apply to the recording's
+/// Returns the methods that can run on a recording, in the order of `methods`. A method must apply to the recording's
 /// sensors and, if known, its robot. Oracles need a simulated recording.
 std::vector<MethodPointer> applicable(std::span<const MethodPointer> methods, const RecordedDraw& recording);
 

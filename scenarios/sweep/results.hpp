@@ -31,7 +31,7 @@ struct ScoreRow {
   Setting setting = {};
 };
 
-/// Selects rows of unmodified scenarios and methods, points of curves, or both.
+/// Selects rows of the results: unmodified scenarios and methods, points of curves, or all rows.
 enum class Rows { plain, curves, all };
 
 /// Row counts of a merge: added rows, rows that replaced a lower-ranked row, and rows that were already present.
@@ -84,7 +84,7 @@ class Results {
   /// Stores a rejection. If the scenario and seed already have an outcome, stores nothing and returns false.
   bool store(const RejectedDraw& rejected);
   void store(const DrawValues& draw);
-  /// Stores a certificate. It replaces an existing certificate of its build.
+  /// Stores a certificate. The certificate replaces an existing certificate of its build.
   void store(const Certificate& certificate);
   /// Stores a text under a key with the results. Common keys are "suite", "build" and "data".
   void set_note(const std::string& key, const std::string& text);

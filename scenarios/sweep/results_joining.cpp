@@ -21,7 +21,7 @@ namespace {
 
 constexpr const char* kDraw = " WHERE scenario = ? AND seed = ? AND varied = ? AND setting = ? AND kind ";
 
-/// A row of the table `outcomes` in the shard. The texts are valid until the next row.
+/// A row of the table `outcomes` in the shard. The texts of a ShardRow are valid until the next row is read.
 struct ShardRow {
   std::int64_t id, seed;
   const char *scenario, *kind, *method, *status, *message, *recording_digest, *estimate_digest, *varied;
@@ -247,7 +247,7 @@ class Joining {
                                words(row), metric, here, elsewhere));
   }
 
-  /// Visits the scores of a row of the shard, sorted by name. Rows must be requested in order.
+  /// Visits the scores of a row of the shard, sorted by name. The caller must request the rows in order.
   template <typename Visit>
   void each_score(const ShardRow& row, const Visit& visit) {
     while (more_scores_ && scores_.getColumn(0).getInt64() < row.id) more_scores_ = next(scores_);

@@ -32,7 +32,7 @@ OutcomeStatus status_named(const std::string& name, const std::filesystem::path&
   throw BadInput(path.string() + ": unknown status '" + name + "'");
 }
 
-/// Returns the SQL condition for `rows`, for a table or join with the column `varied`.
+/// Returns the SQL condition that selects `rows` in a table or join with the column `varied`.
 const char* picked(Rows rows) {
   switch (rows) {
     case Rows::plain:
@@ -198,7 +198,8 @@ std::vector<RejectedDraw> Results::rejected_of(const std::string& scenario, std:
 std::vector<DrawValues> Results::draws(Rows rows) const {
   return impl_->guarded([&] {
     std::vector<DrawValues> draws;
-    // Rows of unmodified scenarios have one setting, so this order equals the order of the key and needs no sorting.
+    // Rows of unmodified scenarios have one setting, so the order by scenario and seed equals the order of the key and
+    // needs no sorting.
     const char* order = rows == Rows::plain ? " ORDER BY scenario, seed, varied, setting, metric"
                                             : " ORDER BY varied, setting, scenario, seed, metric";
     SQLite::Statement select(

@@ -12,7 +12,8 @@ namespace tumble::scenarios {
 /// Application id in SQLite's header ("TMBL"), so that databases of other programs are never modified.
 inline constexpr int kApplicationId = 0x544d424c;
 inline constexpr int kSchemaVersion = 4;
-/// Older schema version that is still readable. It differs from the current version only in the allowed statuses.
+/// Older schema version that is still readable. The older version differs from the current version only in the allowed
+/// statuses.
 inline constexpr int kReadableVersion = 3;
 
 /// SQL that creates an empty results database.

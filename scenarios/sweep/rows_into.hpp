@@ -22,7 +22,7 @@ inline void bind_number(double value, SQLite::Statement& to, int index) {
     to.bind(index, value);
 }
 
-/// Stores each text once, although many rows share it.
+/// Stores each text once for all rows that share the text.
 class Kept {
  public:
   const std::string& operator()(std::string_view text) {

@@ -21,7 +21,7 @@ namespace {
 
 constexpr char kBetween = '\t';  // separates the input's name from its outcome; no name contains a tab
 
-/// Runs in the process of a simulated run. Writes each triage row as a line, then an empty line or an error.
+/// Runs in the process of a simulated run. Writes each triage result as a line, then an empty line or an error.
 void report_rows(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, const Method& method,
                  const SuiteTriageOptions& options, int fd) {
   const auto report_trouble = [&](const std::string& why) {

@@ -39,9 +39,9 @@ struct SuiteTriageOptions {
 };
 
 /// Runs the triage of each simulated run in a separate process. The process is limited to `memory_mib` and to the time
-/// of its method runs plus two. If a process dies or times out, its completed rows remain, with an error. The order is
-/// that of `draws`. If the triage was stopped, the list is shorter. Throws BadInput for an unreadable scenario, an
-/// invalid memory limit, or if no process can be started.
+/// of its method runs plus two. If a process dies or times out, its completed results remain, with an error. The
+/// results are in the order of `draws`. If the triage was stopped, the list is shorter. Throws BadInput for an
+/// unreadable scenario, an invalid memory limit, or if no process can be started.
 std::vector<DrawTriage> triage_draws(const DataRoot& data, std::span<const DrawName> draws, const Method& method,
                                      const SuiteTriageOptions& options);
 

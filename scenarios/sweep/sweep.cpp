@@ -51,7 +51,7 @@ void note_descriptions(Results& results, const Suite& suite) {
   }
 }
 
-/// Throws BadInput for rows of two versions of an external method under one name.
+/// Throws BadInput if the results would contain two versions of an external method under one name.
 void claim_methods(Results& results, std::span<const MethodPointer> methods) {
   for (const MethodPointer& method : methods) {
     if (method->info.version.empty()) continue;
@@ -98,7 +98,7 @@ class Sweep {
   }
 
  private:
-  /// Ends the workers and removes what they have not finished to keep.
+  /// Ends the workers and removes the incomplete files of runs to keep.
   void discard_unfinished() {
     for (DrawWorker& worker : workers_) worker.kill();
     workers_.clear();

@@ -43,7 +43,7 @@ struct Suite {
   std::vector<Variation> curves;            ///< key `vary`: {KEY: [values]}; "+" joins keys that change together
 
   bool has_draw(const std::string& scenario, std::uint64_t seed) const;
-  /// Returns the number of unmodified simulated runs from `first_seed` to `last_seed`. These may be the seeds of a
+  /// Returns the number of unmodified simulated runs from `first_seed` to `last_seed`. The seeds may be those of a
   /// shard.
   std::uint64_t draw_count() const;
 };
@@ -98,8 +98,8 @@ Results open_results(const DataRoot& data, const Suite& suite, const std::filesy
 /// their number.
 ///
 /// At the end, the kept runs match the keep rule. Returns the final progress. If the sweep was stopped, draws_done is
-/// below draws_total. Throws BadInput for a recording whose rows were made from other data (another digest), or if no
-/// method applies to any scenario.
+/// below draws_total. Throws BadInput if the results of a recording were computed from other data (another digest), or
+/// if no method applies to any scenario.
 SweepProgress sweep(const DataRoot& data, const Suite& suite, const DatabaseOwner& database,
                     const SweepOptions& options);
 /// Executes the sweep and owns the database during the sweep. Throws BadInput if another process owns the database.

@@ -103,7 +103,7 @@ DrawTask SweepPlan::next(const Results& results) const {
   return next_.recording < recordings_.size() ? of_recording(results) : of_scenario(results);
 }
 
-/// Adds the methods without a row for `setting`, or with a row to be repeated.
+/// Adds the methods that have no result for `setting`, or whose result must be repeated.
 void SweepPlan::add_missing(const std::vector<MethodPointer>& methods, const std::vector<Outcome>& held,
                             const Setting& setting, DrawTask& task) const {
   const auto stands = [&](const MethodInfo& info) {
@@ -166,7 +166,7 @@ DrawTask SweepPlan::again(const DrawName& draw, const Results& results) const {
   return task;
 }
 
-/// Returns true if any method reads lidars on the scenario and seed, in this sweep or in an earlier sweep. Both the
+/// Returns true if any method reads lidars on the scenario and seed, in this sweep or in an earlier sweep. The
 /// remaining and the completed methods must be considered.
 bool SweepPlan::read_lidars(const Planned& planned, const std::vector<Outcome>& held) const {
   const auto reads = [](Kind kind) { return kind != Kind::rate; };

@@ -15,7 +15,7 @@
 namespace tumble::scenarios {
 
 /// Iterates over the scenarios and seeds of a suite, with the methods to run on each, in constant memory. The plan
-/// writes tasks as lines. Workers that are forked later can parse these lines.
+/// writes tasks as lines of text, which workers that are forked later can parse.
 class SweepPlan {
  public:
   /// Throws BadInput for an unknown method, scenario or recording, and for a catalogue from which no situation can be
@@ -28,7 +28,7 @@ class SweepPlan {
 
   std::uint64_t draws_total() const;
   const std::vector<MethodPointer>& methods() const { return methods_; }
-  /// Throws BadInput if the results contain rows of an older import of a recording.
+  /// Throws BadInput if the results contain results of an older import of a recording.
   void require_same_recordings(const Results& results) const;
   /// Stores the paths of the recordings, so that runs can be repeated (run_again.hpp).
   void note_recordings(Results& results) const;
@@ -36,7 +36,7 @@ class SweepPlan {
   /// Recordings come first, then seeds as the outer loop. A stopped sweep thus covers all scenarios and curve points.
   bool at_end() const { return next_.recording == recordings_.size() && next_.past_seeds; }
   void advance();
-  /// Returns the next task, with the methods that have no row yet or that are to be repeated.
+  /// Returns the next task, with the methods that have no result yet or must be repeated.
   DrawTask next(const Results& results) const;
 
   /// Returns true if the scenario belongs to the suite, for any seed.

@@ -45,9 +45,9 @@ struct TriageOptions {
 };
 
 /// Runs a method on the unmodified sensor data, then with each input replaced by its truth, in separate processes. All
-/// runs are scored against one truth and the original sensor data. The first row belongs to the unmodified sensor data.
-/// Errors that no true input removes come from the method or the scenario. Throws the exceptions of simulate_draw for
-/// the simulation, and BadInput if the method does not apply to the scenario.
+/// runs are scored against one truth and the original sensor data. The first result belongs to the unmodified sensor
+/// data. Errors that no true input removes come from the method or the scenario. Throws the exceptions of simulate_draw
+/// for the simulation, and BadInput if the method does not apply to the scenario.
 std::vector<TriageRow> triage(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, const Method& method,
                               const TriageOptions& options);
 

@@ -9,8 +9,8 @@ namespace tumble::scenarios {
 inline constexpr const char* kUnfinished = ".unfinished";
 
 /// A folder under construction, WITHIN/.unfinished/NAME. The destructor removes the folder unless it was moved to its
-/// final path. Only one process at a time may build a folder with this name. Throws std::filesystem::filesystem_error
-/// on failure.
+/// final path. Only one process at a time may build a folder with the name NAME. Throws
+/// std::filesystem::filesystem_error on failure.
 class UnfinishedFolder {
  public:
   UnfinishedFolder(const std::filesystem::path& place, const std::filesystem::path& within);

@@ -19,8 +19,8 @@ namespace tumble::scenarios {
 ///   Each value needs a new simulation.
 /// - A key such as `given.lever_arm_error_m` is an error in the methods' input (given_errors.hpp). One simulation
 ///   serves all values.
-/// - A key such as `rate/saave.jerk_psd_rad2_s5` is a parameter of one method. One simulation serves all values, for
-///   only this method.
+/// - A key such as `rate/saave.jerk_psd_rad2_s5` is a parameter of one method. One simulation serves all values, and
+///   only the method with the parameter is repeated.
 struct Variation {
   std::vector<std::string> keys;  ///< all of one sort
   std::vector<double> values;     ///< as written, each once
@@ -29,7 +29,7 @@ struct Variation {
   std::vector<Setting> settings() const;
 };
 
-/// States which part of a run a setting affects. This part must be repeated for the setting.
+/// States which part of a run a setting affects. The affected part must be repeated for each value of the setting.
 enum class Reach { nothing, simulation, input, method };
 Reach reach(const Setting& setting);
 
@@ -42,7 +42,7 @@ bool needs_lidar(const Setting& setting);
 void check(const Variation& variation, const DataRoot& data, std::span<const std::string> scenarios,
            std::uint64_t seed);
 
-/// Returns the scenario with the setting's numbers fixed. It is unchanged if the setting does not affect the
+/// Returns the scenario with the setting's numbers fixed. The scenario is unchanged if the setting does not affect the
 /// simulation.
 Scenario with_setting(Scenario scenario, const Setting& setting);
 

@@ -177,8 +177,8 @@ class Chain {
 };
 
 // Computes the most likely rate curve whose magnitude is at least every clipped reading. Each round smooths the curve
-// and adds a hard limit where the curve violates a clipped reading. The reported variance belongs to the curve without
-// limits, truncated at the reading.
+// and adds a hard limit at each clipped reading that the curve violates. The reported variance belongs to the curve
+// without limits, truncated at the reading.
 std::vector<Value> smooth_with_bounds(const Axis& axis, const ClippedBaseline::Params& params) {
   constexpr int kRounds = 8;
   const BoundedJerk process(params.snap_psd, params.rate_sigma_rad_s);

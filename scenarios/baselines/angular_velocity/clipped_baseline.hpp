@@ -19,9 +19,9 @@ namespace tumble::baselines {
 ///
 /// - `interpolate`: a cubic over each gap of clipped samples that matches the rate and its derivative at both ends. The
 ///   cubic suits gaps that are short compared with the motion.
-/// - `reject`: a causal Kalman filter with a random-walk rate; the estimate is constant over a gap. Point-LIO handles
-///   saturated readings in this way between lidar corrections. The `reject` model suits gaps shorter than the time
-///   between corrections by another sensor.
+/// - `reject`: a causal Kalman filter with a random-walk rate; the estimate is constant over a gap. Between lidar
+///   corrections, Point-LIO also keeps the rate constant during saturation. The `reject` model suits gaps shorter than
+///   the time between corrections by another sensor.
 /// - `constant_jerk`: a smoother with the stationary Matern 5/2 process of deviation `rate_sigma_rad_s`: white snap
 ///   over short times, bounded rate over long times. The smoother uses clipped readings as hard lower limits of the
 ///   rate's magnitude. The `constant_jerk` model suits swings without impacts and gaps up to about 2 / lambda = 0.15 s,
@@ -29,8 +29,8 @@ namespace tumble::baselines {
 ///   the saturation level. The reported variance then belongs to a curve above the saturation level.
 ///
 /// An impact at the start or end of a gap gives `interpolate` and `constant_jerk` a wrong derivative. On tumbles of the
-/// rig, the mean error of these smooth models exceeds the error of the clipped reading. Impacts within a gap and the
-/// coupling between the axes of a tumbling body are not modelled.
+/// rig, the mean error of `interpolate` and `constant_jerk` exceeds the error of the clipped reading. Impacts within a
+/// gap and the coupling between the axes of a tumbling body are not modelled.
 class ClippedBaseline {
  public:
   enum class Kind { interpolate, reject, constant_jerk };

@@ -22,12 +22,12 @@ namespace tumble::baselines {
 /// also measures zero velocity, zero rate and the direction of gravity. A backward Rauch-Tung-Striebel pass follows the
 /// forward extended Kalman filter.
 ///
-/// The method is based on zero-velocity smoothers for foot-mounted and hand-moved sensors (Dang and Suh). It is
-/// designed for motions of one or two seconds between rests with few clipped samples. If the tilt or velocity error at
-/// the next standstill is too large for a linear filter, attitude and velocity restart at that standstill. After a
+/// The method is based on zero-velocity smoothers for foot-mounted and hand-moved sensors (Dang and Suh). The smoother
+/// is designed for motions of one or two seconds between rests with few clipped samples. If the tilt or velocity error
+/// at the next standstill is too large for a linear filter, attitude and velocity restart at that standstill. After a
 /// restart, the rates since the previous standstill follow only from the limits of the clipped readings and from
-/// smoothness. A tumble of several turns causes such a restart. Clipped specific force, a lever arm and sensor bias are
-/// not modelled.
+/// smoothness. A tumble of several turns causes a restart. Clipped specific force, a lever arm and sensor bias are not
+/// modelled.
 class StandstillSmoother {
  public:
   struct Params {

@@ -27,8 +27,8 @@ struct AutogainGains {
 
 /// Estimates attitude with the published filter for a rolling sphere (Zevering et al., IEEE MFI 2021, eqs 2-5). The
 /// filter applies a Madgwick step whose gain grows with the rate, then a complementary step whose weight falls with the
-/// rate. During slow rotation the filter relies on the accelerometer even if the body accelerates. It estimates neither
-/// bias nor heading.
+/// rate. During slow rotation the filter relies on the accelerometer even if the body accelerates. The filter estimates
+/// neither bias nor heading.
 class Autogain {
  public:
   struct Params {
@@ -37,9 +37,9 @@ class Autogain {
     double tau_s = 0.396;      ///< time constant of the complementary step at rest (0.02 per sample at 125 Hz)
     double lower_rad_s = 0.1;  ///< unused by code2021
     double upper_rad_s = 2.1;  ///< above lower_rad_s; unused by code2021
-    /// Computes the complementary step as the authors' code does, where the check for gimbal lock is always true. As a
-    /// consequence, the target attitude keeps the current roll, and roll is never corrected. The option reproduces the
-    /// results in the authors' recordings.
+    /// Computes the complementary step as the authors' code does. In that code, the check for gimbal lock is always
+    /// true. As a consequence, the target attitude keeps the current roll, and roll is never corrected. The option
+    /// reproduces the results in the authors' recordings.
     bool roll_error_2021 = false;
     /// Computes the complementary step as the smallest rotation instead of a target in roll, pitch and yaw. The
     /// `smooth` profile uses the smallest rotation.

@@ -13,10 +13,10 @@ namespace tumble::baselines {
 /// specific force measures the up direction. The textbook form is J. Sola, arXiv 1711.02508, sections 5-7; here the
 /// error is in world axes.
 ///
-/// The filter models body acceleration as zero-mean white noise on the force. It neither normalises the force nor
-/// weights the force by its norm, because normalising or weighting biases the mean. For fast translations, normalising
-/// caused an error of 12 deg instead of 0.8 deg. Real accelerations are not white, and the vertical bias drifts at
-/// rest.
+/// The filter models body acceleration as zero-mean white noise on the force. The filter neither normalises the force
+/// nor weights the force by its norm, because normalising or weighting biases the mean. For fast translations,
+/// normalising caused an error of 12 deg instead of 0.8 deg. Real accelerations are not white, and the vertical bias
+/// drifts at rest.
 class Eskf {
  public:
   using Covariance = Eigen::Matrix<double, 6, 6>;

@@ -29,8 +29,8 @@ TimeNs rounded_offset(const LidarPoint& point, TimeNs step_ns) {
 
 /// Returns the time of the registered pose: the start of the sweep, or the common time of all points, as in triage
 /// runs. If points with one common time were moved far to the sweep's start, velocity errors would be fed back with v'
-/// = v_true + (v - v''). This recursion is unstable, with root -1.6. Points spread over the sweep halve the feedback
-/// term (v - v''), which gives the roots 0.5 and -1.
+/// = v_true + (v - v''). The recursion v' = v_true + (v - v'') is unstable, with root -1.6. Points spread over the
+/// sweep halve the feedback term (v - v''), which gives the roots 0.5 and -1.
 TimeNs registered_at(const Sweep& sweep, TimeNs step_ns) {
   if (sweep.points.empty()) return sweep.start_ns;
   const auto [first, last] = std::minmax_element(

@@ -31,9 +31,9 @@ class TrimmedIcp {
     double trim_min = 0.5;       ///< smallest share of matches to keep
     double trim_max = 0.7;
     double trim_lambda = 2.35;
-    /// Reproduces an error of the original, where the kept fraction refers to all match slots, although unmatched slots
-    /// are missing from the sorted list. The original reads beyond the end of the sorted list. This function stops at
-    /// the end of the list.
+    /// Reproduces an error of the original code. There, the kept fraction refers to all match slots, although unmatched
+    /// slots are missing from the sorted list. The original reads beyond the end of the sorted list. This
+    /// implementation stops at the end of the sorted list.
     bool count_unmatched_slots = false;
     int iterations_max = 40;
     double step_m = 0.01;  ///< both means over two increments must be below their bound
@@ -76,8 +76,8 @@ class TrimmedIcp {
 
   explicit TrimmedIcp(const Params& params);
 
-  /// Aligns `points` to `map`, starting from `prior`. Reaching the iteration limit is not an error, as in the published
-  /// chain. Returns an error if there are no matches or if the correction exceeds its limit.
+  /// Aligns `points` to `map`, starting from `prior`. As in the published chain, it is not an error to reach the
+  /// iteration limit. Returns an error if there are no matches or if the correction exceeds its limit.
   Result align(std::span<const Point> points, const Eigen::Isometry3d& prior, const VoxelMap& map);
 
   /// Returns the number of sorted squared distances d^2 to keep. The kept fraction f minimises (sum of the smallest f n

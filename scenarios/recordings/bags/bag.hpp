@@ -18,20 +18,20 @@
 
 namespace tumble::scenarios {
 
-/// Points in W for "/TRACK/points" (sensor_msgs/PointCloud2: x y z, and error_m if known).
+/// Points in W that become "/TRACK/points" (sensor_msgs/PointCloud2: x y z, and error_m if known).
 struct BagCloud {
   std::vector<Eigen::Vector3f> position_W_m;
   std::vector<float> error_m;  ///< parallel, or empty
 };
 
-/// A series of body poses in W for a bag: topics "/NAME" (nav_msgs/Odometry) and /tf.
+/// A series of body poses in W, which becomes the topic "/NAME" (nav_msgs/Odometry) and part of /tf in a bag.
 struct BagTrack {
   struct Pose {
     std::int64_t time_ns = 0;
     Eigen::Vector3d p_WB_m = Eigen::Vector3d::Zero();
     Eigen::Quaterniond q_WB = Eigen::Quaterniond::Identity();
     Eigen::Vector3d v_WB_B_m_s = kUnknown, w_WB_B_rad_s = kUnknown;
-    /// Covariance of (position in W, attitude error phi in W), as in PoseState; a block of zeros is unknown.
+    /// Covariance of (position in W, attitude error phi in W), as in PoseState. A block of zeros is unknown.
     Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
     bool exact = false;  ///< a true pose: zeros are the covariance
     inline static const Eigen::Vector3d kUnknown = Eigen::Vector3d::Constant(kNaN);
@@ -39,43 +39,44 @@ struct BagTrack {
   std::string name;  ///< letters, digits and _
   std::vector<Pose> poses;
   std::vector<std::int64_t> cloud_time_ns = {};  ///< times of point clouds along the track
-  /// Creates one cloud when the cloud is about to be written, so that only one cloud is in memory. Clouds without
+  /// Creates a cloud immediately before the cloud is written, so that only one cloud is in memory. Clouds without
   /// points are omitted.
   std::function<BagCloud(const BagTrack&, std::size_t)> cloud = {};
 };
 
 /// Options for writing a recording to a bag.
 struct BagWriting {
-  std::int64_t origin_ns = 0;          ///< of the recording; see export_origin_ns
+  std::int64_t origin_ns = 0;          ///< origin of the recording; see export_origin_ns
   const StoredTruth* truth = nullptr;  ///< written if not null
   std::vector<BagTrack> tracks = {};   ///< estimates; names are unique and differ from export_names' `taken`
   SweepLayout sweeps = own_sweep_layout();
-  /// Stored points on disk, for each lidar; null if the points are in the records.
+  /// Points of each lidar on disk; null if the points are in the records.
   const std::vector<PointStore>* points = nullptr;
   std::optional<ReaderNames> names = {};  ///< if set: only the first IMU and the first lidar, with these names
   bool empty_sweeps = true;               ///< false: omits sweeps without points
 };
 
-/// Writes a recording as a bag, in one of three formats:
+/// Writes a recording as a bag, in one of the following three formats.
 ///
-/// - ROS 1: version 2.0, by librosbag;
+/// - ROS 1: version 2.0, by librosbag.
 /// - ROS 2: a folder with metadata.yaml (version 5) and a SQLite file of CDR messages with definitions (schema 4, as
-///   since Iron);
+///   since Iron).
 /// - MCAP: a file with profile ros2 (mcap.dev/spec), with indexed LZ4 chunks of 1 MiB and all checksums.
 ///
-/// All formats contain these topics:
+/// All formats contain the following topics.
 ///
-/// - "/NAME" (sensor_msgs/Imu without attitude; covariance from the data sheet's white noise), with the exported sensor
-///   name (export_names). The topic of the primary IMU is the first topic of its type;
-/// - "/NAME/points" (sensor_msgs/PointCloud2, stamped at the sweep's start), with the fields of Velodyne drivers: x y z
-///   intensity ring time. The time is in float32 seconds after the stamp (4 ns resolution within 0.1 s). The field
-///   offset_ns states the time in whole nanoseconds. The two time fields are omitted for points without times. `sweeps`
-///   can choose another point layout;
-/// - "/truth" (nav_msgs/Odometry of "body" in "world", at most every 5 ms), "/TRACK" and "/TRACK/points". Unknown
-///   values have the variance -1, as in sensor_msgs/Imu, and an unknown twist is zero;
-/// - "/tf_static": each sensor in "body", from the calibration that the estimator uses;
-/// - "/tf": "body" in "world" from the truth, else from the first track; all further tracks use a frame "TRACK";
-/// - "/clock" (rosgraph_msgs/Clock), published with the first message after every 10 ms.
+/// - "/NAME" is a sensor_msgs/Imu without attitude; its covariance is the data sheet's white noise. NAME is the
+///   exported sensor name (export_names). The topic of the primary IMU is the first topic of its type.
+/// - "/NAME/points" is a sensor_msgs/PointCloud2, stamped at the sweep's start, with the fields of Velodyne drivers: x
+///   y z intensity ring time. The time is in float32 seconds after the stamp (4 ns resolution within 0.1 s). The field
+///   offset_ns states the time in whole nanoseconds. For points without times, the fields time and offset_ns are
+///   omitted. `sweeps` can choose another point layout.
+/// - "/truth" is a nav_msgs/Odometry of "body" in "world", at most every 5 ms. "/TRACK" and "/TRACK/points" are
+///   estimates. Unknown values have the variance -1, as in sensor_msgs/Imu, and an unknown twist is zero.
+/// - "/tf_static" contains each sensor in "body", from the calibration that the estimator uses.
+/// - "/tf" contains "body" in "world" from the truth, else from the first track. All further tracks use a frame
+///   "TRACK".
+/// - "/clock" is a rosgraph_msgs/Clock, published with the first message after every 10 ms.
 ///
 /// Throws BadInput if the output cannot be written.
 void export_ros1_bag(const sim::Sensors& sensors, const BagWriting& writing, const std::filesystem::path& file);
@@ -85,23 +86,23 @@ void export_mcap(const sim::Sensors& sensors, const BagWriting& writing, const s
 void export_ros2_mcap(const sim::Sensors& sensors, const BagWriting& writing, const std::filesystem::path& folder);
 
 /// Selects the stamp of a message: the header's stamp (time of measurement), or the record's stamp (time of recording)
-/// if headers have no usable stamps. A sweep is recorded at its end; with record stamps, the sweep starts one period
-/// earlier.
+/// if headers have no usable stamps. A sweep is recorded at its end. With record stamps, the start of a sweep is
+/// therefore one period earlier than its stamp.
 enum class StampSource { header, record };
 
-/// Frame of the reference poses: the frame that the messages name if the bag contains its transform, the body, or the
-/// first lidar.
+/// Frame of the reference poses. `named` is the frame that the messages name, if the bag contains its transform. `body`
+/// and `lidar` are the body and the first lidar.
 enum class ReferenceOf { named, body, lidar };
 
 /// Options for reading a bag.
 struct BagReading {
-  std::vector<std::string> imu_topics;    ///< the first is the primary one; empty: all of type Imu, in the bag's order
+  std::vector<std::string> imu_topics;    ///< the first is the primary IMU; empty: all Imu topics in the bag's order
   std::vector<std::string> lidar_topics;  ///< empty: all of type PointCloud2 or CustomMsg
   std::string reference_topic;            ///< Odometry, PoseStamped or TransformStamped; "": none
   ReferenceOf reference_of = ReferenceOf::named;
   sim::ImuRecord imu;                   ///< values that messages lack: device, ranges, noise, T_BI
   bool imu_placed = false;              ///< the user states T_BI of `imu`, also if it is the identity
-  bool lidar_placed = false;            ///< the same for T_BL of `sweeps.device`
+  bool lidar_placed = false;            ///< the user states T_BL of `sweeps.device`, also if it is the identity
   std::optional<AccelUnit> accel_unit;  ///< empty: m/s^2 as in sensor_msgs/Imu, or g if the readings indicate g
   GyroUnit gyro_unit = GyroUnit::rad_s;
   StampSource stamps = StampSource::header;
@@ -112,20 +113,22 @@ struct BagReading {
 /// folder or a single file: SQLite or MCAP, plain or Zstandard-compressed per file or message. An MCAP file may have
 /// messages of ROS 2 (cdr) or ROS 1, in plain, LZ4 or Zstandard chunks, with or without index.
 ///
-/// Times are taken from the source `stamps`; notes state how the stamps of headers and records differ. Units are
-/// checked against gravity as for a CSV file; specific force in g at rest, as from Livox drivers, is converted and
-/// noted. Each sensor is named after its topic. Points are read as in import_sweeps. Unless topics are chosen, clouds
-/// in "world", "map" or "odom" are skipped, because such clouds are not raw sensor data, and lidars whose points have
-/// times come first. Duplicate messages (stamp and content) are read once. Single faulty messages are left out and
-/// noted (left_out.hpp).
+/// Times come from the source `stamps`. Notes state how the stamps of headers and records differ. Units are checked
+/// against gravity by the checks for CSV files. Specific force in g at rest, as from Livox drivers, is converted and
+/// noted. Each sensor is named after its topic. The rules of import_sweeps apply to points. Duplicate messages (stamp
+/// and content) are read once. Single faulty messages are left out and noted (left_out.hpp).
 ///
-/// The parts of a ROS 1 bag in a folder are merged by time. Files of a ROS 2 bag are read by time, including files that
-/// are named like the listed files but are missing in metadata.yaml.
+/// Unless the caller chooses topics, clouds in "world", "map" or "odom" are skipped, because such clouds are not raw
+/// sensor data. Lidars whose points have times then come first.
+///
+/// The parts of a ROS 1 bag in a folder are merged by time. Files of a ROS 2 bag are read by time. Files that are
+/// missing in metadata.yaml but named like the listed files are also read.
 ///
 /// If /tf_static states the pose of a sensor in "body" or "base_link", or else relative to another sensor, this pose is
 /// used unless the caller states a pose. With `sweeps.scratch`, memory only holds one sweep, the IMU data (81 bytes per
-/// sample) and some bytes per message; otherwise memory holds all points. Throws BadInput with file and location for
-/// damaged or truncated data, a missing topic or wrong type, more than 5 % of faulty messages, or a cycle of frames.
+/// sample) and some bytes per message. Without `sweeps.scratch`, memory holds all points. Throws BadInput with file and
+/// location for damaged or truncated data, a missing topic or wrong type, more than 5 % of faulty messages, or a cycle
+/// of frames.
 Imported import_ros1_bag(const std::filesystem::path& path, const BagReading& reading);
 Imported import_ros2_bag(const std::filesystem::path& path, const BagReading& reading);
 Imported import_mcap(const std::filesystem::path& file, const BagReading& reading);

@@ -10,7 +10,7 @@
 /// Converts point messages to columns. Used only within scenarios/recordings/bags.
 namespace tumble::scenarios {
 
-/// Returns true for the CustomMsg of a Livox driver, named as in ROS 1. The types of livox_ros_driver,
+/// Returns true if `type` is the CustomMsg of a Livox driver, with its ROS 1 name. The types of livox_ros_driver,
 /// livox_ros_driver2 and livox_interfaces have equal fields.
 bool is_livox_type(const std::string& type);
 
@@ -22,7 +22,7 @@ Cloud cloud_of(const ros::PointCloud2& message, const std::string& where);
 /// a message that starts with `where`, if the number of points differs from the number that the message states.
 Cloud cloud_of(const ros::LivoxCustomMsg& message, const std::string& where);
 
-/// Returns a digest of all points; clouds with equal contents have equal digests. O(bytes).
+/// Returns a digest of all points. Clouds with equal contents have equal digests. O(bytes).
 std::uint64_t content_of(const ros::PointCloud2& message);
 std::uint64_t content_of(const ros::LivoxCustomMsg& message);
 

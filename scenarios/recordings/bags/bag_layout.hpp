@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-/// Topics, frames and point layout that a reader of bags expects. The default layout is that of bag.hpp.
+/// Describes the topics, frames and point layout that a reader of bags expects. The default layout is that of bag.hpp.
 namespace tumble::scenarios {
 
 /// Quantity of a point field.
@@ -18,16 +18,16 @@ struct PointColumn {
   std::string name;
   PointQuantity quantity;
   NumberType type;
-  double scale = 1.0;     ///< for intensity, which is 0 to 1 here: factor; for time: units per nanosecond (1e-9: s)
+  double scale = 1.0;     ///< for intensity (0 to 1 in recordings): factor; for time: units per ns (1e-9: s)
   bool absolute = false;  ///< time counts from 1970 instead of from the sweep's start in the header
 };
 
 /// Message layout of a sweep.
 struct SweepLayout {
-  /// Fields of a sensor_msgs/PointCloud2, in order, without gaps; the time fields are omitted if points have no times.
+  /// Fields of a sensor_msgs/PointCloud2, in order, without gaps. The time fields are omitted if points have no times.
   std::vector<PointColumn> columns;
   bool livox = false;          ///< writes a CustomMsg of Livox drivers, with times in ns, and ignores `columns`
-  bool in_time_order = false;  ///< sorts points by time; else they keep the recording's order
+  bool in_time_order = false;  ///< sorts points by time; else points keep the recording's order
 };
 
 /// Returns the columns x y z intensity ring time offset_ns: the layout of Velodyne's driver, plus a time in whole
@@ -36,7 +36,7 @@ SweepLayout own_sweep_layout();
 /// Returns the layout of the CustomMsg.
 SweepLayout livox_sweep_layout();
 
-/// Topic and frame names for a reader that expects one IMU and one lidar: the first of each.
+/// Topic and frame names for a reader that expects one IMU and one lidar. The names belong to the first IMU and lidar.
 struct ReaderNames {
   std::string imu_topic, imu_frame;
   std::string points_topic, lidar_frame;

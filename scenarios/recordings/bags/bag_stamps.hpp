@@ -12,36 +12,37 @@
 /// Used only within scenarios/recordings/bags.
 namespace tumble::scenarios {
 
-/// ns since 1970.
+/// Returns the header's stamp [ns since 1970].
 std::int64_t stamp_of(const ros::Header& header);
 
-/// Stores the two stamps of a topic's messages: the header's (time of measurement) and the record's (time of
-/// recording).
+/// Stores two stamps of each message of a topic: the header's stamp (time of measurement) and the record's stamp (time
+/// of recording).
 class BagStamps {
  public:
   explicit BagStamps(StampSource source) : source_(source) {}
 
-  /// Returns the stamp from the chosen source. Throws BadInput, with a message that starts with `where`, for a record
-  /// stamp that a header cannot store.
+  /// Returns the stamp from the chosen source. Throws BadInput for a record stamp that a header cannot store; the
+  /// message starts with `where`.
   std::int64_t chosen(std::int64_t header_ns, std::int64_t record_ns, const std::string& where) const;
   /// Stores the stamps of the next message.
   void add(std::int64_t header_ns, std::int64_t record_ns);
   /// Returns the stored stamps from the chosen source.
   const std::vector<std::int64_t>& times_ns() const { return source_ == StampSource::header ? header_ns_ : record_ns_; }
-  /// Describes how the stamps of message `k`, which are not in order, differ from the previous stamps. The text names
-  /// the other source of stamps if its stamps increase.
+  /// Describes how the stamp of message `k`, which is not in order, differs from the previous stamp. If the stamps of
+  /// the other source (header or record) increase, the text names that source.
   std::string disorder(std::size_t k) const;
 
-  /// Returns true if header stamps are used and the stamp equals the previous header's stamp. A message with the
-  /// previous header stamp and equal content is a duplicate.
+  /// Returns true if header stamps are used and the stamp equals the previous header's stamp. If the content is also
+  /// equal to the previous message, the message is a duplicate.
   bool repeats(std::int64_t header_ns) const {
     return source_ == StampSource::header && !header_ns_.empty() && header_ns_.back() == header_ns;
   }
 
   /// Describes how far record stamps are behind header stamps, for the stamps in order. The text is empty if the lag is
-  /// always below one millisecond. Warns if the lag reaches a second, is negative, or changes.
+  /// always below one millisecond. The text is a warning if the lag reaches a second, is negative, or changes.
   std::string remark() const;
-  /// Returns true if header stamps in order are ahead of record stamps, or a second or more behind.
+  /// Returns true if header stamps are ahead of record stamps, or if header stamps are a second or more behind. Only
+  /// stamps in order count.
   bool other_clock() const;
 
  private:

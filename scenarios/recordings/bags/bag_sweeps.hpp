@@ -14,18 +14,19 @@
 /// Reads the cloud topics of a bag. Used only within scenarios/recordings/bags.
 namespace tumble::scenarios {
 
-/// Information about the clouds of a topic from a first pass that does not read points.
+/// Stamps and frame of the clouds of a topic, from a first pass that does not read points.
 struct CloudHeaders {
   std::vector<std::int64_t> stamps;  ///< sweep starts, in order
   std::int64_t period_ns = 0;        ///< stated, or the median step of the stamps
-  /// Start of the sweep of each message; empty for a duplicate of the previous message and a message that is left out.
+  /// Start of the sweep of each message. Empty for a duplicate of the previous message and for a message that is left
+  /// out.
   std::vector<std::optional<std::int64_t>> starts;
   LeftOut left_out{"clouds"};
   std::string remark;
-  bool follow_records = true;  ///< the records appear to use the same clock and lie after the stamps
+  bool follow_records = true;  ///< records appear to use the headers' clock and are later than the stamps
   std::string frame;
-  /// Returns true if the topic was not chosen by the caller and its frame is not a sensor's frame: a map, or points
-  /// that are already transformed.
+  /// Returns true if the caller did not choose the topic and its frame is not a sensor's frame. The clouds are then a
+  /// map, or points that are already transformed.
   bool left_out_as_map(const BagReading& reading) const {
     return reading.lidar_topics.empty() && (frame == "world" || frame == "map" || frame == "odom");
   }
@@ -34,7 +35,7 @@ struct CloudHeaders {
 /// Reads stamps, frame and duplicates of a topic of clouds.
 CloudHeaders read_headers(const OpenedBag& bag, const std::string& topic, const BagReading& reading);
 
-/// Reads the points of a topic. Leaves out single faulty clouds, with a note.
+/// Reads the points of a topic. Single faulty clouds are left out with a note.
 BuiltSweeps read_lidar(const OpenedBag& bag, SensorPlaces& places, const std::string& topic,
                        const CloudHeaders& headers, const BagReading& reading, std::vector<std::string>& notes);
 

@@ -13,7 +13,7 @@
 
 #include "scenarios/recordings/bags/ros1_archives.hpp"
 
-/// ROS 2's CDR encoding of messages, by Fast-CDR. Used only within scenarios/recordings/bags.
+/// Encodes messages in ROS 2's CDR by Fast-CDR. Used only within scenarios/recordings/bags.
 namespace tumble::scenarios::ros {
 
 /// Computes an upper bound of the number of bytes, including padding.
@@ -34,7 +34,7 @@ class CdrBound {
     return entries;
   }
   void raw(const std::uint8_t*, std::size_t size) { bytes += size; }
-  std::size_t bytes = 4;  ///< the encapsulation
+  std::size_t bytes = 4;  ///< encapsulation header
 
  private:
   static constexpr std::size_t kPadding = 7;

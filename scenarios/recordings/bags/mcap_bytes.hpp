@@ -85,7 +85,7 @@ class Take {
   }
 };
 
-/// Encodes a whole record; `tail` is appended after the record's fields.
+/// Encodes a whole record. `tail` is appended after the record's fields.
 template <class Record>
 std::string to_bytes(Record record, std::string_view tail = {}) {
   Put content, out;
@@ -95,7 +95,7 @@ std::string to_bytes(Record record, std::string_view tail = {}) {
   return std::move(out.bytes.append(content.bytes).append(tail));
 }
 
-/// Decodes a record from its content; ignores fields that later versions of the format append. Throws BadRecord.
+/// Decodes a record from its content. Fields that later versions of the format append are ignored. Throws BadRecord.
 template <class Record>
 Record from_bytes(std::string_view content) {
   Record record;

@@ -17,7 +17,7 @@
 /// scenarios/recordings/bags.
 namespace tumble::scenarios::mcap {
 
-/// Consecutive records: a chunk, or records outside chunks.
+/// Consecutive records of a file: one chunk, or records outside chunks.
 struct Segment {
   std::uint64_t at = 0, bytes = 0;  ///< position in the file, including record heads
   std::uint64_t first_ns = 0, last_ns = 0;
@@ -37,26 +37,25 @@ struct Record {
 
 class File {
  public:
-  /// Reads the summary if present, else scans the file. Also computes the checksum of the data section if the file
-  /// states one. The cost is proportional to the file size; memory holds some MiB and the summary. Throws BadInput with
-  /// the offset if the file is not MCAP, is truncated or damaged, has a compression other than none, lz4 or zstd, or
-  /// has a chunk or record larger than 256 MiB.
+  /// Reads the summary if present, else scans the file. If the file states a checksum of the data section, the checksum
+  /// is verified. The cost is proportional to the file size; memory holds some MiB and the summary. Throws BadInput
+  /// with the offset if the file is not MCAP, is truncated or damaged, or has a compression other than none, lz4 or
+  /// zstd. Throws BadInput also for a chunk or record larger than 256 MiB.
   explicit File(const std::filesystem::path& path);
 
   const std::map<std::uint16_t, Schema>& schemas() const { return schemas_; }
   const std::map<std::uint16_t, Channel>& channels() const { return channels_; }
   /// Returns the segments in the order of their first messages.
   const std::vector<Segment>& segments() const { return segments_; }
-  /// Returns the stated number of messages of a channel; empty if not stated.
+  /// Returns the number of messages of a channel that the file states. Empty if the file states no number.
   std::optional<std::uint64_t> stated_messages(std::uint16_t channel) const;
 
-  /// Returns the uncompressed records of a segment after a check of the segment's checksum.
+  /// Returns the uncompressed records of a segment and verifies the segment's checksum.
   std::string records(const Segment& segment);
-  /// Returns the message index of the channel after the segment's chunk, or empty if there is no index.
+  /// Returns the message index of the channel after the segment's chunk. Empty if there is no index.
   std::optional<MessageIndex> index_of(const Segment& segment, std::uint16_t channel);
 
-  /// Calls `take(record)` for each of `records`; `at` is the position of the records in the file if they are not
-  /// compressed.
+  /// Calls `take(record)` for each of `records`. For uncompressed records, `at` is their position in the file.
   template <class Call>
   void walk(std::string_view records, std::uint64_t at, Call&& take) const {
     for (std::uint64_t place = 0; place < records.size();) {
@@ -65,7 +64,7 @@ class File {
       place += kHeadBytes + record.content.size();
     }
   }
-  /// Decodes the content; throws BadInput with the offset.
+  /// Decodes the content of a record. Throws BadInput with the offset.
   template <class Content>
   Content as(const Record& record, std::uint64_t at) const {
     try {
@@ -74,7 +73,7 @@ class File {
       fail(at, "a record of kind " + std::to_string(record.op) + " " + error.what());
     }
   }
-  /// Registers a schema or channel found at offset `at`; a repeated schema or channel must be identical.
+  /// Registers a schema or channel found at offset `at`. A repeated schema or channel must be identical.
   void add(Schema schema, std::uint64_t at);
   void add(Channel channel, std::uint64_t at);
   [[noreturn]] void fail(std::uint64_t at, const std::string& what) const;

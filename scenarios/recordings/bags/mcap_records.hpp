@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-/// Record types of MCAP files (mcap.dev/spec, version 0); each type lists its fields in the specified order. Numbers
-/// are little-endian; texts have a 32-bit length prefix; lists and maps have a prefix with their size in bytes. An
+/// Record types of MCAP files (mcap.dev/spec, version 0). Each type lists its fields in the specified order. Numbers
+/// are little-endian. Texts have a 32-bit length prefix. Lists and maps have a prefix with their size in bytes. An
 /// encoded record consists of its kind (8 bits), its length (64 bits) and its content. mcap_bytes.hpp encodes and
 /// decodes records. Used only within scenarios/recordings/bags.
 namespace tumble::scenarios::mcap {

@@ -48,7 +48,7 @@ struct OpenedBag {
     return place + ": message " + std::to_string(message) + " of " + name;
   }
 
-  /// Returns the named topics, which must have a matching type; without names, returns all topics of a matching type.
+  /// Returns the named topics, which must have a matching type. Without names, returns all topics of a matching type.
   std::vector<std::string> chosen(const std::vector<std::string>& names, bool (*fits)(const std::string& type),
                                   const std::string& wanted) const {
     std::vector<std::string> out = names;
@@ -62,8 +62,8 @@ struct OpenedBag {
     return out;
   }
 
-  /// Calls `take(message, origin)` for each message of the topic. Counts messages that cannot be decoded in `left_out`;
-  /// if `left_out` is null, throws BadInput.
+  /// Calls `take(message, origin)` for each message of the topic. Messages that cannot be decoded are counted in
+  /// `left_out`. If `left_out` is null, a message that cannot be decoded throws BadInput.
   template <class Message, class Take>
   void read(const std::string& name, Take&& take, LeftOut* left_out = nullptr) const {
     std::size_t number = 0;

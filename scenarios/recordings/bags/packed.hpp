@@ -5,10 +5,10 @@
 #include <string>
 #include <string_view>
 
-/// Compression and checksums of bag chunks. Used only within scenarios/recordings/bags.
+/// Compresses bag chunks and computes their checksums. Used only within scenarios/recordings/bags.
 namespace tumble::scenarios {
 
-/// Returns an LZ4 frame of the bytes: independent blocks of at most 4 MiB, no checksums.
+/// Returns an LZ4 frame of the bytes with independent blocks of at most 4 MiB, without checksums.
 std::string packed_lz4(std::string_view plain);
 
 /// Decompresses any LZ4 frame (linked blocks, checksums, content size) or a series of Zstandard frames to exactly

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-/// Kinds of records in a ROS 1 bag, as stated in the header field "op". Used only within scenarios/recordings/bags.
+/// Kinds of records in a ROS 1 bag. The header field "op" states the kind. Used only within scenarios/recordings/bags.
 namespace tumble::scenarios::ros1 {
 
 enum Op : std::uint8_t { kMessage = 2, kFile = 3, kIndex = 4, kChunk = 5, kChunkInfo = 6, kConnection = 7 };

@@ -3,10 +3,10 @@
 
 #include <string>
 
-/// Message definitions and types stored in ROS 2 bags. Used only within scenarios/recordings/bags.
+/// Returns the message definitions and types stored in ROS 2 bags. Used only within scenarios/recordings/bags.
 namespace tumble::scenarios {
 
-/// Converts a type name such as "sensor_msgs/Imu" to ROS 2's "sensor_msgs/msg/Imu" and back.
+/// These functions convert a type name such as "sensor_msgs/Imu" to ROS 2's "sensor_msgs/msg/Imu" and back.
 std::string ros2_type(const std::string& type);
 std::string ros1_type(std::string type);
 
@@ -14,8 +14,8 @@ std::string ros1_type(std::string type);
 /// (encoding "ros2msg"). Throws std::logic_error for message types that the bag writers never write.
 std::string ros2_definition(const std::string& type);
 
-/// Returns a topic's quality of service in the YAML of rosbag2's metadata: transient for /tf_static, so that late
-/// listeners receive the transforms; otherwise an empty text (default).
+/// Returns a topic's quality of service in the YAML of rosbag2's metadata. /tf_static is transient, so that late
+/// listeners receive the transforms. For other topics, the text is empty (default).
 std::string ros2_qos(const std::string& topic);
 
 }  // namespace tumble::scenarios

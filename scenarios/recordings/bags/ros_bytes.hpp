@@ -11,11 +11,11 @@
 #include "scenarios/recordings/bags/ros1_archives.hpp"
 #include "scenarios/recordings/bags/ros_fields.hpp"
 
-/// Encodes and decodes messages: ROS 1's little-endian layout and ROS 2's CDR. Used only within
+/// Encodes and decodes messages in ROS 1's little-endian layout and ROS 2's CDR. Used only within
 /// scenarios/recordings/bags.
 namespace tumble::scenarios::ros {
 
-/// Encode and decode a message. Decoding throws BadMessage.
+/// These functions encode and decode a message. Decoding throws BadMessage.
 template <class Message>
 Bytes to_ros1(Message message) {
   Ros1Writer writer;

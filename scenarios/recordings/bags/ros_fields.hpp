@@ -8,14 +8,14 @@
 #include "scenarios/recordings/bags/ros_messages.hpp"
 
 /// Lists the fields of each message type in the order of the message definition. ROS 1 and ROS 2 encode these fields
-/// differently; the archives in ros_bytes.hpp implement both encodings. Used only within scenarios/recordings/bags.
+/// differently. The archives in ros_bytes.hpp implement both encodings. Used only within scenarios/recordings/bags.
 ///
-/// An archive has these members:
-/// - operator()(uint8 | uint32 | uint64 | float | text | array of doubles);
-/// - ros1_only(uint32), for a field that ROS 2 removed;
-/// - count(number of entries, minimum bytes of an entry), for the length before a list; a reader returns the stored
-///   length;
-/// - raw(first byte, bytes).
+/// An archive has the following members.
+/// - operator()(uint8 | uint32 | uint64 | float | text | array of doubles)
+/// - ros1_only(uint32) is for a field that ROS 2 removed.
+/// - count(number of entries, minimum bytes of an entry) is for the length before a list. A reader returns the stored
+///   length.
+/// - raw(first byte, bytes)
 namespace tumble::scenarios::ros {
 
 template <class Archive, class Entry, class Fields>

@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-/// Message types of an exported recording; ros_fields.hpp lists the fields. Used only within scenarios/recordings/bags.
+/// Message types of an exported recording. ros_fields.hpp lists the fields. Used only within scenarios/recordings/bags.
 namespace tumble::scenarios::ros {
 
 struct Header {
@@ -92,7 +92,7 @@ struct LivoxCustomMsg {
   std::vector<LivoxPoint> points;
 };
 
-/// Message types that are written; type names are those of ROS 1.
+/// Message types that the bag writers write. Type names are those of ROS 1.
 using Message = std::variant<Imu, PointCloud2, Odometry, TransformStamped, TFMessage, Clock, LivoxCustomMsg>;
 inline const char* type_of(const Imu&) {
   return "sensor_msgs/Imu";
@@ -112,7 +112,7 @@ inline const char* type_of(const TFMessage&) {
 inline const char* type_of(const Clock&) {
   return "rosgraph_msgs/Clock";
 }
-/// Returns the type name of the driver for ROS 2; ROS 1 bags use kLivoxRos1.
+/// Returns the type name of the ROS 2 driver. ROS 1 bags use kLivoxRos1.
 inline const char* type_of(const LivoxCustomMsg&) {
   return "livox_ros_driver2/CustomMsg";
 }

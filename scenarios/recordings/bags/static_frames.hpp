@@ -14,13 +14,13 @@ namespace tumble::scenarios {
 /// Removes the leading slash of ROS 1's frame names.
 std::string without_slash(const std::string& frame);
 
-/// Tree of frames from /tf_static; each frame has one parent. Used only within scenarios/recordings/bags.
+/// Tree of frames from /tf_static. Each frame has one parent. Used only within scenarios/recordings/bags.
 class StaticFrames {
  public:
-  /// Adds a transform. For a repeated frame the last transform is used; a changed parent is noted (`remarks`). An
+  /// Adds a transform. For a repeated frame the last transform is used, and a changed parent is noted (`remarks`). An
   /// invalid transform is noted with `where` and throws only when it is used, because bags contain frames unrelated to
-  /// the sensors. A transform is invalid if it has non-finite values, a translation above 1 km, a quaternion norm that
-  /// differs from 1 by more than 1 %, or a frame that is its own parent.
+  /// the sensors. A transform is invalid if it has non-finite values, a translation above 1 km, or a frame that is its
+  /// own parent. A transform is also invalid if its quaternion norm differs from 1 by more than 1 %.
   void add(const ros::TransformStamped& transform, const std::string& where);
 
   /// Throws BadInput, with a message that starts with `where`, if the frames form a cycle.
@@ -31,8 +31,8 @@ class StaticFrames {
   /// Returns the name of the body's frame: "body", else "base_link", else "".
   std::string body() const;
 
-  /// Returns T_AB of two connected frames, else empty. Throws BadInput, with a message that starts with `where`, if a
-  /// transform between the two frames is invalid or if the frames form a cycle.
+  /// Returns T_AB if the two frames are connected, else empty. Throws BadInput, with a message that starts with
+  /// `where`, if a transform between the two frames is invalid or if the frames form a cycle.
   std::optional<Eigen::Isometry3d> pose(const std::string& frame_A, const std::string& frame_B,
                                         const std::string& where) const;
 
@@ -42,7 +42,7 @@ class StaticFrames {
     Eigen::Isometry3d T_parent;  ///< transforms coordinates of the frame to its parent
     std::string problem;         ///< why the transform is invalid; "" if valid
   };
-  /// Returns the frame and all its ancestors; each entry contains the pose of `frame` in the ancestor.
+  /// Returns the frame and all its ancestors. Each entry contains the pose of `frame` in the ancestor.
   std::vector<Hung> way_up(const std::string& frame, const std::string& where) const;
   std::map<std::string, Hung> frames_;
   std::vector<std::string> remarks_;

@@ -16,7 +16,7 @@ struct Cloud {
   std::size_t points = 0;
   std::string viewpoint;  ///< VIEWPOINT of a PCD if it is not the identity, as written; not applied
 
-  /// Returns the column with this name, or null.
+  /// Returns the column called `name`, or null.
   const std::vector<double>* find(const std::string& name) const;
 };
 
@@ -44,7 +44,7 @@ struct CloudHeader {
   std::string viewpoint;  ///< of a PCD: x y z qw qx qy qz, as written; "" for the identity
 };
 
-/// Reads and checks the header only; throws BadInput like read_cloud.
+/// These functions read and check only the header. They throw BadInput like read_cloud.
 CloudHeader read_ply_header(const std::filesystem::path& path);
 CloudHeader read_pcd_header(const std::filesystem::path& path);
 

@@ -10,15 +10,15 @@ namespace tumble::scenarios {
 /// Formats read by PCL.
 enum class PclFormat : int { ply, pcd };
 
-/// Function of the module `pcl_reader_module.cpp`: reads the points of a file without console output. Returns false if
-/// PCL fails or throws.
+/// Function of the module `pcl_reader_module.cpp`, which reads the points of a file without console output. Returns
+/// false if PCL fails or throws.
 extern "C" using PclRead = bool(const char* path, PclFormat format, pcl::PCLPointCloud2* cloud);
 inline constexpr const char* kPclRead = "tumble_pcl_read";  ///< its symbol name
 
-/// Reads a file with the module, which is loaded at first use and stays loaded. PCL's readers load VTK and more than
-/// sixty libraries, which would slow the start of every program. The module is in ../lib/tumble relative to the
-/// program's folder, or in the build folder. Throws BadInput if the module cannot be loaded. Used only within
-/// scenarios/recordings/clouds.
+/// Reads a file with the module `pcl_reader_module.cpp`, which is loaded at first use and stays loaded. PCL's readers
+/// load VTK and more than sixty libraries, which would slow the start of every program. The module is in ../lib/tumble
+/// relative to the program's folder, or in the build folder. Throws BadInput if the module cannot be loaded. Used only
+/// within scenarios/recordings/clouds.
 bool read_by_pcl(const std::filesystem::path& path, PclFormat format, pcl::PCLPointCloud2& cloud);
 
 }  // namespace tumble::scenarios

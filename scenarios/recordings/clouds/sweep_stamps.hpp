@@ -8,10 +8,10 @@
 
 namespace tumble::scenarios {
 
-/// Returns the files of a folder with this extension (".ply", in any case) in natural order ("9" before "10"), ignoring
-/// leading zeros and hidden files. The stem is the name before its last numbers ("lidar" in "lidar_000012"). The stem
-/// must equal `stem`; if `stem` is empty, all files must have an equal stem. Throws BadInput for a missing folder, no
-/// matching file, or several stems.
+/// Returns the files of a folder with this extension (".ply", in any case) in natural order ("9" before "10"). Leading
+/// zeros and hidden files are ignored. The stem is the name before its last numbers ("lidar" in "lidar_000012"). The
+/// stem must equal `stem`. If `stem` is empty, all files must have an equal stem. Throws BadInput for a missing folder,
+/// no matching file, or several stems.
 std::vector<std::filesystem::path> sweep_files(const std::filesystem::path& folder, const std::string& ending,
                                                const std::string& stem);
 
@@ -26,8 +26,8 @@ std::vector<std::int64_t> stamps_in_names(const std::vector<std::filesystem::pat
 
 /// Reads stamps from a text file, one stamp per line; '#' starts a comment. Stamps are decimal seconds, whole numbers
 /// of 13, 16 or 19 digits (ms, us, ns), or dates in UTC, as in the raw data of KITTI. Throws BadInput with file and
-/// line for another text, or a stamp that does not increase. If `disorder` is given, stamps that do not increase are
-/// accepted; `disorder` then has a message for each of these stamps, and "" for the others.
+/// line for another text, or a stamp that does not increase. If `disorder` is not null, stamps that do not increase are
+/// accepted. `disorder` then receives a message for each of these stamps, and "" for all other stamps.
 std::vector<std::int64_t> read_stamps(const std::filesystem::path& file, std::vector<std::string>* disorder = nullptr);
 
 /// Returns the upper median step of increasing times, or 0 for fewer than two times.

@@ -8,7 +8,7 @@
 #include "scenarios/recordings/bags/bag_layout.hpp"
 #include "scenarios/recordings/dialects/sensor_facts.hpp"
 
-/// Recording formats that published estimators expect. Used only within scenarios/recordings/dialects.
+/// Describes recording formats that published estimators expect. Used only within scenarios/recordings/dialects.
 namespace tumble::scenarios {
 
 /// Source that documents the format.
@@ -25,15 +25,15 @@ struct Dialect {
   std::string bag_format;  ///< rosbag1, rosbag2 or mcap
   std::string bag_name;    ///< of the file or folder
   bool needs_imu = true;
-  bool needs_times = true;   ///< of points
+  bool needs_times = true;   ///< needs times of points
   bool needs_rings = false;  ///< needs a scanning lidar with rings, not a Livox
-  bool takes_empty = true;   ///< accepts sweeps without points; else these are omitted
+  bool takes_empty = true;   ///< accepts sweeps without points; else empty sweeps are omitted
   ReaderNames (*names)(const SensorFacts&) = nullptr;
   SweepLayout (*sweeps)(const SensorFacts&) = nullptr;
-  /// Returns the configuration files of the published estimator with this recording's sensors; all other values are
+  /// Returns the configuration files of the published estimator with this recording's sensors. All other values are
   /// those of the estimator's authors.
   std::vector<ConfigurationFile> (*configuration)(const SensorFacts&, const ReaderNames&) = nullptr;
-  std::string run = {};                 ///< command that starts the peer on these files
+  std::string run = {};                 ///< command that starts the published estimator on these files
   std::vector<std::string> notes = {};  ///< remarks for the user
   std::vector<Source> sources = {};
 };
@@ -49,14 +49,14 @@ Dialect norlab_dialect();
 
 std::span<const Dialect> all_dialects();
 
-/// Returns the point layout with x y z and an intensity of 0 to 255, all float32, ring uint16, and the time since the
-/// sweep's start. The time field is in float32 seconds ("time", Velodyne's driver) or uint32 nanoseconds ("t", Ouster's
-/// driver).
+/// These functions return a point layout with x y z and an intensity of 0 to 255, all float32, ring uint16, and the
+/// time since the sweep's start. The time field is in float32 seconds ("time", Velodyne's driver) or uint32 nanoseconds
+/// ("t", Ouster's driver).
 SweepLayout velodyne_layout(const SensorFacts&);
 SweepLayout ouster_layout(const SensorFacts&);
 
-/// Returns the topic and frame names for FAST-LIO and its derivatives: a Livox has its driver's topics as CustomMsg,
-/// any other lidar has those of a Velodyne.
+/// These functions return the names and the sweep layout for FAST-LIO and its derivatives. A Livox has the topics of
+/// its driver with CustomMsg. Any other lidar has the topics of a Velodyne.
 ReaderNames fast_lio_names(const SensorFacts& facts);
 SweepLayout fast_lio_layout(const SensorFacts& facts);
 

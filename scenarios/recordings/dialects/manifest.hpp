@@ -9,8 +9,8 @@
 
 namespace tumble::scenarios {
 
-/// Returns the text of manifest.json (keys: dialects/README.md): the files with units, stamps and frames, the noise,
-/// ranges and mounting of the sensors, and the estimator's documentation. Used only within
+/// Returns the text of manifest.json (keys: dialects/README.md). The text lists the files with units, stamps and
+/// frames, the noise, ranges and mounting of the sensors, and the estimator's documentation. Used only within
 /// scenarios/recordings/dialects.
 std::string manifest_of(const Dialect& dialect, const SensorFacts& facts, const RecordingInfo& info,
                         std::int64_t origin_ns, const std::vector<std::string>& configuration, bool with_truth);

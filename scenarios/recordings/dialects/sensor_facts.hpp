@@ -19,7 +19,7 @@ struct ImuFacts {
   double gyro_noise_rad_s_sqrt_hz = 0.0, accel_noise_m_s2_sqrt_hz = 0.0;  ///< from the data sheet; 0: not stated
   double stated_gyro_range_rad_s = 0.0, stated_accel_range_m_s2 = 0.0;    ///< from the data sheet; 0: not stated
   double largest_gyro_rad_s = 0.0, largest_accel_m_s2 = 0.0;              ///< maximum over all axes in this recording
-  double still_at_start_s = 0.0;  ///< time until the first sample above 0.2 rad/s or 1 m/s^2 off gravity
+  double still_at_start_s = 0.0;  ///< time until a rate above 0.2 rad/s or a force 1 m/s^2 off gravity
 };
 
 /// Properties of the first lidar.
@@ -32,8 +32,8 @@ struct LidarFacts {
   int rings = 1;                             ///< highest ring plus one
   int columns = 1;                           ///< firings of a ring in a sweep, from the median step between its returns
   double nearest_m = 0.0, farthest_m = 0.0;  ///< range of the returns
-  /// Points closer than this distance belong to the robot: the rig's cage extends 0.7 m from its lidar (the box that
-  /// the mapper excludes). For other robots, the distance of the nearest return.
+  /// Points closer than this distance belong to the robot. For the rig, the distance is 0.7 m, the extent of its cage
+  /// from the lidar (the box that the mapper excludes). For other robots, it is the distance of the nearest return.
   double own_body_m = 0.0;
 };
 
@@ -47,8 +47,8 @@ struct SensorFacts {
   Eigen::Isometry3d T_IL() const { return T_BI.inverse(Eigen::Isometry) * T_BL; }
 };
 
-/// `points` stores the points of each lidar on disk; null if the points are in the records. Memory holds one sweep at a
-/// time.
+/// Computes the properties of the sensors. `points` stores the points of each lidar on disk; null if the points are in
+/// the records. Memory holds one sweep at a time.
 SensorFacts facts_of(const sim::Sensors& sensors, const std::vector<PointStore>* points = nullptr);
 
 }  // namespace tumble::scenarios

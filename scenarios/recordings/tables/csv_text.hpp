@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-/// Text files with separated columns, read line by line. Used only within scenarios/recordings.
+/// Reads text files with separated columns, line by line. Used only within scenarios/recordings.
 namespace tumble::scenarios {
 
 /// A line of a file and its location "FILE:12". The fields are views of the file's text without surrounding blanks or
@@ -17,18 +17,18 @@ struct CsvLine {
   std::vector<std::string_view> fields;
 };
 
-/// The lines of a file in memory. Accepts Windows line ends; ignores empty lines at the end.
+/// The lines of a file in memory. Windows line ends are accepted, and empty lines at the end are ignored.
 class CsvText {
  public:
-  /// Separates fields with the most frequent separator in the first line that is no comment: comma, semicolon or tab;
-  /// blanks if the line has none of these.
+  /// Separates fields with the most frequent separator in the first line that is no comment: comma, semicolon or tab.
+  /// If the first line contains neither comma, semicolon nor tab, blanks separate the fields.
   explicit CsvText(const std::filesystem::path& path);
   /// Throws BadInput with the file if the file is missing or empty, or if the last line has no newline and may be
   /// truncated.
   CsvText(const std::filesystem::path& path, char separator);
-  /// Reads the next line; returns false at the end.
+  /// Reads the next line. Returns false at the end.
   bool next(CsvLine& line);
-  /// Position between two lines; `back_to` continues reading there.
+  /// Position between two lines. `back_to` continues reading at a stored position.
   struct Place {
     std::size_t at = 0;
     int lines = 0;
@@ -53,7 +53,7 @@ bool is_comment(std::string_view line);
 /// number.
 double csv_number(const CsvLine& line, std::size_t index, const std::string& column);
 
-/// Returns true if the whole field is a number; NaN and infinities are accepted.
+/// Returns true if the whole field is a number. NaN and infinities are accepted.
 bool is_number(std::string_view field);
 
 }  // namespace tumble::scenarios

@@ -26,24 +26,25 @@ struct ImuColumns {
   std::size_t stamp = 0, stamp_ns = 1;
   std::optional<int> stamp_decimals;  ///< for `decimal`: 9 for seconds, 0 for nanoseconds; empty: unit not stated
   std::array<std::size_t, 3> rate = {8, 9, 10}, force = {12, 13, 14};  ///< default: a plain sensor_msgs/Imu
-  std::optional<std::size_t> id;                                       ///< column that numbers the IMUs of the table
+  std::optional<std::size_t> id;                                       ///< column with the number of the IMU
   std::optional<GyroUnit> gyro_unit;                                   ///< unit stated by the names
   std::optional<AccelUnit> accel_unit;
   std::vector<std::string> left_out;  ///< names of ignored columns
 };
 
-/// Finds the columns of a table. Names take precedence over positions. Known names are those of tools that flatten ROS
-/// messages (".../angular_velocity/x", "field.angular_velocity.x"), of `export` (each once and no other names), short
-/// forms of the export names (sec nsec wx.. fx..), and names of loggers (logger_columns.hpp). Without a header, columns
-/// are identified by position. Throws BadInput with file and line for unknown, repeated or missing columns.
+/// Finds the columns of a table. Names take precedence over positions. The following names are known: names of tools
+/// that flatten ROS messages (".../angular_velocity/x", "field.angular_velocity.x"), names of `export` (each once and
+/// no other names), short forms of the export names (sec nsec wx.. fx..), and names of loggers (logger_columns.hpp).
+/// Without a header, columns are identified by position. Throws BadInput with file and line for unknown, repeated or
+/// missing columns.
 ImuColumns imu_columns(const LoggedTable& table);
 
 /// Returns a line's stamp in nanoseconds. Throws BadInput with file, line and column.
 std::int64_t stamp_ns(const CsvLine& line, const ImuColumns& columns);
 
-/// Infers the unit of stamps from up to a thousand steps, as a number of decimals: the unit among s, ms, us and ns that
-/// gives 10 to 1000 samples per second. At most one unit fits; for other sample rates, the file must state the unit.
-/// Reads the samples from the start; `file` begins the message. Throws BadInput if no unit fits.
+/// Infers the unit of stamps from up to a thousand steps, as a number of decimals. The unit is the one of s, ms, us and
+/// ns that gives 10 to 1000 samples per second. At most one unit fits. For other sample rates, the file must state the
+/// unit. Reads the samples from the start. The message starts with `file`. Throws BadInput if no unit fits.
 int decimals_by_step(LoggedTable& table, std::size_t stamp, const std::string& file);
 
 }  // namespace tumble::scenarios

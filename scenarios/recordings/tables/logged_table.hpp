@@ -9,13 +9,14 @@
 
 #include "scenarios/recordings/tables/csv_text.hpp"
 
-/// Text tables of loggers: IMU readings and poses. Used only within scenarios/recordings.
+/// Reads text tables of loggers: IMU readings and poses. Used only within scenarios/recordings.
 namespace tumble::scenarios {
 
-/// A table of samples below an optional header. The class skips comments (csv_text.hpp) anywhere, and an empty field
-/// after the last separator of a line. The header is the first line that is no comment and has fewer numbers than other
-/// texts. If the samples follow comments directly, the last comment is the header if it has as many fields as a sample
-/// ("#timestamp [ns],w_RS_S_x [rad s^-1],..."). A row of units below the header is added to the names in brackets.
+/// A table of samples below an optional header. Comments (csv_text.hpp) are skipped, and also an empty field after the
+/// last separator of a line. The header is the first line that is no comment and has fewer numbers than other texts. If
+/// the samples follow comments directly, the last comment is the header, provided that it has as many fields as a
+/// sample ("#timestamp [ns],w_RS_S_x [rad s^-1],..."). A row of units below the header is added to the names in
+/// brackets.
 class LoggedTable {
  public:
   /// Throws BadInput like CsvText.
@@ -23,15 +24,15 @@ class LoggedTable {
   LoggedTable(const LoggedTable&) = delete;
   LoggedTable& operator=(const LoggedTable&) = delete;
 
-  /// The names, or the fields of the first sample if the table has no header.
+  /// Returns the names of the columns. If the table has no header, returns the fields of the first sample.
   const CsvLine& header() const { return header_; }
   bool has_header() const { return has_header_; }
 
-  /// Reads the next sample. Returns false at the end. Throws BadInput with file and line for another number of fields.
+  /// Reads the next sample. Returns false at the end. Throws BadInput with file and line for a wrong number of fields.
   bool next(CsvLine& line);
   /// Continues at the first sample.
   void restart() { text_.back_to(samples_); }
-  /// From now on, `next` only returns samples with this text in a column.
+  /// After this call, `next` only returns samples with the text `value` in the column.
   void keep(std::size_t column, const std::string& value) { kept_ = {column, value}; }
 
  private:

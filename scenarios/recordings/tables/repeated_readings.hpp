@@ -12,13 +12,13 @@
 /// scenarios/recordings.
 namespace tumble::scenarios {
 
-/// Rows of a log; each row has the latest reading of each sensor.
+/// Rows of a log. Each row has the latest reading of each sensor.
 struct LoggedReadings {
   std::vector<std::int64_t> time_ns;
   std::vector<Eigen::Vector3d> gyro_rad_s, accel_m_s2;
 };
 
-/// Result for a note; shares are fractions of the rows.
+/// Result of undo_hold for a note. Each number is a fraction of the rows.
 struct HoldReport {
   double gyro_repeated = 0.0, accel_repeated = 0.0;
   bool gyro_repeats = false, accel_repeats = false;
@@ -27,15 +27,15 @@ struct HoldReport {
 };
 
 /// Extracts the readings of a log without repetitions. A sensor repeats readings (sample-and-hold) if 5 to 98 % of its
-/// rows repeat all three axes; above 98 % the sensor is frozen. Only new gyro readings are kept; their times are
+/// rows repeat all three axes. Above 98 % the sensor is frozen. Only new gyro readings are kept. Their times are
 /// regularised within the log step in which they arrived. If the accelerometer repeats readings for longer than the
 /// gyro, its readings are interpolated linearly at the gyro's times, which low-passes the specific force. Fills
 /// time_ns, gyro, accelerometer and clip_flags (0) of `imu`. O(N).
 HoldReport undo_hold(const LoggedReadings& log, sim::ImuRecord& imu);
 
 /// Returns a note on probable accelerometer saturation, or "". An axis and sign counts as saturated if readings
-/// accumulate at an extreme beyond 1.5 g: at least five readings within 2 % of the extreme (a tilted limit), and three
-/// times as many as between 2 and 4 % below. Repeated readings count once.
+/// accumulate at an extreme beyond 1.5 g. At least five readings must be within 2 % of the extreme (a tilted limit),
+/// and three times as many as between 2 and 4 % below the extreme. Repeated readings count once.
 std::string accel_rail_text(const std::vector<Eigen::Vector3d>& logged);
 
 }  // namespace tumble::scenarios

@@ -13,9 +13,9 @@ struct StampBounds {
   std::int64_t before_ns = 0, after_ns = 0;
 };
 
-/// Regularises the stamps: each stamp moves to a line through ten neighbours on either side in its segment, limited by
-/// the stamp's bounds. A gap is a step longer than 1.3 times the median step plus the width of both stamps' bounds.
-/// Assumes a constant period over twenty samples; jitter larger than the bounds remains. `bounds` is parallel to
+/// Regularises the stamps. Each stamp moves to a line through ten neighbours on either side in its segment, limited by
+/// the stamp's bounds. A gap is a step longer than 1.3 times the median step plus the width of both stamps' bounds. The
+/// method assumes a constant period over twenty samples; jitter larger than the bounds remains. `bounds` is parallel to
 /// `stamps_ns`, which must not decrease. O(N).
 std::vector<std::int64_t> steady_stamps(std::span<const std::int64_t> stamps_ns, std::span<const StampBounds> bounds);
 

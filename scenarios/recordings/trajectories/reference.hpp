@@ -9,10 +9,10 @@
 
 #include "sim/recording.hpp"
 
-/// Motion of a real recording that a reference instrument measured (FORMAT.md, "References").
+/// Reads the motion of a real recording that a reference instrument measured (FORMAT.md, "References").
 namespace tumble::scenarios {
 
-/// A pose of frame A (body or lidar) in the instrument's world, z up. An unknown position is NaN.
+/// A pose of frame A (body or lidar) in the instrument's world with z up. An unknown position is NaN.
 struct ReferencePose {
   std::int64_t time_ns = 0;
   Eigen::Vector3d p_WA_m = Eigen::Vector3d::Zero();
@@ -27,55 +27,56 @@ inline constexpr double kReferenceNormTolerance = 1e-2;
 /// quaternions.
 std::string problem_of(ReferencePose& pose, const ReferencePose* before);
 
-/// Sorts the poses by time if `sorted`, and then keeps the first of several poses with equal stamps. Throws BadInput
-/// with the file for fewer than two poses.
+/// Checks the poses of a file. If `sorted`, sorts the poses by time and keeps the first of several poses with equal
+/// stamps. Throws BadInput with the file for fewer than two poses.
 void finish_poses(const std::filesystem::path& file, bool sorted, std::vector<ReferencePose>& poses);
 
-/// Returns "tum" or "kitti" from the first line with numbers (8 or 12 numbers), or "odometry" from the header of a
-/// table of poses. Throws BadInput if the file has none of these formats.
+/// Returns the format of a pose file. The first line with 8 or 12 numbers gives "tum" or "kitti"; the header of a table
+/// of poses gives "odometry". Throws BadInput for any other file.
 std::string pose_format(const std::filesystem::path& file);
 
-/// Reads a TUM file: "t x y z qx qy qz qw" per line, seconds, '#' starts a comment, blanks or commas separate.
-/// `sorted`: see finish_poses. Throws BadInput with file and line for a line without eight finite numbers, a quaternion
-/// norm that differs from 1 by more than 1 %, a stamp that does not increase (unless sorted), or fewer than two poses.
+/// Reads a TUM file: "t x y z qx qy qz qw" per line, with t in seconds. '#' starts a comment; blanks or commas
+/// separate. `sorted` is described at finish_poses. Throws BadInput with file and line for a line without eight finite
+/// numbers, or a quaternion norm that differs from 1 by more than 1 %. Throws BadInput also for a stamp that does not
+/// increase (unless sorted), or fewer than two poses.
 std::vector<ReferencePose> read_tum_poses(const std::filesystem::path& file, bool sorted);
 
-/// Reads a KITTI file, in which each line has the upper three rows of a pose matrix; `times` are the times of the
+/// Reads a KITTI file, in which each line has the upper three rows of a pose matrix. `times_ns` are the times of the
 /// poses. Throws BadInput with file and line for a line without twelve finite numbers, a matrix that is not a rotation
 /// (within 1e-3), or different numbers of poses and times.
 std::vector<ReferencePose> read_kitti_poses(const std::filesystem::path& file,
                                             const std::vector<std::int64_t>& times_ns);
 
-/// Returns true if the file is a table of poses whose header names time, position and quaternion.
+/// Returns true if the file is a table of poses with a header that names time, position and quaternion.
 bool is_pose_table(const std::filesystem::path& file);
 
 /// Reads a table of poses, one per line, separated like the IMU tables (tables/logged_table.hpp). The names in the
-/// header identify the columns, in any order:
-/// - the ground truth of EuRoC and TUM VI ("#timestamp [ns],p_RS_R_x [m],...,q_RS_w [],...");
+/// header identify the columns, in any order. The following tables are known.
+/// - the ground truth of EuRoC and TUM VI ("#timestamp [ns],p_RS_R_x [m],...,q_RS_w [],...")
 /// - flattened messages nav_msgs/Odometry, PoseStamped, TransformStamped ("header.stamp.sec", "pose.pose.position.x",
-///   "field.transform.translation.x");
-/// - truth.csv of `export`, and short names ("timestamp tx ty tz qx qy qz qw").
+///   "field.transform.translation.x")
+/// - truth.csv of `export`, and short names ("timestamp tx ty tz qx qy qz qw")
 ///
 /// A time without unit is decimal seconds, or ms, us or ns since 1970 by its number of digits. Rows without a known
 /// pose (all NaN) are ignored. Throws like read_tum_poses, and also for a missing or repeated column.
 std::vector<ReferencePose> read_pose_table(const std::filesystem::path& file, bool sorted);
 
-/// Returns the number of poses in a KITTI file; throws like read_kitti_poses, except for the times.
+/// Returns the number of poses in a KITTI file. Throws like read_kitti_poses, except for the times.
 std::size_t count_kitti_poses(const std::filesystem::path& file);
 
 /// Converts body poses to a truth. The stamps of `poses` increase in the recording's clock and may start before time 0.
-/// If all poses are on a regular grid from time 0 (at least 0.1 ms), the truth uses this grid, so that poses are
-/// unchanged; else the truth has steps of 1 ms (more for recordings above two million samples). Between poses at most
-/// 2.5 median steps apart, the position is linear and the attitude a slerp; elsewhere position and attitude are
-/// unknown. The truth ends with the poses or at `end_ns`, whichever is earlier. Throws BadInput if no pose is known, or
-/// if the truth would be longer than a day.
+/// If all poses are on a regular grid from time 0 (at least 0.1 ms), the truth uses this grid, and poses are unchanged.
+/// Otherwise, the truth has steps of 1 ms, or longer steps for recordings above two million samples. Between poses at
+/// most 2.5 median steps apart, position is interpolated linearly and attitude by slerp. In larger gaps, position and
+/// attitude are unknown. The truth ends with the poses or at `end_ns`, whichever is earlier. Throws BadInput if no pose
+/// is known, or if the truth would be longer than a day.
 sim::Truth reference_truth(const std::vector<ReferencePose>& poses, std::int64_t end_ns);
 
-/// Returns the rotation vector of the shorter rotation that `q` represents.
+/// Returns the rotation vector of `q`, with an angle of at most pi.
 Eigen::Vector3d rotation_vector(const Eigen::Quaterniond& q);
 
-/// Computes velocity and rate by central differences over `reach` samples on each side; the result is unknown where a
-/// sample is unknown.
+/// Computes velocity and rate by central differences over `reach` samples on each side. Velocity and rate are unknown
+/// if one of the used samples is unknown.
 void differentiate(sim::Truth& truth, std::size_t reach);
 
 }  // namespace tumble::scenarios

@@ -12,17 +12,16 @@ namespace tumble::scenarios {
 
 /// Numbers of removed samples, by cause.
 struct GlitchReport {
-  std::size_t unknown = 0;   ///< not finite
-  std::size_t bad_norm = 0;  ///< norm off by more than 1 %: an average of two attitudes
-  std::size_t frozen = 0;  ///< repeats the previous one, followed by a jump of more than 0.02 rad that is at least 1.5
-                           ///< times the next step
+  std::size_t unknown = 0;           ///< not finite
+  std::size_t bad_norm = 0;          ///< norm off by more than 1 %: an average of two attitudes
+  std::size_t frozen = 0;            ///< repeats the previous attitude, followed by a jump above 0.02 rad
   std::size_t leaps = 0, leapt = 0;  ///< jumps; samples in and between them
   double fastest_leap_rad_s = 0.0;
-  std::size_t gaps = 0;  ///< steps longer than 2.5 times the median, without known attitude
+  std::size_t gaps = 0;  ///< steps longer than 2.5 times the median step, without known attitude
   std::string text(std::size_t samples) const;
 };
 
-/// Removes errors from `poses`, using attitudes only; stamps must increase. A jump is a step whose rate exceeds the
+/// Removes errors from `poses`, using attitudes only. The stamps must increase. A jump is a step whose rate exceeds the
 /// rate of the steps before and after by more than 10 rad/s. The compared rates are medians of four steps before and of
 /// four steps after, three to six steps away. The threshold assumes that no recorded body rotates 10 rad/s faster for
 /// only 30 ms. The three samples on either side of a jump are also removed.

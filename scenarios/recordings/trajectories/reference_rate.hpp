@@ -9,17 +9,17 @@
 /// Computes angular rates from the attitudes of an optical reference. Used only within scenarios/recordings.
 namespace tumble::scenarios {
 
-/// Half of the time window for differentiating attitudes; the next constant is the minimum number of steps. Among
-/// windows of 10 to 70 ms, 20 ms gives the smallest error at unclipped samples of three hand-held recordings of RepoIMU
-/// (median 0.05 to 0.12 rad/s).
+/// kRateWindow_ns is half of the time window for differentiating attitudes. kRateSteps is the minimum half window in
+/// steps. Among windows of 10 to 70 ms, 20 ms gives the smallest error at unclipped samples of three hand-held
+/// recordings of RepoIMU (median 0.05 to 0.12 rad/s).
 inline constexpr std::int64_t kRateWindow_ns = 20'000'000;
 inline constexpr double kRateSteps = 2.0;
 
-/// Returns the body rate in body axes at each of `times_ns`, which must not decrease. Fits a parabola to the rotation
-/// vectors, relative to the nearest attitude, of all poses in the window (at least two median steps). The rate is the
-/// derivative of the parabola at the requested time. The rate is NaN if the window has a gap (2.5 median steps), fewer
-/// than three poses, or no pose on one side. A third derivative j of the angle gives a bias of about j h^2 / 10 for a
-/// window of +-h: 1.4 % at 20 ms and 3 Hz. O(N).
+/// Returns the body rate in body axes at each of `times_ns`, which must not decrease. A parabola is fitted to the
+/// rotation vectors, relative to the nearest attitude, of all poses in the window (at least two median steps). The rate
+/// is the derivative of the parabola at the requested time. The rate is NaN if the window has a gap (2.5 median steps),
+/// fewer than three poses, or no pose on one side. A third derivative j of the angle gives a bias of about j h^2 / 10
+/// for a window of +-h: 1.4 % at 20 ms and 3 Hz. O(N).
 std::vector<Eigen::Vector3d> reference_rates(const std::vector<ReferencePose>& poses,
                                              std::span<const std::int64_t> times_ns);
 

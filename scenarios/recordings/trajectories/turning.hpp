@@ -13,7 +13,7 @@
 #include "sim/recording.hpp"
 
 /// Compares attitudes with a gyro. A pose file does not state the frame of its poses, the order and direction of its
-/// quaternions, or its clock; the gyro reveals all of these.
+/// quaternions, or its clock. The gyro reveals frame, quaternion convention and clock.
 namespace tumble::scenarios {
 
 struct TimedAttitude {
@@ -24,14 +24,14 @@ struct TimedAttitude {
 /// A frame that the attitudes of a pose file may describe.
 struct CandidateFrame {
   std::string name;
-  Eigen::Quaterniond q_AI = Eigen::Quaterniond::Identity();  ///< IMU coordinates to those of the frame
+  Eigen::Quaterniond q_AI = Eigen::Quaterniond::Identity();  ///< rotates IMU coordinates to the frame
 };
 
 /// Possible meanings of the quaternions in a pose file.
 enum class Written { as_stated, w_first, inverse, w_first_inverse };
 
-/// Difference between the gyro and the attitudes under one interpretation: the median over pairs of attitudes of the
-/// rotation difference, as a fraction of the median rotation.
+/// Difference between the gyro and the attitudes under one interpretation. The difference is the median rotation
+/// difference over pairs of attitudes, as a fraction of the median rotation.
 struct TurningFit {
   Written written = Written::as_stated;
   std::size_t frame = 0;  ///< index of the candidate
@@ -45,30 +45,30 @@ struct MountingFit {
   double delay_s = 0.0, difference = 0.0;
 };
 
-/// Best fit without a delay, and best fit with a delay.
+/// The best fit without a delay and the best fit with a delay.
 template <class Fit>
 struct DelayedFit {
   Fit undelayed, delayed;
 
-  /// Returns the fit with a delay if its difference is below half of the fit without a delay, less 0.02, because a few
-  /// hundred candidate delays fit somewhat better by chance.
+  /// Returns the fit with a delay if its difference is clearly smaller than half of the difference without a delay. A
+  /// few hundred candidate delays fit somewhat better by chance, which the margin of 0.02 excludes.
   const Fit& likely() const { return delayed.difference < 0.5 * undelayed.difference - 0.02 ? delayed : undelayed; }
 };
 
 struct TurningCheck {
-  std::size_t pairs = 0;  ///< that the gyro covers; 0 where there are too few to decide
+  std::size_t pairs = 0;  ///< pairs that the gyro covers; 0 if there are too few pairs to decide
   TurningFit stated;
   DelayedFit<TurningFit> reading;
   DelayedFit<MountingFit> mounting;
-  bool clock_known = false;  ///< a delay of 0.3 s would show
-  bool order_known = false;  ///< another order or direction of the quaternions would show
-  /// Another order or direction of the quaternions that agrees equally well and makes gravity vertical, while the
-  /// stated order does not.
+  bool clock_known = false;  ///< a delay of 0.3 s would be detected
+  bool order_known = false;  ///< another order or direction of the quaternions would be detected
+  /// Another order or direction of the quaternions that agrees equally well with the gyro and makes gravity vertical.
+  /// Empty if the stated order makes gravity vertical.
   std::optional<TurningFit> upright;
 };
 
-/// Largest delay that is searched, and largest delay that is accepted: in valid files, stamps at the end of sweeps
-/// instead of the start cause a delay of 0.1 s.
+/// kDelaySearched_s is the largest delay that is searched, and kDelayMax_s is the largest delay that is accepted. In
+/// valid files, stamps at the end of sweeps instead of the start cause a delay of 0.1 s.
 inline constexpr double kDelaySearched_s = 5.0, kDelayMax_s = 0.15;
 inline bool is_delayed(double delay_s) {
   return std::abs(delay_s) >= kDelayMax_s;
