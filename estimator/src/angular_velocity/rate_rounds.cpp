@@ -137,7 +137,7 @@ void add_guess(const TriadDelay& guess, SensorErrorEvidence& evidence) {
 constexpr double kPlainOdds = 0.05;
 
 // Returns whether a device clearly contradicts its data sheet in scale or in sampling. If the scale of a device
-// contradicts the data sheet, the stated sampling is also unreliable, and vice versa. The test combines the evidence
+// contradicts its data sheet, the stated sampling is also unreliable, and vice versa. The test combines the evidence
 // from scale and sampling by naive Bayes. `triads_asynchronous`: gyro and accelerometer are known to be asynchronous.
 bool off_sheet(const SensorErrorFit& device, const SensorErrorSizes& sizes, bool triads_asynchronous) {
   const SensorErrorFit before = fit_sensor_errors({}, sizes);

@@ -53,7 +53,8 @@ Problem::Problem(const Problem& whole, const Part& part)
             whole.hand_.begin() + static_cast<std::ptrdiff_t>(part.last + 1)),
       blocks_(nodes_.size()) {}
 
-// Computes the Schur complements for the nodes outside each part, from both ends of the recording: carried.md (C17).
+// Condenses the nodes outside each part to a prior, by Schur complements from both ends of the recording: carried.md
+// (C17).
 bool Problem::condense_rest(std::span<Part> parts) const {
   System::Corner unused;
   // from the left: the prior that all earlier nodes provide for a node

@@ -26,7 +26,7 @@ ForceErrors::ForceErrors(const Params& p) : params_(p) {
 }
 
 /// Averages the terms of the force difference between units: imu_merge.md (I10), (I11). The terms are the force
-/// difference and its derivatives by the errors.
+/// difference and its derivatives by the accelerometer errors.
 void ForceErrors::calibrate(std::span<const Eigen::Vector3d> forces, const Eigen::Vector3d& rate,
                             const Eigen::Vector3d& acceleration, double dt_s, State& state) const {
   const auto count = static_cast<std::size_t>(params_.count);

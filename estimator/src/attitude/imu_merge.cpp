@@ -174,7 +174,8 @@ ImuSample ImuMerge::merge(State& state) const {
 /// Selects the unsaturated units whose rate and specific force agree with the median: imu_merge.md (I5).
 ImuMerge::Flags ImuMerge::choose(const Readings& readings, const Flags& present, const Vectors& rates,
                                  const Vectors& forces, double h, State& state) const {
-  // Rotation causes different forces at different positions. The tolerance must cover this difference.
+  // Rotation causes different forces at different positions. The tolerance of the median test must cover the difference
+  // due to rotation.
   const Eigen::Vector3d middle_rate = median(rates, present), middle_force = median(forces, present);
   const auto units = std::count(present.begin(), present.end(), true);
   const double rate_tolerance =
@@ -185,14 +186,14 @@ ImuMerge::Flags ImuMerge::choose(const Readings& readings, const Flags& present,
     const double turned = (params_.T_CI[i].translation() - p_C_m_).norm() * middle_rate.squaredNorm() * 2.0;
     const bool agrees = units < 3 || ((rates[i] - middle_rate).norm() < rate_tolerance &&
                                       (forces[i] - middle_force).norm() < params_.expert.outliers.force_m_s2 + turned);
-    // With three or more units, a clipped gyro provides a lower bound of the rate. The unit's accelerometer is then
-    // needed.
+    // With three or more units, a clipped gyro provides a lower bound of the rate. The merge therefore keeps the
+    // accelerometer of a unit with a clipped gyro.
     const int clipping = units < kRecovering ? kClipAccel | kClipGyro : kClipAccel;
     used[i] = agrees && (readings[i].device_clip_flags & clipping) == 0;
   }
   const auto kept = std::count(used.begin(), used.end(), true);
-  // Without a majority, the selection contains all present units. With one or two units, the selection contains only
-  // unsaturated units.
+  // If the selected units are no majority, the selection contains all present units. With one or two present units, the
+  // selection contains only unsaturated units.
   if (units < kRecovering ? kept == 0 : 2 * kept <= units && kept < units) used = present;
   const bool apart = state.windows > 0 && h > 0.0;  // true if a previous window allows derivatives
   if (units >= kRecovering && apart && middle_rate.cwiseAbs().maxCoeff() < params_.gyro_range_rad_s) {
@@ -271,10 +272,10 @@ void ImuMerge::close_windows(const Flags& present, const Vectors& rates, const V
 }
 
 /// Excludes units whose accelerometer may be saturated by an impact for less than a sample: imu_merge.md (I6). On a
-/// rigid body, the force of one unit predicts the force component of another unit along their connecting line. This
-/// prediction does not need the angular acceleration. Units that disagree with the unit of most agreement are excluded.
-/// If no two units agree, the function first adds a common angular acceleration that may have started within the
-/// window: (I7).
+/// rigid body, the force of one unit predicts the force component of another unit along their connecting line. The
+/// prediction along the connecting line does not need the angular acceleration. The function excludes units that
+/// disagree with the unit that agrees with most other units. If no two units agree, the function first estimates a
+/// common angular acceleration that started within the window: (I7).
 void ImuMerge::exclude_subsample_saturated(const Readings& samples, const Flags& present, const Vectors& forces,
                                            const Eigen::Vector3d& rate, double h, State& state, Flags& used) const {
   const double since_s = 0.5 * (h + state.length_s);

@@ -23,8 +23,8 @@ double turned_across(const ImuMerge::Hold& hold) {
 
 }  // namespace
 
-/// Returns the saturation flags of the selected units, for the axes of the common frame C. An axis is flagged if a
-/// clipped axis of a unit contributes to it.
+/// Returns the saturation flags of the selected units, for the axes of the common frame C. An axis of C is flagged if a
+/// clipped axis of a unit contributes to the axis of C.
 std::uint8_t ImuMerge::flags_of(const Readings& readings, const Flags& which) const {
   unsigned out = 0;
   for (std::size_t k = 0; k < which.size(); ++k) {
@@ -59,7 +59,7 @@ Eigen::Vector3d ImuMerge::median(const Vectors& values, const Flags& which) {
 }
 
 /// Detects triads that repeat readings while the median of the units changes. For accelerometers, a rotation of the
-/// body is sufficient, since all units may freeze together.
+/// body replaces the change of the median, since all units may freeze together.
 void ImuMerge::watch_repeats(const Flags& present, const Vectors& rates, const Vectors& forces, double dt_s,
                              TimeNs time_ns, State& state) const {
   Flags counted = present;

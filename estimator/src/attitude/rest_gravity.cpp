@@ -108,7 +108,7 @@ void RestGravity::end_segment(State& state) const {
   state.segment_s = state.segment_rad2_s = 0.0;
 }
 
-/// Starts a rest. Compares the directions of gravity at the previous and the new rest with the rotation between them:
+/// Starts a rest. Compares the change of gravity's direction since the previous rest with the gyro's rotation:
 /// imu_merge.md (I23).
 void RestGravity::arrive(State& state) const {
   end_segment(state);
@@ -138,7 +138,7 @@ void RestGravity::close_velocity(const Eigen::Vector3d& here_m_s2, double sigma_
   state.velocity_allowed_share = allowed;
 }
 
-/// Returns the maximum allowed error of the rotation: imu_merge.md (I24).
+/// Returns the maximum allowed error of the rotation between two rests: imu_merge.md (I24).
 double RestGravity::allowed_rad(double sigma_rad) const {
   return std::min(params_.miss_most_rad, std::max(params_.miss_least_rad, params_.miss_deviations * sigma_rad));
 }

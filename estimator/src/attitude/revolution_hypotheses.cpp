@@ -39,8 +39,7 @@ struct Hypothesis {
   double cost = 0.0;
 };
 
-/// Remaining alternatives of a segment: the probable solutions other than the current solution, with their
-/// probabilities.
+/// Probable solutions of a segment other than the current solution, with the probabilities of the solutions.
 struct Open {
   std::size_t from = 0;
   std::vector<std::pair<double, std::vector<Node>>> others;
@@ -72,7 +71,7 @@ std::vector<Segment> suspect_segments(const Problem& problem) {
         const Eigen::Matrix3d covariance = problem.covariance(i).block<3, 3>(kRate, kRate);
         angle_rad += problem.node_s() * std::sqrt(std::max(0.0, m.dot(covariance * m.transpose())));
       }
-      // a segment at either end of the recording has no readings on one side that could determine the revolutions
+      // at either end of the recording, no readings on the outer side determine the number of revolutions
       if (segment.first == 0 || segment.last + 1 >= count) continue;
       const bool against_rail = beyond_rad_s < kAgainst * problem.rail_sigma_rad_s() * clipped &&
                                 revolution_cost(problem, segment.last + 2 - segment.first) < kRevolutionCost;
@@ -122,7 +121,7 @@ std::vector<Hypothesis> hypotheses(const Problem& whole, const Segment& segment,
     Hypothesis found{{}, problem.converge()};
     found.nodes.assign(problem.nodes().begin(), problem.nodes().end());
     if (!std::isfinite(found.cost)) return false;
-    // discards a solution that converged to the number of revolutions of another hypothesis
+    // another hypothesis already has this number of revolutions, so the solution is discarded
     for (const Hypothesis& other : out)
       if (std::abs(angle_between(other.nodes, found.nodes, m, whole.node_s())) < kPi) return false;
     const bool likely = out.empty() || found.cost < out.front().cost + 2.0 * kLogOdds;
@@ -145,8 +144,9 @@ std::vector<Hypothesis> hypotheses(const Problem& whole, const Segment& segment,
   return out;
 }
 
-/// Result of testing one segment: the solutions of the part's nodes, starting with node `from`, best first. The result
-/// also identifies the current solution, if it is still present, and whether another solution replaces it.
+/// Result of testing one segment. The result contains the solutions for the nodes of a part, starting with node `from`
+/// and with the best solution. The result also identifies the current solution and states whether another solution
+/// replaces it.
 struct TestedSegment {
   std::size_t from = 0;
   std::vector<Hypothesis> found;
@@ -167,7 +167,7 @@ Open shares_of(const TestedSegment& tested, std::optional<std::size_t> standing)
   return out;
 }
 
-/// Returns the remaining alternatives of all segments. If `taken`, the selected changes have been applied.
+/// Returns the alternative solutions of all segments. `taken` states whether the selected changes have been applied.
 std::vector<Open> left_open(const std::vector<TestedSegment>& tested, bool taken) {
   std::vector<Open> out;
   for (const TestedSegment& each : tested) {
@@ -264,7 +264,7 @@ void test_revolutions(Problem& problem, CarriedSmoother::Report& report, SolveAg
     report.revolutions_taken += static_cast<int>(taken);
   }
   report.revolutions_open = static_cast<int>(open.size());
-  // remaining alternatives add to the covariance: carried.md (C29)
+  // the alternative solutions increase the covariance: carried.md (C29)
   for (const Open& segment : open) {
     for (const auto& [share, nodes] : segment.others) {
       for (std::size_t i = 0; i < nodes.size(); ++i) {

@@ -90,8 +90,8 @@ Status LidarInertialOdometry::Impl::check_sweep(TimeNs start_ns, TimeNs end_ns,
   if (samples.back().time_ns < end_ns) {
     return {Trouble::too_few, "imu time_ns", double(samples.back().time_ns), double(end_ns)};
   }
-  // With a wrong clock, the first sweep may start before the first sample. The initial rest is therefore extended
-  // backwards.
+  // With a wrong clock, the first sweep may start before the first sample. For such a clock, the initial rest extends
+  // backwards to the start of the sweep.
   const double early_s = seconds(samples.front().from_ns - start_ns);
   if (!started && early_s > (params.time_offset_s != 0.0 ? SweepTrajectory::kBeyond_s : 0.0)) {
     return {Trouble::too_few, "start_ns", double(start_ns), double(samples.front().from_ns)};
@@ -109,7 +109,7 @@ Status LidarInertialOdometry::Impl::level_at_first() {
 }
 
 /// Starts the map with the first sweep that has enough points: mapping.md, "Start". If lidar and IMU data start
-/// together, the sweep starts at the levelled state. If the sweep starts later, dead reckoning provides the state.
+/// together, the sweep starts at the levelled state. If the lidar data start later, dead reckoning provides the state.
 Status LidarInertialOdometry::Impl::start_map(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns,
                                               SweepReport& report) {
   const SweepCalibration calibration = boundary.state_estimate.mean.calibration;
@@ -162,7 +162,7 @@ Status LidarInertialOdometry::Impl::dead_reckon(TimeNs end_ns) {
   return {};
 }
 
-/// Returns whether the IMU measures only gravity and whether this gravity agrees with the estimated attitude.
+/// Returns whether the IMU measures only gravity, in agreement with the estimated attitude.
 bool LidarInertialOdometry::Impl::rests(const mapping::InertialTrack& inertial, const SweepTrajectory& motion,
                                         TimeNs end_ns) const {
   if (!inertial.rests_until(end_ns)) return false;
@@ -203,7 +203,8 @@ void LidarInertialOdometry::Impl::register_to_map(const Prediction& prediction, 
 StateEstimate LidarInertialOdometry::Impl::update(const MotionWindow& motion, const Placed& placed,
                                                   Prediction& prediction) const {
   if (placed.alignment) return mapping::posterior(prediction, *placed.alignment);
-  // The inertial prior remains. If the IMU is at rest, its velocity stops drifting.
+  // The inertial prediction remains the only estimate. If the IMU is at rest, a velocity of zero prevents a drift of
+  // the velocity.
   if (mapping::is_lost(tracking)) stop_at_rest(motion, boundary, prediction);
   return mapping::posterior(prediction);
 }
@@ -230,8 +231,8 @@ std::vector<InsertedPoint> LidarInertialOdometry::Impl::insert(const UpdatedSwee
   return inserted;
 }
 
-/// Updates the persistent state after a sweep. The lag window links the sweep to the previous sweep by the old
-/// boundary. The sweep therefore enters the window before boundary_after() replaces the boundary.
+/// Updates the persistent state after a sweep. The lag window needs the old boundary between the sweep and the previous
+/// sweep. The sweep therefore enters the window before boundary_after() replaces the boundary.
 void LidarInertialOdometry::Impl::propagate(const UpdatedSweep& sweep, const Placed& placed, const MotionWindow& motion,
                                             std::vector<InsertedPoint> inserted, SweepReport& report) {
   const Registration::Result* aligned = placed.alignment ? &*placed.alignment : nullptr;

@@ -16,8 +16,8 @@ namespace {
 
 constexpr double kSilentReported_s = 0.5;  // minimum duration of a reported interval without readings
 // A sensing element without an observed saturation plane is assumed to be exactly aligned with its axis. If the
-// uncertainty of its cross-axis sensitivity were 0.03, three clipped units would no longer determine the rate (scenario
-// slip_long, seeds 4, 30 and 42).
+// uncertainty of the element's cross-axis sensitivity were 0.03, three clipped units would no longer determine the rate
+// (scenario slip_long, seeds 4, 30 and 42).
 constexpr double kUnknownSlope = 0.0;
 
 /// The IMUs (units) that provide samples, resampled to common times.
@@ -178,7 +178,7 @@ void erase_unit(Units& units, std::size_t unit) {
   units.accel_elements.erase(units.accel_elements.begin() + at);
 }
 
-/// Excludes the units that ImuMerge classified as faulty. Returns whether there are any.
+/// Excludes the units that ImuMerge classified as faulty. Returns whether there are faulty units.
 bool exclude_found(const ImuMerge::State& state, Units& units, std::vector<UnitFault>& faults) {
   bool any = false;
   for (std::size_t k = units.index.size(); k-- > 0;) {

@@ -18,7 +18,7 @@ constexpr std::size_t kMoreShare = 20;  // the second pass may reject one sweep 
 constexpr std::size_t kSweepsPerRejection = 5;
 
 /// Initialises the stream with the saturation levels that the first pass detected. The covariance of the saturation
-/// planes is multiplied by `inflation`, as for the calibration.
+/// planes is multiplied by `inflation`. The covariance of the calibration has an equal factor.
 void start_from_rails(const KnownRails& known, double inflation, RateStream::Params& params) {
   params.expert.planes.known = known.planes;
   params.expert.accel_planes.known = known.accel_planes;
@@ -146,7 +146,8 @@ void SecondPass::complete(OdometryPass& first) {
 }
 
 void SecondPass::run(OdometryPass& first, std::size_t sweeps) {
-  // At the end of the buffer, fewer samples than the lag follow. The pass processes the last samples without waiting.
+  // At the end of the buffer, fewer samples than the lag follow. The second pass then processes the samples without a
+  // lag.
   bool tail = false;
   for (std::size_t taken = 0; tail || taken < sweeps; ++taken) {
     if (next_sweep_ == sweeps_.size()) {
