@@ -111,7 +111,7 @@ ImuSample at_time(TimeNs time_ns, ImuSample sample) {
   return sample;
 }
 
-/// Marks the sample of a unit as absent.
+/// Marks the sample of an IMU as absent.
 void leave_out(ImuSample& sample) {
   sample.angular_velocity_rad_s.setConstant(std::numeric_limits<double>::quiet_NaN());
 }
@@ -205,7 +205,7 @@ Status RollingOdometry::add_imus(std::span<const ImuSample> samples) {
       status = record(k, at_time(samples.front().time_ns, samples[k]));
     return status;
   }
-  // If the time does not increase, or if no unit has a reading, add_inliers() returns the error.
+  // If the time does not increase, or if no IMU has a reading, add_inliers() returns the error.
   if (!any_reading(samples) || (stamps_.stamp_ns && samples.front().time_ns <= *stamps_.stamp_ns))
     return add_inliers(samples);
   if (const Status status = add_held(samples); !status.ok()) return status;
@@ -310,7 +310,7 @@ std::size_t RollingOdometry::rejected_readings() const {
   return out;
 }
 
-/// Sets the readings of frozen units to NaN. If no unit remains, returns an error.
+/// Sets the readings of frozen IMUs to NaN. If no IMU remains, returns an error.
 Status RollingOdometry::exclude_frozen(const Frozen& states, std::span<ImuSample> samples) const {
   bool any = false, received = false;
   for (std::size_t k = 0; k < samples.size(); ++k) {
