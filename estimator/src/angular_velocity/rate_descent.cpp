@@ -17,8 +17,8 @@ namespace {
 constexpr double kRestartThresholds[] = {16.0, 0.25};
 constexpr double kFlightShareExpected = 0.5;
 
-// Convergence criterion: the last step changes no linear combination of unknowns by more than this many standard
-// deviations, rate_smoother.md (R30). An almost unobservable rate may still change by a large amount.
+// The iteration converges if no linear combination of unknowns changes by more than kStepDeviations standard
+// deviations: rate_smoother.md (R30). At convergence, an almost unobservable rate may still change by a large amount.
 constexpr double kStepDeviations = 0.1;
 
 // Computes the flight weight and contact force of each sample: rate_smoother.md (R16) to (R19).

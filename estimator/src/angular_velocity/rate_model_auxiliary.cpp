@@ -38,7 +38,7 @@ Eigen::Matrix3d seen_by(const Eigen::Matrix3d& R_CI, const ElementRows& elements
 }
 
 // Returns the standard deviation of an unsaturated element's reading that is due to the element's uncertain sensing
-// direction. `most` is the maximum saturation deficit of the other elements.
+// direction. `most` is the maximum saturation deficit of the saturated elements.
 double unknown_row(const ElementRows& elements, bool by_elements, int j, double most) {
   return by_elements ? elements.slope_sigma[j] * most : 0.0;
 }

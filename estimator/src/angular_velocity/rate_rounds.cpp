@@ -59,8 +59,7 @@ bool far_apart(const SensorErrors& a, const SensorErrors& b) {
          std::abs(a.accel_filter_time_variance_s2 - b.accel_filter_time_variance_s2) > kFilterTimeVariance_s2;
 }
 
-// One device in a thousand exceeds this Mahalanobis distance of three calibration constants from a prior with all
-// causes.
+// One device in a thousand exceeds this Mahalanobis distance between three calibration constants and their prior.
 constexpr double kMahalanobisOfDevice = 2.33;
 
 // Fixes the calibration at its prior, except for the sensing directions of the gyro. Contact does not affect the
@@ -186,8 +185,8 @@ struct Rounds {
 
   const SensorErrorSizes& stated() const { return known.expert.error_sizes; }
   bool delay_open() const { return estimated && stated().delay_uncalibrated_s > stated().delay_s; }
-  /// Returns whether the body has impacts and flight. Such a body is not hand-held, so sensor errors may change its
-  /// calibration.
+  /// Returns whether the body has impacts and flight. A body with impacts and flight is not hand-held, so sensor errors
+  /// may change the calibration of the rig.
   bool struck() const { return guess.sigma_s > 0.0; }
 };
 
@@ -270,7 +269,7 @@ Status descend_rounds(const Rounds& rounds, std::span<RateObservation> observati
     if (Status status = descend_corrected(rounds, rounds_state.errors, observations, fit, health); !status.ok())
       return status;
     if (health.calibration_at_prior && has_calibration) {
-      // the device may differ from the device of the earlier run
+      // the earlier run may have used a different device
       has_calibration = false;
       rounds_state.learnt = {};
       start = start_from(given, rounds);
@@ -296,8 +295,8 @@ Status descend_rounds(const Rounds& rounds, std::span<RateObservation> observati
 }
 
 // If a device clearly contradicts its data sheet, enlarges the covariance of the sensor errors to the covariance of an
-// uncalibrated device. The correction keeps only sensor errors that the readings clearly determine. Returns the
-// standard deviations of the sensor errors that are in use.
+// uncalibrated device. Only sensor errors that the readings clearly determine are corrected. Returns the standard
+// deviations of the sensor errors that are in use.
 SensorErrorSizes leave_open(const Rounds& rounds, const RateFit& fit, RoundsState& rounds_state, RateReport& health) {
   const bool open =
       rounds.delay_open() && (off_sheet(rounds_state.found, rounds.stated(), rounds.triads_asynchronous) ||
@@ -346,8 +345,8 @@ Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& kno
   health.sensor_errors = rounds_state.found.known;
   if (health.calibration_at_prior) return {};
   health.calibration.constants = fit.solution.rig;
-  // Sensor errors belong to the device. The next run is affected by the same sensor errors, and includes their
-  // uncertainty again.
+  // Sensor errors belong to the device. The device's sensor errors also affect the next run, which includes the
+  // uncertainty of the sensor errors again.
   const SensorErrors::Matrix of_device = fit_sensor_errors({}, stated).known.covariance;
   health.calibration.covariance += fit.moved.of_rig * of_device * fit.moved.of_rig.transpose();
   return {};

@@ -75,7 +75,7 @@ Phases best_phases(double period, std::span<const std::size_t> moving, const std
 }
 
 // Returns the middle clock of the best clocks around `first`. Equally good clocks cover an area in period and phase. In
-// the middle of this area, the run of adjacent phases is longest.
+// the middle of the area of best clocks, the run of adjacent phases is longest.
 Clock best_clock(const Clock& first, double reach, int periods, std::span<const std::size_t> moving,
                  const std::vector<bool>& repeats, double& found) {
   Phases best{moving.size()};

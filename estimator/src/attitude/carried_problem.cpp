@@ -166,8 +166,8 @@ void Problem::go(double share) {
   constants_.move(share * border_step_);
 }
 
-// Adapts the assumed acceleration noise of the hand to the recent acceleration of the hand. The noise has a lower
-// limit: carried.md (C10).
+// Adapts the assumed acceleration noise of the hand to the recent acceleration of the hand. The assumed acceleration
+// noise has a lower limit: carried.md (C10).
 void Problem::adapt_process_noise() {
   const std::size_t count = nodes_.size();
   const double assumed = 3.0 * params_.hand_m_s2 * params_.hand_m_s2;

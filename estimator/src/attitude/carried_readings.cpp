@@ -45,7 +45,8 @@ double since_s(std::span<const ImuSample> samples, std::size_t from, std::size_t
   return seconds(samples[to].time_ns - samples[from].time_ns);
 }
 
-// If equal readings agree with a regular clock by at least this fraction, the equal readings are repetitions.
+// If at least the fraction kMinClockAgreement of equal readings agrees with a regular clock, equal readings are
+// repetitions.
 constexpr double kMinClockAgreement = 0.9;
 // Window length, in node intervals, above which a window may be partly saturated. In recordings of pendulums, 20 ms
 // windows were partly saturated. In recordings of hand-held wands, 10 ms windows were not.
@@ -155,8 +156,8 @@ void place(double node_s, std::size_t nodes, Windows& windows) {
 }
 
 // Corrects the window centres of a slow accelerometer, which averages over an unknown part of its period: carried.md
-// (C12). The corrected window centre is the middle of the possible range. The change of force over this range adds to
-// the uncertainty of the force.
+// (C12). The corrected window centre is the middle of the possible range. The change of force over the possible range
+// of the centre adds to the uncertainty of the force.
 std::vector<double> open_forces(OwnReadings& forces, double log_period_s) {
   const std::vector<ImuSample>& samples = forces.samples;
   std::vector<double> out(samples.size(), 0.0);

@@ -191,8 +191,8 @@ std::optional<AxisLabels> ImuPlausibility::other_labels(const State& state) cons
 bool ImuPlausibility::explains_more(const State& state) const {
   const double slope = rotation_slope(state), agreement = rotation_agreement(state);
   const double left = state.by_force_rad2 * (1.0 - agreement * agreement);
-  // Pushes often reduce the ratio of force rotation to gyro rotation. Pushes rarely invert the ratio or increase it by
-  // half.
+  // Pushes often reduce the ratio of force rotation to gyro rotation. Pushes rarely invert the ratio of the rotations
+  // or increase the ratio by half.
   const bool low = slope > 0.0 && slope < 1.0;
   const double most = low ? params_.expert.naming.unexplained_share_max : params_.expert.turning.unexplained_share_max;
   return left < most * state.unexplained_rad2.front();

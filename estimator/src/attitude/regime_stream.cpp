@@ -16,8 +16,8 @@ CarriedStream::Params joined(const RegimeStream::Params& params) {
   out.period_s = params.rate.period_s;
   out.lag_s = params.rate.lag_s;
   out.window_s = std::max(out.window_s, out.lag_s + 4.0 * out.body.expert.node_s);
-  // After a gap longer than this limit, CarriedStream restarts. Without a restart, samples would leave the window
-  // before CarriedStream reports the samples.
+  // After a gap longer than gap_max_s, CarriedStream restarts. Without a restart, samples would leave the window before
+  // CarriedStream reports the samples.
   out.body.expert.gap_max_s = std::min(out.body.expert.gap_max_s, out.window_s - out.lag_s);
   return out;
 }
@@ -185,7 +185,7 @@ double RegimeStream::share_of(const RateState& rate, State& state) const {
   if (!after && !before) return 0.0;
   double out = state.near.empty() ? 1.0 : state.near.front().carried;
   if (out < params_.carried_min || !before) return out;
-  // the following probabilities use provisional rates, because these samples are not reported yet
+  // for samples that are not reported yet, the probabilities use provisional rates
   RegimeShares shares = state.shares;
   const RigCalibration rig = rate_.calibration(state.rate);
   const bool unstable = calibration_is_unstable(state);

@@ -41,9 +41,9 @@ double log_carried(double n, double g, double hand_variance, double grip_varianc
   return larger + std::log(((kRoughly - 1.0) * std::exp(gentle - larger) + std::exp(rough - larger)) / kRoughly);
 }
 
-// `kRolls` is the prior fraction of gentle rolling during contact: carried.md (C34). The rest of the contacts are
-// impacts with forces of any size. A single sample of gentle rolling looks like hand-held motion, so the samples before
-// and after decide.
+// `kRolls` is the prior fraction of gentle rolling during contact: carried.md (C34). Contact without gentle rolling
+// consists of impacts with forces of any size. A single sample of gentle rolling looks like hand-held motion, so the
+// samples before and after decide.
 constexpr double kRolls = 0.5;
 
 double log_contact(double left, double n, double most, double g, double variance) {

@@ -22,7 +22,7 @@ constexpr double kContradicts_sigma2 = 4.0;
 constexpr int kTilt = 0, kBias = 2, kVelocity = 5, kDisplacement = 7, kHeading = 9;
 
 /// Applies a Kalman update by a scalar measurement of the state with index `index`: attitude.md (A4). `innovation` is
-/// measurement minus prediction. The update does not change the heading's variance: attitude.md (A9).
+/// measurement minus prediction. The Kalman update does not change the heading's variance: attitude.md (A9).
 void update(int index, double innovation, double variance, TumbleAttitude::State& state) {
   const double heading = state.covariance(kHeading, kHeading);
   const Eigen::Matrix<double, TumbleAttitude::State::kStates, 1> correction =

@@ -45,7 +45,7 @@ Motion by_frame(const Eigen::Matrix3d& turn, const Eigen::Vector3d& v_WI_m_s) {
 }
 
 /// Applies a Kalman update by a velocity of 0 with standard deviation `sigma_m_s`. The covariance C determines the
-/// gain. The gain updates C and the covariance E of the errors.
+/// Kalman gain. The Kalman gain updates C and the covariance E of the errors.
 void bound_speed(double sigma_m_s, MotionState& state, Motion& C, Motion& E) {
   const Eigen::Matrix3d R = sigma_m_s * sigma_m_s * Eigen::Matrix3d::Identity();
   const Eigen::Matrix3d S = u::block(C, u::velocity) + R;

@@ -18,7 +18,7 @@ constexpr std::size_t kMoreShare = 20;  // the second pass may reject one sweep 
 constexpr std::size_t kSweepsPerRejection = 5;
 
 /// Initialises the stream with the saturation levels that the first pass detected. The covariance of the saturation
-/// planes is multiplied by `inflation`. The covariance of the calibration has an equal factor.
+/// planes is multiplied by `inflation`. The covariance of the calibration is multiplied by an equal factor.
 void start_from_rails(const KnownRails& known, double inflation, RateStream::Params& params) {
   params.expert.planes.known = known.planes;
   params.expert.accel_planes.known = known.accel_planes;

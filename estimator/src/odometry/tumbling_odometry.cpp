@@ -243,8 +243,8 @@ bool TumblingOdometry::is_due(TimeNs end_ns) const {
 void TumblingOdometry::register_covered() {
   while (!waiting_.empty()) {
     const TimeNs end_ns = waiting_.front().end_ns;
-    // The sample that covers the sweep's end may end up to one period later. The rate of this sample is therefore
-    // reported one period early.
+    // The sample that covers the sweep's end may end up to one period later. The rate of the sample at the sweep's end
+    // is therefore reported one period early.
     if (!pass_.covers(end_ns) && is_due(end_ns)) pass_.flush_until(pass_.needed_ns(end_ns));
     if (!pass_.covers(end_ns)) break;
     WaitingSweep sweep = std::move(waiting_.front());

@@ -87,7 +87,7 @@ bool UnitAlignment::next(State& state, Readings& out, bool ended) const {
   return true;
 }
 
-/// Replaces the reference IMU if it provides no readings and another IMU does.
+/// Replaces the reference IMU if the reference provides no readings and another IMU provides readings.
 void UnitAlignment::choose_reference(State& state) const {
   const std::vector<ImuSample>& readings = state.readings[state.reference];
   if (after_common(readings, state) != readings.end() || !is_silent(state.reference, state)) return;

@@ -215,7 +215,7 @@ void rearrange(const Origins& from, std::size_t count, std::span<RollingFilter::
       --readers[from[k]];
     }
   }
-  // the remaining copies form cycles of slots
+  // each remaining copy belongs to a cycle of slots
   for (std::size_t first = 0; first < count; ++first) {
     if (!waits[first]) continue;
     const RollingFilter::Hypothesis kept = all[first];

@@ -103,8 +103,8 @@ struct RailedForce {
   Eigen::Vector3d least_m_s2 = Eigen::Vector3d::Zero();  ///< the reading is a lower bound of these components
 };
 
-/// Returns a force for a saturated reading: rolling.md (R8). The force is the reading, or the force that keeps the
-/// centre's velocity constant if this force is larger.
+/// Returns a force for a saturated reading: rolling.md (R8). The result is the larger of two forces: the reading, and
+/// the force that keeps the centre's velocity constant.
 RailedForce railed_force(const ImuSample& sample, const Eigen::Vector3d& read_m_s2, const Eigen::Vector3d& kept_m_s2) {
   int largest = 0;
   sample.specific_force_m_s2.cwiseAbs().maxCoeff(&largest);
@@ -335,8 +335,8 @@ void change_floor(const RollingParams& params, RollingMode from, RollingMode to,
   if (from == RollingMode::incline && to == from) {
     P.diagonal().segment<2>(kSlope).array() += squared(params.expert.contact.slope_walk_sqrts) * h_s;
   }
-  // On a rough floor, the travelled distance is smaller than the radius times the rotation. The difference depends on
-  // the steepness of the floor.
+  // On a rough floor, the travelled distance is smaller than the radius times the rotation. The travelled distance on a
+  // rough floor depends on the steepness of the floor.
   if (to == RollingMode::rough) P(kRadius, kRadius) += squared(params.expert.contact.rough_radius_walk_m_sqrts) * h_s;
   if (!resets_slope(from, to)) return;
   P.middleRows<2>(kSlope).setZero();
