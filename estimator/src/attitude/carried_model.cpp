@@ -65,7 +65,8 @@ GyroRows gyro_rows(const Eigen::RowVector3d& m, const Node& node, const Constant
 }
 
 // Returns how much the estimated rate differs from the readings of clipped and unusable sensing elements. For a clipped
-// element, the difference is the saturation deficit. The result is the sum over all elements except for `except`.
+// element, the difference is the saturation deficit. The result is the sum of the differences over all elements except
+// for element `except`.
 double deficit(const NodeReadings& readings, const std::array<GyroRows, 3>& rows, int except) {
   double sum = 0.0;
   for (int i = 0; i < 3; ++i) {
@@ -244,8 +245,8 @@ Vector3d turned(const Node& from, const Node& to, double h) {
 Motion::Motion(const Params& params) : params_(params) {
   const double h = params.step_s;
   const double q = params.jerk_rad_s3_sqrts * params.jerk_rad_s3_sqrts;
-  // Q is the covariance of rate and angular acceleration after a step of white jerk: carried.md (C2). The covariance is
-  // conditional on the values before the step.
+  // Q is the covariance of rate and angular acceleration after a step of white jerk: carried.md (C2). The covariance Q
+  // is conditional on rate and angular acceleration before the step.
   Eigen::Matrix2d Q;
   Q << h * h * h / 3.0, h * h / 2.0, h * h / 2.0, h;
   Eigen::Matrix<double, 2, 4> J;

@@ -121,7 +121,7 @@ std::vector<Hypothesis> hypotheses(const Problem& whole, const Segment& segment,
     Hypothesis found{{}, problem.converge()};
     found.nodes.assign(problem.nodes().begin(), problem.nodes().end());
     if (!std::isfinite(found.cost)) return false;
-    // another hypothesis already has this number of revolutions, so the solution is discarded
+    // if another hypothesis has an equal number of revolutions, the solution is discarded
     for (const Hypothesis& other : out)
       if (std::abs(angle_between(other.nodes, found.nodes, m, whole.node_s())) < kPi) return false;
     const bool likely = out.empty() || found.cost < out.front().cost + 2.0 * kLogOdds;
@@ -145,8 +145,8 @@ std::vector<Hypothesis> hypotheses(const Problem& whole, const Segment& segment,
 }
 
 /// Result of testing one segment. The result contains the solutions for the nodes of a part, starting with node `from`
-/// and with the best solution. The result also identifies the current solution and states whether another solution
-/// replaces it.
+/// and with the best solution. The test result also identifies the current solution and states whether another solution
+/// replaces the current solution.
 struct TestedSegment {
   std::size_t from = 0;
   std::vector<Hypothesis> found;
@@ -196,7 +196,7 @@ std::vector<Part> with_surroundings(const Problem& problem, std::span<const Segm
 }
 
 /// Tests each part. The optimised solution remains until another solution is clearly better. If the tests ruled out the
-/// optimised solution (`fallen`), the best other solution replaces it.
+/// optimised solution (`fallen`), the best alternative replaces the optimised solution.
 std::vector<TestedSegment> test_segments(const Problem& problem, std::span<const Segment> segments,
                                          std::span<const Part> parts, std::vector<bool>& fallen) {
   std::vector<TestedSegment> out;

@@ -24,8 +24,8 @@ constexpr double kHitMost_m_s = 20.0;     // limit of a velocity jump that lasts
 constexpr double kNear_s = 0.1;           // maximum time between neighbours that are compared
 constexpr double kPeriodsAhead = 4.0;     // maximum length of a step between stamps, in periods
 
-// A reading may be saturated if it exceeds the fraction kAtRange of the stated range. A large reading that repeats may
-// also be saturated.
+// A reading above the fraction kAtRange of the stated range may be saturated. A large reading that repeats may also be
+// saturated.
 constexpr double kAtRange = 0.95;
 constexpr double kRepeats_rad_s = 1.0, kRepeats_m_s2 = 15.0;
 

@@ -9,11 +9,11 @@ namespace tumble {
 
 namespace {
 
-// sin 10 deg. If the line between two returns is steeper relative to the beam, both returns belong to one surface
-// (Bogoslavskyi, Stachniss).
+// sin 10 deg. If the angle between a beam and the line to a neighbouring return is larger, both returns belong to one
+// surface (Bogoslavskyi, Stachniss).
 constexpr float kSurfaceSine = 0.17365f;
-// sin 2 deg. If the sensor is 0.5 m above the ground, a beam of 14 m length meets the ground at this angle. A smaller
-// angle indicates an edge.
+// sin 2 deg. If the sensor is 0.5 m above the ground, a beam of 14 m length meets the ground at 2 deg. A smaller angle
+// between a surface and the beam indicates an edge.
 constexpr float kGrazingSine = 0.0349f;
 constexpr float kBend = 0.15f;                     // tolerance of the range difference for uneven ground
 constexpr int kNeighbours = 2;                     // number of neighbours on each side along the ring

@@ -90,7 +90,7 @@ Status LidarInertialOdometry::Impl::check_sweep(TimeNs start_ns, TimeNs end_ns,
   if (samples.back().time_ns < end_ns) {
     return {Trouble::too_few, "imu time_ns", double(samples.back().time_ns), double(end_ns)};
   }
-  // With a wrong clock, the first sweep may start before the first sample. For such a clock, the initial rest extends
+  // With a wrong clock, the first sweep may start before the first sample. With a wrong clock, the initial rest extends
   // backwards to the start of the sweep.
   const double early_s = seconds(samples.front().from_ns - start_ns);
   if (!started && early_s > (params.time_offset_s != 0.0 ? SweepTrajectory::kBeyond_s : 0.0)) {
@@ -134,8 +134,8 @@ Status LidarInertialOdometry::Impl::start_map(TimeNs start_ns, TimeNs end_ns, st
   return {Trouble::too_few, "points", double(points), double(params.expert.matching.least)};
 }
 
-/// Propagates the state to `end_ns` by inertial integration, without a map. During a rest, the attitude is levelled
-/// again.
+/// Propagates the state to `end_ns` by inertial integration, without a map. If the IMU is at rest, the measured gravity
+/// levels the attitude again.
 Status LidarInertialOdometry::Impl::dead_reckon(TimeNs end_ns) {
   MotionState levelled;
   if (!track.border_ns()) {
@@ -258,8 +258,8 @@ void LidarInertialOdometry::Impl::propagate(const UpdatedSweep& sweep, const Pla
   prune_until(motion.end_ns);
 }
 
-/// Adds the pose error of a sweep to the map error at the robot's position, because the inserted points have this
-/// error.
+/// Adds the pose error of a sweep to the map error at the robot's position, because the points of the sweep in the map
+/// have an equal error.
 void LidarInertialOdometry::Impl::add_map_drift(const UpdatedSweep& sweep, const SweepReport& report) {
   const double inserted_share =
       report.points_used == 0 ? 0.0 : double(report.map_points_added) / double(report.points_used);
@@ -267,7 +267,7 @@ void LidarInertialOdometry::Impl::add_map_drift(const UpdatedSweep& sweep, const
                       boundary.state_estimate.mean.calibration.T_IL.translation());
 }
 
-/// Deletes the input up to `end_ns`, because the odometry has used it.
+/// Deletes the input up to `end_ns`, which the odometry has already used.
 void LidarInertialOdometry::Impl::prune_until(TimeNs end_ns) {
   known = mapping::InertialPrior{};
   track.prune_until(end_ns);

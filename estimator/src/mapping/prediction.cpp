@@ -155,8 +155,8 @@ StateEstimate posterior(const Prediction& prediction) {
 
 namespace {
 
-/// Computes the factor from the prior's errors to the errors after registration: mapping.md (R52). weigh_prior() is a
-/// separate function to limit the use of the stack.
+/// Computes the matrix that transforms errors of the prior to errors after the registration: mapping.md (R52).
+/// `weigh_prior()` is a separate function to limit the use of the stack.
 [[gnu::noinline]] void weigh_prior(const Prediction& prediction, const Registration::Result& aligned,
                                    Registration::Matrix& out) {
   // noise of the normals (errors in variables) is not information

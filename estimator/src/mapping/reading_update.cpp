@@ -90,8 +90,8 @@ class Sweep {
   const MotionWindow& window_;
 };
 
-/// Adds a part of the reading's derivative. `by_moment` is the derivative by errors of the motion at the time of the
-/// reading.
+/// Adds derivatives of the odometer reading by the unknowns at the boundary and by the noise. `by_moment` is the
+/// derivative by errors of the motion at the time of the reading.
 template <int Size>
 void add(const OfMotion<Size>& by_moment, const Moment& moment, Expected& out) {
   const Eigen::Matrix<double, Size, kUnknowns> by_start = by_moment * moment.by_start;
