@@ -82,8 +82,8 @@ bool descend(const RateSmoother::Params& params, const RateModel& model, std::sp
 }
 
 // Returns how well free flight explains the rates that the gyro does not measure: rate_smoother.md (R31). The sum over
-// the samples is larger for a better local minimum. `share` receives the fraction of samples with an unmeasured rate
-// that count as flight.
+// the samples is larger for a better local minimum. `share` receives the fraction of flight samples among the samples
+// with an unmeasured rate.
 double explained(std::span<const RateObservation> observations, std::span<const RateEstimate> estimates,
                  double& share) {
   double sum = 0.0, unseen = 0.0, flight = 0.0;

@@ -297,7 +297,7 @@ void RateModel::add_step(const RateEstimate& from, const RateEstimate& to, doubl
                          arrow::Block& next) const {
   const double h = time_scale_s_, ratio = dt_s / h;
   // Within model_error_s, a contact may change the angular acceleration by gain * force. In a shorter time, the
-  // possible change is proportionally smaller: rate_smoother.md (R5).
+  // possible change of the angular acceleration is proportionally smaller: rate_smoother.md (R5).
   const double change = params_.expert.contact.gain_rad_m * std::max(from.contact_m_s2.norm(), to.contact_m_s2.norm());
   const double psd = params_.expert.flight.jerk_psd_rad2_s5 + share_ * change * change / dt_s;
   // inverse of the scaled motion covariance Q = psd [dt^3/3, dt^2 h/2; dt^2 h/2, dt h^2]: rate_smoother.md (R4)

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause Solves a part of the nodes of a hand-held motion separately. All other nodes
-// provide a prior for the part.
+// SPDX-License-Identifier: BSD-3-Clause
+// Solves a part of the nodes of a hand-held motion separately. All other nodes provide a prior for the part.
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>

@@ -42,7 +42,7 @@ Readings all_readings() {
 }
 
 /// Estimate of the gyro's scale from one segment. `step` is a Newton step from scale 1. `weight` is the curvature of
-/// the residual at scale 1.
+/// the residual, as a function of the scale, at scale 1.
 struct ScaleVote {
   double step, weight;
 };

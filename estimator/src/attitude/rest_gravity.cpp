@@ -125,7 +125,8 @@ void RestGravity::arrive(State& state) const {
   state.miss_sigma_rad = sigma_rad;
 }
 
-/// Compares the mean specific force between two rests with the specific force at the rests: imu_merge.md (I25), (I26).
+/// Compares the mean specific force between two rests with the specific force during the rests: imu_merge.md (I25),
+/// (I26).
 void RestGravity::close_velocity(const Eigen::Vector3d& here_m_s2, double sigma_rad, State& state) const {
   const Eigen::Vector3d mean_m_s2 = state.velocity_sum_m_s / state.span_s;
   const double from_start = (mean_m_s2 - state.from_m_s2).norm() / state.from_m_s2.norm();

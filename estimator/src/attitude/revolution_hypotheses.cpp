@@ -154,7 +154,7 @@ struct TestedSegment {
   bool another = false;
 };
 
-/// Returns the probabilities of all solutions except `standing`: carried.md (C29).
+/// Returns the probabilities of all solutions except for the solution with index `standing`: carried.md (C29).
 Open shares_of(const TestedSegment& tested, std::optional<std::size_t> standing) {
   Open out{tested.from, {}};
   const double least = tested.found.front().cost;
@@ -241,7 +241,8 @@ void test_revolutions(Problem& problem, CarriedSmoother::Report& report, SolveAg
   std::vector<Part> parts = with_surroundings(problem, segments);
   std::vector<Open> open;
   std::vector<bool> fallen(parts.size(), false);
-  // The information about the nodes outside a part is linearised. After a change, the tests are therefore repeated.
+  // The tests use linearised information about the nodes outside a part. After a change, the tests are therefore
+  // repeated.
   for (int round = 0; round < kRounds; ++round) {
     if (!problem.condense_rest(parts)) break;
     const std::vector<TestedSegment> tested = test_segments(problem, segments, parts, fallen);

@@ -181,7 +181,7 @@ double OutlierFilter::period_s(const State& state) const {
   return std::max(device_.period_s, step_s(state.passed[0], state.passed[1]));
 }
 
-/// Returns whether the change of a reading exceeds the change that the other triad explains: outliers.md (O5).
+/// Returns whether a gyro reading changes by more than the accelerometer explains, or vice versa: outliers.md (O5).
 bool OutlierFilter::is_suspicious(const ImuSample& sample, const State& state) const {
   if (state.count == 0) return false;
   const ImuSample& before = state.passed[1];

@@ -110,7 +110,7 @@ Status run(const ImuMerge& merge, const Units& units, ImuMerge::State& state, st
   return {};
 }
 
-/// Marks the readings of an IMU between two times as absent.
+/// Marks the readings of an IMU between `from_ns` and `to_ns` as absent.
 void exclude(std::vector<ImuSample>& unit, TimeNs from_ns, TimeNs to_ns = std::numeric_limits<TimeNs>::max()) {
   for (ImuSample& sample : unit) {
     if (sample.time_ns >= from_ns && sample.time_ns <= to_ns)
