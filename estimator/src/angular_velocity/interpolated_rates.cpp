@@ -17,8 +17,8 @@ using Eigen::Vector3d;
 // deviation is smaller, because the clock of the sensor is estimated.
 constexpr double kTaken = 0.29, kTakenByClock = 0.1;
 
-// A gyro reading and its time stamp. The stamp belongs to a sample whose averaging window has the same middle as the
-// reading's averaging window.
+// A gyro reading and its time stamp. The time stamp is that of a sample whose averaging window is centred at the middle
+// of the reading's averaging window.
 struct OwnReading {
   double time_s = 0.0;
   Vector3d rate_rad_s = Vector3d::Zero();

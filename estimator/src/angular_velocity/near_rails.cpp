@@ -10,7 +10,7 @@ namespace tumble {
 
 namespace {
 
-// `kReach` is the number of neighbouring readings whose steps widen the test for readings near a saturation level.
+// For a reading close to a saturation level, the test uses the steps to `kReach` neighbouring readings on each side.
 // `kRoundShare` is the fraction of the saturation level by which a gyro's filter can lower the edges of a plateau. On
 // one hand-held wand, the readings were up to 2 % below the saturation level while the rate exceeded the level.
 constexpr std::size_t kReach = 2;

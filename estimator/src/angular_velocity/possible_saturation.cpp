@@ -15,12 +15,13 @@ namespace {
 // neighbouring reading.
 constexpr double kUnseenTilt = 0.06, kUnseenOfStep = 0.5;
 
-// `kTopShare` is the maximum distance from a segment's largest reading at the top of the segment, as a fraction of the
-// reading. `kTopShare` covers the tilt kUnseenTilt if the rate on the other axes is a sixth of the saturation level.
-// `kElementsApart` is the maximum difference between the saturation levels of two elements, in standard deviations.
+// A reading is at the top of a segment if it is within the fraction `kTopShare` of the segment's largest reading. A
+// tilt of kUnseenTilt changes a reading by this fraction if the rate on the other axes is a sixth of the saturation
+// level. `kElementsApart` is the maximum difference between the saturation levels of two elements, in standard
+// deviations.
 constexpr double kTopShare = 0.01, kElementsApart = 3.0;
 
-// Returns the lowest known saturation level, or 0.
+// Returns the lowest known saturation level. If no level is known, returns 0.
 double lowest_rail(const RailPlanes& planes) {
   double rail = 0.0;
   for (const auto& element : planes.element) {

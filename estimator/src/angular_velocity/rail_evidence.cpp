@@ -28,18 +28,18 @@ constexpr double kLevelShare = 0.2;
 // quantile of the windows that determines the noise.
 constexpr std::size_t kNoiseWindow = 9;
 constexpr double kNoiseQuantile = 0.2;
-// Maximum log-likelihood of a kink at the end of a segment, if the other axes move smoothly there.
+// Maximum log-likelihood of a kink at the end of a segment, if the other axes move smoothly at this time.
 constexpr double kKinkAlone = 2.5;
 // Minimum change of the other axes around the end of a segment, in standard deviations, for the test of a kink.
 constexpr double kMoving = 10.0;
-// If a segment scatters less than noise and the log-likelihood of this scatter exceeds kThinAlone, the test ignores the
-// ends of the segment.
+// If a segment scatters less than noise with a log-likelihood above kThinAlone, the shape of the segment's ends does
+// not matter.
 constexpr double kThinAlone = 8.0;
 // Degrees of freedom that the scatter of a segment loses: two to the fitted straight line and two to the partly
 // saturated ends.
 constexpr std::size_t kThinTaken = 4;
-// A reading within kAtRail standard deviations of a saturation plane is at the saturation level. The tolerance of this
-// test is at most the fraction kAtRailShareMax of the saturation level.
+// A reading within kAtRail standard deviations of a saturation plane is at the saturation level. The tolerance for
+// readings at a saturation level is at most the fraction kAtRailShareMax of the level.
 constexpr double kAtRail = 4.0, kAtRailShareMax = 0.006;
 // `kBeyond` is the penalty on the log odds of a saturation plane for each reading beyond the plane. `kStray` is the
 // fraction of readings that may be beyond the plane without a penalty.
@@ -93,7 +93,7 @@ double thinness(const DistinctReadings& readings, const RailFacet& facet, const 
   const double least = std::max(digit, kEqualShare * facet.level);
   const double noise = std::hypot(readings.noise[facet.axis], digit);
   const double scatter = std::max(least, std::sqrt(squares / free));
-  // log ratio of two Gaussian likelihoods, with the standard deviations of the scatter and of the noise
+  // the result is the log ratio of two Gaussian likelihoods, with the standard deviations of scatter and noise
   return scatter < noise ? free * (std::log(noise / scatter) - 0.5 * (1.0 - std::pow(scatter / noise, 2))) : 0.0;
 }
 
@@ -109,7 +109,7 @@ struct SegmentShape {
 std::optional<SegmentShape> shape_of(const DistinctReadings& readings, const RailFacet& facet, const Segment& s) {
   const std::vector<Vector3d>& rates = readings.rates;
   const auto value = [&](std::size_t k) { return facet.sign * facet.row.dot(rates[k]); };
-  // smallest distance from the saturation level of the second reading outside the segment
+  // `depth` is the smaller distance of the second readings before and after the segment from the saturation level
   double depth = std::numeric_limits<double>::max();
   if (s.first >= 2) depth = std::min(depth, facet.level - value(s.first - 2));
   if (s.last + 2 < rates.size()) depth = std::min(depth, facet.level - value(s.last + 2));
@@ -119,7 +119,7 @@ std::optional<SegmentShape> shape_of(const DistinctReadings& readings, const Rai
     low = std::min(low, value(k));
     high = std::max(high, value(k));
   }
-  // height, within the segment, of a parabola through the neighbours of the segment: rails.md (R61)
+  // a parabola through the neighbours of a segment has this height within the segment: rails.md (R61)
   const double n = static_cast<double>(s.size()), inside = (n - 1.0) / (n + 3.0);
   return SegmentShape{depth * inside * inside, std::max(high - low, 2.0 * facet.deviation)};
 }
@@ -195,7 +195,7 @@ double segment_evidence(const DistinctReadings& readings, const Eigen::Matrix2d&
     const Segment s = next_segment(inliers, at);
     const std::optional<SegmentShape> shape = shape_of(readings, facet, s);
     if (!shape) continue;
-    // no motion has less scatter than the gyro's noise
+    // the readings of a motion scatter at least by the gyro's noise
     const double thin = thinness(readings, facet, s);
     if (!shape->bends() && thin < kThinAlone) continue;
     ++facet.segments;
@@ -217,8 +217,8 @@ double segment_evidence(const DistinctReadings& readings, const Eigen::Matrix2d&
   // A reading counts as saturated if its distance from the level is within the noise, or within the error of the plane
   // at other readings.
   facet.tolerance = std::max(facet.tolerance, std::min(kAtRail * noise, kAtRailShareMax * facet.level));
-  // The Occam factor accounts for the free choice of saturation level and cross-axis sensitivities, as the ratio of
-  // prior to posterior volume: rails.md (R66).
+  // The Occam factor is the ratio of prior to posterior volume: rails.md (R66). The factor penalises the free choice of
+  // saturation level and cross-axis sensitivities.
   const Eigen::Matrix3d posterior_covariance = H.inverse();
   const double of_slopes =
       0.5 * std::log(std::max(1.0, 1.0 / (posterior_covariance.topLeftCorner<2, 2>().determinant() *

@@ -30,16 +30,16 @@ using rails::Side;
 // Initial standard deviations of the robust fit, as fractions of the slab thickness. The small initial value suits a
 // thin plane with a few readings below the plane. The large initial value suits a thick plane.
 constexpr double kStarts[] = {0.5, 0.02};
-// Usual relative difference between the saturation levels of one device's sensing elements. No reading of another axis
-// exceeds the saturation level by a larger fraction.
+// Usual relative difference between the saturation levels of one device's sensing elements. If a reading of another
+// axis exceeds a saturation level by a larger fraction, the log odds of the level decrease.
 constexpr double kSiblingShare = 0.04;
-// These values change the log odds of a saturation level. `kNearSibling` applies near the level of another sensing
-// element. `kNearStated` applies near a stated range. `kOtherSignAgrees` applies near the level of the opposite sign.
-// `kImpossible` applies to impossible levels.
+// The log odds of a saturation level change by `kNearSibling` near the level of another sensing element. The log odds
+// change by `kNearStated` near a stated range, and by `kOtherSignAgrees` near the level of the opposite sign. For an
+// impossible level, the log odds change by `kImpossible`.
 constexpr double kNearSibling = 5.0, kNearStated = 3.0, kOtherSignAgrees = 5.0, kImpossible = -100.0;
 // `kNearKnown` increases the log odds of a saturation level near the level of an earlier run. `kKnownShare` is the
-// maximum difference between the levels of two runs, as a fraction of the level. `kFarFromKnown` is the minimum log
-// odds of a level far from the earlier level, since the device may have been replaced.
+// standard deviation of the difference between the levels of two runs, as a fraction of the level. Far from the earlier
+// level, the log odds change by `kFarFromKnown`, since the device may have been replaced.
 constexpr double kNearKnown = 6.0, kKnownShare = 0.003, kFarFromKnown = -3.0;
 // Standard deviation of the change of a cross-axis sensitivity between two runs.
 constexpr double kKnownSlopeSigma = 2e-3;
@@ -176,7 +176,7 @@ struct SideSearch {
   }
 
   // Searches the saturation plane of sign `i` of a sensing element, given the planes in `found`. Returns whether `pair`
-  // contains a plane of this sign. `kept` is true if the previous search accepted the plane of this sign.
+  // contains a plane of sign `i`. `kept` states whether the previous search accepted the plane of sign `i`.
   bool add(int axis, std::size_t i, bool kept, const RailPlanes& found, Pair& pair) const {
     const int sign = i == 0 ? -1 : 1;
     const Side side = look(axis, sign, found);

@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// A reading contradicts a saturation plane if it is beyond the plane by more than this multiple of the tolerance.
+// A reading contradicts a saturation plane if the reading exceeds the plane by kBeyondTolerance times the tolerance.
 constexpr double kBeyondTolerance = 4.0;
 constexpr int kContradicting = 2;
 // Maximum relative difference between saturation levels of one device in two runs.

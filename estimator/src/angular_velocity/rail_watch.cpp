@@ -24,8 +24,8 @@ constexpr std::size_t kLatest = 48;
 // RailWatch searches again when the number of readings near the extremes has grown by the fraction 1 / kMore, and by at
 // least two readings.
 constexpr std::size_t kMore = 8;
-// A reading below this fraction of the lowest possible saturation level is not near a saturation level. The larger
-// fraction for an accelerometer excludes gravity.
+// A reading below the fraction kLowShare of the lowest possible saturation level is not near a saturation level. The
+// larger fraction for an accelerometer excludes gravity.
 constexpr double kLowShare[] = {0.5, 0.9};
 
 std::array<std::optional<double>, 6> rails_of(const RailDetector& upright_rails, const RailDetector::State& state) {

@@ -17,8 +17,8 @@ namespace {
 constexpr double kRestartThresholds[] = {16.0, 0.25};
 constexpr double kFlightShareExpected = 0.5;
 
-// Convergence criterion: the last step changes no linear combination of unknowns by more than this many standard
-// deviations, rate_smoother.md (R30). An almost unobservable rate may still change by a large amount.
+// The iteration converges if no linear combination of unknowns changes by more than kStepDeviations standard
+// deviations: rate_smoother.md (R30). At convergence, an almost unobservable rate may still change by a large amount.
 constexpr double kStepDeviations = 0.1;
 
 // Computes the flight weight and contact force of each sample: rate_smoother.md (R16) to (R19).
@@ -82,8 +82,8 @@ bool descend(const RateSmoother::Params& params, const RateModel& model, std::sp
 }
 
 // Returns how well free flight explains the rates that the gyro does not measure: rate_smoother.md (R31). The sum over
-// the samples is larger for a better local minimum. `share` receives the fraction of samples with an unmeasured rate
-// that count as flight.
+// the samples is larger for a better local minimum. `share` receives the fraction of flight samples among the samples
+// with an unmeasured rate.
 double explained(std::span<const RateObservation> observations, std::span<const RateEstimate> estimates,
                  double& share) {
   double sum = 0.0, unseen = 0.0, flight = 0.0;

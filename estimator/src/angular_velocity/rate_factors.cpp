@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 namespace {
 
 // Returns the products S_i v with the matrices S_i of RigConstants::inertia_basis, as columns. Explicit formulas reduce
-// the cost, because each sample calls this function.
+// the cost, because basis_times() runs for each sample.
 Eigen::Matrix<double, 3, 5> basis_times(const Vector3d& v) {
   constexpr double kHalf = 0.5 * std::numbers::sqrt2, kSixth = std::numbers::inv_sqrt3 * kHalf;
   Eigen::Matrix<double, 3, 5> out;

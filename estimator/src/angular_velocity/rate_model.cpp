@@ -46,12 +46,12 @@ RigConstants::Matrix covariance_of(const RateModelParams& p) {
   return variance.cwiseAbs2().asDiagonal();
 }
 
-// An impact within the window adds this standard deviation [rad/s] to the saturation deficit of a partly clipped
+// Standard deviation [rad/s] that an impact within the window adds to the saturation deficit of a partly clipped
 // reading.
 constexpr double kSubsampleInContact = 0.25;
 
-// Index of the first calibration constant in a part: lever arm and accelerometer bias (flight), inertia (Euler's
-// equation).
+// Indices of calibration constants. Flight depends on lever arm and accelerometer bias, and Euler's equation on the
+// inertia.
 constexpr int kLever = 0, kAccelBias = 6, kInertia = 9;
 
 // Returns the contribution of the uncertain calibration to the covariance of the flight residual.
@@ -91,8 +91,8 @@ double mahalanobis(const RigConstants::Vector& moved, const RigConstants::Matrix
   return std::sqrt(part.dot(spread.llt().solve(part)) / kCount);
 }
 
-// Adds the part of a factor that depends only on the unknowns of the sample. Returns A' * information, with the
-// derivative A of the residual by the unknowns of the sample.
+// Adds the information of a factor about the unknowns of the sample to the normal equations. Returns A' * information,
+// with the derivative A of the residual by the unknowns of the sample.
 Eigen::Matrix<double, 6, 3> add_to_knot(const RateFactor& f, const Eigen::Matrix3d& information, double time_scale_s,
                                         arrow::Block& block) {
   Eigen::Matrix<double, 3, 6> A = f.by_knot;
@@ -103,7 +103,8 @@ Eigen::Matrix<double, 6, 3> add_to_knot(const RateFactor& f, const Eigen::Matrix
   return At;
 }
 
-// Adds the part of a factor that depends on kCount calibration constants, starting with constant kFirst.
+// Adds the information of a factor about calibration constants to the normal equations. The constants are kCount
+// constants, starting with kFirst.
 template <int kFirst, int kCount>
 void add_to_rig(const RateFactor& f, const Eigen::Matrix3d& information, const Eigen::Matrix<double, 6, 3>& At,
                 arrow::Block& block, arrow::Corner& corner) {
@@ -296,7 +297,7 @@ void RateModel::add_step(const RateEstimate& from, const RateEstimate& to, doubl
                          arrow::Block& next) const {
   const double h = time_scale_s_, ratio = dt_s / h;
   // Within model_error_s, a contact may change the angular acceleration by gain * force. In a shorter time, the
-  // possible change is proportionally smaller: rate_smoother.md (R5).
+  // possible change of the angular acceleration is proportionally smaller: rate_smoother.md (R5).
   const double change = params_.expert.contact.gain_rad_m * std::max(from.contact_m_s2.norm(), to.contact_m_s2.norm());
   const double psd = params_.expert.flight.jerk_psd_rad2_s5 + share_ * change * change / dt_s;
   // inverse of the scaled motion covariance Q = psd [dt^3/3, dt^2 h/2; dt^2 h/2, dt h^2]: rate_smoother.md (R4)

@@ -93,7 +93,7 @@ void RateModel::update_bounds(const RateObservation& observation, const RigConst
     const Eigen::Matrix<double, 1, RigConstants::kSize> cross = jacobian_calibration.lazyProduct(rig_covariance);
     const Vector3d by_state = conditional.state.topLeftCorner<3, 3>().lazyProduct(row);
     // The sign of the residual makes each bound a lower bound: rate_smoother.md (R22). The variance of the residual
-    // follows from the covariance (R35).
+    // follows from the covariance of the sample: rate_smoother.md (R35).
     const NormalMoments marginal{sign * off.residual[j], row.dot(by_state) + cross.dot(jacobian_calibration)};
     const NormalSite site =
         refined_bound(marginal, {estimate.bound_precision[j], sign * estimate.bound_shift[j]}, 0.0,

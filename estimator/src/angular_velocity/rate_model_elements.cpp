@@ -88,8 +88,8 @@ Eigen::Vector3d RateModel::read_accel_elements(const RateObservation& observatio
   double hidden2 = 0.0;
   for (int j = 0; j < 3; ++j) {
     if ((clipped >> j & 1u) == 0) continue;
-    // The residual is model minus reading. The true value exceeds the reading in magnitude, with equal sign:
-    // rate_smoother.md (R9).
+    // The residual is model minus reading. The true force component exceeds its saturated reading in magnitude, with
+    // equal sign: rate_smoother.md (R9).
     if (flight.residual[j] * observation.sample.specific_force_m_s2[j] < 0.0) continue;
     hidden2 += flight.residual[j] * flight.residual[j];
     flight.residual[j] = 0.0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Part of RateModel that protects the calibration from contact, corrects readings for sensor errors, and sums the
-// information about sensor errors. This part also computes the reported covariance.
+// Part of RateModel that protects the calibration from contact and corrects readings for sensor errors. This part of
+// RateModel also sums the information about sensor errors and computes the reported covariance.
 #include "tumble/angular_velocity/detail/rate_model.hpp"
 
 namespace tumble {

@@ -59,8 +59,7 @@ bool far_apart(const SensorErrors& a, const SensorErrors& b) {
          std::abs(a.accel_filter_time_variance_s2 - b.accel_filter_time_variance_s2) > kFilterTimeVariance_s2;
 }
 
-// One device in a thousand exceeds this Mahalanobis distance of three calibration constants from a prior with all
-// causes.
+// One device in a thousand exceeds this Mahalanobis distance between three calibration constants and their prior.
 constexpr double kMahalanobisOfDevice = 2.33;
 
 // Fixes the calibration at its prior, except for the sensing directions of the gyro. Contact does not affect the
@@ -137,7 +136,7 @@ void add_guess(const TriadDelay& guess, SensorErrorEvidence& evidence) {
 constexpr double kPlainOdds = 0.05;
 
 // Returns whether a device clearly contradicts its data sheet in scale or in sampling. If the scale of a device
-// contradicts the data sheet, the stated sampling is also unreliable, and vice versa. The test combines the evidence
+// contradicts its data sheet, the stated sampling is also unreliable, and vice versa. The test combines the evidence
 // from scale and sampling by naive Bayes. `triads_asynchronous`: gyro and accelerometer are known to be asynchronous.
 bool off_sheet(const SensorErrorFit& device, const SensorErrorPriors& sizes, bool triads_asynchronous) {
   const SensorErrorFit before = fit_sensor_errors({}, sizes);
@@ -186,8 +185,8 @@ struct Rounds {
 
   const SensorErrorPriors& stated() const { return known.expert.error_sizes; }
   bool delay_open() const { return estimated && stated().delay_uncalibrated_s > stated().delay_s; }
-  /// Returns whether the body has impacts and flight. Such a body is not hand-held, so sensor errors may change its
-  /// calibration.
+  /// Returns whether the body has impacts and flight. A body with impacts and flight is not hand-held, so sensor errors
+  /// may change the calibration of the rig.
   bool struck() const { return guess.sigma_s > 0.0; }
 };
 
@@ -272,7 +271,7 @@ Status descend_rounds(const Rounds& rounds, std::span<RateObservation> observati
     if (Status status = descend_corrected(rounds, rounds_state.errors, observations, fit, health); !status.ok())
       return status;
     if (health.calibration_at_prior && has_calibration) {
-      // the device may differ from the device of the earlier run
+      // the earlier run may have used a different device
       has_calibration = false;
       rounds_state.learnt = {};
       start = start_from(given, rounds);

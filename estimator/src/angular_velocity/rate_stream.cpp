@@ -156,8 +156,8 @@ void RateStream::marginalise(std::size_t first, State& state) const {
   arrow::Block block, after;
   arrow::Corner corner;
   add_prior(state, model_, oldest.estimate.knot, block, corner);
-  // The weight of a marginalised sample is final. The weight therefore assumes the current calibration, without the
-  // calibration's uncertainty.
+  // The flight weight of a marginalised sample is final. The final flight weight therefore assumes the current
+  // calibration, without the calibration's uncertainty.
   const double after_it = model_.jump(oldest.estimate.knot, next.estimate.knot, seconds_between(oldest, next));
   const double jump = std::min(jump_before(oldest, state), after_it);
   model_.weigh(oldest.observation, state.rig, RigConstants::Matrix::Zero(), 1.0, jump, oldest.estimate);

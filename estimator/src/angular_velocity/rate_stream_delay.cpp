@@ -69,8 +69,8 @@ std::ptrdiff_t RateStream::force_shift(const State& state) const {
   return std::lround(state.device.front().delay.in_use_s / params_.period_s);
 }
 
-// Stores the specific force at the time of sample k, or the closest force in the window. Also stores the force's
-// remaining delay: rate_stream.md (R105).
+// Stores the specific force at the time of sample k, or the closest force in the window. Also stores the remaining
+// delay between the force and the sample: rate_stream.md (R105).
 void RateStream::pair_force(std::size_t k, State& state) const {
   Knot& knot = state.window[k];
   const auto last = static_cast<std::ptrdiff_t>(state.window.size()) - 1;
@@ -85,7 +85,7 @@ void RateStream::pair_force(std::size_t k, State& state) const {
   o.accel_age_s = (state.device.front().delay.in_use_s - prior_delay_s_) - seconds_from(knot, source);
 }
 
-// Updates samples for which the newest sample provides a force closer in time.
+// Updates samples whose force the newest sample replaces by a force that is closer in time.
 std::size_t RateStream::pair_newest(State& state) const {
   const std::size_t newest = state.window.size() - 1;
   if (state.device.front().delay.in_use_s == prior_delay_s_ && force_shift(state) == 0) return newest;
@@ -165,8 +165,8 @@ void RateStream::apply_delay(double delay_s, bool found, State& state) const {
   }
 }
 
-// Applies a small change of the delay. The prior from marginalised samples changes to first order: rate_stream.md
-// (R107).
+// Applies a small change of the accelerometer's delay. The prior from marginalised samples changes to first order:
+// rate_stream.md (R107).
 void RateStream::refine_delay(State& state) const {
   RateStreamDevice& device = state.device.front();
   const std::ptrdiff_t before = force_shift(state);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sensor errors in a RateStream, as considered parameters. RateStream sums the information about sensor errors and adds
-// the uncertainty of the errors to the covariances.
+// Sensor errors in a RateStream are considered parameters (Schmidt, 1966). RateStream sums the information about sensor
+// errors and adds the uncertainty of the errors to the covariances.
 #include <algorithm>
 #include <cmath>
 

@@ -56,13 +56,14 @@ std::size_t reading_after(std::size_t k, const std::vector<RateStream::Knot>& wi
   return k;
 }
 
-// The samples with the gyro readings before and after a sample's own reading. A pointer is null if there is no sample.
+// The samples with the gyro readings before and after a sample's own reading. If there is no such reading in the
+// window, the pointer is null.
 struct Beside {
   const ImuSample *before = nullptr, *after = nullptr;
 };
 
-// Returns the samples with the gyro readings before and after the reading of sample k. The result is equal for all
-// samples that repeat one reading.
+// Returns the samples with the gyro readings before and after the reading of sample k. All samples that repeat one
+// reading have equal results.
 Beside readings_beside(std::size_t k, const RateStream::State& state) {
   const std::optional<std::size_t> before = reading_before(k, state.window);
   const std::size_t after = reading_after(k, state.window);
@@ -257,7 +258,7 @@ void RateStream::store_entry(const Knot& leaving, const Knot& next, State& state
 }
 
 // Adds the saturation planes' information about the directions of clipped elements. Each step adds the information
-// again, because the planes improve.
+// about the planes again, because the planes improve.
 void RateStream::add_rails(const State& state, arrow::Corner& corner) const {
   const SaturationLevels& rails = state.rails.known;
   const RailPlanes planes = rails.planes_in_use();

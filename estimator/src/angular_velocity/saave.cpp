@@ -55,7 +55,7 @@ Status Saave::step(const ImuSample& sample, State& state, Recovered& out) const 
     unclipped[j] = 0.0;
     const double others = unclipped.squaredNorm();
     const double squared = squared_rate(params_.lever_arm_m, state.axis, sample.specific_force_m_s2);
-    // this comparison also rejects NaN, which indicates an IMU on the rotation axis
+    // if the IMU is on the rotation axis, `squared` is NaN and the comparison is false
     out.accepted = squared > others;
     if (out.accepted) {
       const double magnitude = std::max(std::sqrt(squared - others), std::abs(reading[j]));

@@ -14,8 +14,8 @@ namespace {
 
 using sample_hold::kMoving_rad_s, sample_hold::kRepeatsMin, sample_hold::kMovingMin, sample_hold::kMovingMax;
 
-// The search tests clocks with kPeriods periods and kPhases phases. The periods cover the fraction kPeriodShare around
-// the mean period. A finer search of kFine steps follows around the best clock.
+// The search tests kPeriods periods with kPhases phases each. The periods cover the fraction kPeriodShare around the
+// mean period. A finer search of kFine steps follows around the best clock.
 constexpr int kPeriods = 100, kPhases = 24, kFine = 10;
 constexpr double kPeriodShare = 0.03;
 // Averaging window of an accelerometer as a fraction of its period. The true fraction is between 0 and 1.
@@ -74,8 +74,8 @@ Phases best_phases(double period, std::span<const std::size_t> moving, const std
   return out;
 }
 
-// Returns the middle clock of the best clocks around `first`. Equally good clocks cover an area in period and phase. In
-// the middle of this area, the run of adjacent phases is longest.
+// Returns the middle clock of the best clocks around `first`. Clocks that explain equally many samples cover an area in
+// period and phase. In the middle of the area of best clocks, the run of adjacent phases is longest.
 Clock best_clock(const Clock& first, double reach, int periods, std::span<const std::size_t> moving,
                  const std::vector<bool>& repeats, double& found) {
   Phases best{moving.size()};

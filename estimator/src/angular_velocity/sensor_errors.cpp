@@ -17,8 +17,8 @@ using Vector = SensorErrors::Vector;
 using Matrix = SensorErrors::Matrix;
 using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
-// `share`: prior size of the sensor errors, from 0 (data sheet) to 1 (uncalibrated). `probability`: prior probability
-// of this size.
+// `share` is the prior size of the sensor errors, from 0 (data sheet) to 1 (uncalibrated). `probability` is the prior
+// probability of the size `share`.
 struct Size {
   double share, probability;
 };
@@ -143,8 +143,8 @@ void discount_unobservable(double share, SensorErrorEvidence& evidence) {
     unobservable(3 * j + k, 2 + i) = unobservable(SensorErrors::kAccel + 3 * j + k, 2 + i) = 0.5;
     unobservable(3 * k + j, 2 + i) = unobservable(SensorErrors::kAccel + 3 * k + j, 2 + i) = -0.5;
   }
-  // Multiplies by (I - d U U') on both sides. Products with the few columns of U need little memory, because a stream's
-  // thread may have a small stack.
+  // Multiplies the information matrix by (I - d U U') on both sides. The code multiplies only the few columns of U,
+  // because a stream's thread may have a small stack.
   Eigen::Matrix<double, 5, SensorErrors::kSize> said = unobservable.transpose().lazyProduct(evidence.information);
   evidence.information.noalias() -= (1.0 - share) * unobservable.lazyProduct(said);
   said = unobservable.transpose().lazyProduct(evidence.information.transpose());
@@ -194,7 +194,7 @@ SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const Sens
     kept += one.log_odds;
   }
   mean /= std::max(kept, 1e-300);
-  // the covariance is about the mean that is in use: rate_smoother.md (R42)
+  // the covariance includes the differences to the mean in use: rate_smoother.md (R42)
   for (const Hypothesis& one : all) {
     const Vector off = one.mean - mean;
     out.known.covariance += one.log_odds * (one.covariance + off * off.transpose());
@@ -211,7 +211,8 @@ SensorErrorEvidence calibration_evidence(const KnownSensorErrors& learnt, const 
   Vector values;
   Matrix vectors;
   dense::decompose(scaled, values, vectors);
-  // a direction with its prior variance contains no information from the earlier run
+  // if the variance along a direction equals the prior variance, the earlier run contains no information about the
+  // direction
   const Vector precision_ratio = values.cwiseMax(1e-12).cwiseInverse();
   const Vector of_mean = (precision_ratio.array() > 1.0).select(precision_ratio, Vector::Zero());
   const auto in_units = [&](const Vector& kept_values) -> Matrix {

@@ -28,7 +28,7 @@ NormalMoments truncated_below(const NormalMoments& from, double bound, double so
 }
 
 // Updates the Gaussian factor (site) that approximates a lower bound: rate_smoother.md (R22), (R25). The update first
-// removes the old factor from the marginal (cavity).
+// removes the old Gaussian factor from the marginal (cavity distribution).
 NormalSite refined_bound(const NormalMoments& marginal, const NormalSite& now, double bound, double softness2,
                          double widest2, double share) {
   const double precision = std::max(1.0 / marginal.variance - now.precision, 1.0 / widest2);

@@ -12,8 +12,8 @@ constexpr double kVarianceMin = 1e-18;
 constexpr double kVarianceMax = 1e18;
 
 // Eliminated knot of one axis: R x_k + S x_{k+1} = z with noise of unit variance and upper triangular R, saave.md (S6).
-// The state x is (rate, acceleration * time_scale). The time scale gives both components similar magnitudes at any
-// sample rate.
+// The state x is (rate, acceleration * time_scale). The time scale gives rate and scaled acceleration similar
+// magnitudes at any sample rate.
 struct EliminatedKnot {
   Eigen::Matrix2d R, S;
   Eigen::Vector2d z;

@@ -3,7 +3,7 @@
 
 namespace tumble {
 
-// explicit instantiation that all files of the hand-held motion smoother share
+// This explicit instantiation serves all files of the smoother for hand-held motion.
 template struct ArrowSystem<carried::kState, carried::kBorder>;
 
 }  // namespace tumble

@@ -68,8 +68,8 @@ bool slope_of(const GyroReadings& rates, const Eigen::Matrix3d& rows, std::size_
 }
 
 // Estimates the jerk across a clipped segment of a sensing element: carried.md (C25). White jerk of density q changes
-// the angular acceleration by a mean square of q T within the time T. A motion that reverses beyond the saturation
-// level has a larger jerk than the adjacent unsaturated readings show.
+// the angular acceleration by a mean square of q T within the time T. If a motion reverses beyond the saturation level,
+// its jerk is larger than the jerk of the adjacent unsaturated readings.
 void add_across(const GyroReadings& rates, const Eigen::Matrix3d& rows, double noise_rad_s, double node_s,
                 std::vector<double>& densities) {
   const std::size_t count = rates.samples.size();

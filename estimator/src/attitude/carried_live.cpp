@@ -7,7 +7,8 @@ namespace tumble {
 
 namespace {
 
-/// Returns the gyro's sensing directions. An element without a known saturation plane has the direction of its axis.
+/// Returns the gyro's sensing directions. A sensing element without a known saturation plane gets the direction of its
+/// axis.
 Eigen::Matrix3d rows_of(const RailPlanes& planes) {
   Eigen::Matrix3d out = Eigen::Matrix3d::Identity();
   for (int j = 0; j < 3; ++j) {

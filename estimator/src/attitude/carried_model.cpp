@@ -44,8 +44,8 @@ void add_gyro_row(const GyroRow& state, const BorderRow& border, double weight, 
   corner.gradient.noalias() -= slope * border.transpose();
 }
 
-// Derivatives of one sensing element's rate by the errors of the node's state (`value`). `slope` contains the
-// derivatives of the rate's time derivative.
+// `value` contains the derivatives of one sensing element's rate by the errors of the node's state. `slope` contains
+// the derivatives of the element's angular acceleration.
 struct GyroRows {
   GyroRow value = GyroRow::Zero(), slope = GyroRow::Zero();
   BorderRow border = BorderRow::Zero();
@@ -64,8 +64,9 @@ GyroRows gyro_rows(const Eigen::RowVector3d& m, const Node& node, const Constant
   return rows;
 }
 
-// Returns how much the estimated rate differs from the readings of the hidden sensing elements. For a clipped element,
-// the difference is the saturation deficit. The result is the sum over all elements but `except`.
+// Returns how much the estimated rate differs from the readings of clipped and unusable sensing elements. For a clipped
+// element, the difference is the saturation deficit. The result is the sum of the differences over all elements except
+// for element `except`.
 double deficit(const NodeReadings& readings, const std::array<GyroRows, 3>& rows, int except) {
   double sum = 0.0;
   for (int i = 0; i < 3; ++i) {
@@ -109,15 +110,16 @@ double add_bound(const ElementSums& e, const GyroRows& rows, double sigma, doubl
   return minus_two_log_phi(u);
 }
 
-// Adds the information `w` that the three states with first index `i`, currently `value`, are zero.
+// Adds the information `w` that three states are zero. `i` is the index of the first state, and `value` contains the
+// current states.
 double add_zero(const Vector3d& value, double w, int i, System::Block& block) {
   block.diagonal.diagonal().segment<3>(i).array() += w;
   block.gradient.segment<3>(i) -= w * value;
   return w * value.squaredNorm();
 }
 
-// Adds information about `N` states of a node and of the next node. The information is equal for each axis, and `first`
-// is the index of the first state.
+// Adds information about `N` states of two consecutive nodes. The information is equal for each axis, and `first` is
+// the index of the first state.
 template <int N>
 double add_chain(const Eigen::Matrix<double, 2 * N, 2 * N>& information, double scale, int first,
                  const Eigen::Matrix<double, 3, 2 * N>& values, System::Block& block, System::Block& next) {
@@ -164,7 +166,7 @@ double add_gyro(const NodeReadings& readings, const Matrix3d& rows, const Readin
     const ElementSums& e = readings.gyro[static_cast<std::size_t>(i)];
     const GyroRows& element = elements[static_cast<std::size_t>(i)];
     if (e.n > 0.0) {
-      // All readings of the node have the same tilt error. The error therefore does not average out.
+      // All readings of a node have one common tilt error. The tilt error therefore does not average out.
       const double tilt = noise.tilt_share * deficit(readings, elements, i);
       cost += add_free(e, element, 1.0 / (variance + e.n * (tilt * tilt + e.open * e.open)), block, corner);
     }
@@ -243,18 +245,18 @@ Vector3d turned(const Node& from, const Node& to, double h) {
 Motion::Motion(const Params& params) : params_(params) {
   const double h = params.step_s;
   const double q = params.jerk_rad_s3_sqrts * params.jerk_rad_s3_sqrts;
-  // White jerk gives rate and angular acceleration after the step the covariance Q, conditional on their values before
-  // the step: carried.md (C2).
+  // Q is the covariance of rate and angular acceleration after a step of white jerk: carried.md (C2). The covariance Q
+  // is conditional on rate and angular acceleration before the step.
   Eigen::Matrix2d Q;
   Q << h * h * h / 3.0, h * h / 2.0, h * h / 2.0, h;
   Eigen::Matrix<double, 2, 4> J;
   J << -1.0, -h, 1.0, 0.0, 0.0, -1.0, 0.0, 1.0;
   jerk_ = J.transpose() * (q * Q).inverse() * J;
-  // Variance of the rotation angle, conditional on rate and angular acceleration at both ends of the step. The variance
-  // is the remainder of a quintic: carried.md (C4).
+  // Given rate and angular acceleration at both ends of a step, the rotation angle has the variance of a quintic's
+  // remainder: carried.md (C4).
   phi_variance_ = q * std::pow(h, 5) / 720.0 + 1e-12;
 
-  // motion of the point that the hand holds: carried.md (C6), (C7), (C8)
+  // white noise drives the acceleration of the point in the hand: carried.md (C6), (C7), (C8)
   const double decay = std::exp(-h / params.hand_tau_s);
   const double density = (1.0 - decay * decay) * params.hand_m_s2 * params.hand_m_s2 / h;
   Eigen::Matrix<double, 1, 6> row;

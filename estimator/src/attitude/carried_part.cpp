@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Separate solution of a part of the hand-held motion's problem: information from all other nodes, and the cost of the
-// part.
+// Solves a part of the nodes of a hand-held motion separately. All other nodes provide a prior for the part.
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -53,10 +52,11 @@ Problem::Problem(const Problem& whole, const Part& part)
             whole.hand_.begin() + static_cast<std::ptrdiff_t>(part.last + 1)),
       blocks_(nodes_.size()) {}
 
-// Computes the Schur complements for the nodes outside each part, from both ends of the recording: carried.md (C17).
+// Condenses the nodes outside each part to a prior, by Schur complements from both ends of the recording: carried.md
+// (C17).
 bool Problem::condense_rest(std::span<Part> parts) const {
   System::Corner unused;
-  // from the left: the prior that all earlier nodes provide for a node
+  // from the left, all earlier nodes provide a prior for a node
   System::Block here, next;
   motion_.add_first(nodes_[0], here);
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
@@ -70,7 +70,7 @@ bool Problem::condense_rest(std::span<Part> parts) const {
     here = next;
     here.border.setZero();
   }
-  // from the right: the prior that all later nodes provide for a node
+  // from the right, all later nodes provide a prior for a node
   here = {};
   for (std::size_t i = nodes_.size(); i-- > 0;) {
     for (Part& part : parts)

@@ -51,8 +51,8 @@ ReadingNoise reading_noise(const CarriedSmoother::Params& p, double period_s) {
 namespace {
 
 // Returns the reading noise for the computation of covariances. A lower bound contains no information about how far the
-// rate is beyond the bound. The mean over a window P differs from the rate at the window's centre. White jerk of
-// density q causes the variance q P^3/320 of this difference: carried.md (C26).
+// rate is beyond the bound. The mean over a window P differs from the rate at the window's centre. For white jerk of
+// density q, the difference has the variance q P^3/320: carried.md (C26).
 ReadingNoise stated_noise(const CarriedSmoother::Params& params, ReadingNoise noise, double period_s) {
   noise.bound = 0.0;
   noise.window_rad_s = params.jerk_rad_s3_sqrts * std::sqrt(period_s * period_s * period_s / 320.0);
@@ -166,8 +166,8 @@ void Problem::go(double share) {
   constants_.move(share * border_step_);
 }
 
-// Adapts the acceleration density of the held point (the point in the hand) to its recent power. The density has a
-// lower limit: carried.md (C10).
+// Adapts the assumed acceleration noise of the hand to the recent acceleration of the hand. The assumed acceleration
+// noise has a lower limit: carried.md (C10).
 void Problem::adapt_process_noise() {
   const std::size_t count = nodes_.size();
   const double assumed = 3.0 * params_.hand_m_s2 * params_.hand_m_s2;
@@ -235,8 +235,8 @@ bool Problem::descend_from(const Iterate& before, double& cost) {
   return false;
 }
 
-// Computes the covariances of the nodes, carried.md (C21), (C22), with the inflated jerk density (C23). Lower bounds
-// contribute no information about how far a rate is beyond its bound.
+// Computes the covariances of the nodes, carried.md (C21), (C22), with the inflated jerk density (C23). A lower bound
+// contributes no information about how far a rate is beyond the bound.
 Status Problem::covariances(CarriedSmoother::Report& report) {
   for (std::size_t i = 0; i < jerk_.size(); ++i)
     jerk_[i] = std::max(params_.expert.jerk_inflation, jerk_seen_[i] / params_.jerk_rad_s3_sqrts);
@@ -259,8 +259,8 @@ Status Problem::covariances(CarriedSmoother::Report& report) {
   return {};
 }
 
-// Compares the held point's mean acceleration over windows with the model: carried.md (C30). Over a window T, the mean
-// of a process with standard deviation s and correlation time tau has the variance s^2 2 tau/T (1 - tau/T (1 -
+// Compares the hand's mean acceleration over windows with the model: carried.md (C30). The model is a process with
+// standard deviation s and correlation time tau. Its mean over a window T has the variance s^2 2 tau/T (1 - tau/T (1 -
 // exp(-T/tau))).
 double Problem::hand_mahalanobis() const {
   const auto window = static_cast<std::size_t>(std::max(1.0, kHandMean_s / params_.expert.node_s));

@@ -45,10 +45,11 @@ double since_s(std::span<const ImuSample> samples, std::size_t from, std::size_t
   return seconds(samples[to].time_ns - samples[from].time_ns);
 }
 
-// If equal readings agree with a regular clock by at least this fraction, the equal readings are repetitions.
+// If at least the fraction kMinClockAgreement of equal readings agrees with a regular clock, equal readings are
+// repetitions.
 constexpr double kMinClockAgreement = 0.9;
-// Window length, in node intervals, above which a window may be partly saturated. In recordings, 20 ms windows
-// (pendulums) were partly saturated, and 10 ms windows (hand-held wands) were not.
+// Window length, in node intervals, above which a window may be partly saturated. In recordings of pendulums, 20 ms
+// windows were partly saturated. In recordings of hand-held wands, 10 ms windows were not.
 constexpr double kLongWindow = 1.5;
 
 TimeNs nanoseconds(double s) {
@@ -106,7 +107,8 @@ void fill_segment(std::span<const ImuSample> samples, const std::vector<double>&
   }
 }
 
-/// Segment in which a sensing element is at one saturation level or unusable. An unsaturated segment has sign 0.
+/// Segment in which a sensing element is at one saturation level or unusable. For an unsaturated segment, the sign is
+/// 0.
 struct HiddenSegment {
   std::size_t end = 0;
   int sign = 0;
@@ -130,8 +132,8 @@ HiddenSegment hidden_segment(std::span<const ClipSigns> signs, std::size_t eleme
   return out;
 }
 
-// Computes ends and centres of the averaging windows for readings every `period_s`. After a drop-out, the window has
-// its usual length.
+// Computes ends and centres of the averaging windows for readings every `period_s`. After a drop-out, the averaging
+// window has its usual length.
 Windows windows_of(std::span<const ImuSample> samples, TimeNs origin_ns, double period_s) {
   Windows out;
   out.period_s = period_s;
@@ -154,8 +156,8 @@ void place(double node_s, std::size_t nodes, Windows& windows) {
 }
 
 // Corrects the window centres of a slow accelerometer, which averages over an unknown part of its period: carried.md
-// (C12). The corrected centre is the middle of the possible range. The change of force over the range adds to the
-// uncertainty.
+// (C12). The corrected window centre is the middle of the possible range. The change of force over the possible range
+// of the centre adds to the uncertainty of the force.
 std::vector<double> open_forces(OwnReadings& forces, double log_period_s) {
   const std::vector<ImuSample>& samples = forces.samples;
   std::vector<double> out(samples.size(), 0.0);

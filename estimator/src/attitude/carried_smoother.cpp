@@ -54,9 +54,9 @@ RateSource source(const RateState& rate, double recovered_sigma) {
   return variance < recovered_sigma * recovered_sigma ? RateSource::recovered_contact : RateSource::bounded_only;
 }
 
-/// Adds the effect of the gyro's scale error on the attitude: carried.md (C27). The effect applies to a body that is
-/// not hand-held and continues to rotate in one direction. The error grows with the rotation since the last rest, or
-/// with the rotation until the next rest, whichever is smaller.
+/// Adds the effect of the gyro's scale error on the attitude: carried.md (C27). The scale error matters if the body is
+/// not hand-held and continues to rotate in one direction. The attitude error grows with the smaller of two rotations:
+/// since the last rest, or until the next rest.
 void widen_by_rotation(const CarriedSmoother::Params& params, const carried::Collected& collected,
                        const std::vector<RateState>& rates, std::vector<AttitudeState>& attitudes) {
   const double share = params.expert.readings.recovered_scale_share;
@@ -111,7 +111,7 @@ Status CarriedSmoother::estimate(std::span<const ImuSample> samples, const Clipp
     const double centre = collected.samples.centre_s[k] - at, end = collected.samples.end_s[k] - at;
     rates[k].time_ns = attitudes[k].time_ns = samples[k].time_ns;
     // The rate refers to the centre of the reading's window, because the reading is the mean over the window. The
-    // attitude refers to the time stamp.
+    // attitude refers to the time stamp of the reading.
     rates[k].w_WI_I_rad_s = node.w_WI_I_rad_s + centre * node.angular_acceleration_rad_s2;
     rates[k].covariance_rad2_s2 = covariance.block<3, 3>(carried::kRate, carried::kRate);
     rates[k].clipped_axes = clipped_axes(collected.rates, k);

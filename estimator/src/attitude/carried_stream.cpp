@@ -51,7 +51,7 @@ CarriedStream::CarriedStream(const Params& params)
   require_within("window_s", params.window_s, params.lag_s + 4.0 * params.body.expert.node_s, 20.0);
   nodes_max_ = static_cast<std::size_t>(std::lround(params.window_s / params.body.expert.node_s)) + 1;
   delay_ = static_cast<std::size_t>(std::lround(params.lag_s / params.period_s));
-  // The buffer can store readings of twice the nominal sample rate. At higher rates, the stream drops the oldest
+  // The buffer can store readings of twice the nominal sample rate. At higher sample rates, the stream drops the oldest
   // readings.
   readings_max_ = 2 * static_cast<std::size_t>(std::ceil(params.window_s / params.period_s)) + 4;
 }
@@ -143,8 +143,8 @@ Status CarriedStream::push(const ImuSample& sample, const ClippedElements& known
   if (begun) extend(state);
   add(latest, state);
   if (begun) predict_newest(state);
-  // While the gyro is unsaturated, the predicted nodes are already accurate. Occasional steps then update attitude and
-  // calibration constants.
+  // While the gyro is unsaturated, the predicted nodes are already accurate. While the gyro is unsaturated, occasional
+  // steps are sufficient for attitude and calibration constants.
   const bool due =
       begun && (latest.node % carried::kFreeNodes == 0 || latest.node < kFirstNodes || anything_clips(state));
   const bool factorised = due && step(state);
@@ -215,8 +215,9 @@ void CarriedStream::rebuild(State& state) const {
 }
 
 // Adds an IMU reading to the nodes of the window, unless the reading is a repetition. The reading of a slow sensor
-// averages over a window with the length of the sensor's period. The window ended at an unknown time since the previous
-// sample: rate_stream.md (R95). For an accelerometer, the length of the window is also unknown: carried.md (C12).
+// averages over a window with the length of the sensor's period. The averaging window ended at an unknown time since
+// the previous sample: rate_stream.md (R95). For an accelerometer, the length of the averaging window is also unknown:
+// carried.md (C12).
 void CarriedStream::add(const Reading& reading, State& state) const {
   const double node_s = params_.body.expert.node_s;
   const auto readings_at = [&](std::int64_t node) -> carried::NodeReadings* {
@@ -269,7 +270,7 @@ Node CarriedStream::begin(const State& state) const {
   return out;
 }
 
-// Predicts a new node from the previous node. Unsaturated sensing elements provide their component of the rate. For
+// Predicts a new node from the previous node. Each unsaturated sensing element provides one component of the rate. For
 // clipped elements, the predicted rate is beyond the saturation level.
 void CarriedStream::predict(const Node& before, const Eigen::Matrix3d& rows, Knot& knot) const {
   const double h = params_.body.expert.node_s;
@@ -292,7 +293,7 @@ void CarriedStream::predict(const Node& before, const Eigen::Matrix3d& rows, Kno
   if (knot.readings.force_n > 0.0) node.a_W_m_s2 = node.q_WI * knot.readings.force_m_s2 + g_W_m_s2_;
 }
 
-// Returns the density of the held point's acceleration: carried.md (C41).
+// Returns the noise density of the hand's acceleration: carried.md (C41).
 double CarriedStream::hand(const State& state) const {
   return std::max(params_.body.expert.hand.hand_floor,
                   1.0 + params_.body.expert.hand.hand_noise_adaptation * (state.acceleration_power_ratio - 1.0));
@@ -314,7 +315,7 @@ void CarriedStream::add_prior(const State& state, System::Block& block, System::
   corner.gradient += state.prior_corner.gradient - state.prior_corner.matrix * c - state.prior.border.transpose() * x;
 }
 
-// Marginalises the oldest node, carried.md (C17), in the form of rate_stream.md (R90). The density of the held point's
+// Marginalises the oldest node, carried.md (C17), in the form of rate_stream.md (R90). The noise density of the hand's
 // acceleration follows from carried.md (C41).
 void CarriedStream::marginalise_oldest(State& state) const {
   keep_rates_of_oldest(state);

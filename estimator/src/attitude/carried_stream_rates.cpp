@@ -28,8 +28,8 @@ std::uint8_t clipped_axes(const ClipSigns& signs) {
 
 }  // namespace
 
-// Returns the rate at reading `at`. Until the next step of the window, readings of one node reuse the node's
-// covariance. publish() defines `factorised`.
+// Returns the rate at reading `at`. Readings of one node reuse the node's covariance until the next step of the window.
+// `factorised` is defined at publish().
 RateState CarriedStream::give(std::size_t at, bool due, bool factorised, State& state) const {
   const Reading& reading = state.readings[at];
   if (reading.smoothed) return *reading.smoothed;
@@ -43,7 +43,7 @@ RateState CarriedStream::give(std::size_t at, bool due, bool factorised, State& 
   return rate;
 }
 
-// Returns the first unreported reading. The result excludes the reading that the stream is processing.
+// Returns the first unreported reading, excluding the reading that the stream is processing.
 std::size_t CarriedStream::first_unreported(const State& state) const {
   return state.readings.size() - std::min(state.readings.size(), delay_ + 1);
 }

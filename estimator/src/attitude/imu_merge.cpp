@@ -18,7 +18,7 @@ namespace {
 constexpr double kBiasSigma_rad_s = 0.01, kScaleSigma = 0.01;
 constexpr double kRotating_rad_s2 = 1.0;  // minimum angular acceleration for estimating a time offset
 constexpr double kCertainDeviations = 4.0;
-constexpr int kRecovering = 3;     // minimum number of units for recovering a rate from accelerometers
+constexpr int kRecovering = 3;     // minimum number of IMUs for recovering a rate from accelerometers
 constexpr double kUnharmed = 0.8;  // fraction of the accelerometer's range up to which errors are estimated
 constexpr int kOffset = ImuMerge::kErrors - 1;
 constexpr double kArmSquareMin_m2_s3 = 1.0;  // 1 m/s^2 for a second: a bias of 0.05 m/s^2 changes the result by 0.05
@@ -37,7 +37,7 @@ ForceErrors::Params ImuMerge::force_params(const Params& p) {
   return out;
 }
 
-/// Returns the parameters of RateRecovery, with positions relative to the mean position of the units.
+/// Returns the parameters of RateRecovery, with positions relative to the mean position of the IMUs.
 RateRecovery::Params ImuMerge::recovery_params(const Params& p) {
   RateRecovery::Params out;
   out.count = p.count;
@@ -92,7 +92,7 @@ Status ImuMerge::step(std::span<const ImuSample> samples, State& state, std::opt
   return {};
 }
 
-/// Adds finite readings to the averaging windows of their units, with the flags of saturated axes.
+/// Adds finite readings to the averaging windows of their IMUs, with the flags of saturated axes.
 void ImuMerge::gather(std::span<const ImuSample> samples, double dt_s, State& state) const {
   const double weight_s = state.samples > 0 ? dt_s : params_.window_s;
   for (std::size_t k = 0; k < samples.size(); ++k) {
@@ -113,7 +113,7 @@ void ImuMerge::gather(std::span<const ImuSample> samples, double dt_s, State& st
   state.window_s += dt_s;
 }
 
-/// Completes the averaging windows, merges the units, and starts the next windows.
+/// Completes the averaging windows, merges the IMUs, and starts the next windows.
 ImuSample ImuMerge::merge(State& state) const {
   const auto count = static_cast<std::size_t>(params_.count);
   const double h = state.window_s;
@@ -140,7 +140,7 @@ ImuSample ImuMerge::merge(State& state) const {
     forces[k] = raw_forces[k];
     const double offset_s = unit.offset_s();
     const bool late = offset_s * offset_s > kCertainDeviations * kCertainDeviations * unit.P(kOffset, kOffset);
-    if (finite[k] && state.windows > 0 && late) {  // delay of the unit: imu_merge.md (I4)
+    if (finite[k] && state.windows > 0 && late) {  // delay of the IMU: imu_merge.md (I4)
       rates[k] -= offset_s / since_s * (raw_rates[k] - unit.last_rate_rad_s);
       forces[k] -= offset_s / since_s * (raw_forces[k] - unit.last_force_m_s2);
     }
@@ -173,10 +173,11 @@ ImuSample ImuMerge::merge(State& state) const {
   return merged;
 }
 
-/// Selects the unsaturated units whose rate and specific force agree with the median: imu_merge.md (I5).
+/// Selects the unsaturated IMUs whose rate and specific force agree with the median: imu_merge.md (I5).
 ImuMerge::Flags ImuMerge::choose(const Readings& readings, const Flags& present, const Vectors& rates,
                                  const Vectors& forces, double h, State& state) const {
-  // Rotation causes different forces at different positions. The tolerance must cover this difference.
+  // Rotation causes different forces at different positions. The tolerance of the median test must cover the difference
+  // due to rotation.
   const Eigen::Vector3d middle_rate = median(rates, present), middle_force = median(forces, present);
   const auto units = std::count(present.begin(), present.end(), true);
   const double rate_tolerance =
@@ -187,14 +188,14 @@ ImuMerge::Flags ImuMerge::choose(const Readings& readings, const Flags& present,
     const double turned = (params_.T_CI[i].translation() - p_C_m_).norm() * middle_rate.squaredNorm() * 2.0;
     const bool agrees = units < 3 || ((rates[i] - middle_rate).norm() < rate_tolerance &&
                                       (forces[i] - middle_force).norm() < params_.expert.outliers.force_m_s2 + turned);
-    // With three or more units, a clipped gyro provides a lower bound of the rate. The unit's accelerometer is then
-    // needed.
+    // With three or more IMUs, a clipped gyro provides a lower bound of the rate. The merge therefore keeps the
+    // accelerometer of an IMU with a clipped gyro.
     const int clipping = units < kRecovering ? kClipAccel | kClipGyro : kClipAccel;
     used[i] = agrees && (readings[i].device_clip_flags & clipping) == 0;
   }
   const auto kept = std::count(used.begin(), used.end(), true);
-  // Without a majority, the selection contains all present units. With one or two units, the selection contains only
-  // unsaturated units.
+  // If the selected IMUs are no majority, the selection contains all present IMUs. With one or two present IMUs, the
+  // selection contains only unsaturated IMUs.
   if (units < kRecovering ? kept == 0 : 2 * kept <= units && kept < units) used = present;
   const bool apart = state.windows > 0 && h > 0.0;  // true if a previous window allows derivatives
   if (units >= kRecovering && apart && middle_rate.cwiseAbs().maxCoeff() < params_.gyro_range_rad_s) {
@@ -204,7 +205,7 @@ ImuMerge::Flags ImuMerge::choose(const Readings& readings, const Flags& present,
   return used;
 }
 
-/// Returns the mean of the selected units, transformed to the mean position of all units: imu_merge.md (I1), (I2).
+/// Returns the mean of the selected IMUs, transformed to the mean position of all IMUs: imu_merge.md (I1), (I2).
 ImuSample ImuMerge::mean_of_used(const Vectors& rates, const Vectors& forces, const Flags& used, double h,
                                  const State& state) const {
   const auto kept = static_cast<int>(std::count(used.begin(), used.end(), true));
@@ -239,7 +240,7 @@ void ImuMerge::close_windows(const Flags& present, const Vectors& rates, const V
                              const ImuSample& merged, State& state) const {
   const double length_s = state.windows > 0 ? state.window_s : params_.window_s;
   const bool follows = state.windows > 1 && length_s < kWindowMax_s;
-  // A unit with a repeated reading may be frozen, and therefore does not update the errors. If all units repeat their
+  // An IMU with a repeated reading may be frozen, and therefore does not update the errors. If all IMUs repeat their
   // readings, the rate is constant.
   const auto end = state.units.begin() + params_.count;
   const auto some_repeat = [&](Hold Unit::*hold) {
@@ -256,7 +257,7 @@ void ImuMerge::close_windows(const Flags& present, const Vectors& rates, const V
     if (unit.window.readings > 0) {
       unit.last_rate_rad_s = rates[k];
       unit.last_force_m_s2 = forces[k];
-    } else {  // use the prediction from the other units, since the unit's last reading is outdated
+    } else {  // use the prediction from the other IMUs, since the IMU's last reading is outdated
       const Eigen::Vector3d& rate = merged.angular_velocity_rad_s;
       unit.last_rate_rad_s = rate;
       unit.last_force_m_s2 =
@@ -272,11 +273,11 @@ void ImuMerge::close_windows(const Flags& present, const Vectors& rates, const V
   ++state.windows;
 }
 
-/// Excludes units whose accelerometer may be saturated by an impact for less than a sample: imu_merge.md (I6). On a
-/// rigid body, the force of one unit predicts the force component of another unit along their connecting line. This
-/// prediction does not need the angular acceleration. Units that disagree with the unit of most agreement are excluded.
-/// If no two units agree, the function first adds a common angular acceleration that may have started within the
-/// window: (I7).
+/// Excludes IMUs whose accelerometer may be saturated by an impact for less than a sample: imu_merge.md (I6). On a
+/// rigid body, the force of one IMU predicts the force component of another IMU along their connecting line. The
+/// prediction along the connecting line does not need the angular acceleration. The function excludes IMUs that
+/// disagree with the IMU that agrees with most other IMUs. If no two IMUs agree, the function first estimates a common
+/// angular acceleration that started within the window: (I7).
 void ImuMerge::exclude_subsample_saturated(const Readings& samples, const Flags& present, const Vectors& forces,
                                            const Eigen::Vector3d& rate, double h, State& state, Flags& used) const {
   const double since_s = 0.5 * (h + state.length_s);
@@ -331,7 +332,7 @@ void ImuMerge::recover(const Readings& readings, const Flags& present, double h,
   recovery_.step({corrected.data(), static_cast<std::size_t>(params_.count)}, h, state.recovery, merged);
 }
 
-/// Updates the rate errors of each unit relative to the mean of all units: bias, scale and time offset, imu_merge.md
+/// Updates the rate errors of each IMU relative to the mean of all IMUs: bias, scale and time offset, imu_merge.md
 /// (I3), (I8). The angular acceleration is a central difference over the adjacent windows.
 void ImuMerge::calibrate(const Vectors& rates, State& state) const {
   const auto count = static_cast<std::size_t>(params_.count);
@@ -357,7 +358,7 @@ void ImuMerge::calibrate(const Vectors& rates, State& state) const {
   for (std::size_t k = 0; k < count; ++k) {
     const Eigen::Vector3d from_mean_m = params_.T_CI[k].translation() - p_C_m_, by_rotation = by_position * from_mean_m;
     state.senses.add(forces[k] - mean_force, from_mean_m, mean, acceleration, state.length_s);
-    state.lever_arm_correlation += state.length_s * by_rotation.dot(forces[k]);  // the mean of all units cancels
+    state.lever_arm_correlation += state.length_s * by_rotation.dot(forces[k]);  // the mean of all IMUs cancels
     state.arm_square_m2_s3 += state.length_s * by_rotation.squaredNorm();
   }
   if (acceleration.norm() < kRotating_rad_s2) return;

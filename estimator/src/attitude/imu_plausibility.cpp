@@ -20,8 +20,8 @@ auto least_unexplained(const ImuPlausibility::State& state) {
   return std::min_element(state.unexplained_rad2.begin(), state.unexplained_rad2.end());
 }
 
-// Returns the scalar product of rotation by gyro and rotation by force, from |a - b|^2 = |a|^2 + |b|^2 - 2 a b:
-// imu_merge.md (I20).
+// Returns the scalar product of two rotations, measured by gyro and by force: imu_merge.md (I20). The product follows
+// from |a - b|^2 = |a|^2 + |b|^2 - 2 a b.
 double together_rad2(const ImuPlausibility::State& state) {
   return 0.5 * (state.force_rotation_rad2 + state.gyro_rotation_rad2 - state.unexplained_rad2.front());
 }
@@ -82,8 +82,8 @@ void ImuPlausibility::take(State& state) const {
   state.average = {};
   if (std::abs(force.norm() - params_.gravity_m_s2) > kPushed * params_.gravity_m_s2) state.pushed_s += length_s;
   if (state.open) {
-    // Forces refer to the centres of their averages, so the first and the last rotation count by half. To first order,
-    // this sum equals the sum of all rotations except for the first rotation.
+    // Each averaged force refers to the centre of its average. The first and the last rotation therefore count by half.
+    // To first order, the result equals the sum of all rotations except for the first rotation.
     state.turned = (state.turned * so3::exp(turned)).normalized();
     state.length_s += length_s;
     const double start = state.force_start_m_s2.norm();
@@ -149,8 +149,8 @@ double ImuPlausibility::unexplained_share(const State& state) const {
 }
 
 /// Returns how long a reading has been frozen. A device that never changed counts as frozen only while the body moves.
-/// For a gyro, a rotation of the force or a force that excludes rest indicates motion. For an accelerometer, the gyro
-/// indicates motion, while the accelerometer reads zero for longer than a free fall lasts.
+/// If the gyro is frozen, a rotating force or a force that excludes rest indicates motion. If the accelerometer is
+/// frozen at zero for longer than a free fall lasts, the gyro indicates motion.
 double ImuPlausibility::frozen_s(const State& state) const {
   const auto never_moved = [&](const Hold& hold) {
     return hold.moved_s == 0.0 && hold.repeated_s >= params_.expert.frozen.repeats_s;
@@ -163,7 +163,7 @@ double ImuPlausibility::frozen_s(const State& state) const {
                    accel ? state.accel.repeated_s : 0.0});
 }
 
-/// Returns the slope of the force's rotation over the gyro's rotation: imu_merge.md (I20).
+/// Returns the ratio of the force's rotation to the gyro's rotation, by linear regression: imu_merge.md (I20).
 double ImuPlausibility::rotation_slope(const State& state) const {
   if (!turned(state)) return 1.0;
   return together_rad2(state) / std::max(state.gyro_rotation_rad2, kStandstillRad2);

@@ -41,8 +41,8 @@ Readings all_readings() {
   return out;
 }
 
-/// Estimate of the gyro's scale from one segment. `step`: Newton step, starting at scale 1. `weight`: curvature of the
-/// residual.
+/// Estimate of the gyro's scale from one segment. `step` is a Newton step from scale 1. `weight` is the curvature of
+/// the residual, as a function of the scale, at scale 1.
 struct ScaleVote {
   double step, weight;
 };
@@ -144,7 +144,8 @@ PivotCheck::PivotCheck(const Params& params) : params_(params) {
 
 PivotCheck::Found PivotCheck::find(std::span<const ImuSample> samples, std::span<const RateState> rates) const {
   static const Readings readings = all_readings();
-  // The two series of segments are offset by half a segment. No event is then at a segment boundary in both series.
+  // The two series of segments are offset by half a segment. An event at a segment boundary of one series is therefore
+  // within a segment of the other series.
   std::array<Segments, 2> series = {Segments(params_, readings), Segments(params_, readings)};
   double mean_s = 0.0, since_s = 0.0;
   Eigen::Vector3d turned = Eigen::Vector3d::Zero(), gained = Eigen::Vector3d::Zero();
@@ -191,7 +192,7 @@ PivotCheck::Found PivotCheck::find(std::span<const ImuSample> samples, std::span
   return found;
 }
 
-/// Compares the evidence against the unchanged rates with the limits: imu_merge.md (I29), (I30).
+/// Returns an error if the evidence against the unchanged rates exceeds its limits: imu_merge.md (I29), (I30).
 Status PivotCheck::verdict(const Found& found) const {
   const double least = std::max(params_.evidence_least, params_.evidence_of_each * static_cast<double>(found.counted));
   const auto better = static_cast<double>(found.better), worse = static_cast<double>(found.worse);

@@ -25,8 +25,8 @@ void update(const Row& row, double innovation, double variance, RateRecovery::St
   state.x += scalar_update(row, innovation, variance, state.P);
 }
 
-// Readings of one triad. While a sensing element clips, the readings are along the sensing directions of the elements,
-// rails.md (R52). Without clipping, the readings are along the axes of the unit.
+// Readings of one gyro or accelerometer. While a sensing element clips, the readings are along the sensing directions
+// of the elements: rails.md (R52). While no element clips, the readings are along the axes of the IMU.
 struct Seen {
   Eigen::Matrix3d rows_C;
   Eigen::Vector3d reading, slope_sigma = Eigen::Vector3d::Zero();
@@ -102,15 +102,15 @@ RateRecovery::Met RateRecovery::met_by(std::span<const ImuSample> units) const {
     }
     clipped += force;
   }
-  // With a correct rate, the unsaturated units provide a better specific force than the filter. The merged force
-  // therefore counts as clipped only if few units are unsaturated.
+  // With a correct rate, the unsaturated IMUs provide a better specific force than the filter. The merged force
+  // therefore counts as clipped only if few IMUs are unsaturated.
   out.force = clipped > 0 && (out.rate || 2 * clipped > received);
   return out;
 }
 
 void RateRecovery::step(std::span<const ImuSample> units, double dt_s, State& state, ImuSample& merged) const {
   const Met met = met_by(units);
-  // Accelerometers saturate when gravity and rotation add up. The mean of the unsaturated units therefore has a bias in
+  // Accelerometers saturate when gravity and rotation add up. The mean of the unsaturated IMUs therefore has a bias in
   // one direction of the world frame W.
   merged.device_clip_flags = met.force ? kClipAccelX | kClipAccelY | kClipAccelZ : 0;
   const bool fast = merged.angular_velocity_rad_s.cwiseAbs().maxCoeff() >= kFast * params_.gyro_range_rad_s;
@@ -132,7 +132,7 @@ void RateRecovery::step(std::span<const ImuSample> units, double dt_s, State& st
   } else if (met.rate) {
     merged.device_clip_flags = static_cast<std::uint8_t>(merged.device_clip_flags | kClipGyro);
   }
-  // the mean force was transformed to the mean position with a rate that may be wrong
+  // the mean force depends on the rate, which may be wrong
   if (met.rate || met.force) merged.specific_force_m_s2 = state.x.segment<3>(kForce);
 }
 

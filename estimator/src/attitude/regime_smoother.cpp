@@ -16,8 +16,8 @@ bool unread(const RateReport& report, const RateState& rate, std::size_t k) {
   return rate.clipped_axes != 0 || report.suspect_axes[k] != 0;
 }
 
-/// Returns the samples with the specific forces interpolated at the times of the rates: carried.md (C38). The forces of
-/// a slow accelerometer are older than the rates.
+/// Returns samples whose forces are interpolated at the times of the rates: carried.md (C38). Without interpolation,
+/// the forces of a slow accelerometer would be older than the rates.
 std::vector<ImuSample> forces_in_time(std::span<const ImuSample> samples) {
   std::vector<ImuSample> out(samples.begin(), samples.end());
   const std::vector<Eigen::Vector3d> forces = forces_between_readings(samples);
@@ -70,7 +70,7 @@ void RegimeSmoother::join(std::span<const ImuSample> samples, std::vector<RateSt
     if (by_segment[k] <= params_.carried_min) continue;
     const bool only_suspect = rates[k].clipped_axes == 0 && rates[k].source != RateSource::measured;
     rates[k] = either(rates[k], other[k], by_segment[k]);
-    // in all motion types, no clipping was detected at this sample
+    // the sample remains unclipped, because no clipping was detected for any motion type
     if (only_suspect) rates[k].clipped_axes = 0, rates[k].source = RateSource::bounded_only;
   }
 }

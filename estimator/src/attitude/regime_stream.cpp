@@ -16,8 +16,8 @@ CarriedStream::Params joined(const RegimeStream::Params& params) {
   out.period_s = params.rate.period_s;
   out.lag_s = params.rate.lag_s;
   out.window_s = std::max(out.window_s, out.lag_s + 4.0 * out.body.expert.node_s);
-  // Across a longer gap, samples would leave the window before CarriedStream reports them. CarriedStream therefore
-  // restarts after such a gap.
+  // After a gap longer than gap_max_s, CarriedStream restarts. Without a restart, samples would leave the window before
+  // CarriedStream reports the samples.
   out.body.expert.gap_max_s = std::min(out.body.expert.gap_max_s, out.window_s - out.lag_s);
   return out;
 }
@@ -34,7 +34,8 @@ ClipSigns signs_of(const RateObservation& observation) {
   return clip_signs(observation.sample, clipping);
 }
 
-// Combines the rates of both streams. A suspect reading counts as `bounded_only`, not as clipped, in all motion types.
+// Combines the rates of RateStream and CarriedStream. A suspect reading counts as `bounded_only`, not as clipped, in
+// all motion types.
 RateState joined_rate(const RateState& rate, const RateState& carried, double share) {
   RateState out = either(rate, carried, share);
   out.clipped_axes = rate.clipped_axes;
@@ -43,8 +44,9 @@ RateState joined_rate(const RateState& rate, const RateState& carried, double sh
   return out;
 }
 
-// Returns the derivative of the rates around sample k: carried.md (C44). If there are enough samples, the derivative is
-// over kTurn_s. The angular acceleration of RateStream is unsuitable, because it depends on the force that is tested.
+// Returns the derivative of the rates around sample k: carried.md (C44). If there are enough samples, the derivative
+// covers kTurn_s. RateStream also estimates an angular acceleration, but this estimate depends on the force that is
+// tested.
 Eigen::Vector3d angular_acceleration(std::span<const RateStream::Knot> window, std::size_t k) {
   // the code subtracts integer time stamps, because seconds since the clock's start would lose precision
   const auto between_s = [&](std::size_t from, std::size_t to) {
@@ -167,8 +169,8 @@ void RegimeStream::judge(const RateState& rate, State& state) const {
 }
 
 // Returns the weight of CarriedStream for the reported sample: s in carried.md (C40). The weight is the smallest
-// probability of hand-held motion near the sample, within the segment of clipped samples and within the window. Outside
-// such segments, the weight is 0.
+// probability of hand-held motion among nearby samples in the segment of clipped samples. Outside segments of clipped
+// samples, the weight is 0.
 double RegimeStream::share_of(const RateState& rate, State& state) const {
   const auto near_ns = static_cast<TimeNs>(std::llround(1e9 * params_.near_s));
   const std::vector<RateStream::Knot>& window = state.rate.window;

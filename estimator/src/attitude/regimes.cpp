@@ -30,8 +30,8 @@ double log_about_gravity(double n, double g, double variance) {
   return log_gaussian(n * n + g * g, variance) + log_sinh_x;
 }
 
-// Hand-held motion is gentle or rough: carried.md (C33). One of kRoughly samples has kRougher times the standard
-// deviation.
+// Hand-held motion is gentle or rough: carried.md (C33). In hand-held motion, one of kRoughly samples has kRougher
+// times the standard deviation.
 constexpr double kRoughly = 3.0, kRougher = 5.0;
 
 double log_carried(double n, double g, double hand_variance, double grip_variance) {
@@ -41,8 +41,9 @@ double log_carried(double n, double g, double hand_variance, double grip_varianc
   return larger + std::log(((kRoughly - 1.0) * std::exp(gentle - larger) + std::exp(rough - larger)) / kRoughly);
 }
 
-// `kRolls` is the prior fraction of gentle rolling during contact: carried.md (C34). The other contacts are impacts
-// with forces of any size. A single sample of gentle rolling looks hand-held, so the samples before and after decide.
+// `kRolls` is the prior fraction of gentle rolling during contact: carried.md (C34). Contact without gentle rolling
+// consists of impacts with forces of any size. A single sample of gentle rolling looks like hand-held motion, so the
+// samples before and after decide.
 constexpr double kRolls = 0.5;
 
 double log_contact(double left, double n, double most, double g, double variance) {

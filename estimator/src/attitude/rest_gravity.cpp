@@ -108,7 +108,7 @@ void RestGravity::end_segment(State& state) const {
   state.segment_s = state.segment_rad2_s = 0.0;
 }
 
-/// Starts a rest. Compares the directions of gravity at the previous and the new rest with the rotation between them:
+/// Starts a rest. Compares the change of gravity's direction since the previous rest with the gyro's rotation:
 /// imu_merge.md (I23).
 void RestGravity::arrive(State& state) const {
   end_segment(state);
@@ -125,7 +125,8 @@ void RestGravity::arrive(State& state) const {
   state.miss_sigma_rad = sigma_rad;
 }
 
-/// Compares the mean specific force between two rests with the specific force at the rests: imu_merge.md (I25), (I26).
+/// Compares the mean specific force between two rests with the specific force during the rests: imu_merge.md (I25),
+/// (I26).
 void RestGravity::close_velocity(const Eigen::Vector3d& here_m_s2, double sigma_rad, State& state) const {
   const Eigen::Vector3d mean_m_s2 = state.velocity_sum_m_s / state.span_s;
   const double from_start = (mean_m_s2 - state.from_m_s2).norm() / state.from_m_s2.norm();
@@ -138,7 +139,7 @@ void RestGravity::close_velocity(const Eigen::Vector3d& here_m_s2, double sigma_
   state.velocity_allowed_share = allowed;
 }
 
-/// Returns the maximum allowed error of the rotation: imu_merge.md (I24).
+/// Returns the maximum allowed error of the rotation between two rests: imu_merge.md (I24).
 double RestGravity::allowed_rad(double sigma_rad) const {
   return std::min(params_.miss_most_rad, std::max(params_.miss_least_rad, params_.miss_deviations * sigma_rad));
 }

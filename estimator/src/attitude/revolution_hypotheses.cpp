@@ -39,8 +39,7 @@ struct Hypothesis {
   double cost = 0.0;
 };
 
-/// Remaining alternatives of a segment: the probable solutions other than the current solution, with their
-/// probabilities.
+/// Probable solutions of a segment other than the current solution, with the probabilities of the solutions.
 struct Open {
   std::size_t from = 0;
   std::vector<std::pair<double, std::vector<Node>>> others;
@@ -72,7 +71,7 @@ std::vector<Segment> suspect_segments(const Problem& problem) {
         const Eigen::Matrix3d covariance = problem.covariance(i).block<3, 3>(kRate, kRate);
         angle_rad += problem.node_s() * std::sqrt(std::max(0.0, m.dot(covariance * m.transpose())));
       }
-      // a segment at either end of the recording has no readings on one side that could determine the revolutions
+      // at either end of the recording, no readings on the outer side determine the number of revolutions
       if (segment.first == 0 || segment.last + 1 >= count) continue;
       const bool against_rail = beyond_rad_s < kAgainst * problem.rail_sigma_rad_s() * clipped &&
                                 revolution_cost(problem, segment.last + 2 - segment.first) < kRevolutionCost;
@@ -122,7 +121,7 @@ std::vector<Hypothesis> hypotheses(const Problem& whole, const Segment& segment,
     Hypothesis found{{}, problem.converge()};
     found.nodes.assign(problem.nodes().begin(), problem.nodes().end());
     if (!std::isfinite(found.cost)) return false;
-    // discards a solution that converged to the number of revolutions of another hypothesis
+    // if another hypothesis has an equal number of revolutions, the solution is discarded
     for (const Hypothesis& other : out)
       if (std::abs(angle_between(other.nodes, found.nodes, m, whole.node_s())) < kPi) return false;
     const bool likely = out.empty() || found.cost < out.front().cost + 2.0 * kLogOdds;
@@ -145,8 +144,9 @@ std::vector<Hypothesis> hypotheses(const Problem& whole, const Segment& segment,
   return out;
 }
 
-/// Result of testing one segment: the solutions of the part's nodes, starting with node `from`, best first. The result
-/// also identifies the current solution, if it is still present, and whether another solution replaces it.
+/// Result of testing one segment. The result contains the solutions for the nodes of a part, starting with node `from`
+/// and with the best solution. The test result also identifies the current solution and states whether another solution
+/// replaces the current solution.
 struct TestedSegment {
   std::size_t from = 0;
   std::vector<Hypothesis> found;
@@ -154,7 +154,7 @@ struct TestedSegment {
   bool another = false;
 };
 
-/// Returns the probabilities of all solutions except `standing`: carried.md (C29).
+/// Returns the probabilities of all solutions except for the solution with index `standing`: carried.md (C29).
 Open shares_of(const TestedSegment& tested, std::optional<std::size_t> standing) {
   Open out{tested.from, {}};
   const double least = tested.found.front().cost;
@@ -167,7 +167,7 @@ Open shares_of(const TestedSegment& tested, std::optional<std::size_t> standing)
   return out;
 }
 
-/// Returns the remaining alternatives of all segments. If `taken`, the selected changes have been applied.
+/// Returns the alternative solutions of all segments. `taken` states whether the selected changes have been applied.
 std::vector<Open> left_open(const std::vector<TestedSegment>& tested, bool taken) {
   std::vector<Open> out;
   for (const TestedSegment& each : tested) {
@@ -196,7 +196,7 @@ std::vector<Part> with_surroundings(const Problem& problem, std::span<const Segm
 }
 
 /// Tests each part. The optimised solution remains until another solution is clearly better. If the tests ruled out the
-/// optimised solution (`fallen`), the best other solution replaces it.
+/// optimised solution (`fallen`), the best alternative replaces the optimised solution.
 std::vector<TestedSegment> test_segments(const Problem& problem, std::span<const Segment> segments,
                                          std::span<const Part> parts, std::vector<bool>& fallen) {
   std::vector<TestedSegment> out;
@@ -241,7 +241,8 @@ void test_revolutions(Problem& problem, CarriedSmoother::Report& report, SolveAg
   std::vector<Part> parts = with_surroundings(problem, segments);
   std::vector<Open> open;
   std::vector<bool> fallen(parts.size(), false);
-  // The information about the nodes outside a part is linearised. After a change, the tests are therefore repeated.
+  // The tests use linearised information about the nodes outside a part. After a change, the tests are therefore
+  // repeated.
   for (int round = 0; round < kRounds; ++round) {
     if (!problem.condense_rest(parts)) break;
     const std::vector<TestedSegment> tested = test_segments(problem, segments, parts, fallen);
@@ -264,7 +265,7 @@ void test_revolutions(Problem& problem, CarriedSmoother::Report& report, SolveAg
     report.revolutions_taken += static_cast<int>(taken);
   }
   report.revolutions_open = static_cast<int>(open.size());
-  // remaining alternatives add to the covariance: carried.md (C29)
+  // the alternative solutions increase the covariance: carried.md (C29)
   for (const Open& segment : open) {
     for (const auto& [share, nodes] : segment.others) {
       for (std::size_t i = 0; i < nodes.size(); ++i) {

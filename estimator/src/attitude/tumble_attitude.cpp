@@ -21,8 +21,8 @@ constexpr double kDisplacementSigmaStart_m = 0.1;
 constexpr double kContradicts_sigma2 = 4.0;
 constexpr int kTilt = 0, kBias = 2, kVelocity = 5, kDisplacement = 7, kHeading = 9;
 
-/// Applies a Kalman update by a scalar measurement of the state `index`: attitude.md (A4). `innovation` is measurement
-/// minus prediction. The update does not change the heading's variance: attitude.md (A9).
+/// Applies a Kalman update by a scalar measurement of the state with index `index`: attitude.md (A4). `innovation` is
+/// measurement minus prediction. The Kalman update does not change the heading's variance: attitude.md (A9).
 void update(int index, double innovation, double variance, TumbleAttitude::State& state) {
   const double heading = state.covariance(kHeading, kHeading);
   const Eigen::Matrix<double, TumbleAttitude::State::kStates, 1> correction =
@@ -38,8 +38,8 @@ double tilt_variance_rad2(const TumbleAttitude::State& state) {
   return state.covariance.diagonal().segment<2>(kTilt).maxCoeff();
 }
 
-/// Returns the reported tilt variance. During a coarse alignment, the variance is not below its value at the start of
-/// the alignment.
+/// Returns the reported tilt variance. During a coarse alignment, the reported tilt variance is at least its value at
+/// the start of the alignment.
 double reported_tilt_rad2(const TumbleAttitude::State& state) {
   const double filtered = tilt_variance_rad2(state);
   return state.alignment.running ? std::max(filtered, state.alignment.tilt_rad2()) : filtered;
@@ -178,11 +178,11 @@ void TumbleAttitude::bridge_gap(const ImuSample& after, const Eigen::Matrix3d& r
     state.covariance.diagonal().segment<2>(kVelocity).array() += squared(gap.velocity_walk_m_s_sqrts) * gap_s;
   }
   predict_node(state);
-  // When a sphere grips again, its velocity is the rolling velocity. The change of velocity during the gap was not
+  // A sphere without slip has its rolling velocity after a gap. The change of velocity during the gap does not count as
   // slip.
   if (params_.radius_m > 0.0 && !state.slipping) state.v_W_m_s = velocity_of_rotation(state);
-  // The tilt variance must be computed before the correction, because the update with one reading is not linear. The
-  // new alignment replaces an earlier alignment.
+  // The tilt variance must be computed before the correction, because an update with a single reading is not linear.
+  // The new alignment replaces an earlier alignment.
   const double tilt = reported_tilt_rad2(state);
   state.alignment = {};
   correct_node(state);
@@ -227,8 +227,8 @@ void TumbleAttitude::align(const Eigen::Quaterniond& corrected, State& state) co
   alignment = {};
 }
 
-/// Restarts from an attitude with the tilt variance `tilt_rad2`. Rotates W by `levelling`, and resets the velocity to
-/// the value that follows from the body's motion.
+/// Restarts from an attitude with the tilt variance `tilt_rad2`. Rotates the world frame W by `levelling`, and resets
+/// the velocity to the value that follows from the body's motion.
 void TumbleAttitude::restart(const Eigen::Quaterniond& levelling, double tilt_rad2, double velocity_m2_s2,
                              State& state) const {
   state.q_WI = (levelling * state.q_WI).normalized();
@@ -275,8 +275,8 @@ void TumbleAttitude::predict_node(State& state) const {
     F.block<2, 3>(kTilt, kBias) = -state.R_WI_s.topRows<2>();
     F.block<1, 3>(kHeading, kBias) = -state.R_WI_s.row(2);
   }
-  // The derivative is the horizontal part of phi x f. A heading error would also rotate accelerations, but the velocity
-  // is no reference for the heading.
+  // The derivative is the horizontal part of phi x f. The derivative by the heading is omitted, because the velocity is
+  // no reference for the heading.
   F(kVelocity, kTilt + 1) = state.f_W_m_s.z();
   F(kVelocity + 1, kTilt) = -state.f_W_m_s.z();
   F.block<2, 2>(kDisplacement, kVelocity) = h * Eigen::Matrix2d::Identity();
@@ -292,7 +292,7 @@ void TumbleAttitude::predict_node(State& state) const {
   state.covariance.diagonal().segment<2>(kVelocity).array() += squared(params_.expert.acceleration_noise_m_s_sqrts) * h;
 }
 
-/// Returns whether the sphere slips at the current node. The rolling constraint is then unusable.
+/// Returns whether the sphere slips at the current node. During slip, the rolling constraint is unusable.
 bool TumbleAttitude::watch_slip(const Eigen::Vector2d& misfit_m_s, State& state) const {
   const double misfit = misfit_m_s.norm();
   state.slip_s = state.slipping ? state.slip_s + state.node_s : 0.0;
@@ -319,8 +319,8 @@ double TumbleAttitude::motion_excess(const Eigen::Vector2d& misfit, int index, d
   return std::max({squared(sigma_sqrts) / params_.motion_tau_s, seen, remembered});
 }
 
-/// Corrects a body other than a sphere: the velocity while the body moves, and the displacement towards zero. The
-/// equations are attitude.md (A12), (A14).
+/// Corrects velocity and displacement of a body other than a sphere: attitude.md (A12), (A14). The velocity is
+/// corrected while the body moves. The displacement is corrected towards zero.
 void TumbleAttitude::correct_body(const Eigen::Vector2d& turned_m_s, State& state) const {
   const double memories = params_.motion_tau_s / state.node_s;
   if (!state.at_rest) {

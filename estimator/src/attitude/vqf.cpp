@@ -14,11 +14,12 @@ namespace tumble {
 namespace {
 
 constexpr double kNoDirection_m_s2 = 1e-6;
-/// Square root of the bias variance's growth within the forgetting time. The publication fixes the value 0.1 deg/s.
+/// The bias variance grows by the square of this rate within the forgetting time. The publication fixes the rate at 0.1
+/// deg/s.
 constexpr double kForgottenSigma_rad_s = 1.7453292519943295e-3;
 
-/// Returns the measurement variance for a scalar filter of a bias with random walk `growth`. The variance of this
-/// filter converges to sigma^2.
+/// Returns the measurement variance of a scalar bias filter with random walk `growth`. With this measurement variance,
+/// the bias variance converges to sigma^2.
 double steady_noise(double sigma, double growth) {
   const double variance = sigma * sigma;
   return variance * variance / growth + variance;
@@ -99,8 +100,8 @@ void Vqf::estimate_bias(const Eigen::Vector3d& up_W, double dt_s, State& state) 
     noise.setConstant(steady_noise(params_.expert.bias_sigma_rest_rad_s, growth));
   } else if (params_.motion_bias_estimation) {
     H = Eigen::Map<const Eigen::Matrix3d>(state.R_WI.value.data());
-    // The levelling rate is the sum of two biases: the remaining bias, and the bias removed since the force entered the
-    // low-pass filter.
+    // The levelling rate has two parts: the remaining bias, and the bias removed since the force entered the low-pass
+    // filter.
     const Eigen::Vector2d low_passed = state.bias_W_rad_s.value;
     innovation = Eigen::Vector3d(low_passed.x() - up_W.y() / dt_s, low_passed.y() + up_W.x() / dt_s, 0.0) - H * b;
     const double motion = steady_noise(params_.expert.bias_sigma_motion_rad_s, growth);

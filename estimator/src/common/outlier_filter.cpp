@@ -13,8 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Thresholds of the outlier test. The section "Thresholds" in docs/maths/outliers.md lists the measurements behind
-// them.
+// Thresholds of the outlier test. docs/maths/outliers.md, "Thresholds", lists the measurements behind the thresholds.
 constexpr double kRateMin_rad_s = 1.0;    // smallest outlier of a gyro
 constexpr double kForceMin_m_s2 = 30.0;   // smallest outlier of an accelerometer
 constexpr double kAgreement = 3.0;        // an outlier is larger than this multiple of the neighbours' difference
@@ -25,7 +24,7 @@ constexpr double kHitMost_m_s = 20.0;     // limit of a velocity jump that lasts
 constexpr double kNear_s = 0.1;           // neighbours further away than this are not compared
 constexpr double kPeriodsAhead = 1.75;    // a longer step of the stamps is held: the next stamp may be earlier
 
-// A reading may be saturated above this fraction of the stated range. A large reading that repeats may also be
+// A reading above the fraction kAtRange of the stated range may be saturated. A large reading that repeats may also be
 // saturated.
 constexpr double kAtRange = 0.95;
 constexpr double kRepeats_rad_s = 1.0, kRepeats_m_s2 = 15.0;
@@ -84,7 +83,7 @@ Sequence passed_near(const OutlierFilter::State& state) {
 }
 
 /// Returns the largest change from one reading to the next: outliers.md (O3). If saturation may hide a change, the
-/// result is unknown.
+/// result is kUnknown.
 double largest_step(const Sequence& sequence, const Triad& triad) {
   double out = 0.0;
   for (std::size_t k = 1; k < sequence.count; ++k) {
@@ -117,8 +116,8 @@ double departure(const Vector3d& before, const Vector3d& now, const Vector3d& af
   return out;
 }
 
-/// Returns the distance of a reading from the last accepted reading, or from the line through the last two accepted
-/// readings, whichever is smaller: outliers.md (O2).
+/// Returns the smaller of two distances of a reading: outliers.md (O2). The first is the distance from the last
+/// accepted reading. The second is the distance from the line through the last two accepted readings.
 double distance(const ImuSample& sample, const OutlierFilter::State& state, const Triad& triad) {
   const ImuSample &first = state.passed[0], &last = state.passed[1];
   const Vector3d step = triad.of(sample) - triad.of(last);

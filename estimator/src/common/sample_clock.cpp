@@ -113,7 +113,8 @@ Status SampleClock::push(TimeNs stamp_ns, State& state, TimeNs& time_ns) const {
     const double bound_ns = 0.5 * state.period_ns;
     time_ns += std::llround(std::clamp(state.fit_residual_ns, -bound_ns, bound_ns));
   }
-  // Time must increase after an uncorrected stamp and after a burst of stamps. The corrected stamps then catch up.
+  // Time must increase after an uncorrected stamp and after a burst of stamps. The corrected stamps then approach the
+  // received stamps.
   if (state.stamp_ns && time_ns <= state.time_ns)
     time_ns = state.time_ns + std::max<TimeNs>(1, std::llround(std::min(kLeastStep * state.period_ns, 0.5 * step_ns)));
   state.stamp_ns = stamp_ns;
@@ -167,7 +168,7 @@ void SampleClock::follow(double step_ns, TimeNs stamp_ns, State& state) const {
   state.mean_error_product_ns2 += fading * (limited_ns * state.error_ns - state.mean_error_product_ns2);
   state.error_ns = limited_ns;
 
-  // sample numbers count from the current sample, so only the residual of the current sample enters the sum
+  // Sample numbers count from the current sample. Only the residual of the current sample about the line is not zero.
   const double keep = 1.0 - fading;
   state.sum_nn = keep * (state.sum_nn - 2.0 * number * state.weighted_sum_number + number * number * state.sum);
   state.weighted_sum_number = keep * (state.weighted_sum_number - number * state.sum);

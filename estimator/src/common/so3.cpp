@@ -7,10 +7,10 @@ namespace tumble::so3 {
 
 namespace {
 
-// below this angle, two terms of the power series are exact to rounding
+// below kSmallAngle, two terms of the power series are exact to rounding
 constexpr double kSmallAngle = 1e-4;
-// Below this angle, x - sin(x) loses digits by cancellation. Up to this angle, six terms of the power series are exact
-// to rounding.
+// Below kCancellingAngle, x - sin(x) loses digits by cancellation. Up to kCancellingAngle, six terms of the power
+// series are exact to rounding.
 constexpr double kCancellingAngle = 0.5;
 
 // Returns (1 - cos x) / x^2. The function uses the half angle, because 1 - cos x loses digits by cancellation.
@@ -79,9 +79,9 @@ Eigen::Matrix3d left_jacobian_inverse(const Eigen::Vector3d& phi) {
 }
 
 Eigen::Quaterniond shortest_arc(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
-  // With h = from + to, the rotation has the real part |h| / 2 and the imaginary part (from x to) / |h|. The product
-  // from x to equals from x h. For nearly opposite vectors, h is exact to rounding. The formula is accurate up to a
-  // half turn, because no term cancels.
+  // With h = from + to, the rotation has the real part |h| / 2 and the imaginary part (from x to) / |h|. In the
+  // imaginary part, the cross product from x to equals from x h. For nearly opposite vectors, h is exact to rounding.
+  // The formula for the rotation is accurate up to a half turn, because no digits cancel.
   const Eigen::Vector3d h = from + to;
   const double length = h.norm();
   if (length < 1e-15) {

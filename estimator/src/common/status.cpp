@@ -8,7 +8,8 @@ namespace tumble {
 
 namespace {
 
-// Returns the shortest decimal text that converts back to exactly this number, independent of the locale.
+// Returns the shortest decimal text that converts back to exactly the number `value`. The text does not depend on the
+// locale.
 std::string number(double value) {
   std::array<char, 32> text{};
   const auto end = std::to_chars(text.data(), text.data() + text.size(), value);

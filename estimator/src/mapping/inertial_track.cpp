@@ -35,7 +35,8 @@ std::uint8_t accel_saturated_axes(const Params& params, const ImuSample& sample)
 }  // namespace
 
 RestDetector::Params mapper_rest(const LidarInertialOdometry::Params& params) {
-  // The detector misses a rotation vector within the bound. Each of the three axes therefore gets a part of the bound.
+  // The bound limits the norm of an undetected rate. Each of the three axes therefore gets the bound divided by
+  // sqrt(3).
   return {.rate_max_rad_s = params.expert.rest.rate_rad_s,
           .rate_spread_rad_s = params.expert.rest.rate_rad_s / std::numbers::sqrt3,
           .force_min_m_s2 = std::max(params.expert.gravity_m_s2 - params.expert.rest.force_m_s2, 0.0),
@@ -89,13 +90,13 @@ void InertialTrack::fill_gap(const Params& params, bool in_flight) {
   if (!in_flight || !fly_through(params, *before_newest_, *newest_))
     bridge_gap(params.expert.prior, *before_newest_, *newest_, samples_);
   if (undecided_rad_s_.empty()) return;
-  // The list contains one rate per sample. The last rate belongs to the pending sample.
+  // The list of undecided rates contains one rate per sample. The last rate belongs to the pending sample.
   for (const MotionSample& part : std::span(samples_).subspan(first))
     undecided_rad_s_.insert(undecided_rad_s_.end() - 1, part.w_WI_I_rad_s);
 }
 
 /// Bridges the gap by a ballistic arc if the predicted rate agrees with the next reading: flight_arc.md (A12). The
-/// prediction assumes free flight up to the end of the gap.
+/// predicted rate assumes free flight up to the end of the gap.
 bool InertialTrack::fly_through(const Params& params, const WindowRate& before, const WindowRate& after) {
   if (after.from_ns - before.time_ns > kArcMost_ns) return false;
   const std::size_t first = samples_.size();
@@ -115,8 +116,8 @@ bool InertialTrack::fly_through(const Params& params, const WindowRate& before, 
   return true;
 }
 
-/// Decides whether the newest sample belongs to a flight: flight_arc.md (A3), (A4), (A5). The test uses the rates
-/// before and after the sample. If a gap follows the sample, the rate after the sample is the prediction of free
+/// Decides whether the newest sample belongs to a flight: flight_arc.md (A3), (A4), (A5). The flight test uses the
+/// rates before and after the sample. If a gap follows the sample, the rate after the sample is the prediction of free
 /// flight.
 bool InertialTrack::detect_flight(const Params& params, const MotionSample& next, bool after_gap) {
   MotionSample& now = samples_.back();

@@ -9,11 +9,11 @@ namespace tumble {
 
 namespace {
 
-// sin 10 deg. If the line between two returns is steeper relative to the beam, both returns belong to one surface
-// (Bogoslavskyi, Stachniss).
+// sin 10 deg. If the angle between a beam and the line to a neighbouring return is larger, both returns belong to one
+// surface (Bogoslavskyi, Stachniss).
 constexpr float kSurfaceSine = 0.17365f;
-// sin 2 deg. A beam meets the ground at this angle at a distance of 14 m if the sensor is 0.5 m above the ground.
-// Smaller angles indicate an edge.
+// sin 2 deg. If the sensor is 0.5 m above the ground, a beam of 14 m length meets the ground at 2 deg. A smaller angle
+// between a surface and the beam indicates an edge.
 constexpr float kGrazingSine = 0.0349f;
 constexpr float kBend = 0.15f;                     // tolerance of the range difference for uneven ground
 constexpr int kNeighbours = 2;                     // number of neighbours on each side along the ring
@@ -52,7 +52,7 @@ bool LoneReturns::stands(float sine, const Beam& a, const Beam& b) {
   return a.x_L_m.cross(b.x_L_m).squaredNorm() >= square(sine * farther) * (a.x_L_m - b.x_L_m).squaredNorm();
 }
 
-/// Returns whether a return is on the line between the returns before and after it: mapping.md (R15).
+/// Returns whether a return is on the line between the previous and the next return: mapping.md (R15).
 bool LoneReturns::between(const RangeNoise& noise, const Beam& before, const Beam& beam, const Beam& after) {
   if (!stands(kGrazingSine, before, after)) return false;
   const float to_before = std::sqrt(sine2_between(before, beam)), to_after = std::sqrt(sine2_between(beam, after));
@@ -83,7 +83,8 @@ bool LoneReturns::is_neighbour(std::size_t at, std::size_t other, float reach2) 
 
 bool LoneReturns::is_confirmed(const RangeNoise& noise, std::size_t at, float reach2) const {
   const Beam& beam = beams_[at];
-  // The previous beam confirms most returns. An index below 0 wraps beyond the end of the list.
+  // In most cases, the previous beam shows that a return is not alone. An index below 0 wraps beyond the end of the
+  // list.
   const bool has_before = is_neighbour(at, at - 1, reach2);
   if (has_before && stands(kSurfaceSine, beam, beams_[at - 1])) return true;
   const bool has_after = is_neighbour(at, at + 1, reach2);

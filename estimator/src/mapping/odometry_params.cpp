@@ -7,8 +7,8 @@ namespace tumble {
 
 namespace {
 
-/// Checks the order of a box' corners. Eigen's empty box means no box. In any other box without volume, the corners are
-/// swapped.
+/// Checks that the corners of a box are not swapped. Eigen's empty box means no box. In a non-empty box without volume,
+/// the corners are swapped.
 template <class Visitor>
 void visit_corners_in_order(const Eigen::AlignedBox3d& box, Visitor& visit) {
   const Eigen::AlignedBox3d none;

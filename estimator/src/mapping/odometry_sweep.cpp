@@ -90,8 +90,8 @@ Status LidarInertialOdometry::Impl::check_sweep(TimeNs start_ns, TimeNs end_ns,
   if (samples.back().time_ns < end_ns) {
     return {Trouble::too_few, "imu time_ns", double(samples.back().time_ns), double(end_ns)};
   }
-  // With a wrong clock, the first sweep may start before the first sample. The initial rest is therefore extended
-  // backwards.
+  // With a wrong clock, the first sweep may start before the first sample. With a wrong clock, the initial rest extends
+  // backwards to the start of the sweep.
   const double early_s = seconds(samples.front().from_ns - start_ns);
   if (!started && early_s > (params.time_offset_s != 0.0 ? SweepTrajectory::kExtrapolation_s : 0.0)) {
     return {Trouble::too_few, "start_ns", double(start_ns), double(samples.front().from_ns)};
@@ -149,8 +149,8 @@ Status LidarInertialOdometry::Impl::start_map(TimeNs start_ns, TimeNs end_ns, st
   return {Trouble::too_few, "points", double(points), double(params.expert.matching.least)};
 }
 
-/// Propagates the state to `end_ns` by inertial integration, without a map. During a rest, the attitude is levelled
-/// again.
+/// Propagates the state to `end_ns` by inertial integration, without a map. If the IMU is at rest, the measured gravity
+/// levels the attitude again.
 Status LidarInertialOdometry::Impl::dead_reckon(TimeNs end_ns) {
   MotionState levelled;
   if (!track.border_ns()) {
@@ -177,7 +177,7 @@ Status LidarInertialOdometry::Impl::dead_reckon(TimeNs end_ns) {
   return {};
 }
 
-/// Returns whether the IMU measures only gravity and whether this gravity agrees with the estimated attitude.
+/// Returns whether the IMU measures only gravity, in agreement with the estimated attitude.
 bool LidarInertialOdometry::Impl::rests(const mapping::InertialTrack& inertial, const SweepTrajectory& motion,
                                         TimeNs end_ns) const {
   if (!inertial.rests_until(end_ns)) return false;
@@ -218,7 +218,8 @@ void LidarInertialOdometry::Impl::register_to_map(const Prediction& prediction, 
 StateEstimate LidarInertialOdometry::Impl::update(const MotionWindow& motion, const Placed& placed,
                                                   Prediction& prediction) const {
   if (placed.alignment) return mapping::posterior(prediction, *placed.alignment);
-  // The inertial prior remains. If the IMU is at rest, its velocity stops drifting.
+  // The inertial prediction remains the only estimate. If the IMU is at rest, a velocity of zero prevents a drift of
+  // the velocity.
   if (mapping::is_lost(tracking)) stop_at_rest(motion, boundary, prediction);
   return mapping::posterior(prediction);
 }
@@ -245,8 +246,8 @@ std::vector<InsertedPoint> LidarInertialOdometry::Impl::insert(const UpdatedSwee
   return inserted;
 }
 
-/// Updates the persistent state after a sweep. The lag window links the sweep to the previous sweep by the old
-/// boundary. The sweep therefore enters the window before boundary_after() replaces the boundary.
+/// Updates the persistent state after a sweep. The lag window needs the old boundary between the sweep and the previous
+/// sweep. The sweep therefore enters the window before boundary_after() replaces the boundary.
 void LidarInertialOdometry::Impl::propagate(const UpdatedSweep& sweep, const Placed& placed, const MotionWindow& motion,
                                             std::vector<InsertedPoint> inserted, SweepReport& report) {
   const Registration::Result* aligned = placed.alignment ? &*placed.alignment : nullptr;
@@ -275,8 +276,8 @@ void LidarInertialOdometry::Impl::propagate(const UpdatedSweep& sweep, const Pla
   prune_until(motion.end_ns);
 }
 
-/// Adds the pose error of a sweep to the map error at the robot's position, because the inserted points have this
-/// error.
+/// Adds the pose error of a sweep to the map error at the robot's position, because the points of the sweep in the map
+/// have an equal error.
 void LidarInertialOdometry::Impl::add_map_drift(const UpdatedSweep& sweep, const SweepReport& report) {
   const double inserted_share =
       report.points_used == 0 ? 0.0 : double(report.map_points_added) / double(report.points_used);
@@ -284,7 +285,7 @@ void LidarInertialOdometry::Impl::add_map_drift(const UpdatedSweep& sweep, const
                       boundary.state_estimate.mean.calibration.T_IL.translation());
 }
 
-/// Deletes the input up to `end_ns`, because the odometry has used it.
+/// Deletes the input up to `end_ns`, which the odometry has already used.
 void LidarInertialOdometry::Impl::prune_until(TimeNs end_ns) {
   known = mapping::InertialPrior{};
   track.prune_until(end_ns);

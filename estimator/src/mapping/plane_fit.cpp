@@ -34,7 +34,8 @@ PlaneFit fit_plane(const VoxelMap& map, const Neighbours& neighbours, const Plan
     return fit;
   }
 
-  // Positions are relative to the nearest neighbour. Floats therefore keep their precision far from the origin.
+  // The code subtracts the nearest neighbour from all positions, so that floats keep their precision far from the
+  // origin.
   const Eigen::Vector3f origin = map.position_W_m(neighbours.index[0]);
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
   Eigen::Matrix3f square = Eigen::Matrix3f::Zero();

@@ -41,7 +41,7 @@ void carry_deficit(const Params& params, const SweepBoundary& boundary, const Sw
 }
 
 /// Returns the largest standard deviation that the rate method reports for a clipped axis within the segment. The
-/// result is at least the parameter `deficit_sigma_min_rad_s`.
+/// returned standard deviation is at least the parameter `deficit_sigma_min_rad_s`.
 double deficit_sigma(const Params& params, const MotionWindow& window, const SweepTrajectory& trajectory, int axis) {
   double sigma = params.expert.rails.deficit_sigma_min_rad_s;
   for (const MotionSample& sample : window.samples) {
@@ -54,7 +54,7 @@ double deficit_sigma(const Params& params, const MotionWindow& window, const Swe
 
 /// Adds the process noise of the saturation deficit. The knots of the deficit are samples of a first-order Gauss-Markov
 /// process with the reported standard deviation: mapping.md (R46), (R47). If the deficit continues from the last sweep,
-/// the covariance is (R49).
+/// equation (R49) gives the covariance of the knots.
 void add_deficit_noise(const Params& params, const MotionWindow& window, const SweepTrajectory& trajectory,
                        Prediction& next) {
   if (!params.expert.rails.estimate_deficit) return;
@@ -112,7 +112,7 @@ Prediction predict(const Params& params, const SweepBoundary& boundary, const Mo
   next.prior.mean.calibration = boundary.state_estimate.mean.calibration;
   carry_deficit(params, boundary, trajectory, next);
   if (window.samples.front().at_rest) next.zero_velocity_update(params.expert.standstill.start_sigma_m_s);
-  // Without the speed limit, a slow drive through a scene with many features would count as rest.
+  // Without the speed limit creep_max_m_s, a slow drive through a scene with many features would count as rest.
   const bool creeps = boundary.state_estimate.mean.state.v_WI_m_s.norm() < params.expert.standstill.creep_max_m_s;
   if (window.resting_sweeps >= params.expert.standstill.sweeps_min && !boundary.constrained && creeps)
     next.zero_velocity_update(params.expert.standstill.sigma_m_s);
@@ -121,8 +121,8 @@ Prediction predict(const Params& params, const SweepBoundary& boundary, const Mo
   MotionNoise within = inertial_noise(params, trajectory, window.samples, axes);
   const Eigen::Matrix3d railed_m2_s2 = railed_velocity_variance(params, trajectory, window.samples);
   u::block(next.noise, u::motion) += within;
-  // A force late in a segment hardly changes the fitted velocity. The variance of the velocity is therefore also added
-  // to the next segment.
+  // A force late in a segment hardly changes the fitted velocity. The velocity variance due to saturated forces is
+  // therefore also added to the next segment.
   u::block(next.noise, u::velocity) += boundary.railed_velocity_m2_s2 + railed_m2_s2;
   u::block(within, u::velocity) += railed_m2_s2;
   add_deficit_noise(params, window, trajectory, next);
@@ -155,8 +155,8 @@ StateEstimate posterior(const Prediction& prediction) {
 
 namespace {
 
-/// Computes the factor by which the prior's errors enter the errors after registration: mapping.md (R52). The function
-/// is separate to limit the use of the stack.
+/// Computes the matrix that transforms errors of the prior to errors after the registration: mapping.md (R52).
+/// `weigh_prior()` is a separate function to limit the use of the stack.
 [[gnu::noinline]] void weigh_prior(const Prediction& prediction, const Registration::Result& aligned,
                                    Registration::Matrix& out) {
   // noise of the normals (errors in variables) is not information
@@ -168,9 +168,9 @@ namespace {
 
 }  // namespace
 
-/// Computes the errors of the unknowns after the registration: mapping.md (R52). Two errors pass through one system of
-/// normal equations. They are the errors of the prior, and the gradient of the surfaces with the covariance
-/// `score_covariance`, measured from the residuals.
+/// Computes the errors of the unknowns after the registration: mapping.md (R52). The errors have two sources: the
+/// errors of the prior, and the errors of the surfaces. `score_covariance` is the measured covariance of the surfaces'
+/// gradient.
 StateEstimate posterior(const Prediction& prediction, const Registration::Result& aligned) {
   StateEstimate start{aligned.mean, aligned.covariance, Registration::Matrix::Zero()};
   const auto from_prior = std::make_unique<Registration::Matrix>();

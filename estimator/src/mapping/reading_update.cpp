@@ -90,8 +90,8 @@ class Sweep {
   const MotionWindow& window_;
 };
 
-/// Adds a part of the reading's derivative. `by_moment` is the derivative by errors of the motion at the time of the
-/// reading.
+/// Adds derivatives of the odometer reading by the unknowns at the boundary and by the noise. `by_moment` is the
+/// derivative by errors of the motion at the time of the reading.
 template <int Size>
 void add(const OfMotion<Size>& by_moment, const Moment& moment, Expected& out) {
   const Eigen::Matrix<double, Size, kUnknowns> jacobian_start = by_moment * moment.jacobian_start;
@@ -173,7 +173,8 @@ bool find_gains(const MotionNoise& within, Work& work) {
   return true;
 }
 
-/// Iterates to the optimum of reading and prediction. Returns false if there is no solution.
+/// Iterates to the unknowns that best fit the odometer reading and the prediction. If there is no solution, returns
+/// false.
 [[gnu::noinline]] bool settle(const OdometerReading& reading, const Sweep& sweep, const MotionNoise& within,
                               Work& work) {
   for (int iteration = 0; iteration < kIterations; ++iteration) {
@@ -191,7 +192,7 @@ bool find_gains(const MotionNoise& within, Work& work) {
   return true;
 }
 
-/// Applies the update, and its effect on the errors at the boundary: mapping.md (R38).
+/// Applies the update to the unknowns and to the errors at the boundary: mapping.md (R38).
 [[gnu::noinline]] void move(Work& work, Prediction& prediction) {
   Registration::Vector moved = work.offsets.start;
   u::segment(moved, u::motion) += work.offsets.noise;

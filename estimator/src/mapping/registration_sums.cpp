@@ -96,8 +96,8 @@ void Registration::find_match(const VoxelMap& map, std::size_t point, Neighbours
   if (match.searched) {
     const float moved2 = (positions_[point] - match.search_position_W_m).squaredNorm();
     if (moved2 <= rematch2) return;
-    // The previous neighbours are within this radius. A search for the new neighbours therefore needs no larger radius.
-    // A small margin covers rounding.
+    // The radius contains the neighbours that the previous search found. The nearest neighbours are therefore within
+    // the radius. A small margin covers rounding.
     radius_m = std::min(radius_m, kRounding * (match.reach_m + std::sqrt(moved2)));
   }
   match.searched = true;
@@ -116,7 +116,7 @@ void Registration::find_match(const VoxelMap& map, std::size_t point, Neighbours
   match.map_variance_m2 = variance / static_cast<float>(found.count) + match.plane.thickness2_m2;
 }
 
-/// Computes the information of a match with its robust weight (D. Geman, D. McClure, 1987): mapping.md (R19), (R21).
+/// Computes the information of a match with its robust weight (Geman, McClure, 1987): mapping.md (R19), (R21).
 Registration::Weight Registration::weigh(const SweepPoint& point, const Match& match, double distance_m,
                                          double kernel_m) const {
   const double variance = point_variance_m2(point) + match.map_variance_m2;
@@ -153,7 +153,7 @@ double Registration::kernel_width_m() {
   if (sorted_.empty()) return params_.expert.kernel_min_m;
   const auto middle = sorted_.begin() + static_cast<std::ptrdiff_t>(sorted_.size() / 2);
   std::nth_element(sorted_.begin(), middle, sorted_.end());
-  // three standard deviations, if the distances are normally distributed with this median absolute value
+  // for a normal distribution, three standard deviations are 3 * 1.4826 times the median absolute value
   return std::max(params_.expert.kernel_min_m, 3.0 * 1.4826 * static_cast<double>(*middle));
 }
 
@@ -161,8 +161,8 @@ double Registration::kernel_width_m() {
 void Registration::accumulate_block(std::span<const SweepPoint> points, std::size_t block,
                                     const SweepTrajectory& trajectory, const SweepCalibration& calibration,
                                     const Unknowns& unknowns, double kernel_m, Products& products, Sums& sum) {
-  // Each match has one column with its distance and its derivatives by the free unknowns. The column is multiplied by
-  // the square root of the weight.
+  // Each match has one column with its distance and its derivatives by the free unknowns. The column of a match is
+  // multiplied by the square root of the match's weight.
   auto& rows = products.columns;
   Eigen::Matrix<double, static_cast<int>(kBlock), 1> weighted;
   const bool rigid = !unknowns.deficit && !unknowns.calibration;
@@ -214,8 +214,9 @@ void Registration::accumulate(std::span<const SweepPoint> points, const SweepTra
 }
 
 /// Part of the normal matrix that is due to noise of the normals, for all free unknowns: mapping.md (R28), (R29). If
-/// this part covered only the motion, it would constrain unobservable combinations of motion and calibration, for
-/// example attitude and mounting rotation. The covariance (R52) of these combinations would then grow without bound.
+/// the part covered only the motion, it would constrain unobservable combinations of motion and calibration. An example
+/// is the combination of attitude and mounting rotation. The covariance (R52) of unobservable combinations would then
+/// grow without bound.
 struct Registration::NoiseOfNormals {
   const Unknowns& unknowns;
   using Products = mapping::OuterProducts<kUnknowns, 2 * static_cast<int>(kBlock)>;

@@ -14,7 +14,8 @@ namespace {
 
 using Params = LidarInertialOdometry::Params;
 
-// Tried saturation deficits, as multiples of deficit_try_rad_s. The multiples are dense where most deficits occur.
+// Tried saturation deficits, as multiples of deficit_try_rad_s. The multiples of deficit_try_rad_s are dense where most
+// deficits occur.
 constexpr double kDeficitTries[] = {1.0, 2.0, 3.0, 5.0};
 constexpr double kDeficitSigmas = 5.0;  // deficits beyond this many standard deviations are not tried
 
@@ -31,7 +32,7 @@ bool fits(const Params& params, const Registration::Result& found) {
 }
 
 /// Registers the sweep. If the registration fails and a clipped axis may have a saturation deficit, track() tries
-/// larger deficits. A saturation that ends within one sweep may rotate the start of the search by a radian.
+/// larger deficits. A saturation within one sweep may cause an attitude error of a radian at the start of the search.
 void track(const Params& params, const Registration::Prior& prior, const Scene& scene, Aligner& aligner,
            SweepTrajectory& trajectory, Registration::Result& found) {
   aligner.in_full(prior, scene, trajectory, found);
@@ -60,7 +61,8 @@ void track(const Params& params, const Registration::Prior& prior, const Scene& 
 }
 
 /// Registers the sweep from the prior and from starts around the prior, until the surfaces fit. If no pose fits,
-/// returns the pose with the most inliers. To limit the cost per sweep, the search continues with the next sweep.
+/// returns the pose with the most inliers. To limit the cost per sweep, a search that found no pose continues with the
+/// next sweep.
 void search(const Params& params, const SearchContext& from, const Scene& scene, Aligner& aligner,
             SweepTrajectory& trajectory, Registration::Result& found) {
   const RelocalizationParams& starts = params.expert.search;

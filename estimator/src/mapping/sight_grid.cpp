@@ -10,12 +10,12 @@ namespace tumble::mapping {
 namespace {
 
 // Minimum ratio of range to sensor motion on each side of the sweep's middle. SightGrid sorts returns into bins by
-// their direction from one position. For larger ratios, the error of the direction is below 0.1 rad, the size of the
-// checked bins.
+// their direction from one position. Above the minimum ratio, the error of the direction is below 0.1 rad, which is the
+// size of the checked bins.
 constexpr float kMovedToRange = 10.0f;
 constexpr int kEmptyMost = 4;  // maximum number of empty bins out of nine, because rings are further apart than bins
-// Distance by which all returns must be behind a map point that is no longer present. The distance covers the error of
-// the relative pose of two sweeps, the noise of a return, and the slope of the ground within a bin.
+// Distance by which all returns must be behind a map point that is no longer present. The distance covers errors of the
+// relative pose of two sweeps, noise of a return, and slope of the ground within a bin.
 constexpr float kBeyond_m = 0.3f, kBeyondShare = 0.03f;
 constexpr float kDeviations = 3.0f;
 

@@ -16,7 +16,7 @@ SpatialHash::SpatialHash(std::size_t expected) {
 }
 
 std::uint32_t SpatialHash::insert(std::uint64_t key, std::uint32_t value) {
-  // The table is at most half full. Chains of collisions therefore stay short.
+  // The hash table is at most half full, which keeps chains of collisions short.
   if (2 * (size_ + 1) > keys_.size()) grow();
   std::size_t slot = slot_of(key);
   for (; keys_[slot] != kFree; slot = (slot + 1) & mask_) {

@@ -57,8 +57,9 @@ Matrix unknowns_at(const SweepTrajectory& trajectory, double t_s) {
   return F;
 }
 
-/// Computes the covariance blocks of pose and mounting. The blocks have the size of whole SIMD packets, so that each
-/// sum has the order of the full matrix product. Rows of F after the motion are rows of the identity: mapping.md (R11).
+/// Computes the covariance of pose and mounting after the propagation by F. The blocks have the size of whole SIMD
+/// packets, which keeps the order of summation of the full matrix product. The rows of F for mounting and other
+/// constants are rows of the identity: mapping.md (R11).
 Matrix pose_and_mounting(const Matrix& F, const Matrix& errors) {
   constexpr int kSize = 8, kMounting = 16;
   static_assert(kMounting >= Registration::kMotion && kMounting <= Registration::kCalibration &&

@@ -79,7 +79,7 @@ void SweepTrajectory::levers(std::span<const SweepPoint> points, std::span<Eigen
       const double s = p.s[l], x = p.x[l], y = p.y[l], z = p.z[l];
       const double half = 0.5 * s * p.sinc[l], bx = half * w.x(), by = half * w.y(), bz = half * w.z();
       const double bw = p.cosine[l];
-      // product of the quaternions of both rotations
+      // quaternion product of the attitude at the start of the interval and the rotation up to the point
       const double qx = (aw * bx + ay * bz) - (az * by - ax * bw), qy = (aw * by + ay * bw) + (az * bx - ax * bz);
       const double qz = (aw * bz - ay * bx) + (az * bw + ax * by), qw = (aw * bw - ay * by) - (az * bz + ax * bx);
       // point after the rotation

@@ -40,7 +40,7 @@ class ImuMotion {
   }
 
   /// Returns the mean velocity from `middle_ns` to `to_ns`, minus the mean velocity from `from_ns` to `middle_ns`. If a
-  /// force is saturated or missing in this time, the result is empty.
+  /// force between `from_ns` and `to_ns` is saturated or missing, the result is empty.
   std::optional<Eigen::Vector3d> change(TimeNs from_ns, TimeNs middle_ns, TimeNs to_ns) const {
     if (attitudes_.empty()) return std::nullopt;
     const auto later = [](const ImuSample& sample, TimeNs time_ns) { return sample.time_ns <= time_ns; };

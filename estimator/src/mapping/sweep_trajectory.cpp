@@ -13,7 +13,7 @@ namespace tumble {
 namespace {
 
 /// Returns the largest standard deviation of each axis over the samples of the segment in which the axis was clipped.
-/// The function ignores later samples.
+/// Samples after the segment do not count.
 Eigen::Vector3d least_known(std::span<const MotionSample> samples, TimeNs end_ns) {
   Eigen::Vector3d sigma = Eigen::Vector3d::Zero();
   for (const MotionSample& sample : samples) {
@@ -32,7 +32,7 @@ Eigen::Vector3d signed_shares(const MotionSample& sample, const Eigen::Vector3d&
   for (int axis = 0; axis < 3; ++axis) {
     if (!(sample.clipped_axes >> axis & 1)) continue;
     share[axis] = least_known_rad_s[axis] > 0.0 ? sample.rate_sigma_rad_s[axis] / least_known_rad_s[axis] : 1.0;
-    // A saturated rate has a larger true magnitude. The error in a gap has no known sign.
+    // The true rate exceeds a saturated reading in magnitude. The sign of the rate's error in a gap is unknown.
     if (sample.w_WI_I_rad_s[axis] < 0.0 && !sample.bridges_gap) share[axis] = -share[axis];
   }
   return share;
@@ -47,8 +47,8 @@ Eigen::Matrix<double, SweepTrajectory::kKnots, 1> knot_weights(double share) {
   return weights;
 }
 
-/// Returns so3::exp(rate_rad_s * s) by its power series, exact to rounding. The series saves time, because each point
-/// of a sweep needs this rotation and its angle is small.
+/// Returns so3::exp(rate_rad_s * s) by its power series, exact to rounding. The power series saves time, because each
+/// point of a sweep needs one rotation by a small angle.
 Eigen::Quaterniond rotated_by(const Eigen::Vector3d& rate_rad_s, double s) {
   const double angle2 = s * s * rate_rad_s.squaredNorm();
   if (!(angle2 <= rotation_series::kAngle2_rad2)) return so3::exp(rate_rad_s * s);
@@ -86,7 +86,7 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
     return {Trouble::too_few, "imu time_ns", samples.empty() ? 0.0 : double(samples.back().time_ns), double(end_ns)};
   }
   if (samples.front().from_ns > start.time_ns) {
-    // the status reports the gap in seconds, like every gap
+    // all errors of kind gap report seconds
     return {Trouble::gap, "imu window start", seconds(samples.front().from_ns - start.time_ns), 0.0};
   }
 

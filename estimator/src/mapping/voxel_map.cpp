@@ -16,7 +16,7 @@ using mapping::cube_of;
 
 namespace {
 
-// A free slot of a chunk has this coordinate, which is beyond any search radius.
+// The coordinates of a free slot in a chunk are kFar, which is beyond any search radius.
 constexpr float kFar = 1e18f;
 constexpr int kReachMax = 8;  // maximum number of cells that a search covers to each side
 
@@ -80,7 +80,7 @@ inline Eigen::Vector3i VoxelMap::Group::of(const Eigen::Vector3i& cell) {
   return {cell.x() >> kBits, cell.y() >> kBits, cell.z() >> kBits};
 }
 
-/// The cells of a search, row by row. Each group of cells is looked up only one time, when it is first used.
+/// The cells of a search, row by row. Each group of cells is looked up only one time, when a row first uses the group.
 class VoxelMap::Rows {
  public:
   Rows(const VoxelMap& map, const Eigen::Vector3i& cell, int reach) : map_(map), first_x_(cell.x() - reach) {
@@ -148,8 +148,8 @@ std::uint32_t VoxelMap::new_chunk(std::uint32_t& first) {
   return first;
 }
 
-/// Returns whether a position is within the range of the map's integer coordinates. The range has one margin for cells
-/// and for the cubes of the point spacing. For NaN, returns false.
+/// Returns whether a position is within the range of the map's integer coordinates. The range has a margin that covers
+/// both cells and cubes of the point spacing. For NaN, returns false.
 bool VoxelMap::has_room_for(const Eigen::Vector3f& position) const {
   return (position * cubes_per_m_).cwiseAbs().maxCoeff() < static_cast<float>(SpatialHash::kLimit - 2);
 }

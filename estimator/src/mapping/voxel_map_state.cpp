@@ -41,8 +41,8 @@ void VoxelMap::load(StateReader& in) {
   if (in.going()) *this = std::move(map);
 }
 
-/// Loads the next chunk. The chunks of a cell are stored in the order in which they were filled. Only the last chunk
-/// has free slots, so the slots need no further information.
+/// Loads the next chunk. The chunks of a cell are stored in the order in which they were filled. Only the last chunk of
+/// a cell has free slots. The number of slots in use is therefore sufficient information.
 void VoxelMap::load_chunk(StateReader& in) {
   std::uint8_t count = 0;
   in("map.chunk.count", count, 1.0, kChunk);

@@ -16,11 +16,11 @@ namespace {
 
 constexpr double kSilentReported_s = 0.5;  // minimum duration of a reported interval without readings
 // A sensing element without an observed saturation plane is assumed to be exactly aligned with its axis. If the
-// uncertainty of its cross-axis sensitivity were 0.03, three clipped units would no longer determine the rate (scenario
-// slip_long, seeds 4, 30 and 42).
+// uncertainty of the element's cross-axis sensitivity were 0.03, three clipped IMUs would no longer determine the rate
+// (scenario slip_long, seeds 4, 30 and 42).
 constexpr double kUnknownSlope = 0.0;
 
-/// The IMUs (units) that provide samples, resampled to common times.
+/// The IMUs that provide samples, resampled to common times.
 struct Units {
   std::vector<std::size_t> index;
   std::vector<Eigen::Isometry3d> T_BI;
@@ -29,7 +29,7 @@ struct Units {
   std::vector<std::vector<FrozenAxis>> frozen;
 };
 
-/// Sets the clip flags in the readings of a unit, and estimates the directions of its sensing elements. The unit may
+/// Sets the clip flags in the readings of an IMU, and estimates the directions of its sensing elements. The IMU may
 /// have frozen axes.
 void flag_clipped(const ImuSheet& sheet, std::vector<ImuSample>& samples, SensingDirections& gyro,
                   SensingDirections& accel) {
@@ -47,7 +47,7 @@ void flag_clipped(const ImuSheet& sheet, std::vector<ImuSample>& samples, Sensin
   accel = found.rails.rows(Triad::accelerometer, kUnknownSlope);
 }
 
-/// Resamples the readings of all units to common times, in place.
+/// Resamples the readings of all IMUs to common times, in place.
 Status align(std::vector<std::vector<ImuSample>>& samples) {
   const UnitAlignment alignment(samples.size());
   UnitAlignment::State state;
@@ -60,7 +60,7 @@ Status align(std::vector<std::vector<ImuSample>>& samples) {
     }
   };
   while (true) {
-    std::optional<std::size_t> first;  // the unit with the earliest reading
+    std::optional<std::size_t> first;  // the IMU with the earliest reading
     for (std::size_t k = 0; k < samples.size(); ++k) {
       if (next[k] == samples[k].size()) continue;
       if (!first || samples[k][next[k]].time_ns < samples[*first][next[*first]].time_ns) first = k;
@@ -111,7 +111,7 @@ Status run(const ImuMerge& merge, const Units& units, ImuMerge::State& state, st
   return {};
 }
 
-/// Marks the readings of a unit between two times as absent.
+/// Marks the readings of an IMU between `from_ns` and `to_ns` as absent.
 void exclude(std::vector<ImuSample>& unit, TimeNs from_ns, TimeNs to_ns = std::numeric_limits<TimeNs>::max()) {
   for (ImuSample& sample : unit) {
     if (sample.time_ns >= from_ns && sample.time_ns <= to_ns)
@@ -151,7 +151,7 @@ Status frozen_in_all(const FrozenAxis& axis) {
   return {Trouble::out_of_range, field, seconds(axis.to_ns - axis.from_ns), FrozenAxes::Params{}.frozen_s};
 }
 
-/// Excludes the readings of a unit while one of its axes is frozen. If no unit remains, returns an error.
+/// Excludes the readings of an IMU while one of its axes is frozen. If no IMU remains, returns an error.
 Status exclude_frozen(Units& units, std::vector<UnitFault>& faults) {
   std::optional<FrozenAxis> any;
   for (std::size_t unit = 0; unit < units.index.size(); ++unit) {
@@ -179,7 +179,7 @@ void erase_unit(Units& units, std::size_t unit) {
   units.accel_elements.erase(units.accel_elements.begin() + at);
 }
 
-/// Excludes the units that ImuMerge classified as faulty. Returns whether there are any.
+/// Excludes the IMUs that ImuMerge classified as faulty. Returns whether there are faulty IMUs.
 bool exclude_found(const ImuMerge::State& state, Units& units, std::vector<UnitFault>& faults) {
   bool any = false;
   for (std::size_t k = units.index.size(); k-- > 0;) {

@@ -33,7 +33,8 @@ RateState for_the_mapper(const RateState& rate, const ImuSample& sample, double 
   return out;
 }
 
-/// Samples with flags on forces that RateStream classified as saturated. The times of successive calls must increase.
+/// Samples of a stream, with flags on forces that RateStream classified as saturated. Successive calls need increasing
+/// times.
 class ClassifiedSamples {
  public:
   ClassifiedSamples(std::span<const ImuSample> samples, const RateStream::State& state)

@@ -114,7 +114,7 @@ ImuSample at_time(TimeNs time_ns, ImuSample sample) {
   return sample;
 }
 
-/// Marks the sample of a unit as absent.
+/// Marks the sample of an IMU as absent.
 void leave_out(ImuSample& sample) {
   sample.angular_velocity_rad_s.setConstant(std::numeric_limits<double>::quiet_NaN());
 }
@@ -325,7 +325,7 @@ std::size_t RollingOdometry::rejected_readings() const {
   return out;
 }
 
-/// Sets the readings of frozen units to NaN. If no unit remains, returns an error.
+/// Sets the readings of frozen IMUs to NaN. If no IMU remains, returns an error.
 Status RollingOdometry::exclude_frozen(const Frozen& states, std::span<ImuSample> samples) const {
   bool any = false, received = false;
   for (std::size_t k = 0; k < samples.size(); ++k) {

@@ -148,7 +148,8 @@ void SecondPass::complete(OdometryPass& first) {
 }
 
 void SecondPass::run(OdometryPass& first, std::size_t sweeps) {
-  // At the end of the buffer, fewer samples than the lag follow. The pass processes the last samples without waiting.
+  // At the end of the buffer, fewer samples than the lag follow. The second pass then processes the samples without a
+  // lag.
   bool tail = false;
   for (std::size_t taken = 0; tail || taken < sweeps; ++taken) {
     if (next_sweep_ == sweeps_.size()) {

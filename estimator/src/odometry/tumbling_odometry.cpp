@@ -223,8 +223,9 @@ void TumblingOdometry::register_sweep(TimeNs start_ns, TimeNs end_ns, std::vecto
   second_pass_.advance(pass_);
 }
 
-/// Returns whether the sweep would be older than lag_s when the next sample arrives. In addition, samples for the lag
-/// minus one period must follow the sample that covers the sweep's end. After a gap, these samples are missing.
+/// Returns whether the sweep would be older than lag_s when the next sample arrives. In addition, the newest sample
+/// must be later than the sample at the sweep's end by at least the lag minus 1.5 periods. After a gap, the second
+/// condition is not met immediately.
 bool TumblingOdometry::is_due(TimeNs end_ns) const {
   const std::optional<TimeNs> covering_ns = pass_.covering_ns(end_ns);
   if (!covering_ns) return false;
@@ -236,8 +237,8 @@ bool TumblingOdometry::is_due(TimeNs end_ns) const {
 void TumblingOdometry::register_covered() {
   while (!waiting_.empty()) {
     const TimeNs end_ns = waiting_.front().end_ns;
-    // The sample that covers the sweep's end may end up to one period later. Its rate is therefore reported one period
-    // early.
+    // The sample that covers the sweep's end may end up to one period later. The rate of the sample at the sweep's end
+    // is therefore reported one period early.
     if (!pass_.covers(end_ns) && is_due(end_ns)) pass_.flush_until(pass_.needed_ns(end_ns));
     if (!pass_.covers(end_ns)) break;
     WaitingSweep sweep = std::move(waiting_.front());

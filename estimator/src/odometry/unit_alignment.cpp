@@ -17,8 +17,8 @@ ImuSample absent(TimeNs time_ns) {
   return sample;
 }
 
-/// Returns the time of a unit's newest reading. If the unit has no reading, returns the time of the first reading of
-/// any unit.
+/// Returns the time of an IMU's newest reading. If the IMU has no reading, returns the time of the first reading of any
+/// IMU.
 TimeNs newest_ns(std::size_t unit, const UnitAlignment::State& state) {
   const std::vector<ImuSample>& readings = state.readings[unit];
   return readings.empty() ? *state.first_ns : readings.back().time_ns;
@@ -87,7 +87,7 @@ bool UnitAlignment::next(State& state, Readings& out, bool ended) const {
   return true;
 }
 
-/// Replaces the reference unit if it provides no readings and another unit does.
+/// Replaces the reference IMU if the reference provides no readings and another IMU provides readings.
 void UnitAlignment::choose_reference(State& state) const {
   const std::vector<ImuSample>& readings = state.readings[state.reference];
   if (after_common(readings, state) != readings.end() || !is_silent(state.reference, state)) return;

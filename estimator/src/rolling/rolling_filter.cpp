@@ -63,7 +63,7 @@ void RollingFilter::start(const ImuSample& sample, const Eigen::Quaterniond& q_W
 void RollingFilter::take_average(State& state, Listener listener) const {
   const ImuAverage reading = state.average;
   state.average = {};
-  // The last reading of a node follows the node's end, because the rate at the end is between two readings.
+  // A node is closed by the reading after its end, because the rate at the node's end is between two readings.
   if (state.sums.node_s >= params_.expert.node_s - 0.5 * reading.length_s) {
     close_node(reading.mean.angular_velocity_rad_s, state);
     listener.call(listener.to, state);
@@ -153,8 +153,9 @@ bool RollingFilter::spins_in_place(const State& state) const {
   return (off.square() > kSpinSigmas * kSpinSigmas * variance).any();
 }
 
-/// Returns the part of the position covariance that is due to the other hypotheses: rolling.md (R27). With the weight w
-/// and the difference d to the best position, the result is the sum of w d d^T over the sum of w.
+/// Returns the position covariance that is due to differences between the hypotheses: rolling.md (R27). The result is
+/// the mean of d d^T, weighted by the hypothesis' weight. The vector d is the difference to the best hypothesis'
+/// position.
 Eigen::Matrix3d RollingFilter::position_spread(const State& state) {
   const Eigen::Vector3d best = state.hypotheses[0].x.segment<3>(rolling::kPosition);
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
@@ -233,8 +234,8 @@ void RollingFilter::report(State& state) const {
   state.contact_velocity_m_s = state.hypotheses[0].contact_velocity_W_m_s;
 }
 
-/// Returns the most probable mode over all hypotheses. The best hypothesis may be one of several hypotheses that differ
-/// in their past, but agree whether the contact point moves.
+/// Returns the most probable mode over all hypotheses. Several hypotheses may differ in their past, but agree on
+/// whether the contact point moves.
 RollingMode RollingFilter::most_probable_mode(const State& state) {
   const bool event = state.slip_probability >= kEventProbability;
   if (event == slips(state.mode)) return state.mode;

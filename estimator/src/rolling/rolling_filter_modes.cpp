@@ -27,8 +27,8 @@ constexpr double kPlateau_m_s = 0.004, kSteady_m_s = 0.01, kJump_m_s = 0.08, kPl
 constexpr double kRise_m_s = 0.03, kHit_m_s = 0.3, kRiseShare = 0.7;  // vertical change of contact velocity, on a bump
 constexpr std::int64_t kAgesApart = 4;
 // Minimum number of hypotheses that do not contain the last mode change of the best hypothesis. A slip with constant
-// spin looks like grip until the slip ends. When the slip ends, a hundred variants of the last nodes have higher
-// weights.
+// spin looks like grip until the slip ends. When the slip ends, a hundred hypotheses with other recent modes have
+// higher weights than the slip.
 constexpr std::size_t kDissenters = 6;
 constexpr double kRoughCost = 0.2;         // cost per node, between the residuals of a slope and of grip on a plane
 constexpr double kInclineAfterBump = 4.0;  // factor for a slope after a bump, because the foot of a ramp is a bump
@@ -41,7 +41,7 @@ double log_normal(double value, double variance) {
 }
 
 /// Returns the log density of a vertical change of the contact velocity u per node on a bump: m1 of rolling.md (R25).
-/// The sphere rolls over the bump or hits it.
+/// The two components of the mixture are a sphere that rolls over the bump and a sphere that hits the bump.
 double log_rise(double change) {
   const auto density = [&](double sigma) {
     return std::exp(-0.5 * change * change / (sigma * sigma)) / (sigma * std::sqrt(2.0 * std::numbers::pi));
@@ -49,8 +49,8 @@ double log_rise(double change) {
   return std::log(kRiseShare * density(kRise_m_s) + (1.0 - kRiseShare) * density(kHit_m_s) + 1e-300);
 }
 
-/// Returns the log density of a horizontal change of the contact velocity u per node: m2 of rolling.md (R24). The
-/// velocity is constant, drifts, or jumps. `square` is the squared length of the change.
+/// Returns the log density of a horizontal change of the contact velocity u per node: m2 of rolling.md (R24). During
+/// slip, the contact velocity is constant, drifts, or jumps. `square` is the squared length of the change.
 double log_change(double square) {
   double density = 0.0;
   for (const auto& [share, sigma] : {std::pair(kPlateauShare, kPlateau_m_s), std::pair(kSteadyShare, kSteady_m_s),
@@ -163,7 +163,8 @@ std::span<const Candidate> propose(const RollingParams& params, const rolling::C
   return {out.data(), total};
 }
 
-/// Returns the start node of a mode after merging. The distance within which starts merge grows with their age.
+/// Returns the start node of a mode after merging. Mode starts that are close in time merge, and the merging distance
+/// grows with the age of the starts.
 std::int64_t beginning(std::int64_t switched_node, std::int64_t node, double node_s) {
   const auto long_ago = static_cast<std::int64_t>(kLongAgo_s / node_s);
   const std::int64_t age = std::min(node - switched_node, long_ago);
@@ -177,8 +178,8 @@ struct Kept {
   std::size_t count = 0;
 };
 
-/// Selects the candidates that remain: the most probable candidate for each mode and start. kDissenters places are
-/// reserved for candidates without the best candidate's last mode change.
+/// Selects the candidates that remain: the most probable candidate for each mode and start. The function reserves
+/// `kDissenters` places for candidates that do not contain the last mode change of the best candidate.
 Kept keep(std::span<const Candidate> candidates, std::int64_t node, double node_s) {
   Kept kept;
   for (const Candidate& candidate : candidates) {
@@ -206,7 +207,7 @@ void rearrange(const Origins& from, std::size_t count, std::span<RollingFilter::
     waits[k] = from[k] != k;
     readers[from[k]] += waits[k] ? 1 : 0;
   }
-  // A slot that no pending copy reads can be overwritten. The copy may free the slot that it reads.
+  // A slot can be overwritten if no pending copy reads the slot. The copy into the slot may free another slot.
   for (std::size_t first = 0; first < count; ++first) {
     for (std::size_t k = first; k < count && waits[k] && readers[k] == 0; k = from[k]) {
       all[k] = all[from[k]];
@@ -214,7 +215,7 @@ void rearrange(const Origins& from, std::size_t count, std::span<RollingFilter::
       --readers[from[k]];
     }
   }
-  // the remaining copies form cycles of slots
+  // each remaining copy belongs to a cycle of slots
   for (std::size_t first = 0; first < count; ++first) {
     if (!waits[first]) continue;
     const RollingFilter::Hypothesis kept = all[first];

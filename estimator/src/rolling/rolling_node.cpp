@@ -37,8 +37,8 @@ constexpr double kRecoveredTau_s = 0.1;  // correlation time of the error of a r
 constexpr double kFastRate_rad_s = 6.0;  // at higher rates, the force rotates too far within a node for levelling
 constexpr double kUnsureSpeed_m_s = 0.1, kSpeedWindow_s = 1.0;
 constexpr double kStartTilt_rad = 0.15;  // tilt error of a start in motion, caused by a push of 1.5 m/s^2
-// Limits of rate and angular acceleration around a gap. If the rates on both sides of a gap are below the limit, the
-// sphere was hardly pushed during the gap.
+// Limits of rate and angular acceleration around a gap. If the rates before and after a gap are below kGapRate_rad_s,
+// the sphere was hardly pushed during the gap.
 constexpr double kGapRate_rad_s = 1.0, kGapStill_rad_s2 = 0.5;
 constexpr double kGapTurned = 0.5;  // change of velocity in a gap, as a fraction of the rolling velocity's change
 constexpr double kGapStep = 0.15;   // uncertain time of a rate change within a gap, as a fraction of the gap
@@ -103,8 +103,8 @@ struct RailedForce {
   Eigen::Vector3d least_m_s2 = Eigen::Vector3d::Zero();  ///< the reading is a lower bound of these components
 };
 
-/// Returns the reading of a saturated force, or a larger force: rolling.md (R8). The larger force keeps the velocity of
-/// the centre constant.
+/// Returns a force for a saturated reading: rolling.md (R8). The result is the larger of two forces: the reading, and
+/// the force that keeps the centre's velocity constant.
 RailedForce railed_force(const ImuSample& sample, const Eigen::Vector3d& read_m_s2, const Eigen::Vector3d& kept_m_s2) {
   int largest = 0;
   sample.specific_force_m_s2.cwiseAbs().maxCoeff(&largest);
@@ -134,8 +134,8 @@ void integrate(const RollingParams& params, const ImuAverage& reading, RollingNo
   const Eigen::Vector3d w = w_raw - nominal.gyro_bias_rad_s - nominal.gyro_scale * w_raw;
   Eigen::Vector3d f =
       f_raw - nominal.accel_bias_m_s2 - nominal.accel_scale * f_raw - nominal.accel_delay_s * w.cross(f_raw);
-  // A force that rotates in the sensor is reduced by averaging over the window. Across the rotation axis, the reduction
-  // is the fraction (|w| dt)^2 / 24: rolling.md (R4).
+  // A force that rotates in the sensor is reduced by averaging over the window. The force component across the rotation
+  // axis loses the fraction (|w| dt)^2 / 24: rolling.md (R4).
   f -= dt_s * dt_s / 24.0 * w.cross(w.cross(f));
   const Eigen::Quaterniond half = so3::exp(0.5 * dt_s * w);
   const Eigen::Quaterniond q_mid = nominal.q_WI * half;
@@ -151,8 +151,8 @@ void integrate(const RollingParams& params, const ImuAverage& reading, RollingNo
   const Eigen::Vector3d arm = params.lever_arm_m + nominal.lever_arm_error_m;
   const Eigen::Vector3d change_rad_s = w_raw - nominal.last_rate_I_rad_s;  // angular acceleration times dt_s
   nominal.last_rate_I_rad_s = w_raw;
-  // If the rate is unknown, the direction of the force is unknown. The velocity of the centre then remains constant:
-  // rolling.md (R7).
+  // If the rate is unknown, the direction of the force is unknown. With an unknown direction of the force, the
+  // integration keeps the velocity of the centre constant: rolling.md (R7).
   const Eigen::Vector3d keeps_centre = R_T * w.cross(w.cross(arm)) + q_mid * change_rad_s.cross(arm);
   const Eigen::Vector3d fallen = dt_s * gravity * Eigen::Vector3d::UnitZ();
   Eigen::Vector3d least = Eigen::Vector3d::Zero();
@@ -320,8 +320,7 @@ Contact contact(const RollingParams& params, const RollingNominal& nominal, cons
   return out;
 }
 
-/// Returns the variance of the measurement that the velocity is zero, if the velocity is too uncertain: rolling.md
-/// (R20).
+/// If the velocity is too uncertain, returns the variance for an update with velocity zero: rolling.md (R20).
 std::optional<double> lost_velocity_variance(const RollingParams& params, double node_s, const Covariance& P) {
   if (P(kVelocity, kVelocity) + P(kVelocity + 1, kVelocity + 1) < squared(kUnsureSpeed_m_s)) return std::nullopt;
   return squared(params.expert.contact.speed_sigma_m_s) * kSpeedWindow_s / node_s;
@@ -331,14 +330,14 @@ bool resets_slope(RollingMode from, RollingMode to) {
   return from != to && !slips(to);
 }
 
-/// Resets the slope after a change of mode: rolling.md (R21).
+/// Resets the slope of the floor after a change of the contact mode: rolling.md (R21).
 void change_floor(const RollingParams& params, RollingMode from, RollingMode to, double h_s,
                   const RollingNominal& nominal, Vector& x, Covariance& P) {
   if (from == RollingMode::incline && to == from) {
     P.diagonal().segment<2>(kSlope).array() += squared(params.expert.contact.slope_walk_sqrts) * h_s;
   }
-  // On a rough floor, the travelled distance is smaller than the radius times the rotation. The ratio depends on the
-  // roughness.
+  // On a rough floor, the travelled distance is smaller than the radius times the rotation. The travelled distance on a
+  // rough floor depends on the steepness of the floor.
   if (to == RollingMode::rough) P(kRadius, kRadius) += squared(params.expert.contact.rough_radius_walk_m_sqrts) * h_s;
   if (!resets_slope(from, to)) return;
   P.middleRows<2>(kSlope).setZero();
@@ -348,7 +347,7 @@ void change_floor(const RollingParams& params, RollingMode from, RollingMode to,
   x.segment<2>(kSlope) = -nominal.slope;
 }
 
-/// Levels a lost tilt by the mean force: rolling.md (R30).
+/// If the tilt is uncertain, aligns the attitude with the mean specific force: rolling.md (R30).
 bool reset_tilt(const RollingParams& params, const RollingSums& sums, bool at_rest, RollingNominal& nominal,
                 Covariance& P) {
   if (sums.force_clipped_s >= sums.node_s) return false;

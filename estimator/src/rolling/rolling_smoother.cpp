@@ -25,7 +25,7 @@ RollingParams quieter(RollingParams params, double share) {
   return params;
 }
 
-/// Returns which of two modes constrains the contact point less.
+/// Returns the contact mode, out of two, that constrains the contact point less.
 RollingMode looser(RollingMode a, RollingMode b) {
   const auto rank = [](RollingMode mode) {
     if (slips(mode)) return mode == RollingMode::bump ? 3 : 2;

@@ -38,7 +38,8 @@ Reported reported(const Vector& x) {
   return out;
 }
 
-/// Transforms the adjoint to the time before the nominal state moved: T^T lambda, T^T Lambda T, rolling.md (R36).
+/// Transforms the adjoint vector and matrix to the nominal state before its move: T^T lambda, T^T Lambda T, rolling.md
+/// (R36).
 void move_back(const Vector& turned, Adjoint& adjoint) {
   constexpr int kHeading = kAttitude + 2;
   adjoint.lambda[kHeading] += turned.dot(adjoint.lambda);
