@@ -119,7 +119,8 @@ TEST(UnitAlignment, AStampThatGoesBackIsRejected) {
   EXPECT_TRUE(alignment.push(0, samples[0], state).ok()) << "the stamps of two units are independent";
 }
 
-std::vector<RollingOdometry::Pose> poses_of(RollingOdometry& odometry, const std::vector<std::vector<ImuSample>>& units) {
+std::vector<RollingOdometry::Pose> poses_of(RollingOdometry& odometry,
+                                            const std::vector<std::vector<ImuSample>>& units) {
   std::vector<RollingOdometry::Pose> out;
   const auto take = [&] {
     while (const std::optional<RollingOdometry::Pose> pose = odometry.take()) out.push_back(*pose);

@@ -161,8 +161,8 @@ RollingOdometry::Params rolling_params(const nb::kwargs& given) {
 }
 
 RollingEstimate as_estimate(const RollingOdometry::Pose& p) {
-  return {p.pose.time_ns,           p.pose.p_WA_m,      p.pose.q_WA, p.pose.v_WA_m_s,
-          p.angular_velocity_rad_s, p.pose.covariance, p.mode,      p.at_rest,       p.uncertain};
+  return {p.pose.time_ns,    p.pose.p_WA_m, p.pose.q_WA, p.pose.v_WA_m_s, p.angular_velocity_rad_s,
+          p.pose.covariance, p.mode,        p.at_rest,   p.uncertain};
 }
 
 /// Returns the samples of all units, from one triple of arrays or from lists with one array per unit. All units share
@@ -226,7 +226,8 @@ void bind_rolling_odometry(nb::module_& m) {
       m, "RollingOdometry",
       "Estimates the pose of a rolling sphere from one to four IMUs, through grip, slip, bumps and slopes. Poses are "
       "live,\n"
-      "smoothed with a lag of lag_s, or smoothed with the whole recording (lag_s=1e9: all poses come after finish()).\n\n"
+      "smoothed with a lag of lag_s, or smoothed with the whole recording (lag_s=1e9: all poses come after "
+      "finish()).\n\n"
       "RollingOdometry(units=[(ImuSheet, T_BI), ...], radius_m=..., **options): T_BI (4, 4) is the pose of a unit in\n"
       "sphere axes, relative to the centre. Options: see parameters(). World: z up, origin at the centre at the first\n"
       "sample, yaw 0. The sphere must be stationary for the first second.");

@@ -27,10 +27,10 @@ Settings<RollingOdometry::Params> odometry_settings(double lag_s, std::vector<st
   params.radius_m = presets::kSphereRadius_m;
   params.lag_s = lag_s;
   // replaced by parameters of RollingOdometry
-  fixed.insert(fixed.end(), {"merge_count", "merge_gyro_range_rad_s", "merge_accel_range_m_s2", "rolling_radius_m",
-                             "rolling_gravity_m_s2", "rolling_lever_arm_*", "rolling_gyro_range_rad_s",
-                             "rolling_accel_range_m_s2", "rolling_recovered_rate_sigma_rad_s", "rolling_lag_s",
-                             "rolling_rate_max_hz"});
+  fixed.insert(fixed.end(),
+               {"merge_count", "merge_gyro_range_rad_s", "merge_accel_range_m_s2", "rolling_radius_m",
+                "rolling_gravity_m_s2", "rolling_lever_arm_*", "rolling_gyro_range_rad_s", "rolling_accel_range_m_s2",
+                "rolling_recovered_rate_sigma_rad_s", "rolling_lag_s", "rolling_rate_max_hz"});
   return Settings<RollingOdometry::Params>(
       params, {.stated = {"radius_m", "gravity_m_s2",
                           // the following parameters depend on whether the device is known
@@ -211,7 +211,8 @@ Method position_tumble() {
 }
 
 Method position_tumble_lag() {
-  return position_method("tumble_lag", "RollingOdometry with a fixed lag: each pose is smoothed with the data of that lag.",
+  return position_method("tumble_lag",
+                         "RollingOdometry with a fixed lag: each pose is smoothed with the data of that lag.",
                          lag_settings(), run_lag);
 }
 

@@ -36,11 +36,14 @@ std::vector<ImuSample> readings_of(const sim::ImuRecord& record, Status& status,
 Doubt doubt_of(const UnitFault& fault, const std::string& name, TimeNs start_ns) {
   const double since_s = seconds(fault.since_ns - start_ns);
   switch (fault.kind) {
-    case UnitFault::Kind::silent: return {Doubt::About::unit_silent, since_s, name};
-    case UnitFault::Kind::frozen: return {Doubt::About::unit_frozen, since_s, name};
+    case UnitFault::Kind::silent:
+      return {Doubt::About::unit_silent, since_s, name};
+    case UnitFault::Kind::frozen:
+      return {Doubt::About::unit_frozen, since_s, name};
     case UnitFault::Kind::frozen_axis:
       return {Doubt::About::unit_frozen, since_s, name + "_" + to_string(fault.axis)};
-    case UnitFault::Kind::disagrees: break;
+    case UnitFault::Kind::disagrees:
+      break;
   }
   return {Doubt::About::unit_disagrees, since_s, name};
 }

@@ -18,8 +18,8 @@ struct SphereImus {
   int beyond_range = 0;  ///< readings that were left out because they exceed what the device can measure
 };
 
-/// Converts all IMUs except `imu_reference`, at most ImuMerge::kImus. Readings that are not finite, out of order or beyond
-/// the device's range are left out. Returns the error of the primary IMU if no IMU is valid.
+/// Converts all IMUs except `imu_reference`, at most ImuMerge::kImus. Readings that are not finite, out of order or
+/// beyond the device's range are left out. Returns the error of the primary IMU if no IMU is valid.
 Status sphere_imus(const sim::Sensors& sensors, SphereImus& out);
 
 /// The units of a sphere, merged with knowledge of the whole recording.

@@ -134,11 +134,12 @@ void declare_reference(VerbOptions& verb, ImportOptions& options) {
 }  // namespace
 
 void declare(VerbOptions& verb, ImportOptions& options) {
-  verb.add("PATH", options.path,
-           "file or folder to import: lidar sweeps (PLY, PCD, VTK, KITTI .bin); IMU readings (CSV of a logger or of "
-           "sensor_msgs/Imu, or the folder of a CSV export, BROAD HDF5 or RepoIMU CSV with optical reference, "
-           "AirbrakesV2 flight log); a bag (ROS 1 file or folder of its parts, ROS 2 folder, MCAP file); or poses (TUM, "
-           "KITTI, a table with named columns such as EuRoC's ground truth)")
+  verb.add(
+          "PATH", options.path,
+          "file or folder to import: lidar sweeps (PLY, PCD, VTK, KITTI .bin); IMU readings (CSV of a logger or of "
+          "sensor_msgs/Imu, or the folder of a CSV export, BROAD HDF5 or RepoIMU CSV with optical reference, "
+          "AirbrakesV2 flight log); a bag (ROS 1 file or folder of its parts, ROS 2 folder, MCAP file); or poses (TUM, "
+          "KITTI, a table with named columns such as EuRoC's ground truth)")
       .required();
   verb.add("--format", options.format,
            "airbrakes, broad, csv, kitti, mcap, odometry, pcd, ply, repoimu, rosbag1, rosbag2, tum or vtk [from "

@@ -102,8 +102,9 @@ std::optional<Change> change_until(std::size_t last, std::size_t span, const Swe
   if (!(from.time_ns < middle.time_ns && middle.time_ns < to.time_ns)) return std::nullopt;
   const auto by_imu = imu_motion.change(from.time_ns, middle.time_ns, to.time_ns);
   if (!by_imu || !(by_imu->norm() >= kChange_m_s)) return std::nullopt;
-  return Change{to.time_ns, *by_imu, (to.p_WA_m - middle.p_WA_m) / seconds(to.time_ns - middle.time_ns) -
-                             (middle.p_WA_m - from.p_WA_m) / seconds(middle.time_ns - from.time_ns)};
+  return Change{to.time_ns, *by_imu,
+                (to.p_WA_m - middle.p_WA_m) / seconds(to.time_ns - middle.time_ns) -
+                    (middle.p_WA_m - from.p_WA_m) / seconds(middle.time_ns - from.time_ns)};
 }
 
 template <class Changes>

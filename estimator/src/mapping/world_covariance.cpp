@@ -13,8 +13,8 @@ namespace {
 
 using Pose = WorldCovariance::Pose;
 
-// Standard deviation of the map's scale. Errors of successive sweeps have common causes (ranges, matching along a hall),
-// so the position error grows in proportion to the distance: 0.24 % in a hall with pillars.
+// Standard deviation of the map's scale. Errors of successive sweeps have common causes (ranges, matching along a
+// hall), so the position error grows in proportion to the distance: 0.24 % in a hall with pillars.
 constexpr double kScale = 0.003;
 
 /// Returns the covariance of (error of the pose) - by_mounting (error of the mounting): mapping.md (R57).

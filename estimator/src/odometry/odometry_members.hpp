@@ -81,7 +81,7 @@ void members(Self& s, Visitor& visit) {
 template <class Self, class Visitor>
 void TumblingOdometry::members(Self& s, Visitor& visit) {
   visit.scratch(s.params_);  // must equal the saved ones
-  visit.scratch(s.order_);  // derived from the parameters
+  visit.scratch(s.order_);   // derived from the parameters
   visit("order", s.order_state_);
   visit.scratch(s.gyro_offset_);
   visit("gyro_offset", s.gyro_offset_state_);

@@ -75,8 +75,7 @@ RollingSmoother::Params rolling_params(const RollingOdometry::Params& params, co
   out.filter.lever_arm_sigma_m = params.centre_sigma_m;
   out.filter.gyro_range_rad_s = merged.gyro_range_rad_s;
   out.filter.accel_range_m_s2 = merged.accel_range_m_s2;
-  if (units >= kRecoveringUnits)
-    out.filter.expert.rails.recovered_rate_sigma_rad_s = kRecoveredSigma_rad_s;
+  if (units >= kRecoveringUnits) out.filter.expert.rails.recovered_rate_sigma_rad_s = kRecoveredSigma_rad_s;
   out.lag_s = std::max(params.lag_s, out.filter.expert.node_s);
   out.rate_max_hz = std::max(out.rate_max_hz, 1.1 * params.units.front().sheet.rate_hz);
   if (out.known_distance_m > 0.0 && out.filter.radius_sigma_m == 0.0)

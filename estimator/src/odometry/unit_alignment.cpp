@@ -38,9 +38,8 @@ bool is_silent(std::size_t unit, const UnitAlignment::State& state) {
 
 /// Returns the first reading after the newest common time, or the end of the readings.
 auto after_common(const std::vector<ImuSample>& readings, const UnitAlignment::State& state) {
-  return std::find_if(readings.begin(), readings.end(), [&](const ImuSample& reading) {
-    return !state.common_ns || reading.time_ns > *state.common_ns;
-  });
+  return std::find_if(readings.begin(), readings.end(),
+                      [&](const ImuSample& reading) { return !state.common_ns || reading.time_ns > *state.common_ns; });
 }
 
 ImuSample reading_at(TimeNs time_ns, const std::vector<ImuSample>& readings) {

@@ -9,8 +9,8 @@
 #include <string_view>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/recordings/number_text.hpp"
 #include "scenarios/recordings/lower_extension.hpp"
+#include "scenarios/recordings/number_text.hpp"
 #include "scenarios/recordings/table_file.hpp"
 #include "scenarios/recordings/upper_median.hpp"
 #include "scenarios/text.hpp"

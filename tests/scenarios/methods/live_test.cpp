@@ -58,9 +58,6 @@ const std::vector<Live> kLive = {
     {"slam/tumble_live", 0.0},
 };
 
-/// Methods whose answers still depend on later readings. A method that is repaired must leave this list.
-const std::set<std::string> kDependsOnLater = {"position/tumble_lag", "position/tumble_live"};
-
 /// Sets the readings from sample `from` on to those of a fault.
 using Fault = std::function<void(std::size_t from, sim::ImuRecord& imu)>;
 
@@ -246,7 +243,6 @@ class LiveMeansLive : public ::testing::TestWithParam<Live> {};
 TEST_P(LiveMeansLive, AnswersDoNotDependOnLaterReadings) {
   const Method& method = *find_methods(GetParam().method).at(0);
   const CutRecording& run = run_of(method.info.kind);
-  bool depends = false;
   for (const std::int64_t cut_ns : run.cuts_ns) {
     sim::Sensors received = run.sensors;
     truncate(cut_ns, received);
@@ -265,12 +261,9 @@ TEST_P(LiveMeansLive, AnswersDoNotDependOnLaterReadings) {
       }
       const Comparison compared = compare(method.info.kind, early, whole, until_ns);
       EXPECT_GT(compared.answers, 50u);
-      depends = depends || compared.differs_ns >= 0;
-      if (kDependsOnLater.contains(GetParam().method)) continue;
       EXPECT_EQ(compared.differs_ns, -1) << name << " after " << cut_ns;
     }
   }
-  EXPECT_EQ(depends, kDependsOnLater.contains(GetParam().method)) << "the list of exceptions is out of date";
 }
 
 std::string test_name(const ::testing::TestParamInfo<Live>& param) {

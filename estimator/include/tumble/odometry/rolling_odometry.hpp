@@ -17,8 +17,8 @@
 #include "tumble/common/pose.hpp"
 #include "tumble/common/sample_clock.hpp"
 #include "tumble/odometry/detail/merge_recordings.hpp"
-#include "tumble/odometry/detail/unit_alignment.hpp"
 #include "tumble/odometry/detail/stamp_order.hpp"
+#include "tumble/odometry/detail/unit_alignment.hpp"
 #include "tumble/odometry/detail/unit_rails.hpp"
 #include "tumble/odometry/imu_sheet.hpp"
 #include "tumble/rolling/rolling_smoother.hpp"
@@ -113,12 +113,13 @@ class RollingOdometry {
   /// host's stamps jitter. A unit without a reading is passed as NaN. OutlierFilter rejects single wild readings of
   /// each unit. OutlierFilter may delay the samples of all units by one; newest() is then one sample older. On error
   /// the state is unchanged. Errors are `too_few` (wrong number of units, or no reading), `time_order`, `degenerate`
-  /// (no gravity in the first sample), `gap` and `out_of_range`. `out_of_range`: finish() was called, the stamp is beyond
-  /// kStampMax_ns, or the only unit with readings has a frozen axis.
+  /// (no gravity in the first sample), `gap` and `out_of_range`. `out_of_range`: finish() was called, the stamp is
+  /// beyond kStampMax_ns, or the only unit with readings has a frozen axis.
   ///
   /// A single wrong stamp costs one sample (StampOrder). After a gap of more than a second, the second sample restarts
   /// the run. If the clock steps back, samples are rejected with `time_order` for 0.2 s, and then the run restarts. A
-  /// restart finishes the poses so far and continues as by reset(pose), at the newest pose. Later poses are `uncertain`.
+  /// restart finishes the poses so far and continues as by reset(pose), at the newest pose. Later poses are
+  /// `uncertain`.
   Status add_imus(std::span<const ImuSample> samples);
   /// Processes a sample of a sphere with one IMU. Returns the errors of add_imus().
   Status add_imu(const ImuSample& sample) { return add_imus({&sample, 1}); }
@@ -144,8 +145,8 @@ class RollingOdometry {
   /// Starts a new run at the origin and at rest. Poses not yet fetched by take() remain available, and the counts
   /// continue.
   void reset();
-  /// Starts a new run as reset() does, at a known pose of the sphere. Position and heading are those of `T_WG`; the tilt
-  /// is levelled at rest. Covariances are relative to this pose.
+  /// Starts a new run as reset() does, at a known pose of the sphere. Position and heading are those of `T_WG`; the
+  /// tilt is levelled at rest. Covariances are relative to this pose.
   void reset(const Eigen::Isometry3d& T_WG);
 
   /// Reports whether the readings of the IMUs are currently plausible. Returns `ok`, or `out_of_range` with one

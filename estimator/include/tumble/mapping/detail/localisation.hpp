@@ -20,8 +20,8 @@ namespace tumble {
 /// is not used because the standard deviation accounts for it. Localisation does not detect a map of another scale (see
 /// SweepScale), or errors of clocks or mounting that the calibration explains.
 ///
-/// The function present() judges the pose relative to the map at the newest sweep. Its findings end: the position relative
-/// to the map is again certain, or the contradictions are older than kMemory_s.
+/// The function present() judges the pose relative to the map at the newest sweep. Its findings end: the position
+/// relative to the map is again certain, or the contradictions are older than kMemory_s.
 class Localisation {
  public:
   static constexpr double kMemory_s = 30.0;

@@ -35,15 +35,14 @@ struct SweepScale {
 /// The attitudes come from the run's estimate. Intervals with a saturated accelerometer or with unconstrained sweeps
 /// are skipped. The standard deviation is heteroscedasticity-consistent (White, 1980). `gravity_m_s2` is the magnitude
 /// of gravity. Without acceleration, the scale is not observable. Gravity at rest detects an accelerometer's scale
-/// error instead. The standard deviation includes a constant acceleration error of 0.05 m/s^2, from bias and tilt, which
-/// changes in one direction do not average out. O(N).
+/// error instead. The standard deviation includes a constant acceleration error of 0.05 m/s^2, from bias and tilt,
+/// which changes in one direction do not average out. O(N).
 SweepScale find_sweep_scale(std::span<const ImuSample> samples, std::span<const SweepReport> sweeps,
                             double gravity_m_s2);
 
-/// Estimates the lidar's range scale while samples and sweeps arrive, from the changes of velocity of the last minute, at
-/// most 1000. The
-/// estimate uses the first pose of each sweep and is therefore less accurate than an estimate from the final poses of a
-/// whole run.
+/// Estimates the lidar's range scale while samples and sweeps arrive, from the changes of velocity of the last minute,
+/// at most 1000. The estimate uses the first pose of each sweep and is therefore less accurate than an estimate from
+/// the final poses of a whole run.
 class SweepScaleWatch {
  public:
   /// Change is the change of velocity from one span to the next span.

@@ -27,10 +27,10 @@ struct UnitRecording {
 /// A fault because of which the readings of a unit are not used.
 struct UnitFault {
   enum class Kind : std::uint8_t {
-    silent,      ///< no readings for half a second or until the end
-    frozen,      ///< a triad repeats one reading while the other units' readings change
-    frozen_axis, ///< `axis` repeats one reading; only the readings of its interval are not used
-    disagrees,   ///< the unit contradicts the others; none of its readings is used
+    silent,       ///< no readings for half a second or until the end
+    frozen,       ///< a triad repeats one reading while the other units' readings change
+    frozen_axis,  ///< `axis` repeats one reading; only the readings of its interval are not used
+    disagrees,    ///< the unit contradicts the others; none of its readings is used
   };
   Kind kind = Kind::silent;
   std::size_t unit = 0;  ///< index of the unit
@@ -55,14 +55,14 @@ struct MergedRecordings {
   std::optional<UnitSenses::Detected> other_sense;  ///< axes of the units that ImuMerge found mislabelled
 };
 
-/// Merges the recordings of up to ImuMerge::kImus units on one body with knowledge of the whole recording. ClippingFinder
-/// flags the clipped readings, UnitAlignment resamples the units to common times, and ImuMerge merges them. A unit is
-/// excluded while an axis is frozen or no readings exist. If ImuMerge finds a frozen or contradicting unit, a second
-/// pass excludes the unit from the start of the fault. Units without samples are ignored. `params` states ranges and
-/// gaps; the units' number, mountings and sensing elements are set here.
+/// Merges the recordings of up to ImuMerge::kImus units on one body with knowledge of the whole recording.
+/// ClippingFinder flags the clipped readings, UnitAlignment resamples the units to common times, and ImuMerge merges
+/// them. A unit is excluded while an axis is frozen or no readings exist. If ImuMerge finds a frozen or contradicting
+/// unit, a second pass excludes the unit from the start of the fault. Units without samples are ignored. `params`
+/// states ranges and gaps; the units' number, mountings and sensing elements are set here.
 ///
-/// Errors: `empty` if no unit has a sample; `out_of_range` with the axis if frozen axes leave no unit (`out.faults` lists
-/// the excluded units); the errors of ImuMerge. O(N).
+/// Errors: `empty` if no unit has a sample; `out_of_range` with the axis if frozen axes leave no unit (`out.faults`
+/// lists the excluded units); the errors of ImuMerge. O(N).
 Status merge_recordings(std::span<const UnitRecording> recordings, ImuMerge::Params params, MergedRecordings& out);
 
 }  // namespace tumble

@@ -63,9 +63,7 @@ class SecondPass {
   SecondPass(const Params& params, const RegimeStream::Params& rate, const LidarInertialOdometry::Params& mapping);
 
   /// Sets the gyro's zero offset, before the first sample.
-  void set_gyro_offset(const Eigen::Vector3d& offset_rad_s) {
-    rate_.rate.model.nominal.gyro_bias_rad_s = offset_rad_s;
-  }
+  void set_gyro_offset(const Eigen::Vector3d& offset_rad_s) { rate_.rate.model.nominal.gyro_bias_rad_s = offset_rad_s; }
 
   /// Buffers a sample that the first pass has processed. No allocation.
   void store(const ImuSample& sample);

@@ -17,8 +17,8 @@ namespace tumble {
 /// The common times are the stamps of one unit, the reference: the first unit, until it has no reading for kSilentMax_s
 /// while another unit has. The next unit with readings is then the reference. The readings of the other units are
 /// interpolated linearly (ImuInterpolation). A unit without a reading within kSilentMax_s before and after a common
-/// time is absent at that time. The alignment is causal: a common time is complete once each unit has a later reading or
-/// is silent for kSilentMax_s, so the output is at most kSilentMax_s late.
+/// time is absent at that time. The alignment is causal: a common time is complete once each unit has a later reading
+/// or is silent for kSilentMax_s, so the output is at most kSilentMax_s late.
 ///
 /// Cost: O(1) per reading. The stored readings cover kSilentMax_s; storage grows until then.
 class UnitAlignment {
@@ -37,8 +37,8 @@ class UnitAlignment {
   /// Constructs for `units` units, at most ImuMerge::kImus.
   explicit UnitAlignment(std::size_t units) : units_(units) {}
 
-  /// Adds a reading of one unit. A reading that is not finite is ignored. Returns `time_order` if the stamp is not later
-  /// than the unit's last stamp; the state is then unchanged.
+  /// Adds a reading of one unit. A reading that is not finite is ignored. Returns `time_order` if the stamp is not
+  /// later than the unit's last stamp; the state is then unchanged.
   Status push(std::size_t unit, const ImuSample& sample, State& state) const;
 
   /// Writes the readings at the next common time to `out`, all with that time; the rates of an absent unit are NaN.
