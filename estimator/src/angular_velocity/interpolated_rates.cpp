@@ -41,8 +41,8 @@ std::optional<InterpolatedRate> between(const OwnReading& z, const OwnReading& a
   InterpolatedRate out;
   out.rate_rad_s = v * v * (1.0 + 2.0 * u) * a.rate_rad_s + u * u * (3.0 - 2.0 * u) * b.rate_rad_s +
                    span_s * u * v * (v * slope_a - u * slope_b);
-  // The variance of an interpolated rate has two sources: the uncertain times of both readings, and the curvature that
-  // averaging over a window removes.
+  // The variance of an interpolated rate has two sources. The times of the readings are uncertain, and averaging over a
+  // window removes a part of the curvature.
   const Vector3d moment = moment_s * chord, bend = span_s / 24.0 * (slope_b - slope_a);
   out.variance_rad2_s2 = moment.cwiseAbs2() + bend.cwiseAbs2();
   return out;

@@ -214,8 +214,8 @@ double segment_evidence(const DistinctReadings& readings, const Eigen::Matrix2d&
   });
   odds -= kBeyond * std::max(0.0, static_cast<double>(beyond) - kStray * static_cast<double>(inliers.size()));
   if (facet.segments == 0) return -std::numeric_limits<double>::infinity();
-  // A reading counts as saturated if its distance from the level is within the noise, or within the error of the plane
-  // at other readings.
+  // A reading counts as saturated if its distance from the saturation level is within the noise. The reading also
+  // counts as saturated if the distance is within the error of the plane.
   facet.tolerance = std::max(facet.tolerance, std::min(kAtRail * noise, kAtRailShareMax * facet.level));
   // The Occam factor is the ratio of prior to posterior volume: rails.md (R66). The factor penalises the free choice of
   // saturation level and cross-axis sensitivities.

@@ -19,8 +19,8 @@ using Eigen::Vector3d;
 // initial precision of the lower bound that a clipped reading provides, (rad/s)^-2
 constexpr double kStartPrecision = 0.25;
 
-// Parameters of the search for flight between two impacts: number of Newton steps, longest step [rad/s], and maximum
-// remaining force as a fraction of the reading.
+// Search for flight between two impacts: number of Newton steps and longest step [rad/s]. `kGentleShare` is the maximum
+// remaining force, as a fraction of the reading.
 constexpr int kSeekIterations = 6;
 constexpr double kSeekStep = 3.0, kGentleShare = 0.25;
 

@@ -230,7 +230,7 @@ void RateStream::mark_suspect_run(int axis, std::size_t first, std::size_t last,
 }
 
 // Returns the growth of the gyro's reading before the newest sample, per sample. The growth is the smaller of two
-// steps, because an impact causes a single step, and a spin after an impact is not saturation.
+// steps, because an impact causes a single step. A constant spin after an impact is not saturation.
 Vector3d RateStream::approach(const std::vector<Knot>& window) {
   const std::optional<std::size_t> one = reading_before(window.size() - 1, window);
   const std::optional<std::size_t> two = one ? reading_before(*one, window) : std::nullopt;

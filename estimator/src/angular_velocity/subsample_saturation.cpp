@@ -10,8 +10,9 @@ namespace {
 
 // Maximum saturated fraction of the window. Above kShareMax, the unsaturated part does not determine the slope.
 constexpr double kShareMax = 0.85;
-// The standard deviation of the saturation deficit has two parts: the fraction `kOfLoss` of the deficit, and the
-// fraction `kOfDepth` of the distance from the saturation level. The distance counts up to `kDepthMax` (1 rad/s).
+// The standard deviation of the saturation deficit has two parts. The first part is the fraction `kOfLoss` of the
+// deficit. The second part is the fraction `kOfDepth` of the distance from the saturation level. The distance counts up
+// to `kDepthMax` (1 rad/s).
 constexpr double kOfLoss = 0.5, kOfDepth = 0.25, kDepthMax = 1.0;
 
 }  // namespace

@@ -275,9 +275,9 @@ void ImuMerge::close_windows(const Flags& present, const Vectors& rates, const V
 
 /// Excludes IMUs whose accelerometer may be saturated by an impact for less than a sample: imu_merge.md (I6). On a
 /// rigid body, the force of one IMU predicts the force component of another IMU along their connecting line. The
-/// prediction along the connecting line does not need the angular acceleration. The function excludes IMUs that
-/// disagree with the IMU that agrees with most other IMUs. If no two IMUs agree, the function first estimates a common
-/// angular acceleration that started within the window: (I7).
+/// prediction along the connecting line does not need the angular acceleration. The reference is the IMU whose force
+/// agrees with most other IMUs. IMUs that disagree with the reference are excluded. If no two IMUs agree, the function
+/// first estimates a common angular acceleration that started within the window: (I7).
 void ImuMerge::exclude_subsample_saturated(const Readings& samples, const Flags& present, const Vectors& forces,
                                            const Eigen::Vector3d& rate, double h, State& state, Flags& used) const {
   const double since_s = 0.5 * (h + state.length_s);

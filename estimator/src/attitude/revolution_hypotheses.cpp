@@ -33,7 +33,7 @@ struct Segment {
   std::size_t element = 0, first = 0, last = 0;
 };
 
-/// Hypothesis about the number of revolutions: nodes, starting with node `from`, and the cost of these nodes.
+/// A hypothesis about the number of revolutions contains nodes, starting with node `from`, and the cost of the nodes.
 struct Hypothesis {
   std::vector<Node> nodes;
   double cost = 0.0;

@@ -79,9 +79,9 @@ Eigen::Matrix3d left_jacobian_inverse(const Eigen::Vector3d& phi) {
 }
 
 Eigen::Quaterniond shortest_arc(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
-  // With h = from + to, the rotation has the real part |h| / 2 and the imaginary part (from x to) / |h|. In the
-  // imaginary part, the cross product from x to equals from x h. For nearly opposite vectors, h is exact to rounding.
-  // The formula for the rotation is accurate up to a half turn, because no digits cancel.
+  // The rotation is the quaternion with real part |h| / 2 and imaginary part (from x to) / |h|, where h = from + to. In
+  // the imaginary part, the cross product from x to equals from x h. For nearly opposite vectors, h is exact to
+  // rounding. The formula for the rotation is accurate up to a half turn, because no digits cancel.
   const Eigen::Vector3d h = from + to;
   const double length = h.norm();
   if (length < 1e-15) {

@@ -276,8 +276,8 @@ void LidarInertialOdometry::Impl::propagate(const UpdatedSweep& sweep, const Pla
   prune_until(motion.end_ns);
 }
 
-/// Adds the pose error of a sweep to the map error at the robot's position, because the points of the sweep in the map
-/// have an equal error.
+/// Adds the pose error of a sweep to the map error at the robot's position. The points that the sweep adds to the map
+/// have the pose error of the sweep.
 void LidarInertialOdometry::Impl::add_map_drift(const UpdatedSweep& sweep, const SweepReport& report) {
   const double inserted_share =
       report.points_used == 0 ? 0.0 : double(report.map_points_added) / double(report.points_used);

@@ -19,8 +19,8 @@ namespace {
 namespace u = unknowns;
 using Params = LidarInertialOdometry::Params;
 
-/// Continues the saturation deficit of an axis that is saturated at the boundary. The predicted deficit decays
-/// exponentially: mapping.md (R48).
+/// Continues the saturation deficit of an axis that is saturated at the boundary. The predicted saturation deficit
+/// decays exponentially: mapping.md (R48).
 void carry_deficit(const Params& params, const SweepBoundary& boundary, const SweepTrajectory& trajectory,
                    Prediction& next) {
   constexpr int kLast = SweepTrajectory::kKnots - 1;

@@ -13,7 +13,7 @@ namespace tumble {
 namespace {
 
 /// Returns the largest standard deviation of each axis over the samples of the segment in which the axis was clipped.
-/// Samples after the segment do not count.
+/// Samples after the segment do not affect the result.
 Eigen::Vector3d least_known(std::span<const MotionSample> samples, TimeNs end_ns) {
   Eigen::Vector3d sigma = Eigen::Vector3d::Zero();
   for (const MotionSample& sample : samples) {
@@ -26,7 +26,7 @@ Eigen::Vector3d least_known(std::span<const MotionSample> samples, TimeNs end_ns
 }
 
 /// Returns the signed factors s_j of the saturation deficit for a sample: mapping.md (R8). The factors are proportional
-/// to the standard deviation of the sample.
+/// to the standard deviation of the sample's rate.
 Eigen::Vector3d signed_shares(const MotionSample& sample, const Eigen::Vector3d& least_known_rad_s) {
   Eigen::Vector3d share = Eigen::Vector3d::Zero();
   for (int axis = 0; axis < 3; ++axis) {

@@ -154,8 +154,8 @@ bool RollingFilter::spins_in_place(const State& state) const {
 }
 
 /// Returns the position covariance that is due to differences between the hypotheses: rolling.md (R27). The result is
-/// the mean of d d^T, weighted by the hypothesis' weight. The vector d is the difference to the best hypothesis'
-/// position.
+/// the mean of d d^T, weighted by the hypothesis' weight. The vector d is the difference between a hypothesis' position
+/// and the best hypothesis' position.
 Eigen::Matrix3d RollingFilter::position_spread(const State& state) {
   const Eigen::Vector3d best = state.hypotheses[0].x.segment<3>(rolling::kPosition);
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();

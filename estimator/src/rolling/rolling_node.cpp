@@ -215,8 +215,8 @@ ImuAverage gap_piece(const RollingParams& params, const ImuSample& before, const
   const double turning = std::max(before.angular_velocity_rad_s.norm(), after.angular_velocity_rad_s.norm());
   const double acceleration =
       kGapStill_rad_s2 + params.expert.gap.gap_acceleration_rad_s2 * std::min(1.0, turning / kGapRate_rad_s);
-  // A parabola between two known rates has the integral a T^3 / 12, with the angular acceleration a and the duration T
-  // of the gap: rolling.md (R31).
+  // A gap has the duration T. A parabola between the rates before and after the gap has the integral a T^3 / 12:
+  // rolling.md (R31).
   const double off_rad = acceleration * gap_s * gap_s * gap_s / 12.0 + kGapStep * change.norm() * gap_s;
   uncertainty.rad2 = off_rad * off_rad / pieces;
   // variance of the contact velocity in a gap: rolling.md (R32)
