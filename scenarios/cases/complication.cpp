@@ -89,8 +89,8 @@ std::span<const ComplicationLine> of_motion() {
   return kLines;
 }
 
-// The ideal saturation level is beyond any reading of a tumble, so that no reading is clipped. The level is still
-// within the ranges that methods accept.
+// The ideal saturation level is beyond any reading of a tumble, so that no reading is clipped. The ideal saturation
+// level is still within the ranges that methods accept.
 constexpr double kBeyondRates_rad_s = 100.0, kBeyondForces_m_s2 = 1000.0;
 
 std::span<const ComplicationLine> of_imu() {

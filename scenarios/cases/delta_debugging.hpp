@@ -27,7 +27,7 @@ struct LeastSet {
 /// needs about 2 log2(count) trials for one needed item and at most O(count^2). No trial is repeated.
 LeastSet least_failing_set(std::size_t count, const FailsWith& fails);
 
-/// Returns true if a run with this value still fails.
+/// Returns true if a run with the number `value` still fails.
 using FailsAt = std::function<std::optional<bool>(double value)>;
 
 struct LeastNumber {

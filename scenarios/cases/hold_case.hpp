@@ -17,7 +17,7 @@ Scenario named_case_of(const Shrunk& shrunk, const std::string& name, const std:
 /// Returns the failure criteria that an expectation states.
 Failure failure_of(const Expectation& expected);
 
-/// Largest allowed factor between the measured and the accepted metric of a failing case.
+/// Largest accepted factor between the measured and the accepted metric of a failing case.
 inline constexpr double kCaseFactor = 2.0;
 
 /// Result of the comparison of one expectation with an outcome.

@@ -8,8 +8,9 @@
 namespace tumble::scenarios {
 
 /// Describes how an outcome failed: by its status, by the requested metric, or by a verdict (`map_failed`). The search
-/// thus rejects simpler runs that fail for another reason. A run without the metric counts as passed, because a run
-/// without clipping has no error at clipped samples. Failure counts a run without the metric as failed.
+/// for a simpler run (shrink.hpp) thus rejects runs that fail for another reason. A run without the metric counts as
+/// passed, because a run without clipping has no error at clipped samples. The struct Failure (sweep/triage.hpp) counts
+/// a run without the metric as failed.
 class SameFailure {
  public:
   /// Throws BadInput if `outcome` does not fail, or if its status is `killed`.

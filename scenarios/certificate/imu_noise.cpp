@@ -21,7 +21,8 @@ struct RestReadings {
   std::vector<Eigen::Vector3d> gyro, accel;
 };
 
-/// Returns the device with noise and bias only. Filters need a higher rate, and other errors are constant at rest.
+/// Returns the device with noise and bias only. Filters are omitted because they need a higher sample rate. Other
+/// errors are omitted because they are constant at rest.
 sim::SensorSpec resting(const DataSheet& sheet) {
   sim::SensorSpec sensor = imu_of_sheet(sheet);
   for (const char* off :

@@ -11,8 +11,8 @@
 // The accepted interval of a plane includes the planes of all recordings and their errors. Residuals below are in
 // rad/s; a residual in brackets belongs to a plane without cross-axis sensitivity.
 //
-// Wand, x: Test05 trials 1 to 3 and Test10 trials 1 to 3 have 100 to 1700 readings each. The residual is 0.003 to 0.009
-// (0.005 to 0.010). The offset changes with the bias from day to day.
+// Wand, x: Test05 trials 1 to 3 and Test10 trials 1 to 3 have 100 to 1700 readings each. The residual of the planes of
+// wand, x is 0.003 to 0.009 (0.005 to 0.010). Their offset changes with the bias from day to day.
 //
 // Wand, y: Test06 trial 1 has 39 and 42 readings at the two limits, and the residual is 0.004 (0.014). Only one
 // recording exists, so the interval is three standard errors. The interval includes planes from more readings at the

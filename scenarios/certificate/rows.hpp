@@ -79,8 +79,8 @@ struct LidarRaysSetup {
 };
 std::vector<CertificateEntry> certify_lidar_rays(const CertificateInput& input, const LidarRaysSetup& setup = {});
 
-/// The measurement compares an hour of each IMU at rest with the noise and bias of the data sheet. The factors multiply
-/// the noise and bias of the simulated IMU.
+/// The measurement compares an hour of each IMU at rest with the noise and bias of the data sheet. The factors in
+/// ImuNoiseSetup multiply the noise and bias of the simulated IMU.
 struct ImuNoiseSetup {
   double duration_s = 3600.0;
   std::uint64_t seed = 1;

@@ -1,7 +1,8 @@
-// SPDX-License-Identifier: BSD-3-Clause Sensing elements saturate along their own axes, so the readings of a saturated
-// element lie on one plane for each element and sign (clipped_plane.hpp). The measurement simulates devices with random
-// elements and saturates one element at a time. The measurement then fits a plane to the readings and compares the
-// fitted plane with the simulated plane. real_rails.cpp contains planes of real devices.
+// SPDX-License-Identifier: BSD-3-Clause
+// Sensing elements saturate along their own axes, so the readings of a saturated element lie on one plane for each
+// element and sign (clipped_plane.hpp). The measurement simulates devices with random elements and saturates one
+// element at a time. The measurement then fits a plane to the readings and compares the fitted plane with the simulated
+// plane. The planes of real devices are in real_rails.cpp.
 #include <algorithm>
 #include <cmath>
 

@@ -64,8 +64,8 @@ void add_rotations(const Estimate& estimate, std::vector<SeenRotation>& out) {
   }
 }
 
-/// Integrates the gyro per axis. Between two sweeps the rotation is a few hundredths of a radian, so this integral is
-/// accurate.
+/// Integrates the gyro per axis. Between two sweeps the rotation is a few hundredths of a radian, so the integral per
+/// axis is accurate.
 class Integral {
  public:
   explicit Integral(const sim::ImuRecord& imu) : imu_(imu) {

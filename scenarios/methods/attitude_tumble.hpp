@@ -7,7 +7,7 @@
 #include "sim/recording.hpp"
 #include "tumble/attitude/tumble_attitude.hpp"
 
-/// Declares the method attitude/tumble. Other methods call it with modified readings.
+/// Declares the method attitude/tumble. Other methods call attitude/tumble with modified readings.
 namespace tumble::scenarios {
 
 /// Returns the filter's parameters with the library's defaults.
@@ -19,7 +19,7 @@ const Settings<TumbleAttitude::Params>& attitude_tumble_settings();
 Estimate run_attitude_tumble(const sim::Sensors& sensors, const sim::Values& parameters);
 
 /// Reports for how long the inclination is unknown, which means that its 2 sigma exceed 1 rad. Adds a failed health
-/// check and the health value `attitude_unknown_s`. An IMU gap in a tumble is an example of a cause.
+/// check and the health value `attitude_unknown_s`. A possible cause is an IMU gap in a tumble.
 void report_unknown_attitude(Estimate& estimate);
 
 }  // namespace tumble::scenarios

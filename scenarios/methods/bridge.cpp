@@ -30,7 +30,7 @@ std::uint8_t clip_flags(std::uint8_t sim_bits) {
 }
 
 // Largest accepted ratio between the median step and the stated period. Stamps in a wrong unit differ at least
-// 1000-fold. A device that is read slowly stays below this ratio.
+// 1000-fold. The ratio of a device that is read slowly stays below kPeriodsMax.
 constexpr double kPeriodsMax = 20.0;
 
 Status check_period(const sim::ImuRecord& record, std::span<const ImuSample> samples) {

@@ -302,7 +302,7 @@ void read_header(const std::filesystem::path& path, Kind& kind, std::string& met
   estimate.frame = reader.named("frame", Frame::centre);
   const json& status = reader.object("status");
   estimate.status.trouble = JsonMembers(path, status).named("trouble", Trouble::diverged);
-  // A Status refers to a static string, so the name of the actual field is only in the file.
+  // A Status refers to a static string, so it cannot name the actual field. The file names the field.
   if (!estimate.status.ok()) estimate.status.field = "estimate.json";
   for (const auto& [name, value] : reader.object("health").items())
     estimate.health[name] = value.is_number() ? value.get<double>() : std::nan("");

@@ -10,7 +10,8 @@
 
 namespace tumble::scenarios {
 
-/// Wall time of one run of an external method if its description states no limit. A Python file has no description.
+/// Wall time of one run of an external method if its description states no limit. An external method in a Python file
+/// has no description.
 inline constexpr double kExternalTimeLimit_s = 600.0;
 
 /// An external method: a command described in a file NAME.yaml, or a Python function in NAME.py. EXTERNAL.md describes

@@ -26,7 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Sensor data in one format. The data are only written if the command names the format.
+/// Sensor data in one format. The sensor data are only written if the command names the format.
 struct Provision {
   const char* placeholder;
   const char* name;  ///< file or folder in the scratch folder

@@ -23,12 +23,12 @@ constexpr double kArmShareMin = 0.5;  // 1: matches the mountings; 0: no relatio
 // Centripetal force grows with the squared rate, so the limit corresponds to 3 % of gyro scale, three times the data
 // sheet's scale error. In runs of `slip` without faults, arm_share() was 0.999 to 1.002.
 constexpr double kArmShareOff = 0.06;
-// Within these limits, the rotation of gravity confirms the gyro scale. The cause of a contradiction is then a mounting
-// or an accelerometer.
+// Within these limits, the rotation of gravity confirms the gyro scale. If the force differences still contradict the
+// mountings, the cause is a mounting or an accelerometer.
 constexpr double kSlopeRight = 0.02, kSlopeAgreed = 0.99;
 // Fraction of hand-held samples above which a recording counts as hand-held. Measured fractions are at least 0.91 for
-// hand-held motion. For thrown bodies they are at most 0.25, and mostly below 0.6 with wrong axes (hill, throw, twirl,
-// swing, seeds 99101 and 99102).
+// hand-held motion. For thrown bodies, the fractions are at most 0.25 with correct axes, and mostly below 0.6 with
+// wrong axes (hill, throw, twirl, swing, seeds 99101 and 99102).
 constexpr double kHeldShare = 0.8;
 
 Status reported(Status status, Estimate& estimate) {

@@ -146,7 +146,7 @@ json of_series(const sim::SeriesRecord& series, Arrays& arrays) {
 class Answer {
  public:
   Answer(const SharedMemory& memory, const AnswerBounds& bounds) {
-    // The function can enlarge the memory that it received.
+    // The Python function can enlarge the shared memory that it received.
     const std::uintmax_t most = bounds.table_bytes() + bounds.map_bytes();
     if (memory.size() > most)
       throw BadInput(

@@ -123,7 +123,7 @@ const Settings<RateSmoother::Params>& rate_tumble_settings() {
 void start_from_learnt(const LearntRig& rig, RateSmoother::Params& params) {
   const RigConstants::Matrix prior = RateModel(params.model, 0.01).prior_covariance();
   start_from(rig, kTrust, params);
-  // Biases change at every switch-on, so the default prior replaces their covariance.
+  // Biases change at every switch-on, so the default prior replaces the saved covariance of the biases.
   constexpr int kBias = 3, kBiases = 6;
   RigConstants& constants = params.model.calibration->constants;
   constants.gyro_bias_rad_s = params.model.nominal.gyro_bias_rad_s;

@@ -133,8 +133,8 @@ std::optional<double> lowest(const LearntRig& rig, std::size_t first) {
 constexpr double kToleranceShare = 2e-3;
 
 // Returns true if the intercept of a plane is known: two standard deviations are within the tolerance of the next run.
-// If two elements only clip together, the cross-axis sensitivity between the two elements is unknown. The intercept is
-// then unknown too.
+// If two elements only clip together, the cross-axis sensitivity between the two elements is unknown. The intercept of
+// the plane is then unknown too.
 bool reported_level(const RailPlane& plane, int sign) {
   const Eigen::Vector4d cut(0.0, 0.0, sign, 1.0);
   const double variance = cut.dot(plane.covariance * cut), most = 0.5 * kToleranceShare * plane.distance_rad_s;
@@ -301,7 +301,7 @@ void read_device_errors(const CalibrationReader& reader, const json& object, Lea
   reader.read(kErrorsCovarianceKey, known.covariance);
   known.errors = SensorErrors::from(errors);
   const SensorErrors::Vector deviation = known.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
-  // The entries differ by orders of magnitude, so they are normalised by their standard deviations.
+  // The entries of the covariance differ by orders of magnitude, so they are normalised by their standard deviations.
   const SensorErrors::Vector over = deviation.cwiseMax(1e-300).cwiseInverse();
   const SensorErrors::Matrix scaled = over.asDiagonal() * known.covariance * over.asDiagonal();
   if (!scaled.allFinite() || (scaled - scaled.transpose()).cwiseAbs().maxCoeff() > 1e-9 ||

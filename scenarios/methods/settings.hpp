@@ -55,7 +55,8 @@ struct SettingsOptions {
   std::string prefix = {};
 };
 
-/// Names, table rows and values of parameters. This base class of all Settings does not depend on the `Params` type.
+/// Names, table rows and values of parameters. SettingsTable is the base class of all Settings and does not depend on
+/// the `Params` type.
 class SettingsTable {
  public:
   virtual ~SettingsTable() = default;

@@ -39,8 +39,8 @@ class Process {
   bool write_text(const std::string& text);
   /// Appends the available content of the pipe to `buffer`. Returns false at the end of the pipe.
   bool read_available(std::string& buffer);
-  /// Waits until the child has ended. Returns false at the deadline, which is a time of now_s(). The caller collects
-  /// the result with wait().
+  /// Waits until the child has ended. Returns false at the deadline, which is a time of now_s(). The caller obtains the
+  /// exit status with wait().
   bool ends_before(double deadline_s);
   void kill();
   End wait();

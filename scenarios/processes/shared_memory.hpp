@@ -8,8 +8,8 @@
 namespace tumble::scenarios {
 
 /// Anonymous shared memory that a program inherits as a file descriptor (Command::descriptors). The memory is freed
-/// when its last user ends. The class works on Linux only. The constructor throws std::system_error if there is not
-/// enough memory.
+/// when the last process that uses it ends. The class works on Linux only. The constructor throws std::system_error if
+/// there is not enough memory.
 class SharedMemory {
  public:
   /// Creates empty memory. `name` is visible in /proc.

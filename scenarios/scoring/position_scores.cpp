@@ -10,7 +10,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-// shortest path that has a relative error
+// Shortest path for which a relative error is computed.
 constexpr double kPathMinM = 0.05;
 constexpr double kUnmovedM = 0.02;  // errors before this motion are not scored
 

@@ -44,7 +44,7 @@ bool clipped_max(const ScoredEstimate& scored, double& value) {
 }
 
 // Computes the largest error of a segment of consecutive samples with a clipped axis. The error of a segment is the
-// norm of the mean error vector, and thus an offset.
+// norm of the mean error vector, so random errors within the segment cancel.
 bool segment_max(const ScoredEstimate& scored, double& value) {
   std::vector<double> offsets;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();

@@ -15,8 +15,8 @@
 ///
 /// An event is an interval of the labels slip and slide. An event includes gaps of up to kBridge_ns of grip, and up to
 /// kHop_ns of air in total, because an unbalanced spinning sphere hops. A true event counts if the event lasts
-/// kShortest_ns and the contact speed reaches kLeastSpeed_m_s. Weaker events cannot be distinguished from grip and
-/// cause no position error. Slip and slide are not distinguished.
+/// kShortest_ns and the contact speed reaches kLeastSpeed_m_s. Shorter or slower events cannot be distinguished from
+/// grip and cause no position error. Slip and slide are not distinguished.
 ///
 /// An estimated event is correct if at least half of the event overlaps true events. The overlap test also includes
 /// weak and short true events, and widens each true event by kMargin_ns. A true event is detected if correct estimated

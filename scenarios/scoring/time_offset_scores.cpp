@@ -31,8 +31,8 @@ class OffsetFit {
   double product_ = 0.0, square_ = 0.0;
 };
 
-// Computes the offset from unclipped samples only. The gyro measures the rate there, so the remaining error is a time
-// offset.
+// Computes the offset from unclipped samples only. In unclipped samples the gyro measures the rate, so the remaining
+// error is a time offset.
 bool rate_offset(const ScoredEstimate& scored, double& value) {
   const ClippingTruth& truth = clipping_truth(scored);
   const std::int64_t period_ns = scored.sensors().imus.front().period_ns;

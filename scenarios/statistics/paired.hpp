@@ -15,8 +15,8 @@ inline constexpr std::size_t kExactPairsMax = 100;
 /// Returns the one-sided p-value of the signed-rank test (Wilcoxon, Biometrics Bulletin 1, 1945), equation (S5) of
 /// statistics.md. The p-value is small if the differences tend to be positive. Equal magnitudes get their mean rank. Up
 /// to `kExactPairsMax` differences, the distribution is exact, also with equal magnitudes, in O(n^3) time and O(n^2)
-/// memory. Above that number, the distribution is normal with corrections for ties and continuity, equation (S6).
-/// Returns 1 if there are no differences.
+/// memory. Above `kExactPairsMax` differences, the distribution is normal with corrections for ties and continuity,
+/// equation (S6). Returns 1 if there are no differences.
 double signed_rank_chance(std::span<const double> differences);
 
 /// Returns the two-sided p-value of the signed-rank test: twice the smaller tail, but at most 1.

@@ -56,7 +56,7 @@ void SequentialSignTest::toss(std::int64_t pairs) {
 /// sides have equal thresholds.
 void SequentialSignTest::stop_beyond(double allowed) {
   std::size_t stopped = 0;
-  // At least one number stays between the two thresholds.
+  // At least one count of positive signs stays between the two thresholds.
   while (2 * stopped + 1 < going_on_.size()) {
     const double more = going_on_[going_on_.size() - 1 - stopped];
     if (spent_a_side_ + more > allowed) break;

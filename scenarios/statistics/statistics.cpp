@@ -78,7 +78,8 @@ std::size_t tail_rank(std::size_t values) {
     const auto count = static_cast<double>(k);
     return std::lgamma(n + 1) - std::lgamma(count + 1) - std::lgamma(n - count + 1) - n * std::log(2.0);
   };
-  // The terms increase up to n / 2. For large n, most of the terms underflow to 0 and can be skipped.
+  // The terms of the binomial sum increase up to n / 2. For large n, most of the terms underflow to 0 and can be
+  // skipped.
   constexpr double kNothing = -750.0;
   std::size_t first = 0;
   for (std::size_t above = values / 2; first < above;) {

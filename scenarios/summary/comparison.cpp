@@ -131,7 +131,7 @@ class Comparing {
       for (double& each : relieved) each = -each;
       row.not_inferior_chance = signed_rank_chance(relieved);
     }
-    // The side of the rank sum is that of the signed-rank test.
+    // The sign states whether the method tends to be worse, according to the signed-rank test.
     tends_.push_back(!contested ? 0.0 : signed_rank_chance(worse_by) < 0.5 ? 1.0 : -1.0);
     differences_.push_back(std::move(contested ? worse_by : raw));
     out_.metrics.push_back(std::move(row));

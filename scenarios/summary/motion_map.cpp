@@ -46,8 +46,8 @@ GridAxis axis_over(const std::vector<Decades>& points, double Decades::*member) 
   return axis;
 }
 
-/// Returns the weights that distribute the runs of one cell over its grid row. Weight beyond the ends of the row is
-/// redistributed.
+/// Returns the weights that distribute the runs of one cell over its grid row. Weight beyond the ends of the grid row
+/// is redistributed.
 std::vector<double> kernel(std::size_t from, double width) {
   std::vector<double> weights(kCells);
   double sum = 0.0;

@@ -104,7 +104,7 @@ void sort_by_seed(MetricSummary& metric) {
   }
 }
 
-/// Data of one method on one scenario. The index of each metric is found by the pointer to its name.
+/// Data of one method on one scenario. `places` finds each metric by the pointer to its name.
 struct Gathered {
   MethodSummary summary;
   std::unordered_map<const std::string*, MetricSummary*> places;

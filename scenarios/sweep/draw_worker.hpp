@@ -19,7 +19,7 @@ struct WorkerTerms {
   double timeout_s;                ///< time limit of a method
   double memory_mib;               ///< memory limit of the worker and of each process that it starts
   bool recordings_unseen = false;  ///< as in SweepOptions
-  /// Folder for temporary files of the worker and its methods, because a killed process cannot remove its own.
+  /// Folder for temporary files of the worker and its methods, because a killed process cannot remove its own files.
   std::filesystem::path temporary = {};
 };
 

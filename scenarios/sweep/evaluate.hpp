@@ -11,7 +11,7 @@
 
 namespace tumble::scenarios {
 
-/// One simulated run or recording, which all its outcomes share.
+/// One simulated run or recording. Its outcomes share this struct.
 struct SimulatedDraw {
   std::string scenario;
   std::uint64_t seed = 0;

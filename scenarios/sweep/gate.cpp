@@ -89,7 +89,7 @@ double chance_beyond(std::vector<double> differences, double margin) {
   return signed_rank_chance(differences);
 }
 
-/// Checks that no run is worse than the worst accepted run times the allowed factor. The fault names the failing run.
+/// Checks that no run is worse than the worst accepted run times `GatePolicy::worst`. The fault names the failing run.
 void hold_worst_draw(const MetricInfo& info, const std::vector<GatePair>& pairs, const GatePolicy& policy,
                      GateResult& result) {
   if (pairs.empty()) return;

@@ -28,8 +28,8 @@
 ///
 /// Median of a metric over all scenarios of a method: this test detects shifts that are too small for one scenario.
 ///
-/// Worst run: its value may be at most `worst` times the accepted worst value. The tests of the median miss single
-/// runs.
+/// Worst run: its value may be at most `worst` times the accepted worst value. The tests of the median do not detect
+/// single bad runs.
 namespace tumble::scenarios {
 
 /// Results of one method, in the order of `GateRun::seeds`.

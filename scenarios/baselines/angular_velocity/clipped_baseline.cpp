@@ -37,8 +37,8 @@ double cubic(double share, double span_s, double from, double slope_from, double
          (u3 - u2) * span_s * slope_to;
 }
 
-// Returns the derivative of the unclipped readings that end at sample k (step -1) or start at sample k (step +1); 0 if
-// there is only one reading.
+// Returns the derivative of the unclipped readings that end at sample k (step -1) or start at sample k (step +1).
+// Returns 0 if there is only one reading.
 double slope_at(const Axis& axis, std::size_t k, int step) {
   if (step < 0 ? k == 0 : k + 1 == axis.samples.size()) return 0.0;
   const std::size_t other = step < 0 ? k - 1 : k + 1;
@@ -71,7 +71,7 @@ std::vector<Value> interpolate(const Axis& axis) {
   return out;
 }
 
-// Rate modelled as a random walk.
+// Models the rate as a random walk.
 struct RandomWalk {
   static constexpr int kSize = 1;
   using Matrix = Eigen::Matrix<double, 1, 1>;
@@ -82,8 +82,8 @@ struct RandomWalk {
   Matrix noise(double dt_s, const Matrix&) const { return Matrix(psd * dt_s); }
 };
 
-// Rate with white snap that is bounded over long times: the stationary process with Matern 5/2 covariance and the state
-// rate, acceleration, jerk (Hartikainen and Saerkkae 2010, section 4).
+// Models the rate by the stationary process with Matern 5/2 covariance: white snap over short times, bounded rate over
+// long times. The state is rate, acceleration, jerk (Hartikainen and Saerkkae 2010, section 4).
 struct BoundedJerk {
   static constexpr int kSize = 3;
   using Matrix = Eigen::Matrix3d;
@@ -98,7 +98,7 @@ struct BoundedJerk {
     P << variance, 0.0, -middle, 0.0, middle, 0.0, -middle, 0.0, lambda * lambda * lambda * lambda * variance;
     return P;
   }
-  // exp(A t) of the companion matrix A, whose three eigenvalues are -lambda
+  // Returns exp(A t) of the companion matrix A, whose three eigenvalues are -lambda.
   Matrix transition(double dt_s) const {
     Matrix N;
     N << lambda, 1.0, 0.0, 0.0, lambda, 1.0, -lambda * lambda * lambda, -3.0 * lambda * lambda, -2.0 * lambda;

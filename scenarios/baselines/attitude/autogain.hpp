@@ -39,7 +39,7 @@ class Autogain {
     double upper_rad_s = 2.1;  ///< above lower_rad_s; unused by code2021
     /// Computes the complementary step as the authors' code does. In that code, the check for gimbal lock is always
     /// true. As a consequence, the target attitude keeps the current roll, and roll is never corrected. The option
-    /// reproduces the results in the authors' recordings.
+    /// reproduces the attitudes in the authors' recordings.
     bool roll_error_2021 = false;
     /// Computes the complementary step as the smallest rotation instead of a target in roll, pitch and yaw. The
     /// `smooth` profile uses the smallest rotation.

@@ -10,8 +10,8 @@
 namespace tumble::baselines {
 
 /// Estimates attitude by an error-state Kalman filter with six states: attitude error (world axes) and gyro bias. The
-/// specific force measures the up direction. The textbook form is J. Sola, arXiv 1711.02508, sections 5-7; here the
-/// error is in world axes.
+/// specific force measures the up direction. The textbook form is J. Sola, arXiv 1711.02508, sections 5-7, but with the
+/// error in world axes.
 ///
 /// The filter models body acceleration as zero-mean white noise on the force. The filter neither normalises the force
 /// nor weights the force by its norm, because normalising or weighting biases the mean. For fast translations,

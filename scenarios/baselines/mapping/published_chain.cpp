@@ -184,7 +184,7 @@ bool PublishedChain::registers(const Sweep& sweep, TimeNs at_ns, std::span<const
   return true;
 }
 
-/// New points are only compared with points that were in the map before this extension.
+/// New points are only compared with points that were in the map before the extension.
 void PublishedChain::extend(std::span<const TrimmedIcp::Point> points, const Eigen::Isometry3d& T_WL,
                             SweepReport& report) {
   const Eigen::Isometry3f move = T_WL.cast<float>();

@@ -20,8 +20,8 @@ namespace tumble::baselines {
 /// the constants of the authors' launch files). Madgwick's filter estimates attitude, and accelerometer odometry
 /// estimates position with velocity feedback from registration. The chain deskews each sweep, weights its points by
 /// time, and registers the voxelised points to a map by trimmed point-to-plane registration. Deskewing refers to the
-/// start of the sweep, or to the common time of the sweep's points. The map grows only where it is empty. A parameter
-/// switches each known error of the published chain; the defaults are those of the launch files.
+/// start of the sweep, or to the common time of the sweep's points. The chain only adds points where the map is empty.
+/// A parameter switches each known error of the published chain; the defaults are those of the launch files.
 class PublishedChain {
  public:
   struct Params {

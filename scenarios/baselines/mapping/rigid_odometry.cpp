@@ -116,8 +116,8 @@ void RigidOdometry::extend_map(bool rings_differ, SweepReport& report) {
   seen_from_W_m_.push_back(T_WI.translation().cast<float>());
 }
 
-/// Reports the poses that the motion model predicts within the sweep. The registration's correction moves all these
-/// poses as one rigid body.
+/// Reports the poses that the motion model predicts within the sweep. The registration's correction moves all poses of
+/// the sweep as one rigid body.
 void RigidOdometry::describe(const SweepTrajectory& trajectory, SweepReport& report) const {
   const Eigen::Isometry3d correction = pose_of(state_) * pose_of(predicted_).inverse(Eigen::Isometry);
   const Eigen::Quaterniond turned(correction.linear());

@@ -31,9 +31,9 @@ class TrimmedIcp {
     double trim_min = 0.5;       ///< smallest share of matches to keep
     double trim_max = 0.7;
     double trim_lambda = 2.35;
-    /// Reproduces an error of the original code. There, the kept fraction refers to all match slots, although unmatched
-    /// slots are missing from the sorted list. The original reads beyond the end of the sorted list. This
-    /// implementation stops at the end of the sorted list.
+    /// Reproduces an error of the original code. In the original code, the kept fraction refers to all match slots,
+    /// although unmatched slots are missing from the sorted list. The original code reads beyond the end of the sorted
+    /// list. This implementation stops at the end of the sorted list.
     bool count_unmatched_slots = false;
     int iterations_max = 40;
     double step_m = 0.01;  ///< both means over two increments must be below their bound
@@ -84,7 +84,7 @@ class TrimmedIcp {
   /// distances d^2) / (f n f^(2 lambda)) over f in [trim_min, trim_max], with n = `slots`.
   static std::size_t trim(std::span<const float> sorted_d2, std::size_t slots, const Params& params);
 
-  /// Clears the cached normals. The caller must call this function after each change of the map.
+  /// Clears the cached normals. The caller must call forget_normals after each change of the map.
   void forget_normals() { normals_.clear(); }
 
  private:
