@@ -5,7 +5,6 @@
 #include <functional>
 #include <map>
 #include <ostream>
-#include <set>
 #include <string>
 #include <vector>
 
