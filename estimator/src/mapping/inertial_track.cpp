@@ -180,7 +180,8 @@ bool InertialTrack::starts_at_rest(double lasted_s) const {
   const auto rests = [&](const MotionSample& sample) {
     return sample.at_rest || seconds(sample.from_ns - samples_.front().from_ns) >= lasted_s;
   };
-  return std::all_of(samples_.begin(), samples_.end(), rests);
+  // A rest of this length has set the bias. The first samples may no longer be stored.
+  return !initial_.gyro_bias_rad_s.isZero(0.0) || std::all_of(samples_.begin(), samples_.end(), rests);
 }
 
 bool InertialTrack::rests_until(TimeNs end_ns) const {
