@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
+#include <string>
 #include <vector>
 
 #include "live_readings.hpp"
