@@ -16,9 +16,9 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns the chain's parameters. The odometer sets the limits of a correction.
+/// Returns the chain's parameters. The odometer sets the limits of a correction, and the position method has gravity.
 const Settings<SlamParams>& prior_settings() {
-  static const Settings<SlamParams> all = slam_settings({}, {"correction_max_m", "correction_max_rad"});
+  static const Settings<SlamParams> all = slam_settings({}, {"gravity_m_s2", "correction_max_m", "correction_max_rad"});
   return all;
 }
 

@@ -38,7 +38,7 @@ TEST(LidarParameters, ResolveAndBounds) {
       EXPECT_FALSE(p.unit.empty()) << p.name;
     }
   }
-  EXPECT_EQ(spinning_lidar_parameters().size(), 38u);
+  EXPECT_EQ(spinning_lidar_parameters().size(), 40u);
 }
 
 /// The published formula of the rig's driver, written out again, for a lidar at rest.
