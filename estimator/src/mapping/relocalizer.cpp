@@ -84,9 +84,9 @@ void search(const Params& params, const SearchContext& from, const Scene& scene,
   for (int k = 0; k < moved && !(converged(found) && fits(params, found)); ++k) {
     if (converged(found) && (!best || found.inliers > best->found.inliers))
       best = std::make_unique<Best>(Best{found, trajectory});
-    const int index = next_start(failed_searches(from.tracking), moved, starts) + k;
+    const int index = 1 + (failed_searches(from.tracking) * moved + k) % (kStartsPerRound * starts.rounds);
     const auto start = std::make_unique<Registration::Prior>(prior);
-    move_start(starts, 1 + (index - 1) % (kStartsPerRound * starts.rounds), *start);
+    move_start(starts, index, *start);
     aligner.from_afar(*start, prior, scene, trajectory, found);
   }
   if (best && !(converged(found) && (fits(params, found) || found.inliers >= best->found.inliers))) {
@@ -97,10 +97,6 @@ void search(const Params& params, const SearchContext& from, const Scene& scene,
 }
 
 }  // namespace
-
-int next_start(int failed, int starts_per_search, const RelocalizationParams& params) {
-  return 1 + std::max(failed - 1, 0) * starts_per_search % (kStartsPerRound * params.rounds);
-}
 
 void move_start(const RelocalizationParams& params, int index, Registration::Prior& prior) {
   if (index == 0) return;

@@ -44,10 +44,6 @@ struct Placed {
 void judge(const LidarInertialOdometry::Params& params, const TrackingState& before, std::size_t points,
            bool prior_certain, const Attempt& attempt, Placed& placed);
 
-/// Returns the number of the first displaced start of a search after `failed` failed searches, including the sweep
-/// whose registration failed. The first search begins with start 1, and each search continues after the last one.
-int next_start(int failed, int starts_per_search, const RelocalizationParams& params);
-
 /// Computes start number `index` of a search. Start 0 is the prior. The further starts are shifts along each axis by
 /// its uncertainty, closest first, mapping.md (R66).
 void move_start(const RelocalizationParams& params, int index, Registration::Prior& prior);

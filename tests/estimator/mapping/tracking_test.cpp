@@ -154,14 +154,5 @@ TEST(Tracking, APlaceIsDoubtedWhereInertiaHasItNotOrItsSurfacesDoNotFit) {
   EXPECT_EQ(placement(Tracking{}, 50, false), found);
 }
 
-TEST(Relocalizer, TheSearchBeginsWithTheNearestStarts) {
-  const RelocalizationParams params;
-  EXPECT_EQ(next_start(1, 2, params), 1);  // the sweep that failed counts
-  EXPECT_EQ(next_start(2, 2, params), 3);
-  EXPECT_EQ(next_start(0, 2, params), 1);
-  const int starts = 12 * params.rounds;
-  EXPECT_EQ(next_start(1 + starts / 2, 2, params), 1);  // all starts were tried
-}
-
 }  // namespace
 }  // namespace tumble::mapping
