@@ -32,7 +32,7 @@ void PrintTo(const Live& live, std::ostream* out) {
 
 constexpr double kRateLagS = 0.2;   // RateStream::Params::lag_s
 constexpr double kSweepLagS = 0.4;  // 0.3 s after the sweep's end, for the poses since its start
-constexpr double kRollLagS = 1.0;
+constexpr double kRollLagS = 1.22;  // lag_s of 1 s, a block of 0.2 s, and one node of 0.02 s
 
 const std::vector<Live> kLive = {
     {"rate/raw", 0.0},
