@@ -35,7 +35,7 @@ double sorted_median(std::span<const double> sorted) {
   return middle_of(sorted[(n - 1) / 2], sorted[n / 2]);
 }
 
-/// Returns the acceleration from the jackknife, equation (S3) of statistics.md. The acceleration is zero for an even
+/// Returns the acceleration from the jackknife, statistics.md (S3). The acceleration is zero for an even
 /// sample size, because removing a value leaves two possible medians equally often.
 double acceleration(std::span<const double> sorted) {
   const std::size_t n = sorted.size(), m = n / 2;
@@ -61,7 +61,7 @@ double acceleration(std::span<const double> sorted) {
 MedianBootstrap::MedianBootstrap(std::size_t size, std::size_t resamples) : size_(size) {
   if (size == 0) throw BadInput("bootstrap: there are no values");
   if (resamples < 100) throw BadInput(fmt::format("bootstrap: resamples is {}, must be at least 100", resamples));
-  // Equation (S1) of statistics.md gives the lower middle of n uniform numbers. Equation (S1) also gives the next
+  // Equation statistics.md (S1) gives the lower middle of n uniform numbers. Equation (S1) also gives the next
   // larger number, conditional on the lower middle.
   sim::Stream stream(size, "statistics.bootstrap");
   const auto n = static_cast<double>(size);
@@ -96,7 +96,7 @@ Interval MedianBootstrap::interval(std::span<const double> values, double risk) 
   const auto [first, last] = std::equal_range(medians.begin(), medians.end(), median);
   const auto count = static_cast<double>(medians.size());
   const double below = static_cast<double>(first - medians.begin()) + 0.5 * static_cast<double>(last - first);
-  // Bias correction and interval ends, equations (S2) and (S4) of statistics.md.
+  // Bias correction and interval ends, statistics.md (S2) and (S4).
   const boost::math::normal normal;
   const double z0 = quantile(normal, std::clamp(below / count, 0.5 / count, 1.0 - 0.5 / count));
   const double a = acceleration(sorted);

@@ -9,7 +9,7 @@
 
 namespace tumble::scenarios {
 
-/// Computes bootstrap intervals for the median of samples of one size, equations (S1) to (S4) of statistics.md. The
+/// Computes bootstrap intervals for the median of samples of one size, statistics.md (S1) to (S4). The
 /// intervals are bias-corrected and accelerated (BCa; Efron, JASA 82:171, 1987). The ranks of a resample's middle
 /// values do not depend on the values. The ranks are therefore drawn once, without resampling n values. For a given
 /// sample size, the resamples are equal on every machine. The constructor evaluates `resamples` inverse beta functions;

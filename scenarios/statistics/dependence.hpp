@@ -21,7 +21,7 @@ struct Correlation {
 };
 
 /// Returns Spearman's rank correlation with interval and p-value. The interval is that of Bonett and Wright
-/// (Psychometrika 65:23, 2000), equation (S16) of statistics.md. The p-value follows from Student's distribution,
+/// (Psychometrika 65:23, 2000), statistics.md (S16). The p-value follows from Student's distribution,
 /// equation (S17). Pairs with NaN are ignored. For fewer than four pairs or a constant variable, the interval is [-1,
 /// 1]. Throws BadInput if the lengths differ.
 Correlation rank_correlation(std::span<const double> x, std::span<const double> y);
@@ -33,7 +33,7 @@ struct FirstOrder {
 };
 
 /// Estimates the first-order (Sobol') index of y by x from existing data; y may depend on other numbers. The index is
-/// the variance of class means over equally large classes of x, equation (S18) of statistics.md, minus a correction.
+/// the variance of class means over equally large classes of x, statistics.md (S18), minus a correction.
 /// The correction is the expected variance of class means without dependence, equation (S19). Source: Plischke,
 /// Borgonovo, Smith, EJOR 226:536, 2013. If x takes few values, each value is a class. If y contains ranks, the p-value
 /// of equation (S20) is that of the Kruskal-Wallis test.
@@ -56,7 +56,7 @@ struct DependenceClass {
 
 inline constexpr std::size_t kDependenceClassesMax = 8, kDependenceDrawsMin = 12;
 
-/// Returns the partial dependence of y on x, equations (S22) and (S23) of statistics.md. The data come from simulated
+/// Returns the partial dependence of y on x, statistics.md (S22) and (S23). The data come from simulated
 /// runs with independent random numbers. The function uses at most `kDependenceClassesMax` equally large classes of x,
 /// with at least `kDependenceDrawsMin` simulated runs each. Equal values of x are in one class. If x takes few values,
 /// each value is a class.

@@ -22,11 +22,11 @@ double signed_rank_chance(std::span<const double> differences);
 /// Returns the two-sided p-value of the signed-rank test: twice the smaller tail, but at most 1.
 double signed_rank_test(std::span<const double> differences);
 
-/// Returns the p-value of the exact two-sided sign test (binomial), equation (S7) of statistics.md.
+/// Returns the p-value of the exact two-sided sign test (binomial), statistics.md (S7).
 double sign_test(std::span<const double> differences);
 
 /// Returns the p-value of the exact two-sided test of paired failures (McNemar, Psychometrika 12, 1947, in its binomial
-/// form), equation (S7) of statistics.md. `only_first` is the number of simulated runs on which only the first method
+/// form), statistics.md (S7). `only_first` is the number of simulated runs on which only the first method
 /// failed. `only_second` is the number of runs on which only the second method failed. Throws BadInput for a negative
 /// count.
 double paired_failures_test(std::int64_t only_first, std::int64_t only_second);

@@ -14,7 +14,7 @@ namespace tumble::scenarios {
 double spent_by(double risk, double share) {
   if (!(share > 0.0)) return 0.0;
   const boost::math::normal normal;
-  // Spent part of the risk, equation (S13) of statistics.md.
+  // Spent part of the risk, statistics.md (S13).
   return 2.0 * cdf(complement(normal, quantile(complement(normal, 0.25 * risk)) / std::sqrt(share)));
 }
 
@@ -41,7 +41,7 @@ SequentialSignTest::Verdict SequentialSignTest::look(double share, std::int64_t 
   return verdict_;
 }
 
-/// Updates the distribution of the sign count, equation (S14) of statistics.md. Each pair adds one positive sign or no
+/// Updates the distribution of the sign count, statistics.md (S14). Each pair adds one positive sign or no
 /// sign.
 void SequentialSignTest::toss(std::int64_t pairs) {
   for (std::int64_t k = 0; k < pairs; ++k) {
@@ -52,7 +52,7 @@ void SequentialSignTest::toss(std::int64_t pairs) {
   pairs_ += pairs;
 }
 
-/// Removes the outcomes beyond the thresholds, equation (S15) of statistics.md. The distribution is symmetric, so both
+/// Removes the outcomes beyond the thresholds, statistics.md (S15). The distribution is symmetric, so both
 /// sides have equal thresholds.
 void SequentialSignTest::stop_beyond(double allowed) {
   std::size_t stopped = 0;

@@ -8,7 +8,7 @@ namespace tumble::scenarios {
 
 /// Returns the part of a two-sided risk that one side may have used after the fraction `share` in [0, 1] of all
 /// simulated runs. The part is almost zero at first and half of `risk` at the end. The function is that of Lan and
-/// DeMets (Biometrika 70:659, 1983) with O'Brien and Fleming's bounds, equation (S13) of statistics.md.
+/// DeMets (Biometrika 70:659, 1983) with O'Brien and Fleming's bounds, statistics.md (S13).
 double spent_by(double risk, double share);
 
 /// Sign test with interim analyses (Armitage, McPherson, Rowe, JRSS A 132:235, 1969), equations (S13) to (S15) of

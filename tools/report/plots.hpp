@@ -52,7 +52,7 @@ class Palette {
   std::map<std::string, std::size_t> indices_;
 };
 
-/// Returns the title of an axis in the metric's display unit: "attitude rmse [°]" for "NAME_rad". A
+/// Returns the title of an axis in the metric's display unit: for example "attitude rmse [°]". A
 /// varied key of a scenario stays as it is.
 std::string axis_title(const std::string& metric);
 

@@ -105,8 +105,8 @@ Table summary(const scenarios::Estimate& estimate) {
   count("sweeps", estimate.sweeps);
   count("map points", estimate.map);
   for (const ShownCounter& shown : kShownCounters) {
-    const auto counter = estimate.health.find(shown.name);
-    if (counter != estimate.health.end()) table.add_row({shown.meaning, number_text(counter->second), shown.unit});
+    for (const auto& [name, value] : estimate.health)
+      if (name == shown.name) table.add_row({shown.meaning, number_text(value), shown.unit});
   }
   return table;
 }

@@ -16,8 +16,7 @@ namespace {
 
 constexpr double kSilentReported_s = 0.5;  // minimum duration of a reported interval without readings
 // A sensing element without an observed saturation plane is assumed to be exactly aligned with its axis. With an
-// uncertainty of 0.03 of the cross-axis sensitivity, three clipped IMUs would no longer determine the rate. Examples
-// are seeds 4, 30 and 42 of the scenario slip_long.
+// uncertainty of 0.03 of the cross-axis sensitivity, three clipped IMUs would no longer determine the rate.
 constexpr double kUnknownSlope = 0.0;
 
 /// The IMUs that provide samples, resampled to common times.

@@ -6,19 +6,14 @@
 #include <limits>
 #include <utility>
 
+#include "rolling_odometry_params.hpp"
 #include "tumble/common/so3.hpp"
 
 namespace tumble {
 
-namespace {
+using odometry::filters_of, odometry::merge_params, odometry::rolling_params, odometry::sheets_of, odometry::watches_of;
 
-constexpr std::size_t kRecoveringUnits = 3;  // minimum number of IMUs for recovering a rate beyond the range
-constexpr double kRecoveredSigma_rad_s = 1.0;
-constexpr double kUnknownRadiusShare = 0.05;  // prior of an unknown radius, if a known distance determines the radius
-// Prior standard deviations of an IMU without a data sheet at an arbitrary position in the sphere.
-constexpr double kUnknownGyroBias_rad_s = 5e-3, kUnknownAccelBias_m_s2 = 0.4, kUnknownScale = 0.01,
-                 kUnknownDelay_s = 5e-3, kUnknownLeverArm_m = 0.05;
-constexpr double kLevelInclinePerS = 1e-9;  // rate at which slopes begin on a level floor
+namespace {
 
 constexpr std::array<std::array<const char*, 6>, ImuMerge::kImus> kFrozenFields = {
     {{{"seconds for which unit 1's gyro x repeats one reading", "seconds for which unit 1's gyro y repeats one reading",
@@ -41,72 +36,6 @@ constexpr std::array<std::array<const char*, 6>, ImuMerge::kImus> kFrozenFields 
        "seconds for which unit 4's accel x repeats one reading",
        "seconds for which unit 4's accel y repeats one reading",
        "seconds for which unit 4's accel z repeats one reading"}}}};
-
-// Checks the radius of RollingOdometry here, because the radius of the smoother has no default.
-void require_stated(RollingOdometry::Params params) {
-  params.expert.rolling.filter.radius_m = params.radius_m;
-  require_fields(params);
-}
-
-ImuMerge::Params merge_params(const RollingOdometry::Params& params) {
-  require_stated(params);
-  require_within("units", static_cast<double>(params.units.size()), 1.0, ImuMerge::kImus);
-  ImuMerge::Params out = params.expert.merge;
-  out.count = static_cast<int>(params.units.size());
-  for (std::size_t k = 0; k < params.units.size(); ++k) {
-    const RollingOdometry::Unit& unit = params.units[k];
-    require_fields(unit.sheet);
-    require_within("T_BI translation", unit.T_BI.translation().norm(), 0.0, params.radius_m);
-    out.T_CI[k] = unit.T_BI;
-    const ImuSheet& sheet = unit.sheet;
-    out.gyro_range_rad_s = std::min(out.gyro_range_rad_s, unsaturated_range(sheet.gyro_range_rad_s));
-    out.accel_range_m_s2 = std::min(out.accel_range_m_s2, unsaturated_range(sheet.accel_range_m_s2));
-  }
-  return out;
-}
-
-/// Returns the parameters of the smoother for `units` IMUs. `lever_arm_m` is the position of the merged IMU.
-RollingSmoother::Params rolling_params(const RollingOdometry::Params& params, const ImuMerge::Params& merged,
-                                       std::size_t units, const Eigen::Vector3d& lever_arm_m) {
-  RollingSmoother::Params out = params.expert.rolling;
-  out.filter.radius_m = params.radius_m;
-  out.filter.gravity_m_s2 = params.gravity_m_s2;
-  out.filter.lever_arm_m = lever_arm_m;
-  out.filter.lever_arm_sigma_m = params.centre_sigma_m;
-  out.filter.gyro_range_rad_s = merged.gyro_range_rad_s;
-  out.filter.accel_range_m_s2 = merged.accel_range_m_s2;
-  if (units >= kRecoveringUnits) out.filter.expert.rails.recovered_rate_sigma_rad_s = kRecoveredSigma_rad_s;
-  out.lag_s = std::max(params.lag_s, out.filter.expert.node_s);
-  out.rate_max_hz = std::max(out.rate_max_hz, 1.1 * params.units.front().sheet.rate_hz);
-  if (out.known_distance_m > 0.0 && out.filter.radius_sigma_m == 0.0)
-    out.filter.radius_sigma_m = kUnknownRadiusShare * out.filter.radius_m;
-  return out;
-}
-
-std::vector<ImuSheet> sheets_of(const RollingOdometry::Params& params) {
-  std::vector<ImuSheet> out;
-  for (const RollingOdometry::Unit& unit : params.units) out.push_back(unit.sheet);
-  return out;
-}
-
-std::vector<FrozenAxes> watches_of(const RollingOdometry::Params& params) {
-  std::vector<FrozenAxes> out;
-  for (const RollingOdometry::Unit& unit : params.units) {
-    out.emplace_back(FrozenAxes::Params{.gyro_range_rad_s = unit.sheet.gyro_range_rad_s,
-                                        .accel_range_m_s2 = unit.sheet.accel_range_m_s2});
-  }
-  return out;
-}
-
-std::vector<OutlierFilter> filters_of(const RollingOdometry::Params& params) {
-  std::vector<OutlierFilter> out;
-  for (const RollingOdometry::Unit& unit : params.units) {
-    out.emplace_back(OutlierFilter::Device{.gyro_range_rad_s = unit.sheet.gyro_range_rad_s,
-                                           .accel_range_m_s2 = unit.sheet.accel_range_m_s2,
-                                           .period_s = 1.0 / unit.sheet.rate_hz});
-  }
-  return out;
-}
 
 ImuSample at_time(TimeNs time_ns, ImuSample sample) {
   sample.time_ns = time_ns;
@@ -133,20 +62,6 @@ RollingOdometry::Pose as_pose(const RollingEstimate& estimate) {
 }
 
 }  // namespace
-
-void RollingOdometry::Params::assume_unknown_imus() {
-  const auto widen = [](double& sigma, double least) { sigma = std::max(sigma, least); };
-  RollingParams& filter = expert.rolling.filter;
-  widen(filter.expert.prior.gyro_bias_sigma_rad_s, kUnknownGyroBias_rad_s);
-  widen(filter.expert.prior.accel_bias_sigma_m_s2, kUnknownAccelBias_m_s2);
-  widen(filter.expert.prior.tilt_sigma_rad, kUnknownAccelBias_m_s2 / gravity_m_s2);
-  widen(filter.expert.prior.accel_scale_sigma, kUnknownScale);
-  widen(filter.expert.prior.gyro_scale_sigma, kUnknownScale);
-  widen(filter.expert.prior.accel_delay_sigma_s, kUnknownDelay_s);
-  widen(centre_sigma_m, kUnknownLeverArm_m);
-  double& inclines = filter.expert.modes.incline_begins_per_s;
-  inclines = std::min(inclines, kLevelInclinePerS);
-}
 
 RollingOdometry::RollingOdometry(const Params& params) : RollingOdometry(params, merge_params(params)) {}
 

@@ -24,7 +24,7 @@ struct UnitRecording {
   std::vector<ImuSample> samples;
 };
 
-/// A fault because of which the readings of a unit are not used.
+/// UnitFault is a fault of one unit. The readings of a faulty unit are not used.
 struct UnitFault {
   enum class Kind : std::uint8_t {
     silent,       ///< no readings for half a second or until the end
