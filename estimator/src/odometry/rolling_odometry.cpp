@@ -171,16 +171,6 @@ Status RollingOdometry::add_aligned(bool ended) {
   return first;
 }
 
-/// Stores a reading until finish(). Readings that are not finite are ignored.
-Status RollingOdometry::record(std::size_t unit, ImuSample sample) {
-  if (!check_sample(sample).ok()) return {};
-  std::vector<ImuSample>& samples = recorded_[unit];
-  if (!samples.empty() && sample.time_ns <= samples.back().time_ns)
-    return {Trouble::time_order, "time_ns", double(sample.time_ns), double(samples.back().time_ns)};
-  samples.push_back(sample);
-  return {};
-}
-
 /// Adds the delayed samples, except for readings that the outlier filter rejects after comparison with the next
 /// samples.
 Status RollingOdometry::add_held(std::span<const ImuSample> next) {
@@ -290,10 +280,6 @@ std::optional<RollingOdometry::Pose> RollingOdometry::take() {
   return out;
 }
 
-RollingSmoother::Params RollingOdometry::smoother_params(const Params& params, const MergedRecordings& merged) {
-  return rolling_params(params, merge_params(params), merged.units.size(), merged.lever_arm_m);
-}
-
 RollingOdometry::Calibration RollingOdometry::calibration() const {
   const RollingNominal& constants = live_ ? state_->live.nominal : state_->constants;
   return {-constants.lever_arm_error_m, params_.radius_m + constants.radius_error_m, state_->radius_sigma_m};
@@ -314,33 +300,6 @@ void RollingOdometry::end_run() {
   const std::size_t before = done_.size();
   if (!live_ && !is_whole()) smoother_.finish(*state_, done_);
   for (std::size_t k = before; k < done_.size(); ++k) done_[k] = in_world(done_[k]);
-}
-
-/// Estimates all poses from the recorded readings.
-Status RollingOdometry::finish_whole() {
-  std::vector<UnitRecording> recordings;
-  for (std::size_t k = 0; k < params_.units.size(); ++k) {
-    std::vector<ImuSample>& samples = recorded_[k];
-    const std::vector<bool> inlier = find_inliers(filters_[k], samples);
-    outliers_[k].rejected += static_cast<std::size_t>(std::count(inlier.begin(), inlier.end(), false));
-    std::size_t next = 0;
-    std::erase_if(samples, [&](const ImuSample&) { return !inlier[next++]; });
-    std::vector<TimeNs> stamps;
-    for (const ImuSample& sample : samples) stamps.push_back(sample.time_ns);
-    double jitter_s = 0.0;
-    if (Status status = to_sample_times(clock_, stamps, jitter_s); !status.ok()) return status;
-    for (std::size_t j = 0; j < samples.size(); ++j) samples[j].time_ns = stamps[j];
-    recordings.push_back({params_.units[k].sheet, params_.units[k].T_BI, std::move(samples)});
-  }
-  MergedRecordings merged;
-  if (Status status = merge_recordings(recordings, merge_params(params_), merged); !status.ok()) return status;
-  smoother_ = RollingSmoother(smoother_params(params_, merged));
-  for (const ImuSample& sample : merged.samples) {
-    if (Status status = smoother_.step(sample, *state_, done_); !status.ok()) return status;
-    place_start();
-  }
-  smoother_.finish(*state_, done_);
-  return {};
 }
 
 /// Restarts the run at the newest pose.
