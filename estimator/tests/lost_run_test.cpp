@@ -40,7 +40,7 @@ TEST(TumblingOdometry, DoubtsAPlaceThatInertiaAloneHasFound) {
   body.end_s = 9.0;
   run(body, 1.0, body.end_s, lost);
   const Status health = lost.health();
-  EXPECT_STREQ(health.field, "deviation of a sweep's position");
+  EXPECT_STREQ(health.field, "standard deviation of the position in the map");
   EXPECT_GT(health.value, health.bound);
   EXPECT_EQ(health.bound, params_of(body).expert.mapping.expert.matching.distance_m);
   // one that wakes up from its bytes knows it too; the run has ended, its second pass with it

@@ -312,8 +312,8 @@ bool TumbleAttitude::watch_slip(const Eigen::Vector2d& misfit_m_s, State& state)
 
 /// Returns the variance of a body's own velocity or displacement per axis: attitude.md (A13). `power` is the previous
 /// value.
-double TumbleAttitude::excess_motion(const Eigen::Vector2d& misfit, int index, double sigma_sqrts, double power,
-                                     const State& state) const {
+double TumbleAttitude::motion_variance(const Eigen::Vector2d& misfit, int index, double sigma_sqrts, double power,
+                                       const State& state) const {
   const double seen = 0.5 * (misfit.squaredNorm() - state.covariance.block<2, 2>(index, index).trace());
   const double remembered = std::exp(-state.node_s / params_.motion_tau_s) * power;
   return std::max({squared(sigma_sqrts) / params_.motion_tau_s, seen, remembered});
@@ -326,13 +326,13 @@ void TumbleAttitude::correct_body(const Eigen::Vector2d& turned_m_s, State& stat
   if (!state.at_rest) {
     const Eigen::Vector2d misfit = turned_m_s - state.v_W_m_s;
     double& power = state.velocity_power_m2_s2;
-    power = excess_motion(misfit, kVelocity, params_.velocity_m_sqrts, power, state);
+    power = motion_variance(misfit, kVelocity, params_.velocity_m_sqrts, power, state);
     for (int axis = 0; axis < 2; ++axis) {
       update(kVelocity + axis, turned_m_s[axis] - state.v_W_m_s[axis], power * memories, state);
     }
   }
   double& power = state.displacement_power_m2;
-  power = excess_motion(-state.d_W_m, kDisplacement, params_.displacement_m_sqrts, power, state);
+  power = motion_variance(-state.d_W_m, kDisplacement, params_.displacement_m_sqrts, power, state);
   for (int axis = 0; axis < 2; ++axis) {
     update(kDisplacement + axis, -state.d_W_m[axis], power * memories, state);
   }

@@ -120,8 +120,8 @@ class TumbleAttitude {
   double own_velocity_m2_s2(double power_m2_s2, const State& state) const;
   Eigen::Vector2d velocity_of_rotation(const State& state) const;
   void correct_body(const Eigen::Vector2d& turned_m_s, State& state) const;
-  double excess_motion(const Eigen::Vector2d& misfit, int index, double sigma_sqrts, double power,
-                       const State& state) const;
+  double motion_variance(const Eigen::Vector2d& misfit, int index, double sigma_sqrts, double power,
+                         const State& state) const;
   bool watch_slip(const Eigen::Vector2d& misfit_m_s, State& state) const;
 
   Params params_;
