@@ -69,7 +69,8 @@ TEST(RateLearnt, WithoutAStartItIsTheMethodOfTheRegistry) {
 
 TEST(RateLearnt, AFailedRunLeavesWhatWasLearnt) {
   sim::Recording recording = testing::synthetic_rig();
-  recording.sensors.imus.front().gyro_rad_s.front().x() = std::numeric_limits<double>::quiet_NaN();
+  for (Eigen::Vector3d& rate : recording.sensors.imus.front().gyro_rad_s)
+    rate.x() = std::numeric_limits<double>::quiet_NaN();
   std::optional<LearntRig> rig = LearntRig();
   rig->calibration.constants.lever_arm_m = {1.0, 2.0, 3.0};
   EXPECT_FALSE(run_rate_tumble(recording.sensors, defaults(), nullptr, &rig).status.ok());
