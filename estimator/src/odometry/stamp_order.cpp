@@ -16,7 +16,7 @@ Status StampOrder::judge(TimeNs stamp_ns, State& state, Verdict& verdict) const 
   }
   const bool gap = status.trouble == Trouble::gap;
   if (!state.rejected || !check_follows(stamp_ns, state.rejected->last_ns, gap_max_s_).ok()) {
-    state.rejected = Rejected{stamp_ns, stamp_ns};
+    state.rejected = RejectedStamps{stamp_ns, stamp_ns};
     return status;
   }
   state.rejected->last_ns = stamp_ns;

@@ -7,7 +7,7 @@
 /// Members of StampOrder's state, as state_visitor.hpp describes.
 namespace tumble {
 
-template <StateOf<StampOrder::Rejected> Self, class Visitor>
+template <StateOf<RejectedStamps> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("order.first_ns", s.first_ns);
   visit("order.last_ns", s.last_ns);

@@ -8,6 +8,11 @@
 
 namespace tumble {
 
+/// First and last of the rejected stamps that follow each other.
+struct RejectedStamps {
+  TimeNs first_ns = 0, last_ns = 0;
+};
+
 /// Decides which IMU stamps continue a run, and when the run restarts because the clock changed. TumblingOdometry and
 /// RollingOdometry use the same rules:
 /// - A stamp that is not later than the last accepted stamp is rejected with `time_order`.
@@ -20,14 +25,10 @@ class StampOrder {
  public:
   static constexpr double kStepBack_s = 0.2;
 
-  /// First and last of the rejected stamps that follow each other.
-  struct Rejected {
-    TimeNs first_ns = 0, last_ns = 0;
-  };
   struct State {
     std::optional<TimeNs> newest_ns;  ///< last accepted stamp
     bool single = false;              ///< only one sample was accepted
-    std::optional<Rejected> rejected;
+    std::optional<RejectedStamps> rejected;
   };
   enum class Verdict { continues, restarts_after_gap, restarts_after_step_back };
 
