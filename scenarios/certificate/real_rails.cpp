@@ -62,8 +62,8 @@ const char* axis_name(int axis) {
   return kNames[static_cast<std::size_t>(axis % 3)];
 }
 
-/// Returns sensing elements with the mean of the measured planes. A plane does not determine the scale of its own
-/// element or the other elements, so these parameters are ideal.
+/// Returns sensing elements with the mean of the measured planes. A plane does not determine the scale of the
+/// saturated element or the parameters of the other elements, so these parameters are ideal.
 sim::Elements elements_of(const MeasuredPlane& plane, const RealRailsSetup& setup) {
   const int j = plane.element;
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();

@@ -16,7 +16,7 @@ namespace tumble::scenarios {
 /// Largest fraction of the readings or clouds of one sensor that is left out as faulty. Single faults of drivers, buses
 /// and files stay below the limit. A wrong clock, unit or layout affects most items, so the recording is refused.
 inline constexpr double kLeftOutShareMax = 0.05;
-/// Smallest number of items of which one may be left out, even if one item exceeds kLeftOutShareMax.
+/// A sensor with at least kLeftOutOneOf items may lose one item, even if one item exceeds kLeftOutShareMax.
 inline constexpr std::size_t kLeftOutOneOf = 5;
 
 /// Returns true if `count` of `all` items may be left out.
