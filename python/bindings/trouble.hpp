@@ -32,7 +32,7 @@ struct ExactTimes {
 void require(const Status& status, std::optional<std::size_t> index = std::nullopt, nb::object so_far = nb::none(),
              const ExactTimes& times = {});
 
-/// Raises TumbleError for a whole recording, of which no sample was processed. Finds the index of the rejected sample.
+/// Raises TumbleError for a recording that was rejected as a whole. Finds the index of the rejected sample.
 void require(const Status& status, std::span<const ImuSample> samples);
 
 /// Returns None if all sensors and the pose are healthy, else a TumbleError that is not raised.
