@@ -179,7 +179,7 @@ def test_a_fixed_sequence_has_a_column_each():
     grid = Grid(lidar)
     assert (grid.rows, grid.columns, grid.sequence_ns) == (3, 50, 1000)
     assert np.array_equal(grid.cells(ring, offset)[ring, column], np.arange(150))
-    offset[ring == 1] //= 2  # two returns of ring 1 share a column, and none may be lost
+    offset[ring == 1] //= 2  # two returns of ring 1 share a column, and both must be kept
     assert sorted(cell for cell in Grid(lidar).cells(ring, offset).ravel() if cell >= 0) == list(range(150))
 
 
@@ -199,7 +199,7 @@ def test_settings_that_are_wrong(name, value, word):
 
 
 def test_a_file_without_an_imu_does_not_spoil_the_list(recordings, tmp_path):
-    """Files without a lidar or that are not recordings are reported and skipped; the others are listed."""
+    """Files that are no recordings, and recordings without a lidar, are reported and skipped. All other files are listed."""
     (tmp_path / "none.h5").write_bytes(b"nothing")
     blind = tmp_path / "blind.h5"
     with h5py.File(recordings["hill"]) as whole, h5py.File(blind, "w") as file:
