@@ -64,7 +64,7 @@ void bind_copy(Class& bound) {
   bound
       .def(
           "__copy__", [](const T& self) { return T(self); },
-          "Returns a copy, whose later results are identical to the bit.")
+          "Returns a copy. Copy and original return later results that are identical to the bit.")
       .def(
           "__deepcopy__", [](const T& self, nb::handle) { return T(self); }, nb::arg("memo"));
 }

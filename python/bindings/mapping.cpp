@@ -26,8 +26,9 @@ void bind_report(nb::module_& m) {
       "Result of registering a sweep. Unless it is `registered`, the pose depends on the inertial prior.")
       .value("first", SweepVerdict::first, "started the map")
       .value("registered", SweepVerdict::registered, "aligned with the map in all six directions")
-      .value("degenerate", SweepVerdict::degenerate, "aligned where the surfaces allow it, prior elsewhere")
-      .value("rejected", SweepVerdict::rejected, "too few matches, or a correction beyond the bound");
+      .value("degenerate", SweepVerdict::degenerate,
+             "aligned in the directions that the surfaces constrain; the prior determines the others")
+      .value("rejected", SweepVerdict::rejected, "rejected: too few matches, or a correction beyond the bound");
   nb::class_<Report>(m, "SweepReport", "Result of a sweep. Poses are of the IMU, in W.")
       .def_ro("verdict", &Report::verdict)
       .def_ro("pose", &Report::pose, "pose and velocity at the end of the sweep, with covariance")
@@ -138,7 +139,8 @@ void bind_mapping(nb::module_& m) {
       "LidarInertialOdometry(T_IL=..., own_body_L=None, **options): T_IL (4, 4) is the pose of the lidar in IMU axes.\n"
       "own_body_L (2, 3) has the smallest and the largest corner of a box in lidar axes; returns within the box "
       "belong\n"
-      "to the robot. Options: see parameters(). World: z up, origin and yaw of the IMU at the first sample. The body\n"
+      "to the robot. parameters() lists the options. World: z up, origin and yaw of the IMU at the first sample. The "
+      "body\n"
       "must be stationary for the first half second.");
   bound
       .def(

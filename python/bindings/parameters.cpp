@@ -54,7 +54,7 @@ nb::object Keywords::take(const std::string& name) {
 
 nb::object Keywords::need(const std::string& name) {
   nb::object value = take(name);
-  if (!value.is_valid()) raise_input("empty", name, nb::none(), nb::str("given: it has no default"));
+  if (!value.is_valid()) raise_input("empty", name, nb::none(), nb::str("given, because it has no default"));
   return value;
 }
 
@@ -105,7 +105,7 @@ void bind_parameter(nb::module_& m) {
       .def_ro("low", &Parameter::low, "smallest allowed value; for a vector, of each coordinate")
       .def_ro("high", &Parameter::high, "largest allowed value")
       .def_ro("meaning", &Parameter::meaning)
-      .def_ro("first", &Parameter::first, "whether a user should set this parameter before the others")
+      .def_ro("first", &Parameter::first, "whether this is one of the parameters that a user should set first")
       .def(
           "__repr__",
           [](const Parameter& p) {

@@ -142,7 +142,8 @@ void bind_batch(nb::module_& m) {
       "RateSmoother(lever_arm_m=(x, y, z), gyro_range_rad_s=None, accel_range_m_s2=None,\n"
       "calibration=None, **options): lever_arm_m is from the centre of mass to the IMU, in IMU axes.\n"
       "The ranges are those of the data sheet, or None. calibration is a RigCalibration of an earlier run.\n"
-      "Options: see parameters(). The model covers flight and contact. For hand-held motion use RegimeSmoother or\n"
+      "parameters() lists the options. The model covers flight and contact. For hand-held motion use RegimeSmoother "
+      "or\n"
       "CarriedSmoother; tumble.rate() uses RegimeSmoother.")
       .def(
           "__init__",
@@ -164,12 +165,13 @@ void bind_batch(nb::module_& m) {
               "largest probability of hand-held motion in a clipped segment")
       .def_ro("carried_asked", &Joint::carried_asked, "whether CarriedSmoother was used")
       .def_ro("carried", &Joint::carried, "report of CarriedSmoother, if it was used");
-  nb::class_<RegimeSmoother>(m, "RegimeSmoother",
-                             "Estimates the angular velocity of a body in flight, contact or hand-held motion, over a\n"
-                             "whole recording. Uses RateSmoother, and CarriedSmoother where the gyro clipped during\n"
-                             "hand-held motion.\n\n"
-                             "RegimeSmoother(lever_arm_m=(x, y, z), gyro_range_rad_s=None, accel_range_m_s2=None,\n"
-                             "calibration=None, **options): as RateSmoother. Options: see parameters().")
+  nb::class_<RegimeSmoother>(
+      m, "RegimeSmoother",
+      "Estimates the angular velocity of a body in flight, contact or hand-held motion, over a\n"
+      "whole recording. Uses RateSmoother, and CarriedSmoother where the gyro clipped during\n"
+      "hand-held motion.\n\n"
+      "RegimeSmoother(lever_arm_m=(x, y, z), gyro_range_rad_s=None, accel_range_m_s2=None,\n"
+      "calibration=None, **options): the arguments of RateSmoother. parameters() lists the options.")
       .def(
           "__init__",
           [](RegimeSmoother* self, const nb::kwargs& options) {
@@ -185,7 +187,7 @@ void bind_batch(nb::module_& m) {
       "the\n"
       "whole recording.\n\n"
       "Saave(lever_arm_m=(x, y, z), saturation_point_rad_s=..., **options): lever_arm_m is from the centre of mass to\n"
-      "the IMU, in IMU axes. A reading beyond saturation_point_rad_s is clipped. Options: see parameters().")
+      "the IMU, in IMU axes. A reading beyond saturation_point_rad_s is clipped. parameters() lists the options.")
       .def(
           "__init__",
           [](Saave* self, const nb::kwargs& options) {
@@ -246,7 +248,7 @@ auto bind_stream(nb::module_& m, const char* name, const char* doc,
             });
             return out;
           },
-          "Returns the provisional rate of the newest sample; no row before the first sample.")
+          "Returns the provisional rate of the newest sample. Returns no row before the first sample.")
       .def(
           "calibration",
           [rate, rate_state](Object& self) {
@@ -269,7 +271,7 @@ void bind_streams(nb::module_& m) {
       m, "RateStream",
       "The streaming form of RateSmoother: returns each rate when its sample is lag_s old.\n\n"
       "RateStream(lever_arm_m=(x, y, z), gyro_range_rad_s=None, accel_range_m_s2=None, calibration=None, **options):\n"
-      "as RateSmoother. Options: see parameters().",
+      "the arguments of RateSmoother. parameters() lists the options.",
       &stream_params, [](const RateStream& s) -> const RateStream& { return s; },
       [](const RateStream::State& s) -> const RateStream::State& { return s; })
       .def_static("parameters", [] { return list_fields(RateStream::Params{}); });
@@ -279,7 +281,7 @@ void bind_streams(nb::module_& m) {
       "and\n"
       "CarriedStream where the gyro clips during hand-held motion.\n\n"
       "RegimeStream(lever_arm_m=(x, y, z), gyro_range_rad_s=None, accel_range_m_s2=None, calibration=None,\n"
-      "**options): as RateSmoother. Options: see parameters().",
+      "**options): the arguments of RateSmoother. parameters() lists the options.",
       &regime_params, [](const RegimeStream& s) -> const RateStream& { return s.rate(); },
       [](const RegimeStream::State& s) -> const RateStream::State& { return s.rate; })
       .def(

@@ -45,7 +45,7 @@ nb::class_<Rows> bind_rows(nb::module_& m, const char* name, const char* doc) {
 constexpr const char* kTimes = "(N,) int64, nanoseconds";
 constexpr const char* kQuaternions = "(N, 4): Hamilton, x y z w as in scipy; rotates sensor or body axes to the world";
 constexpr const char* kPoseCovariance =
-    "(6, 6), of (position error in W [m], attitude error phi in W [rad]); zero where not reported";
+    "(6, 6), of (position error in W [m], attitude error phi in W [rad]); entries that are not reported are zero";
 constexpr const char* kPoseCovariances = "(N, 6, 6), of (position error in W [m], attitude error phi in W [rad])";
 
 void bind_rates_of_results(nb::module_& m) {
@@ -86,7 +86,7 @@ void bind_attitudes_of_results(nb::module_& m) {
           [](const Attitudes& s) {
             return column<double, 3, 3>(s.rows, [](auto& r) { return r.covariance_rad2.data(); });
           },
-          "(N, 3, 3), rad^2, of phi with q_true = Exp(phi) q, world axes; zero where the method reports none");
+          "(N, 3, 3), rad^2, of phi with q_true = Exp(phi) q, world axes; zero if the method reports no covariance");
 }
 
 void bind_poses(nb::module_& m) {

@@ -28,7 +28,7 @@ void bind_rolling_smoother(nb::module_& m) {
       "Estimates the pose of a rolling sphere from one IMU, smoothed with a fixed lag or, by default, over the whole "
       "run.\n\n"
       "RollingSmoother(radius_m=..., lever_arm_m=(x, y, z), **options): lever_arm_m is from the centre to the IMU, in\n"
-      "sensor axes. Options: see parameters(). The sphere must be stationary for the first second.");
+      "sensor axes. parameters() lists the options. The sphere must be stationary for the first second.");
   bound
       .def(
           "__init__",
@@ -71,7 +71,8 @@ void bind_filter(nb::module_& m) {
       m, "RollingFilter",
       "Estimates the pose of a rolling sphere from one IMU, live: each pose depends on earlier samples only.\n"
       "RollingSmoother also uses later samples.\n\n"
-      "RollingFilter(radius_m=..., lever_arm_m=(x, y, z), **options): as RollingSmoother. Options: see parameters().");
+      "RollingFilter(radius_m=..., lever_arm_m=(x, y, z), **options): the arguments of RollingSmoother. parameters() "
+      "lists the options.");
   bound
       .def(
           "__init__",
@@ -120,7 +121,7 @@ void bind_filter(nb::module_& m) {
       .def_prop_ro(
           "started_in_motion",
           [](Object& self) { return self.run([](Live& at) { return at.state->started_in_motion; }); },
-          "whether the run started in motion, so that the initial attitude has a larger uncertainty")
+          "whether the run started in motion; the initial attitude then has a larger uncertainty")
       .def_static("parameters", [] { return list_fields(RollingFilter::Params{}); });
   bind_keeping<RollingFilter>(bound);
 }
@@ -209,9 +210,11 @@ BoundRollingOdometry restored_rolling(std::span<const std::byte> bytes) {
 void bind_unit(nb::module_& m) {
   using U = ImuMergeUnit;
   nb::class_<U>(m, "SphereUnit",
-                "State of one IMU of a sphere, from a comparison with the others. Not computed for a single IMU.")
-      .def_ro("frozen", &U::frozen, "whether its readings are constant while the others change")
-      .def_ro("disagrees", &U::disagrees, "whether it has disagreed with the others for long and is excluded")
+                "State of one IMU of a sphere, from a comparison with the other IMUs. A sphere with a single IMU has "
+                "no such state.")
+      .def_ro("frozen", &U::frozen, "whether its readings are constant while those of the other units change")
+      .def_ro("disagrees", &U::disagrees,
+              "whether it has disagreed with the other units for a long time and is excluded")
       .def_ro("left_out", &U::left_out, "number of windows in which its specific force was excluded")
       .def_ro("absent", &U::absent, "number of samples that were not finite")
       .def_prop_ro("time_offset_s", &U::offset_s, "offset of its clock from the mean of all units")
@@ -229,7 +232,8 @@ void bind_rolling_odometry(nb::module_& m) {
       "smoothed with a lag of lag_s, or smoothed with the whole recording (lag_s=1e9: all poses come after "
       "finish()).\n\n"
       "RollingOdometry(units=[(ImuSheet, T_BI), ...], radius_m=..., **options): T_BI (4, 4) is the pose of a unit in\n"
-      "sphere axes, relative to the centre. Options: see parameters(). World: z up, origin at the centre at the first\n"
+      "sphere axes, relative to the centre. parameters() lists the options. World: z up, origin at the centre at the "
+      "first\n"
       "sample, yaw 0. The sphere must be stationary for the first second.");
   bound
       .def(
@@ -315,7 +319,7 @@ void bind_rolling_odometry(nb::module_& m) {
               return std::vector<ImuMergeUnit>(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(rolling.units));
             });
           },
-          "state of each unit from a comparison of the units, in their order")
+          "state of each unit, from a comparison of the units, in the order of `units`")
       .def_static("parameters", [] { return list_fields(RollingOdometry::Params{}, kDerivedRollingParameters); });
   bind_copy<Object>(bound);
   bind_saving<BoundRollingOdometry>(bound, &restored_rolling);
@@ -325,11 +329,11 @@ void bind_rolling_odometry(nb::module_& m) {
 
 void bind_rolling(nb::module_& m) {
   nb::enum_<RollingMode>(m, "RollingMode", nb::is_arithmetic(), "Type of contact between sphere and floor.")
-      .value("grip", RollingMode::grip, "the contact point does not slide, the floor is level")
+      .value("grip", RollingMode::grip, "the contact point does not slide, and the floor is level")
       .value("slip", RollingMode::slip, "the contact point slides along the floor")
       .value("bump", RollingMode::bump, "the contact point also moves up or down")
-      .value("incline", RollingMode::incline, "the contact point does not slide, on a slope")
-      .value("rough", RollingMode::rough, "the contact point does not slide, the floor is uneven");
+      .value("incline", RollingMode::incline, "the contact point does not slide, and the floor is a slope")
+      .value("rough", RollingMode::rough, "the contact point does not slide, and the floor is uneven");
   bind_filter(m);
   bind_rolling_smoother(m);
   bind_unit(m);

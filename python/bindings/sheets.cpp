@@ -42,7 +42,8 @@ nb::class_<Sheet> bind_sheet(nb::module_& m, const char* name, const char* doc) 
 
 void bind_sheets(nb::module_& m) {
   bind_sheet<ImuSheet>(
-      m, "ImuSheet", "Data sheet of an IMU. A range of 0 means that the sheet does not state it. ImuSheet(**numbers).")
+      m, "ImuSheet",
+      "Data sheet of an IMU: ImuSheet(**numbers). A range of 0 means that the sheet does not state the range.")
       .def_ro("rate_hz", &ImuSheet::rate_hz)
       .def_ro("gyro_range_rad_s", &ImuSheet::gyro_range_rad_s)
       .def_ro("accel_range_m_s2", &ImuSheet::accel_range_m_s2)

@@ -26,12 +26,13 @@ struct ExactTimes {
   std::optional<TimeNs> value, bound;
 };
 
-/// Raises TumbleError with a status' own message, unless it is ok. `index`: of the sample in an array; those before it
-/// were taken in. `so_far`: what came out of these. Times are whole numbers: `times`, or what the status has of them.
+/// Raises TumbleError with the message of a status, unless the status is ok. `index`: index of the rejected sample in
+/// an array, whose earlier samples were processed. `so_far`: results from the earlier samples. Times in the error are
+/// whole numbers: `times`, or the rounded times of the status.
 void require(const Status& status, std::optional<std::size_t> index = std::nullopt, nb::object so_far = nb::none(),
              const ExactTimes& times = {});
 
-/// The same of a whole recording, which is refused with all its samples: looks for the one that the status means.
+/// Raises TumbleError for a recording that was rejected as a whole. Finds the index of the rejected sample.
 void require(const Status& status, std::span<const ImuSample> samples);
 
 /// Returns None if all sensors and the pose are healthy, else a TumbleError that is not raised.

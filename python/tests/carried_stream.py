@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""CarriedStream beside the batch, the stream of all regimes and the gyro: median and 90 % of the error where the gyro clips, rad/s.
+"""Compares CarriedStream with the batch smoother, RegimeStream and the gyro: median and 90 % quantile of the error where the gyro clips, rad/s.
 
     python carried_stream.py SEED...     of `twirl`; calls the program
 """

@@ -12,7 +12,7 @@ import tumble
 
 @pytest.fixture(scope="session")
 def program():
-    """The program of this tree, whose path CTest passes. Without it, skip the comparisons by `-m "not program"`."""
+    """Returns the program of this tree, whose path CTest passes. To run the tests without program, use `-m "not program"`."""
     return tumble.program()
 
 
@@ -40,13 +40,13 @@ def slip(recordings):
 
 @pytest.fixture(scope="session")
 def real_data():
-    """Folder with the real recordings, which are not part of the project, or None."""
+    """Returns the folder with the real recordings, which are not part of the project, or None."""
     root = pathlib.Path(os.environ.get("TUMBLE_SHARED_DATA", pathlib.Path(__file__).parents[3] / "shared" / "data"))
     return root if (root / "repoimu").is_dir() else None
 
 
 def spinning(seconds=4.0, rate_hz=100.0, rail=None, seed=0):
-    """An IMU that rests for a second, then turns about z faster and faster, about a point 5 cm away: closed form.
+    """An IMU that is stationary for a second, then rotates with increasing rate about a vertical axis at a distance of 5 cm, in closed form.
 
     Returns time_ns, gyro, accel, true rate. `rail`: the gyro delivers no more than this, rad/s.
     """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Processor time of whole recordings from Python beside that of the same method in the program: speed.py [RUNS]
+"""Compares the processor time for whole recordings in Python with the same method in the program: speed.py [RUNS]
 
 The program's is its metric estimate_cpu_s, of the estimate alone; Python's is of the call that takes the recording's arrays. The least
 of RUNS (5) each. Called by hand: nothing asserts a clock.

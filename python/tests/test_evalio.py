@@ -179,7 +179,7 @@ def test_a_fixed_sequence_has_a_column_each():
     grid = Grid(lidar)
     assert (grid.rows, grid.columns, grid.sequence_ns) == (3, 50, 1000)
     assert np.array_equal(grid.cells(ring, offset)[ring, column], np.arange(150))
-    offset[ring == 1] //= 2  # two returns of ring 1 share a column, and none may be lost
+    offset[ring == 1] //= 2  # two returns of ring 1 share a column, and both must be kept
     assert sorted(cell for cell in Grid(lidar).cells(ring, offset).ravel() if cell >= 0) == list(range(150))
 
 
@@ -199,7 +199,7 @@ def test_settings_that_are_wrong(name, value, word):
 
 
 def test_a_file_without_an_imu_does_not_spoil_the_list(recordings, tmp_path):
-    """Files without a lidar or that are not recordings are reported and skipped; the others are listed."""
+    """Files that are no recordings, and recordings without a lidar, are reported and skipped. All other files are listed."""
     (tmp_path / "none.h5").write_bytes(b"nothing")
     blind = tmp_path / "blind.h5"
     with h5py.File(recordings["hill"]) as whole, h5py.File(blind, "w") as file:
@@ -258,11 +258,11 @@ def test_sweeps_do_not_wait_for_an_imu_without_end():
     sweep = lambda k: types.LidarMeasurement(types.Stamp(sec=k // 10, nsec=k % 10 * 100_000_000), [types.Point(x=1.0, y=2.0)])
     for k in range(10, 110):
         pipeline.add_lidar(sweep(k))
-    with pytest.raises(RuntimeError, match="100 sweeps wait for samples .* from 1.0.* s to 11.0.* s, .*: there was none yet"):
+    with pytest.raises(RuntimeError, match="100 sweeps wait for IMU samples, from 1.0.* s to 11.0.* s, .*: no IMU sample has arrived"):
         pipeline.add_lidar(sweep(110))
     # the message distinguishes an IMU with another clock from a missing IMU
     pipeline.add_imu(types.ImuMeasurement(types.Stamp(sec=0, nsec=500_000_000), np.zeros(3), np.array([0.0, 0.0, 9.8])))
-    with pytest.raises(RuntimeError, match="the last one is at 0.5"):
+    with pytest.raises(RuntimeError, match="the newest IMU sample is at 0.5"):
         pipeline.add_lidar(sweep(110))
     # samples that cover the sweeps make room for new ones
     for k in range(100, 1200):

@@ -29,7 +29,7 @@ def ran(notebook, folder):
 
 
 def test_the_first_needs_no_program(tmp_path, monkeypatch):
-    """As after `pip install` alone: nothing of the tree is on the path."""
+    """Runs as after `pip install`: no file of the tree is on the path."""
     for name in ("REPOIMU", "TUMBLE_PROGRAM", "TUMBLE_ROOT"):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setenv("PATH", f"{pathlib.Path(sys.executable).parent}:/usr/bin:/bin")
@@ -46,7 +46,7 @@ def datasets(path):
 
 @pytest.mark.program
 def test_the_kept_recording_is_what_its_command_makes(program, tmp_path):
-    """If the simulation has changed, run `python docs/notebooks/keep_twirl.py` to write it again."""
+    """If the simulation has changed, run `python docs/notebooks/keep_twirl.py` to write the recording again."""
     run_script(FOLDER / "keep_twirl.py", tmp_path, tmp_path / "rewritten.h5")
     kept, rewritten = datasets(RECORDING), datasets(tmp_path / "rewritten.h5")
     assert len(kept) > 20 and kept.keys() == rewritten.keys()
@@ -79,7 +79,7 @@ def test_a_real_wand(tmp_path, monkeypatch, real_data):
 
 
 def test_a_cell_that_fails_is_seen(tmp_path):
-    """The negative control."""
+    """A notebook with an error fails (negative control)."""
     notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell("assert 1 + 1 == 3")])
     with pytest.raises(nbclient.exceptions.CellExecutionError):
         ran(notebook, tmp_path)

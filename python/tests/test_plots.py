@@ -25,17 +25,17 @@ def drawn(figure):
 
 
 def coloured(pixels):
-    """Share of pixels that are neither white, black nor grey."""
+    """Returns the share of coloured pixels: neither white, black nor grey."""
     return np.mean(np.ptp(pixels, axis=2) > 0.1)
 
 
 def turned(angle):
-    """Quaternion about z."""
+    """Returns a quaternion about z."""
     return np.stack([0 * angle, 0 * angle, np.sin(angle / 2), np.cos(angle / 2)], axis=1)
 
 
 def carousel(rate_rad_s=3.0):
-    """A body that turns about z and rises, seen for two seconds, with a lidar whose returns are ten fixed marks; and its poses."""
+    """Returns two seconds of a body that rotates about z and rises, with its poses. The returns of its lidar come from ten fixed marks."""
     truth_ns = np.arange(0, 2_000_000_001, 1_000_000, dtype=np.int64)
     t = truth_ns * 1e-9
     position, quaternion = np.stack([0 * t, 0 * t, 0.5 * t], axis=1), turned(rate_rad_s * t)

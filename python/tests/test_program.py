@@ -313,7 +313,7 @@ RAW = textwrap.dedent('''
 
 
 def test_a_function_is_a_method(tmp_path):
-    """In a sweep with the program's raw gyro it has the same errors."""
+    """A Python method that returns the gyro has the same errors as the program's raw gyro."""
     (tmp_path / "mine.py").write_text(RAW)
     mine = tumble.describe_method(tmp_path / "mine.yaml", "mine", "rate", tmp_path / "mine.py", doc="it's the gyro", robots=["rig"])
     frame = tumble.sweep("bare", tmp_path / "a.db", seeds=(1, 2), methods=["rate/raw", mine], jobs=2)

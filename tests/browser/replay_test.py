@@ -140,7 +140,7 @@ class ReplayPage(unittest.TestCase):
     def test_without_truth_and_under_a_hostile_name(self):
         page, _ = self.drawn(self.real, "t=4&pause&still")
         self.assertGreater(self.points(page), 10000)
-        self.assertIn("colour of each lidar point is its height", page.value("document.body.innerText"))
+        self.assertIn("colour of each lidar point shows its height", page.value("document.body.innerText"))
         self.assertEqual(page.value("document.images.length"), 0)
         self.assertIn("<img src=x onerror=alert(1)>", page.value("document.getElementById('actors').textContent"))
 

@@ -120,4 +120,4 @@ say "and the same recordings kept"
 
 say "what a shard cannot do is refused"
 if "$root/tools/slurm/submit" roll --db "$folder/no.db" --program "$program" -- --until a:b:c 2> "$folder/refused"; then exit 1; fi
-grep -q "needs every draw before it" "$folder/refused"
+grep -q "needs all earlier draws" "$folder/refused"

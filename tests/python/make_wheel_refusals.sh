@@ -31,13 +31,13 @@ done
 expects 'Builds the source distribution'
 mkdir -p foreign/dist
 touch foreign/dist/precious file
-expects 'foreign is not empty and not of an earlier make_wheel' foreign
+expects 'foreign is not empty and was not created by make_wheel' foreign
 [ -e foreign/dist/precious ]
 expects 'File exists' file
 expects 'Not a directory' file/below
-expects '/nonexistent is no Python that runs' new /nonexistent
-expects '/bin/ls is no Python that runs' new /bin/ls
-expects '/bin/echo is no Python that runs' new /bin/echo
+expects '/nonexistent does not run as a Python interpreter' new /nonexistent
+expects '/bin/ls does not run as a Python interpreter' new /bin/ls
+expects '/bin/echo does not run as a Python interpreter' new /bin/echo
 interpreter old 10
 expects 'is Python 3.10, must be 3.11 or later' new ./old
 interpreter bare 12

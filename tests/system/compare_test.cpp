@@ -91,10 +91,10 @@ TEST(Compare, RefusesWithOneLine) {
   const std::vector<std::pair<std::vector<std::string>, std::string>> wrongs = {
       {{"--method", "saav"}, "did you mean 'saave'?"},
       {{"--margin", "much"}, "--margin is 'much'"},
-      {{"--margin", "0.1"}, "name the metric with --metric"},
+      {{"--margin", "0.1"}, "no metric is named; add --metric"},
       {{"--metric", "ate"}, "no metric 'ate'"},
-      {{"--risk", "2"}, "not within"},
-      {{"--method", "raw"}, "no draw on which two of the named methods"}};
+      {{"--risk", "2"}, "must be from"},
+      {{"--method", "raw"}, "no draw of this database has results of two of the named methods"}};
   for (const auto& [words, said] : wrongs) {
     std::vector<std::string> arguments = {"compare", database};
     arguments.insert(arguments.end(), words.begin(), words.end());

@@ -37,7 +37,7 @@ TEST(Exchange, AStatedZeroIsStatedAndColumnsAreNamed) {
   named.insert(named.end(), {"--columns", "time=clock,gyro=w1,w2,w3,accel=f1,f2,f3"});
   const Ended without = run_program(named);
   EXPECT_EQ(without.status, 0) << without.err;
-  EXPECT_THAT(without.err, HasSubstr("no --lever-arm"));
+  EXPECT_THAT(without.err, HasSubstr("--lever-arm is missing"));
   named.insert(named.end(), {"--lever-arm", "0", "0", "0"});
   const Ended stated = run_program(named);
   EXPECT_EQ(stated.status, 0) << stated.err;
@@ -56,7 +56,7 @@ TEST(Exchange, AFolderOfTablesComesBackWithItsTruth) {
   const json said = json_of(imported);
   EXPECT_EQ(said["format"], "csv");
   EXPECT_EQ(said["has_reference"], true);
-  EXPECT_THAT(said["notes"].dump(), HasSubstr("the reference is truth.csv, found in the imported folder"));
+  EXPECT_THAT(said["notes"].dump(), HasSubstr("the reference poses come from truth.csv in the imported folder"));
   EXPECT_THAT(said["notes"].dump(), HasSubstr("'imu' is the primary IMU"));
   EXPECT_THAT(said["notes"].dump(), HasSubstr("notes.csv:1: contains no known column name"));
   const Ended scored = run_program({"score", tum, back, "--frame", "body", "--json"});

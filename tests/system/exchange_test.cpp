@@ -58,7 +58,7 @@ sensors:
   const Ended recorded = run_program({"record", scenario, "--seed", "1", "-o", recording});
   ASSERT_EQ(recorded.status, 0) << recorded.err;
   EXPECT_THAT(recorded.out, testing::ContainsRegex("height +bmp388 +75"));
-  EXPECT_THAT(recorded.err, HasSubstr("the robot still moves at the end of the recording, at "));
+  EXPECT_THAT(recorded.err, HasSubstr("the robot still moves at the end of the recording, with "));
   const Ended csv = run_program({"export", recording, "--format", "csv", "-o", (folder / "csv").string()});
   ASSERT_EQ(csv.status, 0) << csv.err;
   EXPECT_EQ(line_count(read_file(folder / "csv" / "height.csv")), 76u);
@@ -255,11 +255,11 @@ TEST(Exchange, ATrajectoryAloneIsARecordingToScoreAgainst) {
   EXPECT_NEAR(metric(json_of(scored), "position_end_error_m"), 0.5, 1e-9);
   const Ended drawn = run_program({"render", recording, "-o", (folder / "x.png").string()});
   EXPECT_EQ(drawn.status, 2);
-  EXPECT_THAT(drawn.err, HasSubstr("no world to draw"));
+  EXPECT_THAT(drawn.err, HasSubstr("its world cannot be drawn"));
   const Ended estimated =
       run_program({"estimate", recording, "--method", "attitude/vqf", "-o", (folder / "e").string()});
   EXPECT_EQ(estimated.status, 2);
-  EXPECT_THAT(estimated.err, HasSubstr("the method needs an IMU, and the recording has none"));
+  EXPECT_THAT(estimated.err, HasSubstr("the method needs an IMU, but the recording contains no IMU"));
 }
 
 // a TUM file of somebody else's: as position and as slam, over the whole recording and over half of it

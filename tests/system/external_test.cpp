@@ -108,7 +108,8 @@ TEST(External, AHangThatIsStoppedLeavesNoFolder) {
     EXPECT_NE(ended.status, 0) << verb.front();
     EXPECT_TRUE(fs::is_empty(temporary)) << verb.front() << " left " << *fs::directory_iterator(temporary);
     if (verb.front() == "run") {
-      EXPECT_THAT(ended.err, HasSubstr("hangs.yaml: a run is ended after 600 s")) << ended.err;
+      EXPECT_THAT(ended.err, HasSubstr("hangs.yaml: the program stops each run of this method after 600 s"))
+          << ended.err;
     }
   }
 }
@@ -139,7 +140,7 @@ TEST(External, AGateHoldsItToItsAcceptedRun) {
   EXPECT_THAT(ended.err, HasSubstr("rate/other"));
   ended = run({"--method", "rate/raw"});
   EXPECT_EQ(ended.status, 2);
-  EXPECT_THAT(ended.err, HasSubstr("must be a FILE.yaml"));
+  EXPECT_THAT(ended.err, HasSubstr("give a FILE.yaml"));
 
   // negative control: the command of that name has come to answer nothing
   ended = run({"--method", describe(folder, "raw_python", "true")});

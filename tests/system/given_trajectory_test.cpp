@@ -74,11 +74,12 @@ TEST_F(GivenTrajectory, WhatWasNotComparedIsNotPerfect) {
   // the first two of 0.5 ms each, of some seconds
   EXPECT_THAT(refused(score(2, 1.0)), HasSubstr("cover 0.0 %"));
   // stamps in microseconds: the second pose lies beyond the end
-  EXPECT_THAT(refused(score(lines_.size(), 1e6)), HasSubstr("1 of its " + std::to_string(lines_.size()) + " poses"));
+  EXPECT_THAT(refused(score(lines_.size(), 1e6)), HasSubstr("only 1 of " + std::to_string(lines_.size()) + " poses"));
   // in milliseconds, a pose every 0.5 ms: some thirty lie within, each at a wrong time
-  EXPECT_THAT(refused(score(lines_.size(), 1e3)), HasSubstr("1000 times as long. The time unit may be ms;"));
+  EXPECT_THAT(refused(score(lines_.size(), 1e3)),
+              HasSubstr("1000 times as long. The time unit of the file may be ms;"));
   // stamps in kiloseconds: all lie in the first thousandth
-  EXPECT_THAT(refused(score(lines_.size(), 1e-3)), HasSubstr("must be at least 2 poses and 1 %"));
+  EXPECT_THAT(refused(score(lines_.size(), 1e-3)), HasSubstr("a score needs at least 2 poses and 1 %"));
 }
 
 TEST_F(GivenTrajectory, HowMuchWasComparedStandsInTheTable) {
@@ -103,13 +104,13 @@ TEST_F(GivenTrajectory, AFolderThatNamesNoRecordingIsACaution) {
   const fs::path given = folder_ / "estimate";
   fs::copy(shared_run("roll") / "estimates" / "position-rolling", given);
   const Ended named = run_program({"score", given.string(), recording_});
-  EXPECT_THAT(named.err, Not(HasSubstr("does not state its recording")));
+  EXPECT_THAT(named.err, Not(HasSubstr("does not name its recording")));
   nlohmann::json header = nlohmann::json::parse(read_file(given / "estimate.json"));
   header.erase("sensors_digest");
   std::ofstream(given / "estimate.json") << header;
   const Ended ended = run_program({"score", given.string(), recording_});
   EXPECT_EQ(ended.status, 0) << ended.err;
-  EXPECT_THAT(ended.err, HasSubstr("caution: " + given.string() + " does not state its recording"));
+  EXPECT_THAT(ended.err, HasSubstr("caution: " + given.string() + " does not name its recording"));
 }
 
 TEST_F(GivenTrajectory, QuaternionsInAnotherOrderAreSaid) {

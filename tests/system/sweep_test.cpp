@@ -203,14 +203,14 @@ TEST(Sweep, OfASuiteSomeScenariosAlone) {
   const Ended one = with({"--scenario", "roll"});
   EXPECT_EQ(one.status, 0) << one.err;
   EXPECT_EQ(json_of(one)["draws_total"], 1);
-  EXPECT_THAT(one.err, Not(HasSubstr("for that scenario only")));
+  EXPECT_THAT(one.err, Not(HasSubstr("use --scenario")));
   EXPECT_EQ(report_json(database)["draws"], (json{{"roll", 1}}));
   const Ended unknown = with({"--scenario", "slib"});
   EXPECT_EQ(unknown.status, 2);
   EXPECT_THAT(unknown.err, HasSubstr("unknown scenario of suite 'slip' 'slib'"));
   const Ended all = with({"--shard", "2/2"});  // which has nothing to do
   EXPECT_EQ(all.status, 0) << all.err;
-  EXPECT_THAT(all.err, HasSubstr("use --scenario slip for that scenario only"));
+  EXPECT_THAT(all.err, HasSubstr("use --scenario slip to run only the scenario"));
 }
 
 // seeds in a row are asked for where a suite has but some of them
@@ -245,10 +245,10 @@ TEST(Sweep, RefusesWhatItCannotKeepOrAsk) {
   refused({"--keep", "worst:0"}, "worst:N with N from 1 to 1000");
   refused({"--memory", "1"}, "--memory");
   refused({"--memory", "nan"}, "--memory");
-  refused({"--until", "rate/raw:rate/tumble"}, "must be A:B:METRIC");
+  refused({"--until", "rate/raw:rate/tumble"}, "write A:B:METRIC");
   refused({"--until", "rate/raw:rate/tumble:rate_error_clipped_median_rad_s"}, "method of the suite");
   refused({"--until", "rate/raw:rate/raw:rate_error_clipped_median_rad_s", "--shard", "1/2"},
-          "a shard does not see all draws");
+          "a shard contains only a part of the draws");
   // what is met once the database is open: one that the sweep made goes again
   refused({"--again", "ok"}, "'ok' cannot be run again");
   refused({}, "split the range into parts", "1..20000000");

@@ -168,7 +168,7 @@ TEST(Trouble, AGapIsSaidWithItsPlace) {
   const std::string recording = (folder / "gap.h5").string();
   const Ended imported = run_program({"import", (folder / "gap.csv").string(), "-o", recording});
   ASSERT_EQ(imported.status, 0);
-  EXPECT_THAT(imported.err, HasSubstr("no --lever-arm"));
+  EXPECT_THAT(imported.err, HasSubstr("--lever-arm is missing"));
   const Ended ended = run_program({"estimate", recording, "--method", "rate/raw", "-o", (folder / "e").string()});
   EXPECT_EQ(ended.status, 2);
   EXPECT_THAT(ended.err, HasSubstr("imu has no readings between 1.990 and 3.500 s"));
@@ -208,7 +208,7 @@ TEST(Trouble, WhatWasLearntOfAnotherRigIsACaution) {
   std::ofstream(file) << rig;
   const Ended other = estimate("other");
   EXPECT_EQ(other.status, 0) << other.err;
-  EXPECT_THAT(other.err, HasSubstr("from that of the recording; it may belong to another rig"));
+  EXPECT_THAT(other.err, HasSubstr("from the lever arm of the recording, so the file may belong to another rig"));
 }
 
 TEST(Trouble, AFrameIsCheckedWithoutATrajectoryToo) {

@@ -55,14 +55,14 @@ TEST(ParseQuestion, RefusesWhatIsNone) {
     }
   };
   for (const char* text : {"", ":", "a:b", "a:b:", "a:b:c:d:e", "a::c", "position/rolling:position/observer:"})
-    refused(text, "must be A:B:METRIC");
+    refused(text, "write A:B:METRIC");
   refused("position/roling:position/rolling:position_end_error_share", "did you mean 'position/rolling'");
   refused("position/observer:position/rolling:position_end_error_share", "method of the suite");
   refused("position/rolling:position/rolling:position_end_error_share", "is compared with itself");
   refused("position/rolling:position/autogain_fusion:position_end_error", "is unknown");
-  refused(std::string(kAsked) + ":-1", "must be a non-negative number");
-  refused(std::string(kAsked) + ":nan", "must be a non-negative number");
-  refused(std::string(kAsked) + ":ten", "must be a non-negative number");
+  refused(std::string(kAsked) + ":-1", "write a number of at least 0");
+  refused(std::string(kAsked) + ":nan", "write a number of at least 0");
+  refused(std::string(kAsked) + ":ten", "write a number of at least 0");
 }
 
 class SweepUntilTest : public scenarios::testing::SmallCatalogue {

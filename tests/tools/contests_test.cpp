@@ -70,7 +70,7 @@ TEST(Contests, NameTheBestAndByHowMuch) {
   EXPECT_TRUE(all[0].won());
   EXPECT_NEAR(all[0].times, 10.0, 1e-9);
   EXPECT_EQ(tally_text(tally(all)), "tumble is better than the baseline in the one contest");
-  EXPECT_THAT(certainty_text(all[0], 2), HasSubstr("more than chance explains, after correction for 2"));
+  EXPECT_THAT(certainty_text(all[0], 2), HasSubstr("significantly better, after correction for 2"));
 }
 
 TEST(Contests, AreLostWhereTheBaselineIsBetter) {
@@ -163,7 +163,7 @@ TEST(Contests, KnowThatMoreOverlapIsBetter) {
 
 TEST(Contests, AreNoneWithoutARival) {
   EXPECT_TRUE(contests_of(summary_of({method("raw", kTwo)})).empty());
-  EXPECT_THAT(tally_text({}), HasSubstr("no method to compare"));
+  EXPECT_THAT(tally_text({}), HasSubstr("no method that can be compared"));
 }
 
 PageContent content_of(std::vector<MethodSummary> methods) {

@@ -85,7 +85,7 @@ TEST(DistributionFigures, SayWhereTheyAreThinned) {
   EXPECT_THAT(distribution_figures(motion_spreads(many)).at(0).caption, Not(HasSubstr("more draws")));
   many.push_back({"hill", kBoxPoints + 1, {{"motion_peak_rate_rad_s", 10.0}}});
   EXPECT_THAT(distribution_figures(motion_spreads(many)).at(0).caption,
-              HasSubstr("For scenarios with more draws, only 1000"));
+              HasSubstr("For scenarios with more draws, the plot shows only 1000"));
 }
 
 TEST(DistributionsHtml, ShowsThePublishedFiguresAndIsEmptyWithoutDraws) {
@@ -104,7 +104,7 @@ TEST(CertificatesHtml, ShowsValueBoundAndVerdictAndEscapes) {
   EXPECT_THAT(html, HasSubstr("fail"));
   EXPECT_THAT(html, HasSubstr("&lt;= 1e-08"));
   EXPECT_THAT(html, Not(HasSubstr("build <1>")));
-  EXPECT_EQ(certificate_summary(certificate), "1 of 2 values within their bounds");
+  EXPECT_EQ(certificate_summary(certificate), "1 of 2 values are within their bounds");
   EXPECT_EQ(certificate_summary({}), "none");
   EXPECT_THAT(certificates_html({}), HasSubstr("no certificate"));
 }

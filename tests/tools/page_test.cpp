@@ -81,9 +81,9 @@ TEST(Page, ShowsExamplesWithTheirPicturesAndPlots) {
   EXPECT_THAT(page, HasSubstr("One hill of <code>hill</code>, seed 7"));
   EXPECT_THAT(page, HasSubstr("src=\"data:image/png;base64,iVBORw==\""));
   EXPECT_THAT(page, HasSubstr("id=\"hill-hill-7\""));
-  EXPECT_THAT(page, HasSubstr("other results")) << "it is not of these";
+  EXPECT_THAT(page, HasSubstr("not match these results")) << "it is not of these";
   content.examples[0].of_these_results = true;
-  EXPECT_THAT(page_html(content, ""), Not(HasSubstr("other results")));
+  EXPECT_THAT(page_html(content, ""), Not(HasSubstr("not match these results")));
   content.examples.clear();
   EXPECT_THAT(page_html(content, ""), Not(HasSubstr("hill"))) << "negative control";
 }
@@ -149,10 +149,10 @@ TEST(Page, ShowsADrawOfTheseResultsBeforeOneThatMoves) {
     return page.substr(at, page.find("</figure>", at) - at);
   };
   EXPECT_THAT(front(), HasSubstr("One hill"));
-  EXPECT_THAT(front(), HasSubstr("belongs to other results than these"));
+  EXPECT_THAT(front(), HasSubstr("does not match these results"));
   content.examples[1].of_these_results = true;
   EXPECT_THAT(front(), HasSubstr("One roll"));
-  EXPECT_THAT(front(), Not(HasSubstr("other results")));
+  EXPECT_THAT(front(), Not(HasSubstr("not match these results")));
 }
 
 TEST(Page, SetsNarrowPlotsTwoInARow) {
@@ -211,9 +211,10 @@ TEST(Page, DrawsAScoreOverTheRangeOfWhatBreaksIt) {
 
 TEST(Page, SaysHowManyDrawsMoreTellWhatBreaksAMethod) {
   EXPECT_EQ(draws_needed_text({{"hill", 24}, {"roll", 500}}), "");
-  EXPECT_EQ(draws_needed_text({{"hill", 5}, {"roll", 500}, {"slip", 23}}),
-            "A scenario needs 12 draws for the influence of its numbers, and 24 for a plot of the score over a number. "
-            "Missing draws: hill 7, and 19 for the plot; slip 1 for the plot. ");
+  EXPECT_EQ(
+      draws_needed_text({{"hill", 5}, {"roll", 500}, {"slip", 23}}),
+      "A scenario needs 12 draws to compute the influence of its numbers, and 24 draws for a plot of the score over "
+      "a number. These scenarios need more draws: hill 7, and 19 for the plot; slip 1 for the plot. ");
 }
 
 TEST(Page, MovesByItselfAndStandsStillForWhoeverAsks) {

@@ -37,9 +37,9 @@ submits "$1" roll --db "$db" --shards 4 -- --seeds 1..18 --method rate/raw  # go
 refuses "$1" 'shards of another sweep: roll --shards 4 --seeds 1..18 --method rate/raw' roll --db "$db" --shards 4 -- --seeds 1..36 --method rate/raw
 refuses "$1" 'shards of another sweep' roll --db "$db" --shards 3 -- --seeds 1..18 --method rate/raw
 refuses "$1" 'shards of another sweep' slip --db "$db" --shards 4 -- --seeds 1..18 --method rate/raw
-refuses "$1" 'which suite' --db "$db"
+refuses "$1" 'SUITE is missing' --db "$db"
 refuses "$1" 'whole numbers from 1' roll --db "$db" --shards 0
-refuses "$1" 'needs every draw' roll --db "$db" -- --until a:b:c
-refuses "$1" "submit's own" roll --db "$db" -- --shard 1/2
-refuses "$1" 'no program' roll --db "$db" --program "$scratch/none"
+refuses "$1" 'needs all earlier draws' roll --db "$db" -- --until a:b:c
+refuses "$1" 'submit sets this option' roll --db "$db" -- --shard 1/2
+refuses "$1" 'was not found' roll --db "$db" --program "$scratch/none"
 refuses "$1" 'one argument too many' roll slip --db "$db"

@@ -27,8 +27,10 @@ TEST(VerdictLines, EachDoubtIsALineWithItsRowAndValue) {
   estimate.health["samples_slip"] = 12.0;
   const std::vector<std::string> lines = verdict_lines(estimate);
   ASSERT_EQ(lines.size(), 4U);
-  EXPECT_EQ(lines[0], "imu_2_gyro_z_frozen_since_s 4.348: repeats one reading from this time on");
-  EXPECT_EQ(lines[1], "imu_3_silent_since_s 0: delivers no readings from this time on, for at least half a second");
+  EXPECT_EQ(lines[0],
+            "imu_2_gyro_z_frozen_since_s 4.348: the readings are constant from this time on; check the sensor");
+  EXPECT_EQ(lines[1],
+            "imu_3_silent_since_s 0: the IMU delivers no readings from this time on, for at least half a second");
   EXPECT_TRUE(lines[2].starts_with("imu_implausible 1: ")) << lines[2];
   EXPECT_TRUE(lines[3].starts_with("localised 0: ")) << lines[3];
 }

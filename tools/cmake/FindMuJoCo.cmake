@@ -1,5 +1,5 @@
-# Finds MuJoCo >= 3.5 and defines MuJoCo::MuJoCo. Looks first where the caller says (MUJOCO_DIR: a folder with include/mujoco
-# and the library), then where tools/setup has placed the wheel, then in the system.
+# Finds MuJoCo >= 3.5 and defines MuJoCo::MuJoCo. Searches first in MUJOCO_DIR (a folder with include/mujoco and the library),
+# then in the wheel that tools/setup downloads, then in the system.
 set(_mujoco_deps "${CMAKE_SOURCE_DIR}/build/deps")
 if(DEFINED ENV{TUMBLE_DEPS_DIR})
   set(_mujoco_deps "$ENV{TUMBLE_DEPS_DIR}")
@@ -16,7 +16,7 @@ if(MuJoCo_INCLUDE_DIR AND EXISTS "${MuJoCo_INCLUDE_DIR}/mujoco/mujoco.h")
     math(EXPR _major "${_number} / 1000000")
     math(EXPR _minor "${_number} / 1000 % 1000")
     math(EXPR _patch "${_number} % 1000")
-  else()  # one digit each
+  else()  # one digit per part of the version
     math(EXPR _major "${_number} / 100")
     math(EXPR _minor "${_number} / 10 % 10")
     math(EXPR _patch "${_number} % 10")

@@ -138,8 +138,8 @@ std::vector<std::string> keep_known(const scenarios::DataRoot& data, const fs::p
   const fs::path aside = set_damaged_aside(folder);
   if (!options.note) return others;
   for (const std::string& what : found.unreadable)
-    options.note(
-        fmt::format("an existing example is left out: {}; copy of the damaged list: {}", what, aside.string()));
+    options.note(fmt::format("the program leaves out an existing example: {}. A copy of the damaged list is in {}",
+                             what, aside.string()));
   return others;
 }
 
@@ -187,7 +187,8 @@ class Makers {
   };
 
   void start(Making& making) {
-    say(fmt::format("{}, seed {}: running the draw again for its pictures", making.draw.scenario, making.draw.seed));
+    say(fmt::format("{}, seed {}: the program runs this draw again to create its pictures", making.draw.scenario,
+                    making.draw.seed));
     const double limit_s = timeout_s_ * (static_cast<double>(making.methods.size()) + kOtherTimeouts);
     try {
       scenarios::Process process([&](int fd) { make(data_, folder_, making, fd); }, true);
@@ -212,7 +213,7 @@ class Makers {
     if (late) worker.process.kill();
     const scenarios::Process::End end = worker.process.wait();
     worker.making->done = !late && end.normal && worker.making->text.starts_with('{');
-    if (late) worker.making->text = "exceeded its time limit";
+    if (late) worker.making->text = "the run exceeded its time limit";
     if (!late && !end.normal) worker.making->text = "its process " + end.describe();
     if (!worker.making->done) say_failed(*worker.making);
     return true;
@@ -223,7 +224,8 @@ class Makers {
   }
 
   void say_failed(const Making& making) const {
-    say(fmt::format("no pictures of {}, seed {}: {}", making.draw.scenario, making.draw.seed, making.text));
+    say(fmt::format("the pictures of {}, seed {} could not be created: {}", making.draw.scenario, making.draw.seed,
+                    making.text));
   }
 
   const scenarios::DataRoot& data_;

@@ -53,8 +53,8 @@ void add_maps(const scenarios::RunResult& run, Example& example) {
   example.pictures.push_back(
       {"maps",
        "maps next to each other, coloured by error",
-       "Maps, left to right: " + names +
-           ". The colour of each point is its distance to the true surface, from 0 (blue) to 1 m and more (red).",
+       "The picture shows these maps, from left to right: " + names +
+           ". The colour of each point shows its distance to the true surface, from 0 (blue) to 1 m or more (red).",
        {},
        sim::png_bytes(map_picture(maps, run.recording.truth, 640, 480))});
 }
@@ -81,7 +81,7 @@ Scene scene_of(const scenarios::RunResult& run, const RunPaths& paths) {
 void add_path(const scenarios::RunResult& run, const RunPaths& paths, int width, int height, Example& example) {
   ExamplePicture picture{"scene",
                          "the robot along its path, with true and estimated paths",
-                         "The robot at instants that are equally far apart along its path." + paths.left_out_text(),
+                         "The picture shows the robot at equal distances along its path." + paths.left_out_text(),
                          {{"truth", kTruthColour}},
                          {}};
   for (std::size_t i = 0; i < paths.methods.size(); ++i)
@@ -96,7 +96,7 @@ void add_pictures(const scenarios::RunResult& run, const RunPaths& paths, Moving
   add_path(run, paths, 1280, 640, example);
   example.pictures.push_back({"film",
                               "film strip of the same motion",
-                              "Close-ups of the same motion, in rows from left to right.",
+                              "The film strip shows the same motion from close up, in rows from left to right.",
                               {},
                               sim::png_bytes(film_picture(scene, 8, 4, 400, 300))});
   if (moving == Moving::drawn) add_moving(scene, example);

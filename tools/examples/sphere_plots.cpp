@@ -147,7 +147,8 @@ std::vector<AttitudeState> true_attitudes(const scenarios::TruthTrack& track, co
 }  // namespace
 
 Plot sphere_track_plot(const scenarios::RunResult& run) {
-  Plot plot = plot_of("track", "The path of the centre from above, with equal scales.", "x [m]", "y [m]");
+  Plot plot = plot_of("track", "The plot shows the path of the centre from above, with equal scales on both axes.",
+                      "x [m]", "y [m]");
   plot.equal_scales = true;
   for (const ShownPath& shown : shown_paths(run)) {
     PlotLine line = line_of(shown.name, shown.colour, shown.width);
@@ -161,8 +162,9 @@ Plot sphere_track_plot(const scenarios::RunResult& run) {
 }
 
 Plot sphere_speed_plot(const scenarios::RunResult& run) {
-  Plot plot = plot_of("speed", "Speed of the centre. The sphere slips or slides in the shaded intervals.", "time [s]",
-                      "speed [m/s]");
+  Plot plot =
+      plot_of("speed", "The plot shows the speed of the centre. The sphere slips or slides in the shaded intervals.",
+              "time [s]", "speed [m/s]");
   plot.from_zero = plot.over_time = true;
   plot.shaded = slip_spells(run.recording.truth);
   for (const ShownPath& shown : shown_paths(run)) {
@@ -183,7 +185,7 @@ Plot sphere_speed_plot(const scenarios::RunResult& run) {
 }
 
 Plot sphere_height_plot(const scenarios::RunResult& run) {
-  Plot plot = plot_of("height", "Height of the centre above its start.", "time [s]", "height [mm]");
+  Plot plot = plot_of("height", "The plot shows the height of the centre above its start.", "time [s]", "height [mm]");
   plot.over_time = true;
   for (const ShownPath& shown : shown_paths(run)) {
     PlotLine line = line_of(shown.name, shown.colour, shown.width);
@@ -198,8 +200,10 @@ Plot sphere_height_plot(const scenarios::RunResult& run) {
 }
 
 Plot sphere_standstill_plot(const scenarios::RunResult& run) {
-  Plot plot = plot_of("standstill", "Tilt at standstill relative to the mean of each method: jitter and drift.",
-                      "time [s]", "tilt [°]");
+  Plot plot = plot_of(
+      "standstill",
+      "The plot shows the tilt at standstill relative to the mean of each method. The tilt reveals jitter and drift.",
+      "time [s]", "tilt [°]");
   plot.over_time = true;
   const sim::Recording& recording = run.recording;
   if (recording.sensors.imus.empty() || recording.truth.imus.empty()) return plot;

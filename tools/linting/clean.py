@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Which sources were found clean, so that only what has changed since is read again.
+"""Stores which sources passed the check, so that later runs skip unchanged sources.
 
-A source is remembered by a digest of all that its reading depends on: its own text, the headers of this tree that it reaches,
-the words it is compiled with, the checks, Clang, and the versions of all installed packages of headers. A header of a library
-that changes without its package's version is not noticed.
+A source is identified by a digest of everything that its check depends on: its text, the headers of this tree that it includes,
+its compiler arguments, the checks, the version of Clang, and the versions of all installed packages with headers. A library header
+that changes without a new package version is not detected.
 """
 import hashlib
 import pathlib
@@ -14,18 +14,18 @@ _INCLUDE = re.compile(r'^\s*#\s*include\s*["<]([^">]+)[">]', re.MULTILINE)
 
 
 def surroundings(root: pathlib.Path) -> bytes:
-    """What every reading depends on: the checks, Clang, the packages of headers."""
+    """Returns the data that every check depends on: the list of checks, and the versions of Clang and of packages with headers."""
     said = [subprocess.run(command, check=True, capture_output=True).stdout
             for command in (["clang-tidy", "--version"], ["dpkg-query", "-W", "-f", "${Package} ${Version}\n", "*-dev"])]
     return b"\0".join([(root / ".clang-tidy").read_bytes(), *said])
 
 
 class Clean:
-    """Sources known as clean, kept as empty files in `folder`, each named by its digest."""
+    """Sources that passed the check, stored as empty files in `folder` whose names are digests."""
 
     def __init__(self, root: pathlib.Path, folder: pathlib.Path, headers: list[str], depends_on: bytes):
         self._root, self._folder, self._depends_on = root, folder, depends_on
-        # an include names the end of a header's path; where two headers end alike, a source that names one depends on both
+        # an include names the end of a header's path. If the paths of two headers have this end, the source depends on both
         self._ending: dict[str, list[str]] = {}
         for name in headers:
             parts = pathlib.PurePath(name).parts
@@ -35,7 +35,7 @@ class Clean:
         folder.mkdir(parents=True, exist_ok=True)
 
     def _file(self, name: str) -> tuple[bytes, list[str]]:
-        """Digest of a file of the tree, and the headers of the tree that it names."""
+        """Returns the digest of a file of the tree, and the headers of the tree that the file includes."""
         if name not in self._read:
             text = (self._root / name).read_bytes()
             named = [header for include in _INCLUDE.findall(text.decode(errors="replace")) for header in self._ending.get(include, [])]

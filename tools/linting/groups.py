@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Many sources as one text, so that Clang reads the headers of libraries once for them all.
+"""Joins many sources to one text, so that Clang reads the library headers only once.
 
-Headers of Eigen, GoogleTest and JSON are most of what one reading costs, and clang-tidy's checks walk over them too.
-Sources are therefore set one below the other in a single file, the includes of all first; what two of them have in unnamed
-namespaces under one name is called differently there. What Clang finds in such a text is a hint, not a finding: names may
-clash in ways that are overlooked here, so whoever reads asks the sources themselves.
+Most of the time of a check is spent in the headers of Eigen, GoogleTest and JSON, which clang-tidy also checks. A joint file
+therefore contains all includes first, then the sources one after the other. If two sources have equal names in unnamed
+namespaces, the second name is changed. Clang's messages about a joint file are only hints, because names may clash in other
+ways. The caller therefore checks the suspected sources separately.
 """
 import dataclasses
 import pathlib
 import re
 
-MOST_SOURCES = 24  # beyond this the headers' share is small, and a reading's memory grows
+MOST_SOURCES = 24  # larger groups save little time and need more memory
 MOST_LINES = 5000
 
 _OWN_BEGINS, _OWN_ENDS = "namespace {", "}  // namespace"
@@ -24,9 +24,9 @@ _TEST = re.compile(r"(?:TYPED_TEST|TEST|MATCHER|INSTANTIATE_TEST_SUITE|TYPED_TES
 class Source:
     name: str
     text: str
-    words: list[str]  # of its compilation
-    own: set[str]     # names in its unnamed namespaces, which another source may have too
-    tests: set[str]   # what GoogleTest makes names of, which another must not have
+    words: list[str]  # arguments of its compilation
+    own: set[str]     # names in its unnamed namespaces, which other sources may also use
+    tests: set[str]   # names of its tests, which no other source of a group may use
 
 
 def read_source(root: pathlib.Path, name: str, words: list[str]) -> Source:
@@ -52,7 +52,7 @@ def _declared(line: str) -> re.Match | None:
 
 
 def grouped(sources: list[Source]) -> list[list[Source]]:
-    """Each source to the first group with room where no test is called the same, in the order given."""
+    """Assigns each source, in the given order, to the first group that has room and no test of the same name."""
     groups: list[list[Source]] = []
     for source in sources:
         for group in groups:
@@ -66,7 +66,7 @@ def grouped(sources: list[Source]) -> list[list[Source]]:
 
 
 def words_of(root: pathlib.Path, group: list[Source]) -> list[str]:
-    """What all of them are compiled with, their folders being where they look for their neighbours."""
+    """Returns compiler arguments for the whole group. The folders of the sources are added to the search path of includes."""
     folders = dict.fromkeys(str((root / source.name).parent) for source in group)
     out = [*group[0].words, *(word for folder in folders for word in ("-iquote", folder))]
     for source in group[1:]:
@@ -79,16 +79,16 @@ def words_of(root: pathlib.Path, group: list[Source]) -> list[str]:
 
 
 def text_of(group: list[Source]) -> tuple[str, list[tuple[str, int]]]:
-    """The text, and of each of its lines the source and the line there."""
+    """Returns the joint text, and for each of its lines the source and the line number in the source."""
     included: dict[str, tuple[str, int]] = {}
     body, places = [], []
     taken: set[str] = set()
     for at, source in enumerate(group):
         renamed = source.own & taken
         taken |= source.own
-        # not of a member or of a qualified name, which are somebody else's
+        # leaves members and qualified names unchanged, because they belong to other classes or namespaces
         pattern = re.compile(r"(?<![.>:\w])(" + "|".join(sorted(renamed)) + r")\b") if renamed else None
-        depth = 0  # of preprocessor conditions, within which an include stays
+        depth = 0  # depth of preprocessor conditions; an include within a condition is not moved
         for number, line in enumerate(source.text.splitlines(), 1):
             depth += line.startswith("#if")
             depth -= line.startswith("#endif")
@@ -101,10 +101,10 @@ def text_of(group: list[Source]) -> tuple[str, list[tuple[str, int]]]:
 
 
 def of_headers(said: str, joint: pathlib.Path) -> bool:
-    """Whether something that was said is of another file than the joint text."""
+    """Returns true if a message belongs to a file other than the joint text."""
     return any(found[1] != str(joint) for found in re.finditer(r"^([^\s:]+):\d+:\d+: (?:warning|error): ", said, re.MULTILINE))
 
 
 def suspected(said: str, file: pathlib.Path, places: list[tuple[str, int]]) -> set[str]:
-    """The sources of whose lines in the joint file something was said."""
+    """Returns the sources that have messages about their lines in the joint file."""
     return {places[int(line) - 1][0] for line in re.findall(re.escape(str(file)) + r":(\d+):\d+: (?:error|warning):", said)}

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Whether a source includes, itself or through headers of this tree, the library headers whose names it uses.
+"""Checks that a source includes the library headers whose names it uses, directly or through headers of this tree.
 
-A build with precompiled headers, and a reading of many sources as one (groups.py), has them all in sight and overlooks what is
-missing. Headers of this tree are never precompiled: the compiler sees to those.
+Builds with precompiled headers and joint files (groups.py) include all library headers, so they do not detect a missing include.
+Headers of this tree are never precompiled, so the compiler detects missing includes of these headers.
 """
 import functools
 import pathlib
 import re
 
-# names that any of these brings with it, by the standard or in every implementation
+# names that each of these headers provides, by the standard or in every implementation
 _CONTAINERS = "array deque list map set span string string_view tuple unordered_map unordered_set vector".split()
 _COMMON = [*_CONTAINERS, "algorithm", "functional", "memory", "utility", "iterator", "optional"]
 _OF_COMMON = """size_t ptrdiff_t move swap pair make_pair exchange initializer_list begin end size next prev distance
@@ -104,14 +104,14 @@ _INCLUDE = re.compile(r'^#\s*include ([<"])([^>"]+)[>"]', re.M)
 
 
 class Tree:
-    """The sources below a root, and what each has in sight."""
+    """The sources below a root, and the headers that each source includes."""
 
     def __init__(self, root: pathlib.Path):
         self._root = root
         self._reaches = functools.cache(self._reached)
 
     def _reached(self, file: pathlib.Path) -> frozenset[pathlib.Path | str]:
-        """Headers of this tree, by path, and of libraries, by name, that the file itself includes."""
+        """Returns the headers that the file includes directly: headers of this tree by path, headers of libraries by name."""
         out = set()
         for bracket, name in _INCLUDE.findall(file.read_text()):
             places = [folder / name for folder in (file.parent, self._root, self._root / "estimator/include", self._root / "tests")]
@@ -120,7 +120,7 @@ class Tree:
         return frozenset(out)
 
     def in_sight(self, file: pathlib.Path) -> set[str]:
-        """Names of the library headers that the file includes, or a header of this tree does for it."""
+        """Returns the names of the library headers that the file includes, directly or through headers of this tree."""
         seen: set[pathlib.Path | str] = set()
         waiting: list[pathlib.Path | str] = [file]
         while waiting:
@@ -137,7 +137,7 @@ class Tree:
         out = []
         for name in sorted(set(_STANDARD_NAME.findall(code))):
             if name not in _STANDARD:
-                out.append(f"{place}: std::{name} is unknown to tools/linting/includes.py: say there which header has it")
+                out.append(f"{place}: std::{name} is unknown; add this name and its header to tools/linting/includes.py")
             elif in_sight.isdisjoint(_STANDARD[name]):
                 out.append(f"{place}: uses std::{name} without <{_STANDARD[name][0]}>")
         for pattern, headers in _LIBRARIES:

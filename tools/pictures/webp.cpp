@@ -28,7 +28,7 @@ class WebpPicture {
     picture_.width = picture.width;
     picture_.height = picture.height;
     if (WebPPictureImportRGB(&picture_, picture.rgb.data(), 3 * picture.width) == 0)
-      throw std::runtime_error("out of memory for a picture");
+      throw std::runtime_error("there is too little memory for a picture");
   }
   ~WebpPicture() { WebPPictureFree(&picture_); }
   WebpPicture(const WebpPicture&) = delete;
@@ -43,8 +43,8 @@ class WebpPicture {
 
 WebpAnimation::WebpAnimation(int width, int height, float quality) : impl_(std::make_unique<Impl>()) {
   if (width < 1 || height < 1 || width > WEBP_MAX_DIMENSION || height > WEBP_MAX_DIMENSION)
-    throw std::invalid_argument("a WebP picture of " + std::to_string(width) + " by " + std::to_string(height) +
-                                " pixels, must be from 1 to " + std::to_string(WEBP_MAX_DIMENSION));
+    throw std::invalid_argument("a WebP picture has " + std::to_string(width) + " by " + std::to_string(height) +
+                                " pixels; width and height must be from 1 to " + std::to_string(WEBP_MAX_DIMENSION));
   if (!(quality >= 0.0f && quality <= 100.0f))
     throw std::invalid_argument("quality is " + std::to_string(quality) + ", must be within [0, 100]");
   impl_->width = width;
@@ -56,7 +56,7 @@ WebpAnimation::WebpAnimation(int width, int height, float quality) : impl_(std::
   impl_->config.thread_level = 0;
   impl_->config.quality = quality;
   impl_->encoder = WebPAnimEncoderNew(width, height, &options);
-  if (impl_->encoder == nullptr) throw std::runtime_error("out of memory for a WebP file");
+  if (impl_->encoder == nullptr) throw std::runtime_error("there is too little memory for a WebP file");
 }
 
 WebpAnimation::~WebpAnimation() = default;

@@ -1,9 +1,9 @@
 // Controls and texts of the page. Texts from the data are always set as text, never as markup.
 const SPEEDS = [0.05, 0.1, 0.25, 0.5, 1, 2, 4, 8];
-const KEYS = [['space', 'play or pause'], ['← →', '0.1 s back or forward; with shift 1 s'], ['Home End', 'start, end'],
-  ['+ −', 'faster, slower'], ['F', 'follow the robot, or show the whole path'], ['1 … 9', 'show or hide truth and methods'],
-  ['P', 'place the points by the next motion'], ['G', 'gyro: norm, x, y, z'], ['drag', 'rotate; with shift or the right button move'],
-  ['wheel, pinch', 'nearer, farther'], ['H', 'these keys']];
+const KEYS = [['space', 'play or pause'], ['← →', 'go 0.1 s back or forward; with shift, 1 s'], ['Home End', 'go to the start or the end'],
+  ['+ −', 'play faster or slower'], ['F', 'follow the robot, or show the whole path'], ['1 … 9', 'show or hide truth and methods'],
+  ['P', 'place the lidar points with the next motion'], ['G', 'plot the gyro’s norm, x, y or z'], ['drag', 'rotate the view; with shift or the right button, move the view'],
+  ['wheel, pinch', 'zoom in or out'], ['H', 'show or hide this list']];
 
 const byId = (id) => document.getElementById(id);
 function element(name, text, className) {
@@ -81,8 +81,8 @@ function showScale(replay, byError) {
   const ticks = byError ? ['0', '0.25', '0.5', '0.75', `≥ ${head.error_max_m} m`] : ['low', 'high'];
   byId('ticks').replaceChildren(...ticks.map((tick) => element('span', tick)));
   byId('scale-says').textContent = byError
-    ? 'The colour of each lidar point is its distance to the true surface.'
-    : 'The true surface is unknown. The colour of each lidar point is its height.';
+    ? 'The colour of each lidar point shows its distance to the true surface.'
+    : 'The true surface is unknown. The colour of each lidar point shows its height.';
 }
 
 // Describes the page in one sentence.
@@ -100,13 +100,13 @@ function showFacts(replay) {
   say(truth ? 'Each estimate is aligned with the truth at its start, in position and heading. '
     + 'The solid body is the truth; transparent bodies are estimates.' : 'The recording has no truth. All estimates are aligned with the first one, in position and heading.');
   if (head.points.of) say(`${count(head.points.shown)} of ${count(head.points.of)} lidar returns are shown, spread evenly over sweeps and beams. Returns from the robot itself are left out.`);
-  if (head.world.of) say(`${count(head.world.shown)} of ${count(head.world.of)} triangles of the world are shown. The ground has its full resolution near the path and is coarser farther away.`);
+  if (head.world.of) say(`${count(head.world.shown)} of ${count(head.world.of)} triangles of the world are shown. The ground is shown in full resolution near the path, and coarser farther away.`);
   if (strip.of) {
     say(`The strip shows ${count(strip.shown)} of ${count(strip.of)} gyro samples${strip.shown < strip.of ? ' (the fastest of each group)' : ''} as a thin line`
       + `${replay.actors.some((actor) => actor.truth && actor.rates) ? ', the true rate as a wide line below it' : ''}, and each method’s rate in its colour. `
-      + (strip.clipping ? `Shaded intervals: at least one axis is clipped, according to ${strip.clipping}.` : 'The recording does not state where the gyro is clipped.'));
+      + (strip.clipping ? `In shaded intervals, at least one axis is clipped, according to ${strip.clipping}.` : 'The recording does not state where the gyro is clipped.'));
   }
-  if (strip.contacts_known) say('The bars at the bottom are contacts with the world. For a sphere, slip and slide are drawn higher.');
+  if (strip.contacts_known) say('The bars at the bottom show contacts with the world. For a sphere, the bars of slip and slide are higher.');
   for (const [name, value] of head.facts) say(`${name}: ${value}`);
 }
 

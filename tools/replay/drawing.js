@@ -11,7 +11,7 @@ class Stage {
     this.replay = replay;
     // a still picture may take longer; without a graphics card, supersampling smooths its edges
     this.still = { shadows: true, sharpness: software ? 1.6 : 1, pointStep: 1 };
-    this.moving = { shadows: true, sharpness: 1, pointStep: 1 };  // sharpness: against the screen's own; every so many points
+    this.moving = { shadows: true, sharpness: 1, pointStep: 1 };  // sharpness: resolution relative to the screen's; pointStep: draws every n-th point
     this.eased = 0;
     this.shadowSide = 2048;
     this.drawn = {};
@@ -19,7 +19,7 @@ class Stage {
     const { head, array } = replay;
     this.world = this.bodyOf(head.world.parts.length ? meshOf(head.world, array('world.vertices'), array('world.corners'))
       : emptyGround(boxOf(replay.actors.find((actor) => actor.track && actor.track.span()).track).low[2] - head.robot_radius_m, 40));
-    this.showsWorld = head.world.parts.length > 0 || !head.points.shown;  // points alone show what there is
+    this.showsWorld = head.world.parts.length > 0 || !head.points.shown;  // without parts of the world, the points show the surroundings
     this.robot = this.bodyOf(meshOf(head.robot, array('robot.vertices'), array('robot.corners')));
     this.makePoints(array('points.positions'), array('points.times'));
     for (const actor of replay.actors) this.makeActor(actor);
@@ -188,7 +188,7 @@ class Stage {
     gl.uniformMatrix4fv(this.shadow.at.u_body, false, IDENTITY);
     this.drawRanges(this.world, (range) => !range.clear);
     for (const { actor, body } of robots.slice(0, 4)) {
-      if (!actor.truth && robots[0].actor.truth) continue;  // a ghost throws none
+      if (!actor.truth && robots[0].actor.truth) continue;  // a transparent robot has no shadow
       gl.uniformMatrix4fv(this.shadow.at.u_body, false, body);
       this.drawRanges(this.robot, () => true);
     }

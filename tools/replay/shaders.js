@@ -45,7 +45,7 @@ const SHADERS = {
     in vec4 v_colour;
     uniform highp sampler2DShadow u_depths;
     uniform vec3 u_sun, u_target;
-    uniform vec4 u_tint;          // colour, and how much of it
+    uniform vec4 u_tint;          // colour, and its weight
     uniform float u_light, u_opacity, u_shadows, u_grid, u_cut_m;
     out vec4 o_colour;
     ${HAZE}
@@ -85,7 +85,7 @@ const SHADERS = {
       float sun = max(dot(normal, u_sun), 0.0) * lit();
       float sky = 0.5 + 0.5 * normal.z;
       vec3 light = vec3(1.0, 0.95, 0.86) * (0.85 * sun) + mix(vec3(0.24, 0.22, 0.20), vec3(0.46, 0.52, 0.60), sky);
-      light += 0.16 * max(dot(normal, normalize(u_eye - v_position)), 0.0);  // from the eye: no side is black
+      light += 0.16 * max(dot(normal, normalize(u_eye - v_position)), 0.0);  // light from the viewpoint, so that no side is black
       vec3 colour = albedo * light * u_light;
       colour = mix(colour, vec3(u_light), grid);
       o_colour = vec4(hazed(colour, v_position), u_opacity * v_colour.a);
@@ -154,7 +154,7 @@ const SHADERS = {
       v_fresh = exp(-6.0 * max(age_s, 0.0));
       v_known = u_by_error > 0.5 && a_error > 254.5 ? 0.0 : 1.0;
       v_share = u_by_error > 0.5 ? a_error / 254.0 : clamp((position.z - u_heights.x) / (u_heights.y - u_heights.x), 0.0, 1.0);
-      position += 0.03 * normalize(u_eye - position);  // in front of the surface that it lies on
+      position += 0.03 * normalize(u_eye - position);  // moves the point in front of its surface
       gl_Position = lost ? vec4(2.0, 2.0, 2.0, 1.0) : u_camera * vec4(position, 1.0);
       gl_PointSize = clamp(u_size * (1.0 + 0.9 * v_fresh) / max(gl_Position.w, 0.1), 1.6, u_largest);
     }`, `

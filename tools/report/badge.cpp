@@ -51,7 +51,7 @@ Badge badge_of(const PageContent& content) {
     badge.message = "certificate failed";
     badge.colour = Badge::Colour::bad;
   } else if (counts.contests == 0) {
-    badge.message = "nothing to compare";
+    badge.message = "no methods to compare";
   } else {
     badge.message = fmt::format("better than the baseline in {} of {}", counts.won, counts.contests);
     if (counts.lost > 0) badge.message += fmt::format(", {} worse", counts.lost);

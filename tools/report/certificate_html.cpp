@@ -30,13 +30,13 @@ std::string certificate_summary(const scenarios::Certificate& certificate) {
   if (certificate.entries.empty()) return "none";
   const auto passed = std::count_if(certificate.entries.begin(), certificate.entries.end(),
                                     [](const scenarios::CertificateEntry& entry) { return entry.passes(); });
-  return fmt::format("{} of {} values within their bounds", passed, certificate.entries.size());
+  return fmt::format("{} of {} values are within their bounds", passed, certificate.entries.size());
 }
 
 std::string certificates_html(std::span<const scenarios::Certificate> certificates) {
   std::string out =
-      "<p>Measured agreement of the simulation with physics and with its data sheets, for the build that computed "
-      "these scores (<code>tumble certify</code>).</p>\n";
+      "<p>The table shows how well the simulation agrees with physics and with its data sheets. <code>tumble "
+      "certify</code> measured the values for the build that computed these scores.</p>\n";
   if (certificates.empty()) out += "<p class=\"warning\">These results contain no certificate.</p>\n";
   for (const scenarios::Certificate& certificate : certificates) {
     out += "<details><summary>Build <code>" + escaped(certificate.build) +

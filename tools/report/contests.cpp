@@ -121,7 +121,7 @@ Tally tally(const std::vector<ContestResult>& results) {
 }
 
 std::string tally_text(const Tally& tally) {
-  if (tally.contests == 0) return "The results contain no method to compare with a baseline";
+  if (tally.contests == 0) return "The results contain no method that can be compared with a baseline";
   if (tally.leader.empty() && tally.lost == tally.contests)
     return fmt::format("The baseline is better in all of {}", contests_text(tally.contests));
   if (tally.leader.empty() && tally.ahead > 0)
@@ -133,26 +133,27 @@ std::string tally_text(const Tally& tally) {
   if (tally.leader_won == tally.contests)
     return fmt::format("{} is better than the baseline in {}", tally.leader,
                        tally.contests == 1 ? "the one contest" : fmt::format("all {} contests", tally.contests));
-  std::string out = fmt::format("{} is best, and significantly better than the baseline, in {} of {}", tally.leader,
-                                tally.leader_won, contests_text(tally.contests));
-  if (tally.won > tally.leader_won) out += fmt::format("; other methods in {}", tally.won - tally.leader_won);
+  std::string out = fmt::format("{} is the best method, and significantly better than the baseline, in {} of {}",
+                                tally.leader, tally.leader_won, contests_text(tally.contests));
+  if (tally.won > tally.leader_won)
+    out += fmt::format("; other methods are better in {}", tally.won - tally.leader_won);
   return out;
 }
 
 std::string certainty_text(const ContestResult& result, std::size_t comparisons) {
   switch (result.certainty) {
     case Certainty::corrected:
-      return fmt::format("{} than chance explains, after correction for {} comparisons",
-                         result.better ? "more" : "fewer", comparisons);
+      return fmt::format("significantly {}, after correction for {} comparisons", result.better ? "better" : "worse",
+                         comparisons);
     case Certainty::interval:
-      return fmt::format("{} by its own interval, but not significant after correction for {} comparisons",
+      return fmt::format("{} according to the interval, but not significant after correction for {} comparisons",
                          result.better ? "better" : "worse", comparisons);
     case Certainty::open:
       break;
   }
   const double more = result.row.pairs_needed - static_cast<double>(result.row.pairs);
   if (more >= 1.0 && more < 1e6)
-    return fmt::format("not significant; about {:.0f} more draws could decide", std::ceil(more));
+    return fmt::format("not significant; about {:.0f} more draws are needed for a decision", std::ceil(more));
   return "not significant";
 }
 

@@ -49,9 +49,9 @@ std::vector<CostRow> cost_rows(const scenarios::Summary& summary, std::span<cons
 std::string costs_html(const std::vector<CostRow>& rows) {
   if (rows.empty()) return "";
   std::string out =
-      "<p>The real-time factor is the duration of a recording over the CPU time of its estimate (median over the "
-      "draws). Above 1, the method is faster than real time on one processor.</p>\n"
-      "<details><summary>Real-time factors</summary>\n" +
+      "<p>The real-time factor is the duration of a recording divided by the CPU time of its estimate (median over the "
+      "draws). A method with a factor above 1 is faster than real time on one "
+      "processor.</p>\n<details><summary>Real-time factors</summary>\n" +
       html::table_head({"scenario", "method", "CPU time [s]", "real-time factor"}, 2);
   for (const CostRow& row : rows) {
     out += "<tr>" + html::cell(row.scenario) + "<td><code>" + html::escaped(row.method) + "</code></td>" +

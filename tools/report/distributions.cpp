@@ -20,7 +20,8 @@ using nlohmann::json;
 std::string thinned_text(std::span<const Spread> spreads) {
   const auto is_thinned = [](const Spread& spread) { return spread.of_draws && spread.values.size() > kBoxPoints; };
   if (std::none_of(spreads.begin(), spreads.end(), is_thinned)) return "";
-  return " For scenarios with more draws, only " + std::to_string(kBoxPoints) + " are shown, at equal steps of rank.";
+  return " For scenarios with more draws, the plot shows only " + std::to_string(kBoxPoints) +
+         " draws, at equal steps of rank.";
 }
 
 json shaded(const Spread& spread) {
@@ -49,8 +50,8 @@ json layout_of(const Spread& spread) {
 /// Returns the caption of the histograms of one quantity.
 std::string caption_of(std::span<const Spread> spreads) {
   const Spread& spread = spreads.front();
-  std::string out = "Over the draws: " + spread.quantity + ".";
-  if (!spread.published.empty()) out += " Published for the rig: " + spread.published + " " + spread.unit + ".";
+  std::string out = "The histogram shows the distribution over the draws: " + spread.quantity + ".";
+  if (!spread.published.empty()) out += " Published value for the rig: " + spread.published + " " + spread.unit + ".";
   return out + thinned_text(spreads);
 }
 
@@ -107,10 +108,11 @@ std::vector<Figure> distribution_figures(std::span<const Spread> spreads) {
 std::string distributions_html(std::span<const Spread> spreads, std::span<const Figure> figures) {
   if (spreads.empty()) return "";
   std::string out =
-      "<p>Distributions of the simulated motions, computed from the truth and compared with " +
+      "<p>The table shows distributions of the simulated motions, which are computed from the truth. For comparison, "
+      "it contains values of " +
       html::escaped(scenarios::kPublishedMotion) +
-      ". Brackets contain the middle 90 % of the draws. For a share of draws or of all samples, they contain the 95 % "
-      "interval.</p>\n<details><summary>Table of the motions</summary><div "
+      ". Brackets contain the middle 90 % of the draws. For a share of draws or of all samples, the brackets contain "
+      "the 95 % interval.</p>\n<details><summary>Table of the motions</summary><div "
       "class=\"scroll\"><table><thead><tr><th>quantity</th><th>scenario</th><th class=\"number\">draws</th><th "
       "class=\"number\">median</th><th>unit</th><th>published, for the rig</th></tr></thead><tbody>\n";
   for (const Spread& spread : spreads) {

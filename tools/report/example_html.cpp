@@ -30,7 +30,7 @@ std::string picture_html(const ExamplePicture& picture) {
 std::string play_html(const ShownExample& shown) {
   if (shown.replay_address.empty()) return "";
   return "<a href=\"" + escaped(shown.replay_address) +
-         "\">Open the replay</a>: the robot, its paths, its lidar points and the gyro over time.";
+         "\">Open the replay</a>, which shows the robot, its paths, its lidar points and the gyro over time.";
 }
 
 /// Places each wide plot in its own line and two other plots per line.
@@ -48,10 +48,10 @@ std::string plots_html(const Example& example, const Palette& palette, std::vect
 
 std::string example_html(const ShownExample& shown, const Palette& palette, std::vector<Figure>& figures) {
   const Example& example = shown.example;
-  std::string out = "<p>" + escaped(example.choice) + ". The sweep ran it again for this page";
-  out += shown.of_these_results
-             ? "; its recording has the same digest as in the results.</p>\n"
-             : ". It belongs to other results than these: of another build, or of an earlier run.</p>\n";
+  std::string out = "<p>" + escaped(example.choice) + ". The sweep ran this draw again for the page";
+  out += shown.of_these_results ? "; the recording has the same digest as in the results.</p>\n"
+                                : ". The pictures do not match these results, because another build or an earlier run "
+                                  "created the pictures.</p>\n";
   if (!shown.replay_address.empty()) out += "<p>" + play_html(shown) + "</p>\n";
   for (const ExamplePicture& picture : example.pictures) out += picture_html(picture);
   return out + plots_html(example, palette, figures);
@@ -83,7 +83,7 @@ std::string moving_html(const ShownExample& shown) {
          fmt::format("One {} of <code>{}</code>, seed {}", escaped(example.motion), escaped(example.scenario),
                      example.seed);
   if (!example.moving.empty()) out += ", " + escaped(example.moving_caption);
-  out += shown.of_these_results ? ". " : ". It belongs to other results than these. ";
+  out += shown.of_these_results ? ". " : ". The picture does not match these results. ";
   if (has_picture) out += legend_html(example.pictures.front());
   if (!shown.replay_address.empty()) out += "<br>" + play_html(shown);
   return out + "</figcaption></figure>\n";
@@ -93,7 +93,7 @@ std::string failure_html(const ShownExample& shown) {
   const Example& example = shown.example;
   std::string out = fmt::format("<details id=\"{}\"><summary>picture</summary>\n",
                                 escaped(example_id(example.scenario, example.seed)));
-  if (!shown.of_these_results) out += "<p>The picture belongs to other results than these.</p>\n";
+  if (!shown.of_these_results) out += "<p>The picture does not match these results.</p>\n";
   for (const ExamplePicture& picture : example.pictures) out += picture_html(picture);
   return out + "</details>\n";
 }

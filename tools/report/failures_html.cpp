@@ -46,7 +46,8 @@ std::string draw_html(const PageContent& content, const FailedDraw& draw) {
            (run.message.empty() ? "" : ": " + escaped(run.message)) + "<pre>" + escaped(run.command) + "</pre></li>";
   }
   if (!draw.replay_command.empty() && (shown == nullptr || shown->replay_address.empty()))
-    out += "<li>The sweep kept its data. Command for the replay:<pre>" + escaped(draw.replay_command) + "</pre></li>";
+    out += "<li>The sweep kept the data of this draw. This command writes the replay:<pre>" +
+           escaped(draw.replay_command) + "</pre></li>";
   return out + "</ul></li>\n";
 }
 
@@ -57,11 +58,11 @@ std::string draws_html(const PageContent& content) {
   for (std::size_t i = 0; i < failed.shown.size(); ++i)
     (i < kOpenDraws ? open : folded) += draw_html(content, failed.shown[i]);
   std::string out = fmt::format(
-      "<h3>Draws with failures</h3>\n<p>On {} draw{} a run did not end <i>ok</i>; {}draws with the most failed methods "
-      "come first. The command below a run repeats the run. Add <code>-o FOLDER</code> to <code>tumble run</code> for "
-      "recording, estimates, pictures and a replay.</p>\n",
+      "<h3>Draws with failures</h3>\n<p>On {} draw{}, at least one run has a status other than <i>ok</i>. {}Draws with "
+      "the most failed methods come first. The command below a run repeats the run. With <code>-o FOLDER</code>, "
+      "<code>tumble run</code> writes recording, estimates, pictures and a replay.</p>\n",
       failed.draws, failed.draws == 1 ? "" : "s",
-      failed.shown.size() < failed.draws ? fmt::format("{} are shown, ", failed.shown.size()) : "");
+      failed.shown.size() < failed.draws ? fmt::format("The page shows {} of these draws. ", failed.shown.size()) : "");
   out += "<ul class=\"failed\">" + open + "</ul>\n";
   if (!folded.empty())
     out += fmt::format("<details><summary>{} more</summary><ul class=\"failed\">{}</ul></details>\n",

@@ -50,7 +50,8 @@ std::string draws_text(const Summary& summary) {
 /// Describes the input data of the methods and the source of the truth.
 std::string data_text(const PageContent& content) {
   if (!content.recorded)
-    return draws_text(content.summary) + " from simulation with known truth; all methods received the same recordings.";
+    return "The data are " + draws_text(content.summary) +
+           " from simulation with known truth. All methods received the same recordings.";
   return "All methods received the same recordings (" + names_text(content.summary.scenarios, "of them") +
          ") and are scored against the truth or the reference that each recording contains.";
 }
@@ -100,7 +101,7 @@ std::string difference_text(const ContestResult& result) {
     const scenarios::MetricComparison& row = result.row;
     if (!std::isfinite(row.median)) return row.contest.method + " failed on at least half of the draws";
     if (!std::isfinite(row.against_median)) return row.contest.against + " failed on at least half of the draws";
-    return "one of the two failed on at least half of the draws";
+    return "one of the two methods failed on at least half of the draws";
   }
   const std::string value = styled_value(result.row.metric, own.value, true);
   const std::string sign = own.value > 0.0 ? "+" : "";
@@ -146,8 +147,9 @@ std::string contests_html(const std::vector<ContestResult>& results, std::size_t
     (i < kShownContests ? shown : folded) += contest_html(results[i], comparisons);
   std::string out =
       "<section class=\"contests\" id=\"contests\"><p class=\"key\">Each row compares the best method with the "
-      "baseline: the medians over the draws, then the median of the paired differences with its 95 % interval (BCa). "
-      "The bar shows the same interval as a percentage of the baseline’s median, from −100 % to +100 %.</p>\n<ul>" +
+      "baseline. The row shows both medians over the draws, and the median of the paired differences with its 95 % "
+      "interval (BCa). The bar shows the same interval as a percentage of the baseline’s median, from −100 % to +100 "
+      "%.</p>\n<ul>" +
       shown + "</ul>\n";
   if (!folded.empty())
     out += fmt::format("<details><summary>{} more contests</summary><ul>{}</ul></details>\n",

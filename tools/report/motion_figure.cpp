@@ -92,14 +92,12 @@ std::string caption_of(const MotionMap& map) {
     shown += cloud.points.size();
   }
   std::string out = fmt::format(
-      "Each point is one draw: the largest rate of its body and the largest specific force that an IMU without "
-      "saturation would have measured. The shaded area is the density of all {} draws{}. The outlines are the largest "
-      "values in published campaigns",
-      draws, shown < draws ? fmt::format(", of which {} are drawn as points", shown) : "");
+      "Each point shows the largest rate of the body in one draw, and the largest specific force that an IMU without "
+      "saturation would have measured. The shaded area shows the density of all {} draws{}. The outlines show the "
+      "largest values in published campaigns",
+      draws, shown < draws ? fmt::format("; {} of the draws are shown as points", shown) : "");
   for (const PublishedExtreme& extreme : map.extremes) out += "; " + extreme.source;
-  return out +
-         ". The two maxima of a draw may occur at different instants; the results do not contain the values between "
-         "them.";
+  return out + ". The two maxima of a draw may occur at different instants.";
 }
 
 }  // namespace

@@ -285,7 +285,8 @@ Figure box_figure(const Summary& summary, Kind kind, const std::string& metric, 
   figure.id = std::string(to_string(kind)) + "-" + metric;
   figure.caption = caption;
   if (holds_more_than_shown(summary, kind, metric))
-    figure.caption += fmt::format(" A box of more than {0} draws has {0} points, at equal steps of rank.", kBoxPoints);
+    figure.caption +=
+        fmt::format(" A box of more than {0} draws shows {0} of them as points, at equal steps of rank.", kBoxPoints);
   Boxes boxes(metric, palette);
   for (const Section& section : summary.sections) {
     if (section.kind == kind) boxes.add(section, section.scenario, true);
@@ -297,8 +298,8 @@ Figure box_figure(const Summary& summary, Kind kind, const std::string& metric, 
 Figure cost_figure(const Summary& summary, const Palette& palette) {
   Figure figure;
   figure.id = "cost";
-  figure.caption =
-      "CPU time of one estimate. Each draw is one point; a box has at most " + std::to_string(kBoxPoints) + " points.";
+  figure.caption = "The plot shows the CPU time of one estimate. Each point shows one draw; a box has at most " +
+                   std::to_string(kBoxPoints) + " points.";
   std::set<Kind> kinds;
   for (const Section& section : summary.sections) kinds.insert(section.kind);
   Boxes boxes(scenarios::estimate_cost().name, palette);

@@ -50,7 +50,7 @@ std::vector<Fact> listed_methods(const Summary& summary) {
   for (const scenarios::Section& section : summary.sections) {
     for (const scenarios::MethodSummary& method : section.methods) {
       Fact fact(full_name(section.kind, method.method) + (method.method == section.baseline ? " (baseline)" : ""),
-                method.what.empty() ? "The method is described by a file." : method.what);
+                method.what.empty() ? "A file describes this method." : method.what);
       if (std::ranges::find(out, fact) == out.end()) out.push_back(std::move(fact));
     }
   }
@@ -71,18 +71,21 @@ std::vector<Fact> commands(const scenarios::Results& results, const ReportOption
   const std::string database = scenarios::shell_word(options.database.string());
   std::vector<Fact> out;
   if (are_of_here(results, options)) {
-    const char* what = "The results";
+    const char* what = "This command computes the results";
     for (const std::string& sweep : scenarios::commands_of(results.note(scenarios::kCommandNote))) {
       out.emplace_back(what, "tumble sweep " + sweep + " --db " + database);
-      what = "and";
+      what = "and this command adds results";
     }
   }
   if (!options.page.empty())
-    out.emplace_back("This page", "tumble report " + database + " -o " + scenarios::shell_word(options.page.string()));
+    out.emplace_back("This command writes this page",
+                     "tumble report " + database + " -o " + scenarios::shell_word(options.page.string()));
   if (!content.comparison.failures.empty())
-    out.emplace_back("Paired differences as tables (--metric NAME for other metrics)", "tumble compare " + database);
+    out.emplace_back("This command prints the paired differences as tables; add --metric NAME for other metrics",
+                     "tumble compare " + database);
   if (!content.sensitivity.empty())
-    out.emplace_back("Influence of every number on each method", "tumble sensitivity " + database + " --all");
+    out.emplace_back("This command prints the influence of every number on each method",
+                     "tumble sensitivity " + database + " --all");
   return out;
 }
 
@@ -123,21 +126,21 @@ std::string how_to_get_pictures(const scenarios::Results& results, const ReportO
         "{}. The results come from several builds, and a sweep can only extend results of its own build.", none);
   if (!made_by.empty() && made_by != scenarios::build_id())
     return fmt::format(
-        "{}. Only a sweep by the build of these results ({}) can create them; this build ({}) is refused.", none,
+        "{}. Only a sweep by the build that computed these results ({}) can create pictures; this build is {}.", none,
         made_by, scenarios::build_id());
   if (!made_of.empty() && !options.data.empty() && made_of != options.data)
     return fmt::format(
-        "{}. Only a sweep with the models and scenarios of these results (digest {}) can create them; those found on "
-        "this machine (digest {}) are refused.",
+        "{}. Only a sweep with the models and scenarios of these results (digest {}) can create pictures. The models "
+        "and scenarios on this machine have digest {}.",
         none, made_of, options.data);
   const std::vector<std::string> commands = scenarios::commands_of(results.note(scenarios::kCommandNote));
   const std::string suite = results.note("suite");
-  return fmt::format("{}. This command creates them and repeats no stored run: tumble sweep {} --db {} --examples 3",
-                     none,
-                     !commands.empty() ? commands.front()
-                     : suite.empty()   ? "SUITE"
-                                       : suite,
-                     scenarios::shell_word(options.database.string()));
+  return fmt::format(
+      "{}. This command creates pictures and repeats no stored run: tumble sweep {} --db {} --examples 3", none,
+      !commands.empty() ? commands.front()
+      : suite.empty()   ? "SUITE"
+                        : suite,
+      scenarios::shell_word(options.database.string()));
 }
 
 /// Returns the URL, relative to the page, of a replay next to the database.
@@ -159,7 +162,7 @@ void add_examples(const scenarios::Results& results, const ReportOptions& option
   }
   // errors of the pictures must not hide the scores
   for (const std::string& what : found.unreadable)
-    content.warnings.push_back("Pictures of single draws that cannot be shown: " + what);
+    content.warnings.push_back("The page cannot show some pictures of single draws: " + what);
   if (!found.unreadable.empty()) return;
   if (content.examples.empty()) content.warnings.push_back(how_to_get_pictures(results, options));
 }

@@ -79,8 +79,8 @@ std::string draws_needed_text(const std::map<std::string, std::int64_t>& draws) 
   for (const auto& [scenario, count] : draws) {
     if (count >= kDrawnFrom) continue;
     out += out.empty() ? fmt::format(
-                             "A scenario needs {} draws for the influence of its numbers, and {} for a plot of the "
-                             "score over a number. Missing draws: ",
+                             "A scenario needs {} draws to compute the influence of its numbers, and {} draws for a "
+                             "plot of the score over a number. These scenarios need more draws: ",
                              kDrawsMin, kDrawnFrom)
                        : "; ";
     out += scenario + " ";
@@ -95,13 +95,14 @@ std::string sensitivity_html(const std::vector<Sensitivity>& rows, const std::st
   if (!note.empty()) out += "<p>" + escaped(note) + "</p>\n";
   if (rows.empty()) return out;
   out +=
-      "<p>The table shows, for each method and score, the three scenario numbers with the strongest influence that "
-      "chance does not explain (95 %, with Holm’s correction over all numbers of the row). The strength is the share "
-      "of the variance of the score’s ranks that the number explains: the larger of its first-order index and its "
-      "squared rank correlation. The plot shows the score over the number’s range in classes with equal numbers of "
-      "draws: median (or share of failures) with its 95 % interval, larger scores higher. Point at a class for its "
-      "values. A correlation above 0 means that larger numbers give worse scores. The last columns are the median "
-      "scores of the quarters of the draws with the lowest and with the highest numbers.</p>\n";
+      "<p>For each method and score, the table shows the three numbers of the scenario with the strongest significant "
+      "influence. Significant means a risk of 5 %, with Holm’s correction over all numbers of the row. The strength is "
+      "the share of the variance of the score’s ranks that the number explains. It is the larger of the number’s "
+      "first-order index and squared rank correlation. The plot shows the score over the range of the number, in "
+      "classes with equal numbers of draws. Each class shows the median (or the share of failures) with its 95 % "
+      "interval. Point at a class to see its values. A correlation above 0 means that larger numbers give worse "
+      "scores. The last two columns show median scores: of the quarter of the draws with the lowest numbers, and of "
+      "the quarter with the highest numbers.</p>\n";
   for (auto row = rows.begin(); row != rows.end();) {
     const Sensitivity& first = *row;
     out += fmt::format("<details{}><summary>{} · {}</summary>\n", row == rows.begin() ? " open" : "",

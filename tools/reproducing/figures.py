@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The tables of README.md and docs/figures.md: runs their sweeps, compares each cell with docs/figures.yaml, writes the pages.
+"""Checks and writes the tables of README.md and docs/figures.md: runs sweeps and compares each cell with docs/figures.yaml.
 
 docs/figures.yaml names the sweeps (scenarios, seeds, methods, or a command), the tables (page, titles, groups of rows with their columns, tolerance) and, below
 the line `values:`, the value of each cell. A cell is stale if a new run differs from its value by more than the table's tolerance.
@@ -24,7 +24,7 @@ def load(file=FILE):
 
 
 def sweep_command(name, sweep, program, folder, jobs):
-    """The command of a sweep, and the databases that it fills."""
+    """Returns the command of a sweep, and the databases that it fills."""
     if "command" in sweep:
         return sweep["command"].format(folder=folder / name, jobs=jobs).split(), folder / name
     first, last = (int(number) for number in str(sweep["seeds"]).split(".."))
@@ -39,7 +39,7 @@ def sweep_command(name, sweep, program, folder, jobs):
 
 
 def read_scores(folder):
-    """(scenario, seed, kind/method) -> (status, {metric: value}) of all databases of a folder."""
+    """Returns (status, {metric: value}) by (scenario, seed, kind/method), from all databases of a folder."""
     scores = {}
     for file in sorted(folder.glob("*.db")):
         with sqlite3.connect(f"file:{file}?mode=ro", uri=True) as database:
@@ -52,7 +52,7 @@ def read_scores(folder):
 
 
 def cell(scores, scenario, column, method):
-    """Value of a cell and its number of draws. A draw without an answer counts as infinite in a median and as one failure."""
+    """Returns value of a cell and its number of draws. A draw without an estimate counts as infinite in a median and as one failure."""
     draws = [entry for (of, _, by), entry in scores.items() if of == scenario and by == method]
     if column["statistic"] == "failures":
         return sum(status != "ok" for status, _ in draws), len(draws)
@@ -65,7 +65,7 @@ def cell(scores, scenario, column, method):
 
 
 def computed(group, scores):
-    """Row -> list of [value, draws], in the order of the columns. Rows are scenarios or methods; a column may be a text."""
+    """Returns a list of [value, draws] per row, in the order of the columns. Rows are scenarios or methods; a column may be a text."""
     out = {}
     for row in group["rows"]:
         cells = []
@@ -82,14 +82,14 @@ def computed(group, scores):
 
 
 def stale(name, tolerance, expected, found):
-    """Sentences about the cells that differ from their expected value by more than the tolerance."""
+    """Returns messages about the cells that differ from their expected value by more than the tolerance."""
     out = []
     for row, cells in found.items():
         for number, ((value, draws), (was, was_draws)) in enumerate(zip(cells, expected.get(row) or [[None, 0]] * len(cells)), 1):
             same = value == was or (isinstance(value, float) and isinstance(was, (int, float)) and
                                     abs(value - was) <= tolerance * max(abs(was), abs(value)))
             if not same or draws != was_draws:
-                out.append(f"{name}: row '{row}', value {number} is {value} of {draws} draws, docs/figures.yaml has {was} of {was_draws}")
+                out.append(f"{name}: row '{row}', value {number} is {value} of {draws} draws, but docs/figures.yaml states {was} of {was_draws}")
     return out
 
 
@@ -102,7 +102,7 @@ def shown(value, draws, column):
 
 
 def rendered(name, described):
-    """The Markdown of a table from the values of docs/figures.yaml."""
+    """Returns the Markdown of a table from the values of docs/figures.yaml."""
     table, values = described["tables"][name], described["values"].get(name, {})
     lines = [table["text"].strip(), "", "| " + " | ".join(table["titles"]) + " |", "| --- |" + " ---: |" * (len(table["titles"]) - 1)]
     for group in table["groups"]:
@@ -118,7 +118,7 @@ def block(name):
 
 
 def stale_pages(described, root=ROOT):
-    """Tables whose text on their page is not what docs/figures.yaml yields."""
+    """Returns messages about tables whose text on their page differs from docs/figures.yaml."""
     out = []
     for name, table in described["tables"].items():
         found = block(name).search((root / table["page"]).read_text())
@@ -151,7 +151,7 @@ def run(names, program, folder, jobs, write, pages):
         return 0
     unknown = [name for name in names if name not in described["tables"]]
     if unknown:
-        raise SystemExit(f"reproduce: there is no table '{unknown[0]}' in docs/figures.yaml; it has {', '.join(described['tables'])}")
+        raise SystemExit(f"reproduce: docs/figures.yaml has no table '{unknown[0]}'; its tables are {', '.join(described['tables'])}")
     names = names or list(described["tables"])
     complaints, scores = [], {}
     for name in names:
@@ -169,5 +169,5 @@ def run(names, program, folder, jobs, write, pages):
     if write:
         write_values(described)
         write_pages(described)
-    print("\n".join(complaints) if complaints else f"reproduce: {', '.join(names)}: every cell is as docs/figures.yaml states")
+    print("\n".join(complaints) if complaints else f"reproduce: {', '.join(names)}: all cells agree with docs/figures.yaml")
     return 0 if write else len(complaints)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Pages of docs/papers: tables with the paper's numbers next to ours, and the check that finds a stale cell."""
+"""Writes the pages of docs/papers: tables with the paper's numbers next to ours. Also finds stale cells."""
 from __future__ import annotations
 
 import math
@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 @dataclass
 class Table:
-    """A table of Markdown. Each row is a quantity, one cell per column, and how our conditions differ from the paper's."""
+    """A table in Markdown. Each row describes one quantity and has one cell per column."""
 
     columns: list[str]
     rows: list[list[str]] = field(default_factory=list)
@@ -25,7 +25,7 @@ class Table:
 
 
 def number(value: float, digits: int = 3) -> str:
-    """Rounded to significant digits; `-` where there is no number, `lost` where the median draw failed."""
+    """Returns a number rounded to significant digits; `-` for a missing number, `lost` if the median draw failed."""
     if math.isnan(value):
         return "-"
     if math.isinf(value):
@@ -37,7 +37,7 @@ def number(value: float, digits: int = 3) -> str:
 
 
 def change(value: float, base: float) -> str:
-    """Change against a base in percent with its sign: -83.4 %."""
+    """Returns the change relative to a base in percent, with its sign: -83.4 %."""
     if not (math.isfinite(value) and math.isfinite(base)) or base == 0:
         return "-"
     percent = 100 * (value / base - 1)
@@ -49,7 +49,7 @@ def share(value: float) -> str:
 
 
 def stale(written: str, now: str) -> list[str]:
-    """Lines of a page that differ from what the results give now, as `page has X, results give Y`."""
+    """Returns the lines of a page that differ from the current results, as `page has X, results give Y`."""
     old, new = written.splitlines(), now.splitlines()
     out = [f"line {k + 1}: page has '{a}', results give '{b}'" for k, (a, b) in enumerate(zip(old, new)) if a != b]
     if len(old) != len(new):
@@ -58,11 +58,11 @@ def stale(written: str, now: str) -> list[str]:
 
 
 def finish(path: pathlib.Path, text: str, check: bool) -> list[str]:
-    """Writes a page, or with `check` compares it with the one that is there and returns its stale lines."""
+    """Writes a page. With `check`, compares the text with the existing page and returns the stale lines."""
     if not check:
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text, encoding="utf-8")
         return []
     if not path.is_file():
-        return [f"{path} is not there"]
+        return [f"{path} does not exist; run tools/reproduce without --check"]
     return [f"{path}: {line}" for line in stale(path.read_text(encoding="utf-8"), text)]

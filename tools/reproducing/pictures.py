@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Figures of the pages: one style, small files."""
+"""Draws the figures of the pages in one style and with small files."""
 from __future__ import annotations
 
 import io
@@ -11,8 +11,8 @@ TRUTH, RAW, PUBLISHED, OURS, LIVE = "black", "tab:red", "tab:orange", "tab:blue"
 
 
 def panels(rows: int, columns: int, width_in: float, height_in: float, **options: object) -> tuple:
-    """A figure and its array of axes, with a light grid."""
-    from matplotlib.figure import Figure  # not needed to check numbers
+    """Returns a figure and its array of axes, with a light grid."""
+    from matplotlib.figure import Figure  # imported here, because a check of numbers needs no figures
 
     figure = Figure(figsize=(width_in, height_in), layout="constrained")
     axes = figure.subplots(rows, columns, squeeze=False, **options)
@@ -23,17 +23,17 @@ def panels(rows: int, columns: int, width_in: float, height_in: float, **options
 
 
 def legend(figure: object, panel: object, columns: int) -> None:
-    """One legend for all panels, in a strip above them."""
+    """Adds one legend for all panels, in a strip above the panels."""
     strip_in = 0.34
     figure.get_layout_engine().set(rect=(0, 0, 1, 1 - strip_in / figure.get_figheight()))
     figure.legend(*panel.get_legend_handles_labels(), loc="upper center", ncols=columns, fontsize="small")
 
 
 def save(figure: object, path: pathlib.Path, colours: int = 128) -> None:
-    """Writes a PNG with a palette, which takes a third of the bytes."""
+    """Writes a PNG with a palette, which needs a third of the bytes."""
     from PIL import Image
 
-    figure.draw_without_rendering()  # the layout knows the tick labels only after one drawing
+    figure.draw_without_rendering()  # the layout needs the size of the tick labels, which the first drawing computes
     memory = io.BytesIO()
     figure.savefig(memory, format="png", dpi=100)
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -42,6 +42,6 @@ def save(figure: object, path: pathlib.Path, colours: int = 128) -> None:
 
 
 def percentiles(panel: object, values: list[float], label: str, colour: str, limit: float) -> None:
-    """Values against their percentile; values beyond `limit`, failed draws too, are drawn at `limit`."""
+    """Plots values against their percentile. Values beyond `limit` and failed draws are drawn at `limit`."""
     ordered = np.minimum(np.sort(values), limit)
     panel.plot(100 * (np.arange(len(ordered)) + 0.5) / len(ordered), ordered, color=colour, label=label, marker=".", ms=4, lw=1.4)

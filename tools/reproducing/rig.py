@@ -17,8 +17,8 @@ from .runs import Runs, Scores
 
 RAW, PUBLISHED, TUNED, BATCH, LAG = RATES = ("rate/raw", "rate/saave", "rate/saave at 10.0", "rate/tumble", "rate/tumble_lag")
 SWEPT = (RAW, PUBLISHED, BATCH, LAG)
-# the rails of our gyros differ by a percent from device to device and from axis to axis; 10.0 rad/s is below all of them
-DEFAULT_THRESHOLD_RAD_S = 10.45  # of the program, for a nominal rail of 10.5 rad/s
+# the saturation limits of our gyros differ by one percent between devices and axes; 10.0 rad/s is below all limits
+DEFAULT_THRESHOLD_RAD_S = 10.45  # the program's default, for a nominal saturation limit of 10.5 rad/s
 THRESHOLD = "saturation_point_rad_s=10.0"
 MAPS = dict(zip(RATES, ("slam/icp_raw", "slam/published", f"slam/published slam/published.{THRESHOLD}", "slam/tumble", "slam/tumble_lag")))
 LABELS = dict(zip(RATES, ("raw gyro", "published", "published, threshold 10.0 rad/s", "ours, whole recording", "ours, 0.3 s lag")))
@@ -26,11 +26,11 @@ COLOURS = dict(zip(RATES, (pictures.RAW, pictures.PUBLISHED, "tab:olive", pictur
 HERE = pathlib.Path(__file__).resolve().parent
 OVERLAP, FAILED = "map_overlap", "map_failed"
 TRANSLATION, ROTATION = "translation_error_end_m", "rotation_error_end_rad"
-ANY, ONE, MORE = "any", "one element", "two or three elements"  # sensing elements at their rail
+ANY, ONE, MORE = "any", "one element", "two or three elements"  # number of clipped sensing elements
 
 
 def reproduce(runs: Runs, folder: pathlib.Path, check: bool) -> list[str]:
-    """Runs what is missing, writes rig.md and its pictures into `folder`; with `check` returns stale lines instead."""
+    """Runs the missing sweeps, then writes rig.md and its pictures to `folder`. With `check`, only returns the stale lines."""
     rates = runs.sweep("rig_rates", "hill", SWEPT, scenario="hill", keep=True)
     maps = runs.sweep("rig_maps", HERE / "rig_maps.yaml")
     recordings = {seed: Recording(runs.kept("rig_rates", "hill", seed) / "recording.h5") for seed in rates.seeds(RAW)}
@@ -46,7 +46,7 @@ def reproduce(runs: Runs, folder: pathlib.Path, check: bool) -> list[str]:
 
 
 def pooled_errors(recordings: dict[int, Recording], estimate: Callable[[int, str], pathlib.Path]) -> dict[tuple[str, str], np.ndarray]:
-    """(method, elements at the rail) -> rate errors in rad/s at the clipped samples of all draws.
+    """Returns the rate errors in rad/s at the clipped samples of all draws, by (method, elements at their saturation limit).
 
     estimate  folder of the estimate of a draw and a method
     """
@@ -61,7 +61,7 @@ def pooled_errors(recordings: dict[int, Recording], estimate: Callable[[int, str
 
 
 def estimated(runs: Runs, seed: int, method: str, exact: bool = False) -> pathlib.Path:
-    """The folder of an estimate of the rate. exact: the recording states the true mounting of its IMUs."""
+    """Returns the folder of a rate estimate. exact: the recording states the true mounting of its IMUs."""
     kept = runs.kept("rig_rates", "hill", seed)
     name = method.replace("/", "-").replace(" ", "_")
     if not exact and method in SWEPT:
@@ -102,7 +102,7 @@ def page(runs: Runs, recordings: dict[int, Recording], errors: dict, exact: dict
 
 
 def unseen_share(recordings: dict[int, Recording]) -> float:
-    """Share of the clipped samples that exceed the published threshold on no axis."""
+    """Returns the share of the clipped samples that exceed the published threshold on no axis."""
     highest = np.concatenate([np.abs(r.gyro_rad_s[r.clipped]).max(axis=1) for r in recordings.values()])
     return float(np.mean(highest <= DEFAULT_THRESHOLD_RAD_S)) if len(highest) else 0.0
 
@@ -112,7 +112,7 @@ def table() -> Table:
 
 
 def highest_values(recordings: dict[int, Recording]) -> tuple[list[float], list[float]]:
-    """Highest angular speed in rad/s and highest acceleration in m/s² of each recording."""
+    """Returns the highest angular speed in rad/s and highest acceleration in m/s² of each recording."""
     return ([float(np.linalg.norm(r.true_rate_rad_s, axis=1).max()) for r in recordings.values()],
             [float(np.linalg.norm(r.true_force_m_s2, axis=1).max()) for r in recordings.values()])
 
@@ -136,7 +136,7 @@ PRINTED = {TRANSLATION: "−71.5 %", ROTATION: "−65.5 %", OVERLAP: "map overla
 
 
 def map_rows(out: Table, maps: Scores, seeds: list[int]) -> None:
-    """Rows of localisation and map for some draws."""
+    """Adds the rows about localisation and map for some draws."""
     for metric, quantity, scale, unit in ((TRANSLATION, "median end error, translation", 1, " m"), (ROTATION, "median end error, rotation", 180 / math.pi, "°")):
         medians = [scale * statistics.median(maps.values(MAPS[m], metric, seeds, failed=math.inf)) for m in RATES]
         out.add(quantity, "-", *(number(m) + unit if math.isfinite(m) else "lost" for m in medians))
@@ -148,14 +148,14 @@ def map_rows(out: Table, maps: Scores, seeds: list[int]) -> None:
 
 
 def draws_with_one(recordings: dict[int, Recording]) -> list[int]:
-    """Draws that clip, with at most 2 % of the clipped samples at two rails or more."""
+    """Returns the draws that clip, with at most 2 % of the clipped samples on two or more sensing elements."""
     def more(r: Recording) -> float:
         return np.mean(r.clipped_elements[r.clipped] > 1) if r.clipped.any() else 1.0
     return [seed for seed, r in sorted(recordings.items()) if more(r) <= 0.02]
 
 
 def draw_with_collisions(recordings: dict[int, Recording]) -> int:
-    """The draw with most collisions between its first and its last clipped sample; of equal ones the one that clips longest."""
+    """Returns the draw with most collisions between its first and its last clipped sample. Of several such draws, returns the draw that clips longest."""
     def collisions(seed: int) -> tuple[int, int]:
         recording = recordings[seed]
         clipped_s = recording.time_s[recording.clipped]
@@ -167,7 +167,7 @@ def draw_with_collisions(recordings: dict[int, Recording]) -> int:
 
 
 def draw_rate(runs: Runs, recordings: dict[int, Recording], path: pathlib.Path) -> None:
-    """Rate through one tumble: the axis that clips most, and the angular speed."""
+    """Plots the rate through one tumble: the axis that clips most often, and the angular speed."""
     seed = draw_with_collisions(recordings)
     recording = recordings[seed]
     lost = np.abs(recording.gyro_rad_s - recording.true_rate_rad_s)
@@ -193,7 +193,7 @@ def draw_rate(runs: Runs, recordings: dict[int, Recording], path: pathlib.Path) 
 
 
 def draw_errors(errors: dict, path: pathlib.Path) -> None:
-    """Distribution of the rate error at clipped samples: with one element at its rail, and with more."""
+    """Plots the distribution of the rate error at clipped samples: with one clipped sensing element, and with more."""
     figure, axes = pictures.panels(1, 2, 9.0, 3.6, sharey=True)
     for panel, elements in zip(axes[0], (ONE, MORE)):
         for method in RATES:
@@ -208,7 +208,7 @@ def draw_errors(errors: dict, path: pathlib.Path) -> None:
 
 
 def draw_localisation(maps: Scores, path: pathlib.Path) -> None:
-    """Percentiles of the error at the end of the run."""
+    """Plots the percentiles of the error at the end of the run."""
     figure, axes = pictures.panels(1, 2, 9.0, 3.8)
     for panel, metric, scale, name, limit in ((axes[0, 0], TRANSLATION, 1.0, "translation error [m]", 10.0),
                                               (axes[0, 1], ROTATION, 180 / math.pi, "rotation error [°]", 180.0)):
@@ -221,7 +221,7 @@ def draw_localisation(maps: Scores, path: pathlib.Path) -> None:
 
 
 def draw_density(recordings: dict[int, Recording], path: pathlib.Path) -> None:
-    """Density of angular speed against acceleration, with the outlines of other data sets."""
+    """Plots the density of angular speed against acceleration, with the outlines of other data sets."""
     from matplotlib.colors import LogNorm
 
     speed = np.concatenate([np.linalg.norm(r.true_rate_rad_s, axis=1) for r in recordings.values()])
@@ -243,7 +243,7 @@ def draw_density(recordings: dict[int, Recording], path: pathlib.Path) -> None:
 
 
 def outlines() -> dict[str, list[tuple[float, float]]]:
-    """Data set -> steps (up to this acceleration in m/s², highest angular speed there in rad/s)."""
+    """Returns steps by data set: upper acceleration in m/s², and the highest angular speed up to this acceleration in rad/s."""
     out: dict[str, list[tuple[float, float]]] = {}
     with open(HERE / "outlines.csv", encoding="utf-8") as file:
         for name, force, speed in csv.reader(line for line in file if not line.startswith("#")):
@@ -252,7 +252,7 @@ def outlines() -> dict[str, list[tuple[float, float]]]:
 
 
 def worst_map(maps: Scores) -> int:
-    """The draw whose map with the raw gyro has the median overlap among the failed ones; else the lowest overlap."""
+    """Returns the draw whose map with the raw gyro has the median overlap of all failed maps. If no map failed, returns the lowest overlap."""
     overlap = maps.of(MAPS[RAW], OVERLAP)
     failed = [seed for seed, value in maps.of(MAPS[RAW], FAILED).items() if value > 0 and seed in overlap]
     ordered = sorted(failed or overlap, key=lambda seed: overlap[seed])
@@ -260,7 +260,7 @@ def worst_map(maps: Scores) -> int:
 
 
 def draw_map(runs: Runs, maps: Scores, path: pathlib.Path) -> None:
-    """Maps of one draw side by side, points coloured by their distance to the true surface."""
+    """Draws the maps of one draw side by side, with points coloured by their distance to the true surface."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import LinearSegmentedColormap
     from PIL import Image
@@ -286,7 +286,7 @@ def draw_map(runs: Runs, maps: Scores, path: pathlib.Path) -> None:
     pictures.save(figure, path, colours=255)
 
 
-# colours, and height of the scale in pixels, of the program's pictures of maps: tools/pictures/map_pictures.cpp
+# colours of the program's pictures of maps, and height of their scale in pixels: tools/pictures/map_pictures.cpp
 ERROR_COLOURS = [(0.0, "#316ec8"), (0.1, "#5abe8c"), (0.25, "#f5e15a"), (0.5, "#f58c32"), (1.0, "#d71928")]
 SCALE_PX = 26
 

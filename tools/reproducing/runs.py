@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs the program and reads its databases of scores.
 
-All files are in one work folder. A complete estimate is not made again, so a run that was stopped continues.
+All files are in one work folder. Complete estimates are not computed again, so a stopped run continues.
 """
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 
 class ProgramFailed(RuntimeError):
-    """The program ended with an exit status other than 0. The message holds its command and its errors."""
+    """The program ended with an exit status other than 0. The message contains the command and its errors."""
 
 
 @dataclass
@@ -29,14 +29,14 @@ class Runs:
     program  path of `tumble`
     folder   databases, recordings and estimates
     seeds    first and last seed of the draws, both included
-    jobs     processes of a sweep
+    jobs     number of parallel processes of a sweep
     """
 
     program: pathlib.Path
     folder: pathlib.Path
     seeds: tuple[int, int]
     jobs: int = 1
-    commands: list[str] = field(default_factory=list)  #: as a page shows them, in the order of the calls
+    commands: list[str] = field(default_factory=list)  #: commands as shown on a page, in the order of the calls
 
     @property
     def draws(self) -> list[int]:
@@ -74,7 +74,7 @@ class Runs:
         return Scores(self.folder / f"{name}.db")
 
     def kept(self, name: str, scenario: str, seed: int) -> pathlib.Path:
-        """The folder of one kept draw: `recording.h5` and `estimates/KIND-METHOD`."""
+        """Returns the folder of one kept draw: `recording.h5` and `estimates/KIND-METHOD`."""
         return self.folder / f"{name}.db.files" / "kept" / scenario / str(seed)
 
     def estimate(self, recording: pathlib.Path, method: str, folder: pathlib.Path, settings: Iterable[str] = ()) -> pathlib.Path:
@@ -89,7 +89,7 @@ class Runs:
         return folder
 
     def record(self, scenario: object, seed: int, recording: pathlib.Path) -> pathlib.Path:
-        """Draws and simulates one situation."""
+        """Simulates one draw of a scenario."""
         if not recording.is_file():
             recording.parent.mkdir(parents=True, exist_ok=True)
             self.call("record", scenario, "--seed", seed, "-o", os.path.relpath(recording, self.folder))
@@ -106,14 +106,14 @@ class Scores:
             self.rows = database.execute(f"{plain} UNION ALL {varied}").fetchall()
 
     def of(self, method: str, metric: str) -> dict[int, float]:
-        """Seed -> value of one method. A draw on which the method failed, or has no such score, is left out."""
+        """Returns the values of one method by seed. Leaves out draws on which the method failed or has no such score."""
         return {seed: value for seed, name, found, value in self.rows if (name, found) == (method, metric) and value is not None}
 
     def values(self, method: str, metric: str, seeds: Iterable[int] | None = None, failed: float = float("inf")) -> list[float]:
-        """Values of the named draws, else of all. A draw without a value failed and counts as `failed`."""
+        """Returns the values of the named draws, by default of all draws. A draw without a value counts as `failed`."""
         values = self.of(method, metric)
         return [values.get(seed, failed) for seed in (self.seeds(method) if seeds is None else seeds)]
 
     def seeds(self, method: str) -> list[int]:
-        """Draws on which the method was run, whatever came of it."""
+        """Returns the seeds of all draws on which the method ran, including failed runs."""
         return sorted({seed for seed, name, *_ in self.rows if name == method})

@@ -18,9 +18,9 @@ HERE = pathlib.Path(__file__).resolve().parent
 MADGWICK, COMPLEMENTARY, AUTOGAIN, OURS = ATTITUDES = ("attitude/madgwick", "attitude/complementary", "attitude/autogain",
                                                        "attitude/tumble")
 ROTATION, FUSED, BATCH, LIVE = "position/rolling", "position/autogain_fusion", "position/tumble", "position/tumble_live"
-WIDE = f"{FUSED} with the diameter"  # the authors' code has the diameter of the sphere where the equation has its radius
+WIDE = f"{FUSED} with the diameter"  # the authors' code uses the diameter of the sphere, but the equation uses the radius
 POSITIONS = (ROTATION, FUSED, WIDE, BATCH, LIVE)
-# the paper's gain, and its share of 0.02 per sample at our 250 Hz as a time constant: -dt / ln(1 - 0.02)
+# the paper's gain; and the paper's weight of 0.02 per sample, converted at our 250 Hz to a time constant: -dt / ln(1 - 0.02)
 SETTINGS = {MADGWICK: f"{MADGWICK}.gain_rad_s=0.2", COMPLEMENTARY: f"{COMPLEMENTARY}.tau_s=0.198", WIDE: f"{FUSED}.radius_m=0.29"}
 MAPS = ("slam/poses_rolling", "slam/poses_autogain_fusion", "slam/poses_tumble", "slam/rolling_prior")
 LABELS = dict(zip(ATTITUDES + POSITIONS + MAPS, (
@@ -29,18 +29,18 @@ LABELS = dict(zip(ATTITUDES + POSITIONS + MAPS, (
     "rotation alone", "published fusion", "ours, IMU alone", "ours, IMU and lidar")))
 COLOURS = dict(zip(ATTITUDES + POSITIONS, (pictures.RAW, "tab:green", pictures.PUBLISHED, pictures.OURS,
                                            pictures.RAW, pictures.PUBLISHED, "tab:olive", pictures.OURS, pictures.LIVE)))
-SLOW, FAST = "slow_roll", "roll"  # at the paper's pace, and of the catalogue
+SLOW, FAST = "slow_roll", "roll"  # scenario with the speed of the paper, and scenario of the catalogue
 SLIP, SLIDE, FAST_SLIP = "slip_l", "slide_l", "slip"
-BELOW_M = 0.1  # farther below the floor is an error of the map, not noise of the lidar
+BELOW_M = 0.1  # points farther below the floor are errors of the map, not noise of the lidar
 MAP_DRAWS = 8
-TRACKER_HZ = 120.0  # of the paper's optical tracking, at which its derivative was taken
-SETTLING = 75  # samples in which the filters settle, and before the motion that are left out of a standstill
+TRACKER_HZ = 120.0  # rate of the paper's optical tracking, at which the paper computes the derivative
+SETTLING = 75  # number of samples at the start and at the end of a standstill that are left out, because the filters settle
 MOVING_RAD_S = 0.05
-DRAWN_STEP_DEG = 1e-5  # smaller ones are drawn here
+DRAWN_STEP_DEG = 1e-5  # smaller steps are drawn at this value
 
 
 def reproduce(runs: Runs, folder: pathlib.Path, check: bool) -> list[str]:
-    """Runs what is missing, writes sphere.md and its pictures into `folder`; with `check` returns stale lines instead."""
+    """Runs the missing sweeps, then writes sphere.md and its pictures to `folder`. With `check`, only returns the stale lines."""
     last = min(runs.seeds[0] + MAP_DRAWS - 1, runs.seeds[1])
     runs.sweep("sphere_roll", "slip", [OURS, AUTOGAIN], scenario=FAST, keep=True)
     runs.sweep("sphere_slip", "slip", (ROTATION, FUSED, BATCH, LIVE), scenario=FAST_SLIP, keep=True)
@@ -59,7 +59,7 @@ def reproduce(runs: Runs, folder: pathlib.Path, check: bool) -> list[str]:
 
 
 def situation(runs: Runs, scenario: str, seed: int) -> tuple[pathlib.Path, Callable[[str], pathlib.Path]]:
-    """The recording of one draw, and a function from a method to the folder of its estimate.
+    """Returns the recording of one draw, and a function from a method to the folder of its estimate.
 
     Draws of the catalogue come from the sweeps. Draws of the scenario files in this folder are recorded one by one.
     """
@@ -87,11 +87,11 @@ class Turning:
     time_s: np.ndarray
     moving: slice
     distance_deg: dict[str, np.ndarray]
-    rest_step_rad: dict[str, np.ndarray]  # rotation vectors (N, 3) from sample to sample before the motion
-    mean_rate_rad_s: float  # while it moves
+    rest_step_rad: dict[str, np.ndarray]  # rotation vectors (N, 3) between successive samples before the motion
+    mean_rate_rad_s: float  # mean rate while the sphere moves
 
     def at_tracker(self, method: str) -> tuple[np.ndarray, np.ndarray]:
-        """Times in s and distances in degrees while the sphere moves, at the rate of the paper's tracker."""
+        """Returns times in s and distances in degrees while the sphere moves, at the rate of the paper's tracker."""
         time_s = self.time_s[self.moving]
         grid = np.arange(time_s[0], time_s[-1], 1 / TRACKER_HZ)
         return grid, np.interp(grid, time_s, self.distance_deg[method][self.moving])
@@ -114,7 +114,7 @@ def turning(runs: Runs, scenario: str, seed: int) -> Turning:
 
 
 def small_rotations(R: np.ndarray) -> np.ndarray:
-    """(N, 3) rotation vectors in rad of rotations (N, 3, 3) far below one radian."""
+    """Converts rotations (N, 3, 3) far below one radian to rotation vectors (N, 3) in rad."""
     return np.stack([R[:, 2, 1] - R[:, 1, 2], R[:, 0, 2] - R[:, 2, 0], R[:, 1, 0] - R[:, 0, 1]], axis=1) / 2
 
 
@@ -139,19 +139,19 @@ def leg(runs: Runs, scenario: str, seed: int) -> Leg:
 
 
 def corner_of(path_m: np.ndarray) -> int:
-    """Index of the corner of an L: the point farthest from the line between its ends."""
+    """Returns the index of the corner of an L: the point farthest from the line between its ends."""
     along = path_m[-1] - path_m[0]
     offset = path_m - path_m[0]
     return int(np.argmax(np.abs(along[0] * offset[:, 1] - along[1] * offset[:, 0])))
 
 
 def legs_of(path_m: np.ndarray, corner: int) -> tuple[float, float]:
-    """Distances from the start to the corner and from there to the end."""
+    """Returns the distances from the start to the corner and from the corner to the end."""
     return float(np.linalg.norm(path_m[corner] - path_m[0])), float(np.linalg.norm(path_m[-1] - path_m[corner]))
 
 
 def path_above(recording: Recording, estimate: Estimate) -> np.ndarray:
-    """The estimated path of the centre at the samples of the IMU (N, 2), in the true axes, from its start."""
+    """Returns the estimated path of the centre at the samples of the IMU (N, 2), in the true axes, from its start."""
     time_s, p, R = estimate.poses()
     _, R_true = recording.true_pose(time_s[:1], estimate.frame)
     p = (p - p[0]) @ yaw_alignment(R[0], R_true[0]).T
@@ -159,7 +159,7 @@ def path_above(recording: Recording, estimate: Estimate) -> np.ndarray:
 
 
 def rolled_map(runs: Runs, seed: int) -> dict[str, np.ndarray]:
-    """Method -> points of its map (N, 3) in the true world, whose floor is at z = 0."""
+    """Returns the map points (N, 3) of each method in the true world, whose floor is at z = 0."""
     kept = runs.kept("sphere_maps", FAST, seed)
     recording = Recording(kept / "recording.h5")
     return {m: map_in_world(recording, Estimate(kept / "estimates" / m.replace("/", "-"))) for m in MAPS}
@@ -188,7 +188,7 @@ def jitter_table(steps: dict[str, np.ndarray]) -> Table:
 
 
 def lag_1(parts: list[np.ndarray]) -> float:
-    """Correlation of successive rotation steps."""
+    """Returns the correlation of successive rotation steps."""
     return float(sum(np.sum(p[1:] * p[:-1]) for p in parts) / sum(np.sum(p * p) for p in parts))
 
 
@@ -223,7 +223,7 @@ def leg_table(legs: dict[str, list[Leg]]) -> Table:
 
 
 def leg_errors(legs: list[Leg], method: str) -> list[float]:
-    """Relative errors of both legs of all draws."""
+    """Returns the relative errors of both legs of all draws."""
     return [estimate / truth - 1 for d in legs for estimate, truth in zip(d.legs_m[method], d.true_legs_m)]
 
 
@@ -247,7 +247,7 @@ def draw_jitter(turn: Turning, path: pathlib.Path) -> None:
 
 
 def draw_distance(turn: Turning, path: pathlib.Path) -> None:
-    """Distance to the truth over one draw, and its derivative."""
+    """Plots the distance to the truth over one draw, and its derivative."""
     figure, axes = pictures.panels(2, 1, 8.5, 5.6, sharex=True)
     for method in (MADGWICK, AUTOGAIN, OURS):
         time_s, distance_deg = turn.at_tracker(method)
@@ -260,7 +260,7 @@ def draw_distance(turn: Turning, path: pathlib.Path) -> None:
 
 
 def draw_paths(legs: list[Leg], path: pathlib.Path) -> None:
-    """The L of three draws seen from above."""
+    """Plots the L of three draws from above."""
     figure, axes = pictures.panels(1, 3, 10.5, 4.0)
     for panel, draw in zip(axes[0], legs):
         panel.plot(*draw.true_path_m.T, color=pictures.TRUTH, lw=2.4, label="truth")
@@ -274,7 +274,7 @@ def draw_paths(legs: list[Leg], path: pathlib.Path) -> None:
 
 
 def draw_legs(legs: dict[str, list[Leg]], path: pathlib.Path) -> None:
-    """Relative errors of all legs against their percentile."""
+    """Plots the relative errors of all legs against their percentile."""
     figure, axes = pictures.panels(1, 3, 10.5, 3.8)
     for panel, (name, draws) in zip(axes[0], legs.items()):
         panel.axhspan(-10, 10, color="0.9", lw=0, label="−10 to +10 %")
@@ -289,7 +289,7 @@ def draw_legs(legs: dict[str, list[Leg]], path: pathlib.Path) -> None:
 
 
 def draw_map(maps: dict[int, dict[str, np.ndarray]], path: pathlib.Path) -> None:
-    """The room's map of one draw from the side, points below the floor in red."""
+    """Plots the map of the room of one draw from the side, with points below the floor in red."""
     points = next(iter(maps.values()))
     figure, axes = pictures.panels(2, 2, 9.5, 5.4, sharex=True, sharey=True)
     for panel, method in zip(axes.flat, MAPS):

@@ -27,7 +27,7 @@ using scenarios::BadInput;
 std::uint64_t parse_seed(const std::string& text) {
   std::uint64_t seed = 0;
   if (!scenarios::read_number(text, seed))
-    throw BadInput("--seed is '" + text + "', must be a whole number from 0 to 2^64 - 1");
+    throw BadInput("--seed is '" + text + "'; a seed must be a whole number from 0 to 2^64 - 1");
   return seed;
 }
 
@@ -38,8 +38,8 @@ std::pair<std::uint64_t, std::uint64_t> parse_seeds(const std::string& text) {
       dots == std::string::npos
           ? scenarios::read_number(text, first) && scenarios::read_number(text, last)
           : scenarios::read_number(text.substr(0, dots), first) && scenarios::read_number(text.substr(dots + 2), last);
-  if (!read) throw BadInput("--seeds is '" + text + "', must be A..B with whole numbers, for example 1..40");
-  if (last < first) throw BadInput("--seeds is '" + text + "': the first seed must not exceed the last");
+  if (!read) throw BadInput("--seeds is '" + text + "'; write A..B with whole numbers A and B, for example 1..40");
+  if (last < first) throw BadInput("--seeds is '" + text + "'; the first seed must be at most the last seed");
   return {first, last};
 }
 
@@ -49,7 +49,7 @@ Shard parse_shard(const std::string& text) {
   const bool read = bar != std::string::npos && scenarios::read_number(text.substr(0, bar), shard.index) &&
                     scenarios::read_number(text.substr(bar + 1), shard.count);
   if (!read || shard.index < 1 || shard.index > shard.count || shard.count > 1000000) {
-    throw BadInput("--shard is '" + text + "', must be i/n with 1 <= i <= n <= 1000000, for example 2/8");
+    throw BadInput("--shard is '" + text + "'; write i/n with 1 <= i <= n <= 1000000, for example 2/8");
   }
   return shard;
 }
@@ -101,8 +101,10 @@ scenarios::MethodPointer one_method(const std::string& name, double time_limit_s
 void note_time_limits(const Session& session, std::span<const std::string> names) {
   for (const std::string& name : names) {
     if (!scenarios::is_method_file(name)) continue;
-    session.note(fmt::format("{}: a run is ended after {:g} s; the key time_limit_s of a description sets the limit",
-                             name, scenarios::read_external(name).time_limit_s));
+    session.note(
+        fmt::format("{}: the program stops each run of this method after {:g} s. The key time_limit_s in the method's "
+                    "description sets the limit",
+                    name, scenarios::read_external(name).time_limit_s));
   }
 }
 
@@ -119,7 +121,7 @@ std::string metric_of(const scenarios::Method& method, const std::string& name) 
 std::uint64_t seed_of(const scenarios::Scenario& scenario, const std::string& text) {
   if (!text.empty()) return parse_seed(text);
   if (scenario.named_case) return scenario.named_case->seed;
-  throw BadInput("--seed is missing: give the seed of a draw of scenario '" + scenario.name + "'");
+  throw BadInput("--seed is missing; use --seed NUMBER to choose a draw of scenario '" + scenario.name + "'");
 }
 
 // CLI11 does not convert a BadInput that the check throws.
@@ -146,7 +148,8 @@ void make_folder(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw BadInput(folder.string() + ": cannot create this folder: " + error.message());
-  if (!std::filesystem::is_directory(folder, error)) throw BadInput(folder.string() + ": exists, but is not a folder");
+  if (!std::filesystem::is_directory(folder, error))
+    throw BadInput(folder.string() + ": this path exists, but is not a folder; choose another path");
 }
 
 void prepare_output(const std::filesystem::path& output, std::span<const std::filesystem::path> inputs) {

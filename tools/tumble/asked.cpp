@@ -23,7 +23,7 @@ scenarios::Margin parse_margin(const std::string& option, const std::string& tex
   double value = 0.0;
   const std::string_view number = std::string_view(text).substr(0, text.size() - (relative ? 1 : 0));
   if (!scenarios::read_number(number, value) || !std::isfinite(value) || value < 0.0)
-    throw BadInput(option + " is '" + text + "', must be a non-negative number, alone or with %");
+    throw BadInput(option + " is '" + text + "'; write a number of at least 0, with or without %, for example 10%");
   return {relative ? value / 100.0 : value, relative};
 }
 
@@ -33,7 +33,7 @@ Question parse_question(const std::string& text, double risk, const scenarios::S
   for (std::string word; std::getline(stream, word, ':');) words.push_back(word);
   if (words.size() < 3 || words.size() > 4 || std::find(words.begin(), words.end(), "") != words.end())
     throw BadInput("--until is '" + text +
-                   "', must be A:B:METRIC or A:B:METRIC:MARGIN, for example rate/tumble:rate/raw:" +
+                   "'; write A:B:METRIC or A:B:METRIC:MARGIN, for example rate/tumble:rate/raw:" +
                    scenarios::headline_metrics(scenarios::Kind::rate).front() + ":10%");
   std::vector<std::string> known;
   for (const scenarios::MethodPointer& method : scenarios::find_methods(suite.methods))
@@ -53,14 +53,16 @@ Question parse_question(const std::string& text, double risk, const scenarios::S
 }
 
 Table table_of(const std::vector<scenarios::Answer>& answers, const Question& question) {
-  Table table(fmt::format("Is {} better than {} in {}{}? Risk {:g} of an answer if neither is better", question.method,
-                          question.against, question.metric,
-                          question.margin.value == 0.0 ? ""
-                          : question.margin.relative   ? fmt::format(" by {:g} %", 100.0 * question.margin.value)
-                                                       : fmt::format(" by {:g}", question.margin.value),
-                          question.risk),
-              {"scenario", "answer", "seeds used",
-               question.margin.value > 0.0 ? "better by it : not" : "better : worse", "seeds needed at least"});
+  Table table(
+      fmt::format(
+          "Is {} better than {} in {}{}? If neither method is better, the probability of an answer is at most {:g}",
+          question.method, question.against, question.metric,
+          question.margin.value == 0.0 ? ""
+          : question.margin.relative   ? fmt::format(" by {:g} %", 100.0 * question.margin.value)
+                                       : fmt::format(" by {:g}", question.margin.value),
+          question.risk),
+      {"scenario", "answer", "seeds used", question.margin.value > 0.0 ? "better by it : not" : "better : worse",
+       "seeds needed at least"});
   table.align_right_from(2);
   for (const scenarios::Answer& each : answers) {
     table.add_row({each.scenario, finding_text(each, question), std::to_string(each.seeds),

@@ -59,7 +59,8 @@ std::vector<scenarios::MethodPointer> methods_of(const BenchOptions& options) {
 scenarios::Suite suite_of(const scenarios::DataRoot& data, const BenchOptions& options, scenarios::Kind kind) {
   scenarios::Suite suite =
       scenarios::load_suite(data, options.suite.empty() ? scenarios::bench_suite_name(kind) : options.suite);
-  if (suite.classes.empty()) throw BadInput("suite " + suite.name + " has no classes of draws; add the key 'draws'");
+  if (suite.classes.empty())
+    throw BadInput("suite " + suite.name + " has no classes of draws; add the key 'draws' to the file of the suite");
   suite.methods = options.methods;
   return suite;
 }
@@ -84,7 +85,9 @@ std::vector<BenchResult> stored_results(const scenarios::DataRoot& data, const B
   std::vector<BenchResult> all = scenarios::read_bench_results(scenarios::bench_results_file(data, suite.name));
   for (const fs::path& file : options.beside) {
     const std::vector<BenchResult> more = scenarios::read_bench_results(file);
-    if (more.empty()) throw BadInput(file.string() + ": contains no bench results");
+    if (more.empty())
+      throw BadInput(file.string() +
+                     ": this file contains no bench results; 'tumble bench METHOD -o FILE.jsonl' writes bench results");
     all.insert(all.end(), more.begin(), more.end());
   }
   for (const BenchResult& each : all) scenarios::require_of_suite(each, suite);
@@ -117,7 +120,8 @@ BenchPage page_of(const scenarios::Results& results, const scenarios::Suite& sui
       page.stored.push_back(std::move(each));
     else
       page.left_out.push_back(
-          fmt::format("{}: its recording of {} differs, because another build simulated it", each.method, draw));
+          fmt::format("{}: the recording of {} in these results differs, because another build simulated the recording",
+                      each.method, draw));
   }
   return page;
 }
@@ -166,8 +170,9 @@ int bench(const Session& session, const BenchOptions& options) {
   if (!options.lines.empty()) prepare_file(options.lines, {}, {".jsonl"});
   const fs::path database = database_of(data, options, suite, methods);
   if (database.has_parent_path()) make_folder(database.parent_path());
-  session.note(fmt::format("{}, {} draws; results in {}; a stopped run continues there", suite.name, suite.draw_count(),
-                           database.string()));
+  session.note(fmt::format(
+      "suite {} has {} draws. The program stores the results in {}. A stopped run continues from this database",
+      suite.name, suite.draw_count(), database.string()));
   const scenarios::DatabaseOwner owner(database);
   const InterruptFlag interrupt;
   scenarios::SweepOptions how;
@@ -191,7 +196,7 @@ int bench(const Session& session, const BenchOptions& options) {
   }
   print(session, bench_tables(suite, page, results.outcomes()), lines);
   if (options.lines.empty() && !session.json)
-    session.note("for publication: '-o FILE.jsonl' writes the results as one line of JSON per method");
+    session.note("to publish the results, use '-o FILE.jsonl': the file contains one line of JSON per method");
   session.note(fmt::format("next: tumble report {} -o report.html",
                            scenarios::shell_word(database_to_report(database, results, page).string())));
   return kDone;
@@ -202,14 +207,20 @@ int bench(const Session& session, const BenchOptions& options) {
 Action declare_bench(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<BenchOptions>();
   verb.add("METHOD", options->methods,
-           "NAME.yaml or NAME.py of an external method, or the name of a method; several must have the same kind")
+           "tests this method: NAME.yaml or NAME.py of an external method, or the name of a method; several methods "
+           "must have the same kind")
       .required();
-  verb.add("--suite", options->suite, "suite with named draws [the standard suite of the kind]");
-  verb.add("--beside", options->beside, "FILE.jsonl with published results to compare").one_at_a_time();
-  verb.add("--jobs", options->jobs, "number of parallel processes [all processors]").whole(1, 1024).shows_default();
-  verb.add("-o,--output", options->lines, "FILE.jsonl for the results, one line of JSON per method");
-  verb.add("--db", options->database, "results database [in this folder, named after suite, method and version]");
-  verb.add_flag("--store", options->store, "store the lines with the results in the source tree");
+  verb.add("--suite", options->suite,
+           "runs this suite, which must list its draws [default: the standard suite of the method's kind]");
+  verb.add("--beside", options->beside, "also shows the published results in this FILE.jsonl").one_at_a_time();
+  verb.add("--jobs", options->jobs, "runs this number of processes in parallel [default: number of processors]")
+      .whole(1, 1024)
+      .shows_default();
+  verb.add("-o,--output", options->lines, "writes the results to this FILE.jsonl, one line of JSON per method");
+  verb.add("--db", options->database,
+           "stores the results in this database [default: a file in the current folder, named after suite, method and "
+           "version]");
+  verb.add_flag("--store", options->store, "adds the lines of JSON to the published results in the source tree");
   return [&session, options] { return bench(session, *options); };
 }
 

@@ -48,8 +48,9 @@ scenarios::ComparisonOptions read(const CompareOptions& options) {
   out.metrics = options.metrics;
   if (!options.margin.empty()) out.margin = parse_margin("--margin", options.margin);
   if (out.margin && !out.margin->relative && out.metrics.empty())
-    throw BadInput("--margin " + options.margin +
-                   " is in the unit of a metric: name the metric with --metric, or give a percentage such as 10%");
+    throw BadInput(
+        "--margin " + options.margin +
+        " is in the unit of a metric, but no metric is named; add --metric, or give a percentage such as 10%");
   out.risk = options.risk;
   out.power = options.power;
   return out;
@@ -199,7 +200,9 @@ int compare(const Session& session, const CompareOptions& options) {
   const scenarios::Results results(options.database, scenarios::Results::Mode::read_only);
   const Comparison comparison = scenarios::compare(scenarios::summarize(results), asked);
   if (comparison.failures.empty())
-    throw BadInput(options.database.string() + ": contains no draw on which two of the named methods have run");
+    throw BadInput(
+        options.database.string() +
+        ": no draw of this database has results of two of the named methods; name methods that ran on the same draws");
   const bool apart = session.format == TableFormat::csv;
   std::vector<Table> tables = tables_of(comparison.metrics, "paired with ", [&](const MetricComparison& row) {
     return cells_of(row, asked.margin.has_value(), apart);
@@ -208,10 +211,10 @@ int compare(const Session& session, const CompareOptions& options) {
                                 [&](const FailureComparison& row) { return cells_of(row, apart); }))
     tables.push_back(std::move(table));
   session.print(tables, to_json(comparison, asked.margin.has_value()));
-  session.note(
-      fmt::format("risk {:g} of any false finding among the {} comparisons of metrics, and again among the {} of "
-                  "failures (Holm); see docs/maths/statistics.md",
-                  options.risk, comparison.metrics.size(), comparison.failures.size()));
+  session.note(fmt::format(
+      "the probability of any false finding is at most {0:g} in the {1} comparisons of metrics, and at most {0:g} in "
+      "the {2} comparisons of failures. Both use Holm's correction; see docs/maths/statistics.md",
+      options.risk, comparison.metrics.size(), comparison.failures.size()));
   return kDone;
 }
 
@@ -219,19 +222,23 @@ int compare(const Session& session, const CompareOptions& options) {
 
 Action declare_compare(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<CompareOptions>();
-  verb.add("DATABASE", options->database, "results database, FILE.db").required();
+  verb.add("DATABASE", options->database, "reads this results database, FILE.db").required();
   verb.add("--method", options->methods,
-           "method to compare; repeat for more, each is compared with the last [all that need no truth, with the "
-           "baseline]")
+           "compares this method; repeat the option to compare each method with the last one named [default: compares "
+           "all methods that need no truth with the baseline]")
       .one_at_a_time();
-  verb.add("--against", options->against, "method to compare with [the last --method, or the baseline]");
-  verb.add("--metric", options->metrics, "metric; repeat for more [headline metrics of the kind]").one_at_a_time();
+  verb.add("--against", options->against, "compares with this method [default: the last --method, or the baseline]");
+  verb.add("--metric", options->metrics,
+           "compares this metric; repeat the option for more metrics [default: the headline metrics of the kind]")
+      .one_at_a_time();
   verb.add("--margin", options->margin,
-           "largest loss that still counts as not worse: in the metric's unit, or as 10% of the other method's value");
-  verb.add("--risk", options->risk, "accepted probability of any false finding in a table")
+           "sets the largest loss that still counts as 'not worse': a number in the metric's unit, or a percentage of "
+           "the other method's value, for example 10%");
+  verb.add("--risk", options->risk, "sets the accepted probability of any false finding in a table")
       .within(1e-6, 0.5)
       .shows_default();
-  verb.add("--power", options->power, "power of the tests for which the needed draws are computed")
+  verb.add("--power", options->power,
+           "sets the power of the tests, from which the program computes the needed number of draws")
       .within(0.5, 0.999)
       .shows_default();
   return [&session, options] { return compare(session, *options); };

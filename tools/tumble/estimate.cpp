@@ -37,7 +37,8 @@ struct EstimateOptions {
 /// Returns why a run failed; names the required sensors if the recording lacks sensors.
 std::string reason(const Status& status, const sim::Sensors& sensors) {
   const std::string field = status.field;
-  if (status.trouble == Trouble::empty && field == "imus") return "the method needs an IMU, and the recording has none";
+  if (status.trouble == Trouble::empty && field == "imus")
+    return "the method needs an IMU, but the recording contains no IMU";
   const std::string place = trouble_place(status, sensors);
   return status.message() + (place.empty() ? "" : ": " + place);
 }
@@ -49,7 +50,7 @@ scenarios::MethodPointer choose(const std::string& name, const scenarios::Subjec
   for (const scenarios::MethodPointer& method : scenarios::find_methods(name)) {
     if (method->info.needs_truth) {
       refused = "method '" + full_name(method->info) +
-                "' needs the truth, which this verb never reads; use 'tumble run' instead";
+                "' needs the truth, but 'tumble estimate' never reads the truth; use 'tumble run' instead";
     } else if (const std::string why = method->info.why_not(subject); !why.empty()) {
       refused = "method '" + full_name(method->info) + "': it " + why;
     } else {
@@ -116,7 +117,7 @@ int run_estimate(const Session& session, const EstimateOptions& options) {
   const scenarios::MethodPointer chosen = choose(options.method, {sensors.robot, !sensors.lidars.empty()});
   const scenarios::Method& method = *chosen;
   if (!options.learnt.empty() && !method.info.learns_rig) {
-    throw BadInput("--learnt is for " + LearntFile::learning_methods() + "; '" + full_name(method.info) +
+    throw BadInput("--learnt applies only to " + LearntFile::learning_methods() + "; '" + full_name(method.info) +
                    "' does not calibrate the rig");
   }
   LearntFile learnt(options.learnt);
@@ -140,7 +141,7 @@ int run_estimate(const Session& session, const EstimateOptions& options) {
                                    {"digest", scenarios::digest(estimate)},
                                    {"health", estimate.health}};
   session.print({summary(estimate)}, document);
-  session.note(fmt::format("all {} health counters: --json, or {}", estimate.health.size(),
+  session.note(fmt::format("--json and {1} contain all {0} health counters", estimate.health.size(),
                            (options.folder / "estimate.json").string()));
   if (const std::string caution = learnt.caution(sensors); !caution.empty()) session.note(caution);
   // printed also after a failure, because a sensor fault may be the cause
@@ -155,16 +156,16 @@ int run_estimate(const Session& session, const EstimateOptions& options) {
 
 Action declare_estimate(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<EstimateOptions>();
-  verb.add("RECORDING", options->recording, "recording, FILE.h5").required().check(a_recording);
-  verb.add("--method", options->method, "method, for example 'saave' or 'rate/saave'").required();
+  verb.add("RECORDING", options->recording, "reads this recording, FILE.h5").required().check(a_recording);
+  verb.add("--method", options->method, "runs this method, for example 'saave' or 'rate/saave'").required();
   verb.add("--set", options->parameters,
-           "METHOD.PARAMETER=NUMBER, for example rate/tumble_lag.lag_s=0.5; repeat for more ('tumble list methods "
-           "NAME')")
+           "sets a parameter of a method: METHOD.PARAMETER=NUMBER, for example rate/tumble_lag.lag_s=0.5; repeat the "
+           "option for more parameters ('tumble list methods NAME' lists them)")
       .one_at_a_time();
-  verb.add("-o,--output", options->folder, "folder for the estimate").required();
+  verb.add("-o,--output", options->folder, "writes the estimate to this folder").required();
   verb.add("--learnt", options->learnt,
-           "FILE.json with the calibration of the rig from an earlier run of 'rate/tumble' or 'rate/tumble_lag', if it "
-           "exists; receives the calibration of this run");
+           "starts 'rate/tumble' or 'rate/tumble_lag' from the calibration of the rig in this FILE.json, if the file "
+           "exists; at the end writes the calibration of this run to the file");
   return [&session, options] { return run_estimate(session, *options); };
 }
 

@@ -41,8 +41,9 @@ int said(const Session& session, const ExportOptions& options, const std::string
 int export_for_peer(const Session& session, const ExportOptions& options) {
   const auto refuse = [](bool given, const char* option) {
     if (given)
-      throw scenarios::BadInput(std::string(option) +
-                                ": does not apply with --for, which determines the format and content");
+      throw scenarios::BadInput(
+          std::string(option) +
+          ": this option does not apply with --for, which sets format and content; give only one of the two options");
   };
   refuse(!options.format.empty(), "--format");
   refuse(!options.points.empty(), "--points");
@@ -53,7 +54,8 @@ int export_for_peer(const Session& session, const ExportOptions& options) {
        scenarios::export_for(options.recording, options.peer, options.out, options.with_truth))
     session.note(note);
   session.note(
-      "manifest.json in the output folder lists its content; its key 'run' is the command that starts the estimator");
+      "manifest.json in the output folder lists the files. The key 'run' of manifest.json contains the command that "
+      "starts the estimator");
   return said(session, options, "for", options.peer);
 }
 
@@ -61,7 +63,8 @@ int export_as(const Session& session, const ExportOptions& options) {
   const std::string format = format_of(options);
   const bool bag = scenarios::is_bag_format(format);
   if (options.with_truth && !bag)
-    throw scenarios::BadInput("--with-truth applies to bags only; tum and kitti contain nothing but the truth");
+    throw scenarios::BadInput(
+        "--with-truth applies to bags only; tum and kitti files always contain the truth, and nothing else");
   if (!options.estimates.empty() && !bag)
     throw scenarios::BadInput("--estimate applies to bags only (mcap, rosbag1, rosbag2, rosbag2_mcap)");
   if (!options.points.empty()) {
@@ -94,30 +97,32 @@ Action declare_export(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<ExportOptions>();
   std::string known;
   for (const std::string& format : scenarios::export_formats()) known += " " + format;
-  verb.add("RECORDING", options->recording, "recording, FILE.h5").required().check(a_recording);
+  verb.add("RECORDING", options->recording, "reads this recording, FILE.h5").required().check(a_recording);
   verb.add("--format", options->format,
-           "format of the output, one of:" + known + " [from the extension of the output: .mcap, .bag, .tum]");
+           "sets the format of the output, one of:" + known +
+               " [default: from the extension .mcap, .bag or .tum of the output]");
   std::string peers;
   for (const std::string& name : scenarios::peer_dialects()) peers += " " + name;
   verb.add("--for", options->peer,
-           "writes a folder for a published estimator: the bag that it reads, its configuration with the sensors of "
-           "this recording, and manifest.json; one of:" +
+           "writes a folder for a published estimator. The folder contains a bag, the estimator's configuration for "
+           "the sensors of this recording, and manifest.json. Choose one of:" +
                peers);
   verb.add("--frame", options->frame,
-           "frame of the true poses in tum and kitti: body (centre of mass), centre (of a sphere's shell) or a "
-           "sensor's name; estimates of the rig use imu [body]");
+           "sets the frame of the true poses in tum and kitti: body (centre of mass), centre (of a sphere's shell) or "
+           "a sensor's name; use imu to compare with estimates of the rig [default: body]");
   verb.add("--points", options->points,
-           "type of the points in a bag: pointcloud2, or livox for the CustomMsg of Livox' drivers [pointcloud2]");
+           "sets the message type of the points in a bag: pointcloud2, or livox for the CustomMsg of Livox' drivers "
+           "[default: pointcloud2]");
   verb.add("-o,--output", options->out,
-           "output: a file (kitti, tum: the true poses; mcap, rosbag1: the sensors) or a folder (csv, pcd, ply, "
-           "rosbag2: the sensors; or with --for)")
+           "writes to this file or folder. kitti and tum write the true poses to a file; mcap and rosbag1 write the "
+           "sensor data to a file. csv, pcd, ply, rosbag2 and --for write to a folder")
       .required();
-  verb.add_flag(
-      "--with-truth", options->with_truth,
-      "adds the true poses: to a bag under /truth and as poses of the body; with --for as truth.tum in the folder");
-  verb.add("--estimate", options->estimates,
-           "adds the poses of an estimate (a folder, or a TUM file of the IMU) and its lidar points to a bag; if there "
-           "is a truth, both are aligned with it at the start and each point has its error_m");
+  verb.add_flag("--with-truth", options->with_truth,
+                "adds the true poses of the body: to a bag as topic /truth, with --for as file truth.tum");
+  verb.add(
+      "--estimate", options->estimates,
+      "adds the poses and lidar points of an estimate (a folder, or a TUM file of the IMU) to a bag. If the recording "
+      "has a truth, the estimate is aligned with the truth at the start, and each point has a field error_m");
   return [&session, options] {
     return options->peer.empty() ? export_as(session, *options) : export_for_peer(session, *options);
   };

@@ -53,8 +53,8 @@ std::vector<scenarios::MethodPointer> given_methods(const GateOptions& options) 
   for (const std::string& name : options.methods) {
     if (!options.accept && !scenarios::is_method_file(name))
       throw scenarios::BadInput("--method " + name +
-                                ": must be a FILE.yaml that describes a method; the accepted results determine which "
-                                "methods of this build run, and --accept adds methods");
+                                ": give a FILE.yaml that describes an external method. The accepted results determine "
+                                "which methods of this build run; --accept adds methods");
   }
   return scenarios::find_methods(options.methods);
 }
@@ -77,7 +77,7 @@ void keep_accepted(const scenarios::Gate& gate, const GateOptions& options,
   for (const scenarios::MethodPointer& method : given) {
     if (std::none_of(accepted.begin(), accepted.end(), [&](const auto& run) { return is_of(run, method); }))
       throw scenarios::BadInput(full_name(method->info) + ": the gate of suite " + suite.name +
-                                " has no accepted run of this method; --accept adds it");
+                                " has no accepted results of this method; add the results with --accept");
   }
   for (const std::string& name : names) require_known("scenario of suite " + suite.name, name, suite.scenarios);
   suite.scenarios = names;
@@ -155,8 +155,8 @@ std::optional<scenarios::Gate> load(const scenarios::DataRoot& data, const GateO
   const scenarios::Gate gate =
       scenarios::load_gate(data, options.accepted.empty() ? suite : options.accepted.string(), given);
   if (gate.suite != suite) {
-    throw scenarios::BadInput(options.accepted.string() + ": is the gate of suite '" + gate.suite + "', not of '" +
-                              suite + "'");
+    throw scenarios::BadInput(options.accepted.string() + ": this file contains the gate of suite '" + gate.suite +
+                              "', but the requested suite is '" + suite + "'");
   }
   return gate;
 }
@@ -180,7 +180,9 @@ std::string certificate_text(const Session& session, const scenarios::DataRoot& 
 /// Runs named cases, which define their own expectations.
 int run_case_gate(const Session& session, const scenarios::DataRoot& data, const GateOptions& options) {
   if (!options.accepted.empty() || !options.methods.empty())
-    throw scenarios::BadInput("--against, --method: do not apply to a named case, which defines its own expectations");
+    throw scenarios::BadInput(
+        "--against and --method do not apply to a named case, because the case contains its own expectations; remove "
+        "both options");
   return hold_cases(session, data, {options.suite, options.jobs, options.database, options.accept});
 }
 
@@ -193,7 +195,8 @@ int run_gate(const Session& session, const GateOptions& options) {
   if (!suite.classes.empty())
     throw scenarios::BadInput("suite '" + suite.name + "' names its draws; a gate needs a range of seeds");
   if (!options.accepted.empty() && options.accepted.extension() != ".yaml")
-    throw scenarios::BadInput("--against " + options.accepted.string() + ": must be a FILE.yaml");
+    throw scenarios::BadInput("--against " + options.accepted.string() +
+                              ": the accepted results must be in a FILE.yaml");
   suite.curves.clear();  // a gate covers scenarios at their stated settings only
   const std::vector<scenarios::MethodPointer> given = given_methods(options);
   const std::optional<scenarios::Gate> known = load(data, options, given, suite.name);
@@ -239,18 +242,23 @@ int run_gate(const Session& session, const GateOptions& options) {
 Action declare_gate(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<GateOptions>();
   verb.add("SUITE", options->suite,
-           "suite, suite file or scenario, whose fixed seeds are run; or 'regressions', or a named case")
+           "runs the fixed seeds of this suite, suite file or scenario; or this named case; or all named cases "
+           "('regressions')")
       .required()
       .check(a_suite_or_cases(session));
   verb.add("--against", options->accepted,
-           "accepted results: FILE.yaml with FILE.csv in the same folder [scenarios/gates/SUITE.yaml]");
+           "compares with the accepted results in this FILE.yaml, which needs a FILE.csv in the same folder [default: "
+           "scenarios/gates/SUITE.yaml]");
   verb.add("--method", options->methods,
-           "FILE.yaml of an external method to check too; with --accept also a method of this build, which is checked "
-           "from then on; repeat for more")
+           "also checks the external method in this FILE.yaml; with --accept also adds a method of this build to the "
+           "gate; repeat the option for more methods")
       .one_at_a_time();
-  verb.add("--jobs", options->jobs, "number of parallel processes [all processors]").whole(1, 1024).shows_default();
-  verb.add("--db", options->database, "results database to keep; stored runs are not repeated [a temporary file]");
-  verb.add_flag("--accept", options->accept, "stores this run as the accepted results instead of checking it");
+  verb.add("--jobs", options->jobs, "runs this number of processes in parallel [default: number of processors]")
+      .whole(1, 1024)
+      .shows_default();
+  verb.add("--db", options->database,
+           "keeps the results in this database, and repeats no stored run [default: a temporary file]");
+  verb.add_flag("--accept", options->accept, "stores the results of this run as the accepted results, without a check");
   return [&session, options] { return run_gate(session, *options); };
 }
 

@@ -54,7 +54,7 @@ Reached reached(const scenarios::Results& results, const scenarios::Scenario& na
   if (out.size() != named.named_case->expected.size())
     throw scenarios::BadInput(
         "case " + named.name +
-        " has missing outcomes, because its draw can no longer be simulated; correct or delete its file");
+        " has missing outcomes, because its draw cannot be simulated; correct or delete the file of the case");
   return out;
 }
 
@@ -96,8 +96,8 @@ void accept(const Session& session, const scenarios::DataRoot& data, scenarios::
   for (auto& [expected, outcome] : outcomes) {
     if (outcome.status == scenarios::OutcomeStatus::killed)
       throw scenarios::BadInput(named.name + ", " + expected.method +
-                                ": the operating system killed the run, so its outcome cannot be accepted; run again "
-                                "with more free memory: " +
+                                ": the operating system killed the run, so the outcome cannot be accepted; free memory "
+                                "and run again. Message of the run: " +
                                 outcome.message);
     expected = scenarios::accepted(expected, outcome);
     named.named_case->expected.push_back(expected);
@@ -115,7 +115,9 @@ std::vector<scenarios::Scenario> cases_of(const scenarios::DataRoot& data, const
     out.push_back(scenarios::load_scenario(data, name));
     scenarios::require_known(out.back());
   }
-  if (out.empty()) throw scenarios::BadInput(data.regressions().string() + ": contains no named case");
+  if (out.empty())
+    throw scenarios::BadInput(data.regressions().string() +
+                              ": this folder contains no named case; 'tumble shrink' writes named cases");
   return out;
 }
 

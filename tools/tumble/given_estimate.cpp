@@ -31,8 +31,11 @@ void require_own(const std::filesystem::path& estimate, const std::filesystem::p
   const std::string made_from = scenarios::estimated_sensors(estimate);
   const std::string own = scenarios::digest(sensors, nullptr);
   if (made_from.empty() || made_from == own) return;
-  throw scenarios::BadInput(estimate.string() + ": was made from another recording (its sensors have the digest " +
-                            made_from + ", but those of " + recording.string() + " have the digest " + own + ")");
+  throw scenarios::BadInput(
+      estimate.string() +
+      ": this estimate belongs to another recording. The estimate was made from sensor data with digest " + made_from +
+      ", but the sensor data of " + recording.string() + " have digest " + own +
+      "; give the recording of the estimate");
 }
 
 scenarios::StampSpan span_of(const sim::Sensors& sensors, const sim::Truth* truth) {

@@ -99,8 +99,8 @@ Table table_of(const Imported& imported) {
 void say_what_is_assumed(const ImportOptions& options, const std::string& format, std::vector<std::string>& notes) {
   if (options.lever_arm_m.empty() && (format == "csv" || !options.imu.empty())) {
     notes.push_back(
-        "no --lever-arm: the IMU is assumed at the robot's centre of mass; rates beyond saturation depend on the lever "
-        "arm");
+        "--lever-arm is missing, so the program assumes that the IMU is at the robot's centre of mass. Estimated rates "
+        "beyond saturation depend on the lever arm");
   }
 }
 
@@ -117,7 +117,7 @@ int import_from(const Session& session, const ImportOptions& options) {
   if (const std::filesystem::path file = reference_file(options, format); !file.empty()) {
     scenarios::attach_reference(imported, reference_source(options, file, !imported.sensors.lidars.empty()));
     if (options.reference.empty())
-      imported.notes.push_back("the reference is " + file.filename().string() + ", found in the imported folder");
+      imported.notes.push_back("the reference poses come from " + file.filename().string() + " in the imported folder");
   }
   for (std::string& note : scenarios::lidar_rotation_notes(options.path.string(), imported, gyro_unit(options)))
     imported.notes.push_back(std::move(note));

@@ -34,19 +34,20 @@ std::string format_of_folder(const std::filesystem::path& folder) {
     const auto format = known.find(ending);
     if (format == known.end() || format->second == found) continue;
     if (!found.empty()) {
-      throw BadInput(folder.string() + ": contains files of formats " + found + " and " + format->second +
-                     "; select one with --format");
+      throw BadInput(folder.string() + ": this folder contains files of the formats " + found + " and " +
+                     format->second + "; select one format with --format");
     }
     found = format->second;
   }
   if (found.empty() && tables) return "csv";
   if (found.empty())
-    throw BadInput(folder.string() +
-                   ": contains no .ply, .pcd, .vtk, .bin, .bag or .csv file and no metadata.yaml of a ROS 2 bag" +
-                   (ros2_file.empty() ? ""
-                                      : "; create metadata.yaml with 'ros2 bag reindex', or import one file at a time, "
-                                        "for example " +
-                                            ros2_file));
+    throw BadInput(
+        folder.string() +
+        ": this folder contains no .ply, .pcd, .vtk, .bin, .bag or .csv file and no metadata.yaml of a ROS 2 bag" +
+        (ros2_file.empty() ? ""
+                           : "; create metadata.yaml with 'ros2 bag reindex', or import one file at a time, "
+                             "for example " +
+                                 ros2_file));
   return found;
 }
 
@@ -102,9 +103,9 @@ std::string format_of(const ImportOptions& options) {
   if (ending == ".hdf5" || ending == ".h5") return "broad";
   if (ending == ".tum" || ending == ".txt" || ending == ".kitti") return scenarios::pose_format(options.path);
   if (ending.empty() && exists) return format_of_text(options.path);
-  throw BadInput(options.path.string() +
-                 ": cannot detect the format from this file name; give --format (broad, csv, kitti, mcap, rosbag1, "
-                 "rosbag2 or tum)");
+  throw BadInput(
+      options.path.string() +
+      ": the file name does not reveal the format; give --format (broad, csv, kitti, mcap, rosbag1, rosbag2 or tum)");
 }
 
 }  // namespace tumble::tools

@@ -30,7 +30,8 @@ void require_numbers(const std::string& option, const std::vector<double>& numbe
   for (const double x : numbers) {
     if (!(std::abs(x) <= bound)) {
       // NaN is reported with a separate message, because NaN appears in tables as a dash
-      throw BadInput(fmt::format("{}: {:g} must be within +-{:g}", option, x, bound));
+      throw BadInput(
+          fmt::format("{0}: {1:g} is out of range; each number must be from -{2:g} to {2:g}", option, x, bound));
     }
   }
 }
@@ -42,7 +43,7 @@ Eigen::Isometry3d pose_of(const std::string& option, const std::vector<double>& 
   require_numbers(option, numbers, 100.0);
   const Eigen::Quaterniond q(numbers[6], numbers[3], numbers[4], numbers[5]);
   if (!(std::abs(q.norm() - 1.0) <= 1e-2)) {
-    throw BadInput(fmt::format("{}: the quaternion (qx qy qz qw) has norm {:g}, must be 1", option, q.norm()));
+    throw BadInput(fmt::format("{}: the quaternion (qx qy qz qw) has norm {:g}; the norm must be 1", option, q.norm()));
   }
   pose.linear() = q.normalized().toRotationMatrix();
   pose.translation() = Eigen::Vector3d(numbers[0], numbers[1], numbers[2]);
@@ -90,85 +91,100 @@ scenarios::SweepReading sweep_reading(const Session& session, const ImportOption
 }
 
 void declare_lidar(VerbOptions& verb, ImportOptions& options) {
-  verb.add("--lidar", options.lidar, "name of the lidar's data sheet, for sweeps [unknown]");
-  verb.add("--T-body-lidar", options.T_body_lidar, "X Y Z QX QY QZ QW: pose of the lidar in the body, m [identity]")
+  verb.add("--lidar", options.lidar,
+           "names the data sheet of the lidar ('tumble list sensors' lists the sheets) [default: unknown]");
+  verb.add("--T-body-lidar", options.T_body_lidar,
+           "sets the pose of the lidar in the body frame: X Y Z in m, then the quaternion QX QY QZ QW [default: "
+           "identity]")
       .words(7);
   verb.add("--stem", options.stem,
-           "start of the file names before their number, if the folder contains several series");
-  verb.add("--times", options.times,
-           "file with one time stamp per line for each sweep or pose, s or a date in UTC [STEM_times.txt or times.txt "
-           "in the folder of "
-           "the sweeps, else the file names, else the times of the points]");
+           "selects one of several series of sweeps in the folder: the part of the file names before the number");
+  verb.add(
+      "--times", options.times,
+      "reads the time stamps of the sweeps or poses from this file, one per line, in s or as a date in UTC [default: "
+      "STEM_times.txt or times.txt in the folder of the sweeps, else the file names, else the times of the points]");
   verb.add("--sweep-period", options.sweep_period_s,
-           "duration of a sweep, s; without time stamps also the time between sweeps [median step]")
+           "sets the duration of a sweep, s; without time stamps also the time between sweeps [default: median time "
+           "between sweeps]")
       .within(1e-4, 1000.0);
   verb.add("--bin-columns", options.bin_columns,
-           "columns of .bin files in order, for example x,y,z,intensity,ring; each is float32 or has its type after a "
-           "colon (f4 f8 u1 u2 u4 u8 i1 i2 i4 i8: x:f8); _ skips a column [x,y,z,intensity]");
+           "lists the columns of .bin files in order, for example x,y,z,intensity,ring. A column is float32, or has "
+           "its type after a colon, for example x:f8; the types are f4 f8 u1 u2 u4 u8 i1 i2 i4 i8. The name _ skips a "
+           "column [default: x,y,z,intensity]");
   verb.add("--time-field", options.time_field,
-           "field with the times of the points [t, time, timestamp, offset_time ...]");
-  verb.add("--time-unit", options.time_unit, "unit of that field: s, ms, us or ns [detected from the values]");
+           "names the field that contains the times of the points [default: t, time, timestamp, offset_time or a "
+           "similar name]");
+  verb.add("--time-unit", options.time_unit,
+           "sets the unit of the times of the points: s, ms, us or ns [default: detected from the values]");
   verb.add_flag("--not-skewed", options.not_skewed,
-                "the sweeps are already deskewed: all points belong to one instant");
-  verb.add("--imu", options.imu, "FILE.csv with IMU readings in the clock of the sweeps");
+                "states that the sweeps are already deskewed, so that all points of a sweep belong to one instant");
+  verb.add("--imu", options.imu,
+           "adds the IMU readings in this FILE.csv, which must have the same clock as the sweeps");
 }
 
 void declare_reference(VerbOptions& verb, ImportOptions& options) {
   verb.add("--reference", options.reference,
-           "poses that serve as truth: a TUM file or a table of poses with named columns (EuRoC ground truth, "
-           "nav_msgs/Odometry) in the clock of the sensors, or a KITTI file with one pose per sweep [trajectory.csv in "
-           "the folder of VTK sweeps, truth.csv in a folder of CSV tables]");
+           "uses the poses in this file as truth. The file is a TUM file or a table of poses with named columns (EuRoC "
+           "ground truth, nav_msgs/Odometry) in the clock of the sensors, or a KITTI file with one pose per sweep "
+           "[default: trajectory.csv in a folder of VTK sweeps, truth.csv in a folder of CSV tables]");
   verb.add("--reference-frame", options.reference_frame,
-           "frame of the reference poses: lidar or body [file: lidar if there is one; topic: the frame named in its "
-           "messages, else body]");
+           "sets the frame of the reference poses: lidar or body [default for a file: lidar if the recording has a "
+           "lidar; default for a topic: the frame named in the messages, else body]");
   verb.add("--reference-topic", options.reference_topic,
-           "topic of a bag with poses that serve as truth: nav_msgs/Odometry, geometry_msgs/PoseStamped or "
-           "geometry_msgs/TransformStamped [none]");
-  verb.add_flag(
-      "--align-reference", options.align_reference,
-      "repoimu: removes delay, rotation and tilt of the reference, as estimated from the motion [only reported]");
+           "uses the poses of this topic of a bag as truth: nav_msgs/Odometry, geometry_msgs/PoseStamped or "
+           "geometry_msgs/TransformStamped [default: no truth]");
+  verb.add_flag("--align-reference", options.align_reference,
+                "for repoimu: estimates delay, rotation and tilt of the reference from the motion, and removes them "
+                "[default: only reports them]");
   verb.add_flag("--sort", options.sorted,
-                "accepts lines of a TUM file in any order; of equal stamps the first is used");
+                "accepts lines of a TUM file in any order, and uses the first of several lines with equal stamps");
 }
 
 }  // namespace
 
 void declare(VerbOptions& verb, ImportOptions& options) {
-  verb.add(
-          "PATH", options.path,
-          "file or folder to import: lidar sweeps (PLY, PCD, VTK, KITTI .bin); IMU readings (CSV of a logger or of "
-          "sensor_msgs/Imu, or the folder of a CSV export, BROAD HDF5 or RepoIMU CSV with optical reference, "
-          "AirbrakesV2 flight log); a bag (ROS 1 file or folder of its parts, ROS 2 folder, MCAP file); or poses (TUM, "
-          "KITTI, a table with named columns such as EuRoC's ground truth)")
+  verb.add("PATH", options.path,
+           "imports this file or folder. Lidar sweeps can be PLY, PCD, VTK or KITTI .bin files. IMU readings can be a "
+           "CSV file of a logger or of sensor_msgs/Imu, the folder of a CSV export, a BROAD HDF5 or RepoIMU CSV file "
+           "with optical reference, or an AirbrakesV2 flight log. A bag can be a ROS 1 file or a folder of its parts, "
+           "a ROS 2 folder, or an MCAP file. Poses can be a TUM file, a KITTI file, or a table with named columns such "
+           "as EuRoC's ground truth")
       .required();
   verb.add("--format", options.format,
-           "airbrakes, broad, csv, kitti, mcap, odometry, pcd, ply, repoimu, rosbag1, rosbag2, tum or vtk [from "
-           "extension or content]");
+           "sets the format of the input: airbrakes, broad, csv, kitti, mcap, odometry, pcd, ply, repoimu, rosbag1, "
+           "rosbag2, tum or vtk [default: detected from extension or content]");
   verb.add("--device", options.device,
-           "name of the IMU's data sheet, for ranges and noise; see 'tumble list sensors' [unknown]");
-  verb.add(
-      "--accel-unit", options.accel_unit,
-      "unit of the accelerometer in a CSV or bag: m/s^2 or g [m/s^2; for a bag g if the readings at rest indicate it]");
-  verb.add("--gyro-unit", options.gyro_unit, "unit of the gyro in a CSV or bag: rad/s or deg/s [rad/s]");
+           "names the data sheet of the IMU, which states ranges and noise ('tumble list sensors' lists the sheets) "
+           "[default: unknown]");
+  verb.add("--accel-unit", options.accel_unit,
+           "sets the unit of the accelerometer in a CSV file or bag: m/s^2 or g [default: m/s^2; for a bag g, if the "
+           "readings at rest indicate g]");
+  verb.add("--gyro-unit", options.gyro_unit,
+           "sets the unit of the gyro in a CSV file or bag: rad/s or deg/s [default: rad/s]");
   verb.add("--columns", options.columns,
-           "columns of IMU readings in a CSV file: time=NAME,gyro=X,Y,Z,accel=X,Y,Z with the names in the header, or "
-           "positions from 0 [known names]");
-  verb.add("--lever-arm", options.lever_arm_m, "X Y Z: vector from the robot's centre of mass to the IMU, m [0 0 0]")
+           "names the columns of IMU readings in a CSV file: time=NAME,gyro=X,Y,Z,accel=X,Y,Z with names from the "
+           "header, or with positions counted from 0 [default: common names]");
+  verb.add("--lever-arm", options.lever_arm_m,
+           "sets the lever arm X Y Z from the robot's centre of mass to the IMU, m [default: 0 0 0]")
       .words(3);
-  verb.add("--robot", options.robot, "type of robot: rig, sphere or pendulum; some methods need it [unknown]");
-  verb.add("--radius", options.radius_m, "radius of the sphere, m; position methods need it [unknown]")
+  verb.add("--robot", options.robot,
+           "states the type of robot, which some methods need: rig, sphere or pendulum [default: unknown]");
+  verb.add("--radius", options.radius_m,
+           "states the radius of the sphere, m, which position methods need [default: unknown]")
       .within(1e-3, 10.0);
   verb.add("--imu-topic", options.imu_topics,
-           "IMU topic of a bag (sensor_msgs/Imu); the first is the primary IMU [all]");
+           "imports this IMU topic of a bag (sensor_msgs/Imu); the first topic is the primary IMU [default: all IMU "
+           "topics]");
   verb.add("--lidar-topic", options.lidar_topics,
-           "lidar topic of a bag (sensor_msgs/PointCloud2); methods map with the first [all, topics whose points have "
-           "times first]");
+           "imports this lidar topic of a bag (sensor_msgs/PointCloud2); methods map with the first topic [default: "
+           "all lidar topics; topics whose points have times come first]");
   verb.add("--stamps", options.stamps,
-           "time stamps of a bag: 'header' from the messages; 'record' from the bag, if headers have no usable stamps; "
-           "with 'record' a sweep starts one period earlier [header]");
+           "selects the time stamps of a bag: 'header' uses the stamps of the messages; 'record' uses the stamps of "
+           "the bag, if the headers have no usable stamps. With 'record', a sweep starts one period before its stamp "
+           "[default: header]");
   declare_lidar(verb, options);
   declare_reference(verb, options);
-  verb.add("-o,--output", options.out, "recording to write, FILE.h5").required();
+  verb.add("-o,--output", options.out, "writes this recording, FILE.h5").required();
 }
 
 void require_fitting(const ImportOptions& options, const std::string& format) {
@@ -179,40 +195,43 @@ void require_fitting(const ImportOptions& options, const std::string& format) {
     if (given) throw BadInput(option + ": " + why);
   };
   refuse(!options.accel_unit.empty() && !csv && !bag, "--accel-unit",
-         "applies only to IMU readings in a CSV file or bag");
+         "this option applies only to IMU readings in a CSV file or bag");
   refuse(!options.gyro_unit.empty() && !csv && !bag, "--gyro-unit",
-         "applies only to IMU readings in a CSV file or bag");
+         "this option applies only to IMU readings in a CSV file or bag");
   refuse(!options.columns.empty() && (!csv || (format == "csv" && std::filesystem::is_directory(options.path))),
-         "--columns", "applies only to a CSV file with IMU readings");
-  refuse(!options.stamps.empty() && !bag, "--stamps", "applies only to a bag");
-  refuse(options.align_reference && format != "repoimu", "--align-reference", "applies only to a RepoIMU recording");
+         "--columns", "this option applies only to a CSV file with IMU readings");
+  refuse(!options.stamps.empty() && !bag, "--stamps", "this option applies only to a bag");
+  refuse(options.align_reference && format != "repoimu", "--align-reference",
+         "this option applies only to a RepoIMU recording");
   refuse(!options.reference.empty() && log, "--reference",
-         format == "repoimu" ? "a RepoIMU recording contains its own reference" : "does not apply to a flight log");
+         format == "repoimu" ? "a RepoIMU recording contains its own reference; remove this option"
+                             : "this option does not apply to a flight log; remove it");
   refuse(!options.lever_arm_m.empty() && !csv && !bag, "--lever-arm",
-         format == "broad" || log ? "the body of such a recording is the IMU itself"
-                                  : "applies only to an IMU in a CSV file or bag");
+         format == "broad" || log
+             ? "the body frame of this format is the IMU frame, so the lever arm is zero; remove this option"
+             : "this option applies only to an IMU in a CSV file or bag");
   refuse(!options.device.empty() && !csv && !bag && !log && format != "broad", "--device",
-         "applies only to an IMU; use --lidar for a lidar");
-  refuse(!options.imu.empty() && !sweeps, "--imu", "applies only to a folder of sweeps");
-  refuse(!options.stem.empty() && !sweeps, "--stem", "applies only to a folder of sweeps");
+         "this option applies only to an IMU; use --lidar for a lidar");
+  refuse(!options.imu.empty() && !sweeps, "--imu", "this option applies only to a folder of sweeps");
+  refuse(!options.stem.empty() && !sweeps, "--stem", "this option applies only to a folder of sweeps");
   refuse(!options.bin_columns.empty() && (!sweeps || format != "kitti"), "--bin-columns",
-         "applies only to a folder of .bin sweeps");
+         "this option applies only to a folder of .bin sweeps");
   const bool lidar = !options.lidar.empty() || !options.T_body_lidar.empty() || !options.time_field.empty() ||
                      !options.time_unit.empty() || options.not_skewed;
   refuse(lidar && !sweeps && !bag, "--lidar --T-body-lidar --time-field --time-unit --not-skewed",
-         "apply only to a folder of sweeps or a bag");
+         "these options apply only to a folder of sweeps or a bag");
   refuse(!options.times.empty() && !sweeps && format != "kitti", "--times",
-         "applies only to a folder of sweeps or poses of KITTI");
+         "this option applies only to a folder of sweeps or to KITTI poses");
   refuse(options.sweep_period_s > 0.0 && !sweeps && !bag && format != "kitti", "--sweep-period",
-         "applies only to sweeps or poses of KITTI");
+         "this option applies only to sweeps or to KITTI poses");
   refuse(!options.reference.empty() && !sweeps && !bag && format != "csv", "--reference",
-         "applies only to sweeps, a bag or IMU readings");
+         "this option applies only to sweeps, a bag or IMU readings");
   const bool topics = !options.imu_topics.empty() || !options.lidar_topics.empty() || !options.reference_topic.empty();
-  refuse(topics && !bag, "--imu-topic --lidar-topic --reference-topic", "apply only to a bag");
+  refuse(topics && !bag, "--imu-topic --lidar-topic --reference-topic", "these options apply only to a bag");
   refuse(!options.reference.empty() && !options.reference_topic.empty(), "--reference",
-         "and --reference-topic exclude each other; give only one");
+         "this option and --reference-topic exclude each other; give only one");
   refuse(options.radius_m != 0.0 && options.robot != "sphere", "--radius",
-         "applies only to a sphere; add --robot sphere");
+         "this option applies only to a sphere; add --robot sphere");
   if (!options.robot.empty())
     require_known("robot", options.robot, std::vector<std::string>{"rig", "sphere", "pendulum"});
   if (!options.reference_frame.empty())

@@ -30,8 +30,8 @@ std::string LearntFile::caution(const sim::Sensors& sensors) const {
   const double off_m = (learning_.given->calibration.constants.lever_arm_m - stated).norm();
   if (off_m <= kLeverArmOff_m) return "";
   return fmt::format(
-      "caution: {} contains a lever arm that differs by {:.2g} m from that of the recording; it may belong to another "
-      "rig. Rates beyond saturation depend on the lever arm",
+      "caution: the lever arm in {} differs by {:.2g} m from the lever arm of the recording, so the file may belong to "
+      "another rig. Estimated rates beyond saturation depend on the lever arm",
       path_.string(), off_m);
 }
 
@@ -50,9 +50,10 @@ scenarios::Method LearntFile::wrap(const scenarios::Method& method) {
 void LearntFile::keep(const Session& session) const {
   if (path_.empty()) return;
   if (learning_.found() != nullptr) return scenarios::write_learnt_rig(path_, *learning_.found());
-  session.note(path_.string() + (std::filesystem::exists(path_) ? ": is unchanged" : ": not written") +
-               ": the run produced no calibration of the rig. Possible reasons: too little free flight or contact and "
-               "no identified saturation limit, a file of another rig, or a failed run");
+  session.note(path_.string() +
+               (std::filesystem::exists(path_) ? ": the file is unchanged" : ": the file was not written") +
+               ", because the run produced no calibration of the rig. Possible reasons are too little free flight or "
+               "contact without an identified saturation limit, a file of another rig, or a failed run");
 }
 
 }  // namespace tumble::tools

@@ -339,8 +339,8 @@ Listing listing(const Session& session, const std::string& what, const std::stri
 Action declare_list(VerbOptions& verb, const Session& session) {
   auto what = std::make_shared<std::string>();
   auto only = std::make_shared<std::string>();
-  verb.add("WHAT", *what, "scenarios, methods, metrics, sensors or suites").required();
-  verb.add("NAME", *only, "name of one of them, to list all its parameters");
+  verb.add("WHAT", *what, "lists scenarios, methods, metrics, sensors or suites").required();
+  verb.add("NAME", *only, "lists all parameters of the entry with this name");
   return [&session, what, only] {
     Listing out = listing(session, *what, *only);
     for (Table& table : out.tables) table.wrap_last();

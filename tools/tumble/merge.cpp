@@ -43,9 +43,9 @@ int merge(const Session& session, const MergeOptions& options) {
 
 Action declare_merge(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<MergeOptions>();
-  verb.add("OUT", options->out, "database to create or to extend").required();
-  verb.add("IN", options->in, "databases to merge").required();
-  verb.add_flag("--mixed-builds", options->mixed, "merges results of different builds");
+  verb.add("OUT", options->out, "creates or extends this database").required();
+  verb.add("IN", options->in, "adds the results of these databases").required();
+  verb.add_flag("--mixed-builds", options->mixed, "also accepts results of different builds");
   return [&session, options] { return merge(session, *options); };
 }
 

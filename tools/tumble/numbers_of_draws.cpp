@@ -14,7 +14,7 @@ NumbersByScenario numbers_of_catalogue(const Session& session, const scenarios::
   const std::vector<std::string> known = scenarios::scenario_names(data);
   for (const std::string& scenario : summary.scenarios) {
     if (std::find(known.begin(), known.end(), scenario) == known.end()) {
-      session.note(scenario + ": left out, because the catalogue has no scenario of this name");
+      session.note(scenario + ": this scenario is left out, because the catalogue has no scenario of this name");
       continue;
     }
     out[scenario] = scenarios::numbers_of_draws(summary, scenarios::load_scenario(data, scenario));

@@ -63,7 +63,8 @@ std::string usage_line(const CLI::App& app, const CLI::ParseError& error) {
     const std::vector<std::string> extras = app.remaining(true);
     const auto option =
         std::find_if(extras.begin(), extras.end(), [](const std::string& e) { return e.rfind('-', 0) == 0; });
-    if (option == extras.end()) return place + "'" + extras.front() + "' is a superfluous argument";
+    if (option == extras.end())
+      return place + "'" + extras.front() + "' is one argument too many; remove this argument";
     std::vector<std::string> known;
     for (const CLI::Option* each : verb.get_options()) {
       for (const std::string& name : each->get_lnames()) known.push_back("--" + name);
@@ -92,12 +93,14 @@ int say(const char* prefix, const std::string& line, int status) {
 /// Shown when `tumble` is called without arguments.
 int show_the_way() {
   std::string text =
-      "tumble: a physics-simulated test harness and an estimator for robots that tumble and roll\n\nfirst steps\n  "
-      "tumble run hill                a rig tumbles down a hill: our methods and baselines, scores, pictures\n  tumble "
-      "run slip                a sphere rolls and slips\n  tumble list scenarios          lists the scenarios; also: "
-      "methods, sensors, suites\n\nyour own recording\n  tumble import FILE -o r.h5     imports a bag, IMU readings, "
-      "lidar sweeps or a trajectory\n  tumble estimate r.h5 --method rate/tumble -o DIR\n  tumble score YOURS.tum r.h5 "
-      "   scores an external trajectory against the truth of a recording\n\nverbs (tumble VERB --help)\n";
+      "tumble simulates robots that tumble and roll, estimates their motion and scores the estimates\n\nfirst steps\n  "
+      "tumble run hill                simulates a rig that tumbles down a hill, runs methods, writes scores and "
+      "pictures\n  tumble run slip                does the same for a sphere that rolls and slips\n  tumble list "
+      "scenarios          lists the scenarios; 'tumble list' also lists methods, sensors and suites\n\nyour own "
+      "recording\n  tumble import FILE -o r.h5     imports a bag, IMU readings, lidar sweeps or a trajectory\n  tumble "
+      "estimate r.h5 --method rate/tumble -o DIR\n                                 runs a method on the recording and "
+      "writes the estimate to a folder\n  tumble score YOURS.tum r.h5    scores an external trajectory against the "
+      "truth of a recording\n\nverbs ('tumble VERB --help' explains the options of a verb)\n";
   for (const Verb& verb : verbs()) text += fmt::format("  {:<11}  {}\n", verb.name, verb.doc);
   std::fputs(text.c_str(), stdout);
   return kDone;
@@ -112,23 +115,28 @@ void add_table_format(CLI::App& options, Session& session) {
     require_known("format of tables", name, known);
     session.format = names.at(name);
   };
-  options.add_option_function<std::string>("--format", choose, "format of tables: text, md, csv or tex [text]")
+  options
+      .add_option_function<std::string>("--format", choose,
+                                        "sets the format of tables: text, md, csv or tex [default: text]")
       ->type_name("TEXT");
 }
 
 /// Parses the command line and runs the verb.
 int dispatch(int argc, const char* const* argv) {
   if (argc == 1) return show_the_way();
-  CLI::App app("Physics-simulated test harness and estimator for robots that tumble and roll", "tumble");
+  CLI::App app("tumble simulates robots that tumble and roll, estimates their motion and scores the estimates.",
+               "tumble");
   app.set_version_flag("--version", program_version());
   app.require_subcommand(1);
-  app.footer("Exit status: 0 done, 1 a check failed, 2 wrong use or bad input, 3 a defect of the program.");
+  app.footer(
+      "The exit status is 0 on success, 1 if a check failed, 2 for wrong use or bad input, and 3 for a defect of the "
+      "program.");
   Session session;
   Action chosen;
   for (const Verb& verb : verbs()) {
     CLI::App* options = app.add_subcommand(verb.name, verb.doc);
     options->add_flag("--json", session.json, "prints tables as JSON on standard output");
-    options->add_flag("--quiet", session.quiet, "prints no notes and no progress on standard error");
+    options->add_flag("--quiet", session.quiet, "suppresses notes and progress on standard error");
     VerbOptions declared(*options);
     options->callback([action = verb.declare(declared, session), &chosen] { chosen = action; });
     // for some verbs --format is the format of a recording
@@ -161,9 +169,9 @@ int run_program(int argc, const char* const* argv) {
     // a lack of processes, pipes or threads is not a defect of the program
     return say("", error.what(), kBadInput);
   } catch (const sim::SimulationFailure& error) {
-    return say("the draw is rejected: ", error.what(), kCheckFailed);
+    return say("the simulation rejected the draw: ", error.what(), kCheckFailed);
   } catch (const std::bad_alloc&) {
-    return say("", "out of memory", kBadInput);
+    return say("", "the program needs more memory than is available", kBadInput);
   } catch (const std::exception& error) {
     return say("defect: ", error.what(), kDefect);
   } catch (...) {

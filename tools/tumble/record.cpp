@@ -58,14 +58,15 @@ int record(const Session& session, const RecordOptions& options) {
 
 Action declare_record(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<RecordOptions>();
-  verb.add("SCENARIO", options->scenario, "scenario of the catalogue, or a scenario file")
+  verb.add("SCENARIO", options->scenario, "simulates this scenario of the catalogue, or this scenario file")
       .required()
       .check(a_scenario(session));
-  verb.add("--seed", options->seed, "seed of the draw [for a named case: its own]");
-  verb.add("--threads", options->threads, "number of threads for the lidar; the result does not depend on it")
+  verb.add("--seed", options->seed, "sets the seed of the draw [default: for a named case, the seed of the case]");
+  verb.add("--threads", options->threads,
+           "uses this number of threads to simulate the lidar; the result is the same for any number")
       .whole(1, 1024)
       .shows_default();
-  verb.add("-o,--output", options->file, "recording to write, FILE.h5").required();
+  verb.add("-o,--output", options->file, "writes this recording, FILE.h5").required();
   return [&session, options] { return record(session, *options); };
 }
 

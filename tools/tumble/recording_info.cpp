@@ -41,8 +41,8 @@ std::string end_in_motion(const sim::Truth& truth) {
   const double duration_s =
       1e-9 * static_cast<double>(truth.period_ns) * static_cast<double>(truth.v_WB_m_s.size() - 1);
   return fmt::format(
-      "the robot still moves at the end of the recording, at {:.1f} m/s and {:.1f} rad/s after {:g} s; increase "
-      "duration_s to record until rest",
+      "the robot still moves at the end of the recording, with {:.1f} m/s and {:.1f} rad/s after {:g} s; increase "
+      "duration_s to record until the robot is at rest",
       speed_m_s, rate_rad_s, duration_s);
 }
 

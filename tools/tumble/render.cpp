@@ -58,11 +58,15 @@ bool is_recording(const std::string& what) {
 void load_situation(const scenarios::DataRoot& data, const RenderOptions& options, RenderContent& content) {
   const scenarios::RecordingInfo info = scenarios::read_info(options.what);
   if (info.situation_yaml.empty())
-    throw BadInput(options.what + ": contains no situation, so there is no world to draw");
+    throw BadInput(options.what +
+                   ": this recording contains no description of its world, so its world cannot be drawn; give a "
+                   "simulated recording");
   content.built = built_from(info, options.what, data);
   content.sensors = scenarios::read_sensors(options.what);
   // the truth positions the robot and the estimates in the picture; no estimate is computed here
-  if (!info.has_truth) throw BadInput(options.what + ": contains no truth, so there is no path to draw");
+  if (!info.has_truth)
+    throw BadInput(options.what +
+                   ": this recording contains no truth, so its path cannot be drawn; give a recording with truth");
   content.truth = scenarios::read_truth(options.what);
 }
 
@@ -76,14 +80,16 @@ void load_recording(const scenarios::DataRoot& data, const RenderOptions& option
     const scenarios::Estimate estimate =
         read_given({folder, options.what, scenarios::Frame::imu}, content.sensors, &content.truth, kind, method);
     Path path = estimated_path(estimate, content.sensors, content.truth);
-    if (path.empty()) throw BadInput(folder.string() + ": contains no poses to draw");
+    if (path.empty())
+      throw BadInput(folder.string() + ": this estimate contains no poses, so its path cannot be drawn");
     content.scene.estimates.push_back(std::move(path));
   }
 }
 
 void load_draw(const scenarios::DataRoot& data, const RenderOptions& options, RenderContent& content) {
   const scenarios::Scenario scenario = scenarios::load_scenario(data, options.what);
-  if (!options.estimates.empty()) throw BadInput("estimates can be drawn into a recording, but not into a scenario");
+  if (!options.estimates.empty())
+    throw BadInput("estimates can be drawn only with a recording; give FILE.h5 instead of a scenario");
   if (options.film > 0) throw BadInput("--film needs a recording; '" + options.what + "' is a scenario");
   content.built.emplace(scenarios::draw(data, scenario, seed_of(scenario, options.seed)), data.models());
 }
@@ -107,7 +113,8 @@ int render_maps(const Session& session, const RenderOptions& options, const scen
         read_given({folder, options.what, scenarios::Frame::imu}, content.sensors, &content.truth, kind, method);
     maps.push_back(map_by_error(full_name(kind, method), estimate, content.truth, surface));
     const ErrorMap& map = maps.back();
-    if (map.points_W_m.empty()) throw BadInput(folder.string() + ": contains no map to draw");
+    if (map.points_W_m.empty())
+      throw BadInput(folder.string() + ": this estimate contains no map; give estimates of slam methods");
     const double fine = map.share_within(0.1f), coarse = map.share_within(0.25f);
     table.add_row({map.name, std::to_string(map.points_W_m.size()), fmt::format("{:.1f} %", 100.0 * fine),
                    fmt::format("{:.1f} %", 100.0 * coarse)});
@@ -135,8 +142,9 @@ std::vector<std::uint8_t> video_of(const Session& session, const RenderOptions& 
   const Span span = moving_span(*scene.truth, 0.3);
   const std::size_t frames = frame_count(span, moving);
   if (frames > kFramesMax)
-    throw BadInput(fmt::format("the video would have {} frames, must be at most {}; increase --speed or decrease --fps",
-                               frames, kFramesMax));
+    throw BadInput(
+        fmt::format("the video would have {} frames, but the maximum is {}; increase --speed or decrease --fps", frames,
+                    kFramesMax));
   const double began_s = scenarios::now_s();
   double said_s = began_s;
   moving.drawn = [&](std::size_t done) {
@@ -144,7 +152,7 @@ std::vector<std::uint8_t> video_of(const Session& session, const RenderOptions& 
     if (now_s - said_s < kSayEvery_s) return;
     said_s = now_s;
     const double left_s = (now_s - began_s) * static_cast<double>(frames - done) / static_cast<double>(done);
-    session.note(fmt::format("frame {} of {}  left {}", done, frames, duration_text(left_s)));
+    session.note(fmt::format("frame {} of {}, time left {}", done, frames, duration_text(left_s)));
   };
   return moving_picture(scene, span, moving);
 }
@@ -199,26 +207,32 @@ int render(const Session& session, const RenderOptions& options) {
 
 Action declare_render(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<RenderOptions>();
-  verb.add("WHAT", options->what, "recording, FILE.h5, or scenario (with --seed)")
+  verb.add("WHAT", options->what, "draws this recording, FILE.h5, or a draw of this scenario (with --seed)")
       .required()
       .check([&session](const std::string& text) {
         if (is_recording(text)) return a_recording(text);
         scenarios::load_scenario(session.data(), text);
       });
-  verb.add("ESTIMATE", options->estimates, "folders of estimates to draw");
-  verb.add("--seed", options->seed, "seed of the draw [for a named case: its own]");
-  verb.add("-o,--output", options->output, "picture to write, FILE.png; with --video FILE.webp").required();
+  verb.add("ESTIMATE", options->estimates, "also draws the estimates in these folders");
+  verb.add("--seed", options->seed, "sets the seed of the draw [default: for a named case, the seed of the case]");
+  verb.add("-o,--output", options->output, "writes this picture, FILE.png; with --video FILE.webp").required();
   verb.add("--film", options->film, "draws a film strip with this number of frames").whole(1, 64);
   verb.add_flag("--map", options->map,
                 "draws the maps of the estimates next to each other, coloured by error from 0 (blue) to 1 m (red)");
   verb.add_flag("--video", options->video,
                 "writes an animated WebP: the camera follows the robot, and copies of the robot mark its path");
-  verb.add("--fps", options->fps, "frames per second of a video").within(1.0, 60.0).shows_default();
-  verb.add("--speed", options->speed, "seconds of motion per second of video").within(0.01, 10.0).shows_default();
-  verb.add("--columns", options->columns, "frames per row of the film strip").whole(1, 64).shows_default();
-  verb.add("--robots", options->robots, "number of robots drawn along the path").whole(1, 64).shows_default();
-  verb.add("--width", options->width, "width of a picture or frame, pixels").whole(64, 4096).shows_default();
-  verb.add("--height", options->height, "height of a picture or frame, pixels").whole(64, 4096).shows_default();
+  verb.add("--fps", options->fps, "sets the number of frames per second of a video").within(1.0, 60.0).shows_default();
+  verb.add("--speed", options->speed, "sets the speed of a video: seconds of motion per second of video")
+      .within(0.01, 10.0)
+      .shows_default();
+  verb.add("--columns", options->columns, "sets the number of frames per row of the film strip")
+      .whole(1, 64)
+      .shows_default();
+  verb.add("--robots", options->robots, "draws this number of robots along the path").whole(1, 64).shows_default();
+  verb.add("--width", options->width, "sets the width of a picture or frame, pixels").whole(64, 4096).shows_default();
+  verb.add("--height", options->height, "sets the height of a picture or frame, pixels")
+      .whole(64, 4096)
+      .shows_default();
   return [&session, options] { return render(session, *options); };
 }
 

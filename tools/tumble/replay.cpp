@@ -56,7 +56,7 @@ void load_estimates(const Session& session, const ReplayOptions& options, Replay
     scenarios::Estimate estimate = read_given({path, options.recording, frame}, content.sensors,
                                               content.truth ? &*content.truth : nullptr, kind, method);
     if (estimate.poses.empty() && estimate.rates.empty()) {
-      session.note(path.string() + ": left out, because it contains neither poses nor rates");
+      session.note(path.string() + ": this estimate is left out, because it contains neither poses nor rates");
       continue;
     }
     content.estimates.push_back(std::move(estimate));
@@ -111,12 +111,17 @@ int make_replay(const Session& session, const ReplayOptions& options) {
 
 Action declare_replay(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<ReplayOptions>();
-  verb.add("RECORDING", options->recording, "recording, FILE.h5, with or without truth").required().check(a_recording);
-  verb.add("ESTIMATE", options->estimates, "folders of estimates, or TUM files (t x y z qx qy qz qw)");
-  verb.add("-o,--output", options->page, "page to write, FILE.html").required();
+  verb.add("RECORDING", options->recording, "plays this recording, FILE.h5, with or without truth")
+      .required()
+      .check(a_recording);
+  verb.add("ESTIMATE", options->estimates,
+           "shows these estimates: folders of estimates, or TUM files (t x y z qx qy qz qw)");
+  verb.add("-o,--output", options->page, "writes this page, FILE.html").required();
   verb.add("--frame", options->frame,
-           "frame of the poses in a TUM file: imu, lidar, body or centre [imu; body if the recording has no IMU]");
-  verb.add("--points", options->points, "maximum number of lidar points; the page's limit of 3 MB may leave fewer")
+           "sets the frame of the poses in a TUM file: imu, lidar, body or centre [default: imu; body if the recording "
+           "has no IMU]");
+  verb.add("--points", options->points,
+           "limits the number of lidar points; the page may show fewer, because its size is limited to 3 MB")
       .whole(0, 200000)
       .shows_default();
   return [&session, options] { return make_replay(session, *options); };

@@ -111,7 +111,7 @@ json to_json(const Summary& summary) {
 std::string read_text(const std::filesystem::path& path) {
   std::ifstream stream(path, std::ios::binary);
   std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-  if (!stream.good() && !stream.eof()) throw scenarios::BadInput(path.string() + ": cannot be read");
+  if (!stream.good() && !stream.eof()) throw scenarios::BadInput(path.string() + ": the file cannot be read");
   return text;
 }
 
@@ -139,8 +139,8 @@ void add_sensitivity(const Session& session, const std::string& data_found, Repo
   } else {
     numbers = numbers_of_motions(input.draws, some);
     input.sensitivity_note =
-        "The page lists the influence of the motions instead of the drawn numbers, because these results come from "
-        "other models and scenarios. ";
+        "The numbers of these draws are unknown, because the results come from other models and scenarios. The page "
+        "therefore lists the influence of the motions. ";
   }
   scenarios::SensitivityOptions options;
   for (const Section& section : input.summary->sections) {
@@ -153,11 +153,12 @@ void add_sensitivity(const Session& session, const std::string& data_found, Repo
   const std::string needed = draws_needed_text(input.summary->draws);
   input.sensitivity_note += needed;
   if (input.sensitivity.empty() && needed.empty())
-    input.sensitivity_note += "The draws of a scenario differ in no known number. ";
+    input.sensitivity_note += "All known numbers of a scenario are equal in all draws. ";
   for (const auto& [scenario, draws] : input.summary->draws) {
     if (draws <= static_cast<std::int64_t>(kSensitivityDraws)) continue;
-    input.sensitivity_note += fmt::format(
-        "For scenarios with more draws, only {} are used, at equal steps of their seeds.", kSensitivityDraws);
+    input.sensitivity_note +=
+        fmt::format("For scenarios with more draws, the analysis uses only {} draws, at equal steps of their seeds.",
+                    kSensitivityDraws);
     break;
   }
 }
@@ -199,7 +200,9 @@ int report(const Session& session, const ReportVerbOptions& options) {
   Summary summary;
   std::vector<Curve> curves = scenarios::find_curves(results, draws, summary);
   if (summary.scenarios.empty() && curves.empty())
-    throw scenarios::BadInput(options.database.string() + ": contains no outcomes to report");
+    throw scenarios::BadInput(
+        options.database.string() +
+        ": this database contains no outcomes, so there is nothing to report; run 'tumble sweep' first");
   std::vector<Table> tables;
   for (const Section& section : summary.sections) {
     Table table = score_table(section, options.all);
@@ -229,9 +232,10 @@ int report(const Session& session, const ReportVerbOptions& options) {
 
 Action declare_report(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<ReportVerbOptions>();
-  verb.add("DATABASE", options->database, "results database, FILE.db").required();
-  verb.add("-o,--output", options->page, "page to write, FILE.html [prints only tables]");
-  verb.add("--badge", options->badge, "badge to write, FILE.svg: the suite and the number of contests won");
+  verb.add("DATABASE", options->database, "reads this results database, FILE.db").required();
+  verb.add("-o,--output", options->page, "writes this page, FILE.html [default: prints only tables]");
+  verb.add("--badge", options->badge,
+           "writes this badge, FILE.svg, which shows the suite and the number of contests won");
   verb.add_flag("--all", options->all, "prints all metrics and the curves over bins, not only the headline metrics");
   return [&session, options] { return report(session, *options); };
 }

@@ -88,7 +88,7 @@ RunOptions first_run(RunOptions options, const scenarios::Scenario& scenario) {
 void say_what_next(const Session& session, const RunOptions& options, const scenarios::RunResult& result,
                    bool in_catalogue) {
   const std::string folder = options.folder.string();
-  session.note("results written to " + folder +
+  session.note("the results are in " + folder +
                "/: recording.h5, situation.yaml, estimates/, snapshots/scene.png and film.png, replay.html");
   session.note("next:");
   const auto say = [&](const std::string& command, const char* what) {
@@ -97,15 +97,16 @@ void say_what_next(const Session& session, const RunOptions& options, const scen
   if (std::any_of(result.methods.begin(), result.methods.end(),
                   [](const auto& method) { return method->info.kind == scenarios::Kind::slam; })) {
     say(fmt::format("tumble render {0}/recording.h5 {0}/estimates/slam-* --map -o {0}/maps.png", folder),
-        "maps, coloured by error");
+        "draws the maps, coloured by error");
   }
-  say(fmt::format("tumble run {} --seed 2 -o {}_seed_2", options.scenario, folder), "another draw with every method");
+  say(fmt::format("tumble run {} --seed 2 -o {}_seed_2", options.scenario, folder),
+      "runs every method on another draw");
   if (in_catalogue) {
     say(fmt::format("tumble sweep {0} --scenario {0} --seeds 1..8 --db {1}.db", options.scenario, folder),
-        "eight draws with every method");
-    say(fmt::format("tumble report {0}.db -o {0}.html", folder), "tables and one page with them");
+        "runs every method on eight draws");
+    say(fmt::format("tumble report {0}.db -o {0}.html", folder), "prints the tables and writes a page with the tables");
   }
-  say("tumble list methods", "all methods");
+  say("tumble list methods", "lists all methods");
 }
 
 /// Writes the recording, the situation and every estimate under the names that other verbs expect.
@@ -176,7 +177,8 @@ std::vector<scenarios::Method> asked_methods(const RunOptions& options, const sc
   const auto selected = select_methods(options.methods);
   if (!options.learnt.empty() &&
       std::none_of(selected.begin(), selected.end(), [](const auto& method) { return method->info.learns_rig; })) {
-    throw scenarios::BadInput("--learnt is for " + LearntFile::learning_methods() + ", but no such method runs");
+    throw scenarios::BadInput("--learnt applies only to " + LearntFile::learning_methods() +
+                              ", but none of these methods runs; name one with --method");
   }
   if (!options.methods.empty() && scenarios::applicable(selected, scenarios::subject_of(scenario)).empty())
     scenarios::require_applies(*selected.front(), scenario);
@@ -236,30 +238,31 @@ int run(const Session& session, const RunOptions& given) {
 
 Action declare_run(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<RunOptions>();
-  verb.add("SCENARIO", options->scenario, "scenario of the catalogue, or a scenario file")
+  verb.add("SCENARIO", options->scenario, "simulates this scenario of the catalogue, or this scenario file")
       .required()
       .check(a_scenario(session));
-  verb.add("--seed", options->seed, "seed of the draw [1; for a named case: its own]");
-  verb.add(
-          "--method", options->methods,
-          "method, for example 'saave' or 'rate/saave'; repeat for more [with only a scenario and a seed: the baseline "
-          "and our method of each kind; else all that apply]")
+  verb.add("--seed", options->seed, "sets the seed of the draw [default: 1; for a named case, the seed of the case]");
+  verb.add("--method", options->methods,
+           "runs this method, for example 'saave' or 'rate/saave'; repeat the option for more methods [default: all "
+           "methods that apply; with only a scenario and a seed, the baseline and our method of each kind]")
       .one_at_a_time();  // each --method takes exactly one word
   verb.add("--set", options->parameters,
-           "METHOD.PARAMETER=NUMBER, for example rate/tumble_lag.lag_s=0.5; repeat for more ('tumble list methods "
-           "NAME')")
+           "sets a parameter of a method: METHOD.PARAMETER=NUMBER, for example rate/tumble_lag.lag_s=0.5; repeat the "
+           "option for more parameters ('tumble list methods NAME' lists them)")
       .one_at_a_time();
   verb.add("--vary", options->vary,
-           "KEY=NUMBER, a point of a suite's curve, for example world.rock_count=10 or given.lever_arm_error_m=0.03");
-  verb.add("--threads", options->threads, "number of threads for the lidar; the result does not depend on it")
+           "sets a number of the scenario or of the given inputs: KEY=NUMBER, for example world.rock_count=10 or "
+           "given.lever_arm_error_m=0.03; a point of a suite's curve does the same");
+  verb.add("--threads", options->threads,
+           "uses this number of threads to simulate the lidar; the result is the same for any number")
       .whole(1, 1024)
       .shows_default();
   verb.add("-o,--output", options->folder,
-           "folder for recording, estimates, pictures and replay [with only a scenario and a seed: named after the "
-           "scenario; else nothing is written]");
+           "writes recording, estimates, pictures and replay to this folder [default: nothing is written; with only a "
+           "scenario and a seed, a folder named after the scenario]");
   verb.add("--learnt", options->learnt,
-           "FILE.json with the calibration of the rig from which 'rate/tumble' and 'rate/tumble_lag' start, if it "
-           "exists; receives the calibration of this run");
+           "starts 'rate/tumble' and 'rate/tumble_lag' from the calibration of the rig in this FILE.json, if the file "
+           "exists; at the end writes the calibration of this run to the file");
   verb.footer(
       "With only a scenario and a seed, the program runs our methods and the baselines and writes everything to a "
       "folder "

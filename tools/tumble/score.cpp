@@ -44,7 +44,9 @@ void order(ScoreOptions& options) {
 /// Checks that the truth has poses and that the estimate overlaps with the truth in time.
 void require_common_time(const ScoreOptions& options, const scenarios::Estimate& estimate, const sim::Truth& truth) {
   const bool known = std::any_of(truth.p_WB_m.begin(), truth.p_WB_m.end(), [](const auto& p) { return p.allFinite(); });
-  if (!known) throw scenarios::BadInput(options.recording.string() + ": its truth contains no known position");
+  if (!known)
+    throw scenarios::BadInput(options.recording.string() +
+                              ": the truth of this recording contains no known position, so poses cannot be scored");
   if (estimate.poses.empty()) return;
   const double end_s = 1e-9 * static_cast<double>(truth.period_ns) * static_cast<double>(truth.p_WB_m.size() - 1);
   const double first_s = 1e-9 * static_cast<double>(estimate.poses.front().time_ns);
@@ -102,8 +104,8 @@ void require_seconds(const ScoreOptions& options, const scenarios::Estimate& est
   for (const auto& [unit, of_second] : {std::pair("ms", 1e3), std::pair("us", 1e6), std::pair("ns", 1e9)}) {
     if (factor > kNear * of_second || kNear * factor < of_second) continue;
     throw scenarios::BadInput(
-        fmt::format("{}: only {} of its {} poses are within the time of {}, {:.3f} s, but its poses cover {:.3f} s, "
-                    "{:.0f} times as long. The time unit may be {}; must be seconds",
+        fmt::format("{}: only {} of {} poses are within the duration of {}, which is {:.3f} s. The poses cover {:.3f} "
+                    "s, {:.0f} times as long. The time unit of the file may be {}; the unit must be seconds",
                     options.estimate.string(), standing.compared, standing.poses, options.recording.string(),
                     standing.end_s, length_s, factor, unit));
   }
@@ -113,8 +115,8 @@ void require_seconds(const ScoreOptions& options, const scenarios::Estimate& est
 void require_compared(const ScoreOptions& options, const Standing& standing) {
   if (standing.compared >= kComparedMin && standing.spanned() >= kSpannedShareMin) return;
   throw scenarios::BadInput(
-      fmt::format("{}: only {} of its {} poses are within the time of {}. They cover {:.1f} % of its {:.3f} s; must be "
-                  "at least {} poses and {:.0f} %. The time unit or the clock may differ",
+      fmt::format("{}: only {} of {} poses are within the duration of {}. These poses cover {:.1f} % of {:.3f} s; a "
+                  "score needs at least {} poses and {:.0f} %. Check the time unit and the clock of the file",
                   options.estimate.string(), standing.compared, standing.poses, options.recording.string(),
                   100.0 * standing.spanned(), standing.end_s, kComparedMin, 100.0 * kSpannedShareMin));
 }
@@ -205,20 +207,24 @@ Claim read_claim(const Session& session, const ScoreOptions& options) {
   Claim claim;
   claim.info = scenarios::read_info(options.recording);
   if (!claim.info.has_truth)
-    throw scenarios::BadInput(options.recording.string() + ": contains no truth to score against");
+    throw scenarios::BadInput(
+        options.recording.string() +
+        ": this recording contains no truth, so estimates cannot be scored; give a recording with truth");
   claim.sensors = scenarios::read_sensors(options.recording);
   if (!scenarios::states_digest(options.recording))
-    session.note(options.recording.string() + ": contains no digest of its data, so damage cannot be detected");
+    session.note(options.recording.string() +
+                 ": this recording contains no digest of its data, so the program cannot detect damage");
   claim.truth = scenarios::read_truth(options.recording);
   claim.estimate = read_given({options.estimate, options.recording, frame_of(options.frame, !claim.truth.imus.empty())},
                               claim.sensors, &claim.truth, claim.kind, claim.method);
   claim.foreign = !std::filesystem::is_directory(options.estimate);
   if (!claim.foreign && scenarios::estimated_sensors(options.estimate).empty())
-    session.note("caution: " + options.estimate.string() +
-                 " does not state its recording, so an estimate of another recording cannot be detected");
+    session.note(
+        "caution: " + options.estimate.string() +
+        " does not name its recording, so the program cannot check that the estimate belongs to the recording");
   if (!claim.foreign && !options.kind.empty())
     throw scenarios::BadInput("--kind applies to a TUM file only; " + options.estimate.string() +
-                              " already states its kind");
+                              " states its own kind, so remove --kind");
   if (claim.foreign) complete_foreign(session, options, claim);
   if (claim.kind == scenarios::Kind::position || claim.kind == scenarios::Kind::slam)
     require_common_time(options, claim.estimate, claim.truth);
@@ -281,13 +287,17 @@ int score_estimate(const Session& session, const ScoreOptions& options) {
 
 Action declare_score(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<ScoreOptions>();
-  verb.add("ESTIMATE", options->estimate, "folder of an estimate, or a TUM file (t x y z qx qy qz qw)").required();
-  verb.add("RECORDING", options->recording, "recording with truth, FILE.h5; may also be the first argument").required();
+  verb.add("ESTIMATE", options->estimate, "scores this estimate: a folder, or a TUM file (t x y z qx qy qz qw)")
+      .required();
+  verb.add("RECORDING", options->recording,
+           "compares with the truth of this recording, FILE.h5; estimate and recording may be in any order")
+      .required();
   verb.add("--frame", options->frame,
-           "frame of the poses in a TUM file: imu, lidar, body or centre [imu; body if the recording has no IMU]");
+           "sets the frame of the poses in a TUM file: imu, lidar, body or centre [default: imu; body if the recording "
+           "has no IMU]");
   verb.add("--kind", options->kind,
-           "kind of a TUM file: position or slam, which also scores the rotation at the end [slam if the recording has "
-           "a lidar and no rolling sphere]");
+           "sets the kind of a TUM file: position, or slam, which also scores the rotation at the end [default: slam "
+           "if the recording has a lidar and no rolling sphere, else position]");
   return [&session, options] {
     order(*options);
     a_recording(options->recording.string());

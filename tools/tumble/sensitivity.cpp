@@ -37,9 +37,9 @@ void require_same_data(const scenarios::Results& results, const scenarios::DataR
                        const std::filesystem::path& database) {
   const std::string made_of = results.note("data"), found = scenarios::data_digest(data);
   if (made_of != found)
-    throw BadInput(database.string() + ": was made with models and scenarios of digest '" + made_of +
-                   "', but this installation has digest " + found +
-                   ", so the drawn numbers are unknown; use --motion for the influence of the motions");
+    throw BadInput(database.string() + ": these results come from models and scenarios with digest '" + made_of +
+                   "', but the models and scenarios of this installation have digest " + found +
+                   ". The numbers of the draws are therefore unknown; use --motion for the influence of the motions");
 }
 
 std::map<std::string, scenarios::NumbersOfDraws> numbers_of(const Session& session,
@@ -157,8 +157,8 @@ int sensitivity(const Session& session, const SensitivityVerbOptions& options) {
   const std::vector<Sensitivity> rows = scenarios::sensitivities(
       summary, numbers_of(session, options, results, summary), {options.methods, options.metrics});
   if (rows.empty())
-    throw BadInput(options.database.string() + ": contains too few draws: a scenario needs at least " +
-                   std::to_string(scenarios::kSensitivityDrawsMin) + " draws and a number that varies");
+    throw BadInput(options.database.string() + ": this database contains too few draws; a scenario needs at least " +
+                   std::to_string(scenarios::kSensitivityDrawsMin) + " draws and one number that varies");
   std::vector<Table> tables = tables_of(rows, options.all);
   if (options.dependence) tables.push_back(dependence_table(rows, options.all));
   session.print(tables, {{"sensitivity", to_json(rows)}});
@@ -170,12 +170,17 @@ int sensitivity(const Session& session, const SensitivityVerbOptions& options) {
 
 Action declare_sensitivity(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<SensitivityVerbOptions>();
-  verb.add("DATABASE", options->database, "results database, FILE.db").required();
-  verb.add("--method", options->methods, "method; repeat for more [all that need no truth]").one_at_a_time();
-  verb.add("--metric", options->metrics, "metric; repeat for more [headline metrics of the kind]").one_at_a_time();
+  verb.add("DATABASE", options->database, "reads this results database, FILE.db").required();
+  verb.add("--method", options->methods,
+           "shows this method; repeat the option for more methods [default: all methods that need no truth]")
+      .one_at_a_time();
+  verb.add("--metric", options->metrics,
+           "shows this metric; repeat the option for more metrics [default: the headline metrics of the kind]")
+      .one_at_a_time();
   verb.add_flag("--motion", options->motion, "uses measures of the motions instead of the drawn numbers");
-  verb.add_flag("--all", options->all,
-                "lists every number instead of the three strongest that chance does not explain");
+  verb.add_flag(
+      "--all", options->all,
+      "lists every number [default: only the three with the strongest influence that chance does not explain]");
   verb.add_flag("--dependence", options->dependence,
                 "also lists the score by class of each listed number, with intervals");
   return [&session, options] { return sensitivity(session, *options); };

@@ -51,10 +51,12 @@ scenarios::DataRoot Session::data() const {
     if (fs::is_directory(data.models(), error)) return data;
     // if the user names a folder, no other folder is tried, because another folder might contain other models
     if (given != nullptr && *given != '\0')
-      throw scenarios::BadInput("TUMBLE_DATA: there is no folder " + data.models().string());
+      throw scenarios::BadInput(
+          "TUMBLE_DATA must name the folder that contains models/ and scenarios/, but this folder does not exist: " +
+          data.models().string());
   }
   throw scenarios::BadInput(
-      "the models are not found; set TUMBLE_DATA to the folder that contains models/ and scenarios/");
+      "the program cannot find its models; set TUMBLE_DATA to the folder that contains models/ and scenarios/");
 }
 
 fs::path Session::plotly() const {
@@ -64,7 +66,8 @@ fs::path Session::plotly() const {
     if (fs::is_regular_file(bundle, error)) return bundle;
   }
   throw scenarios::BadInput(
-      "plotly.min.js is not found, but the report needs it; run tools/setup, then configure and build again");
+      "the report needs plotly.min.js, but the program cannot find this file; run tools/setup, then configure and "
+      "build again");
 }
 
 fs::path Session::program() const {

@@ -117,8 +117,8 @@ std::string name_of(const std::filesystem::path& file) {
                     std::all_of(name.begin(), name.end(), allowed);
   if (good) return name;
   throw BadInput("-o " + file.string() +
-                 ": must be NAME.yaml; NAME must start with a lower-case letter, followed by lower-case letters, "
-                 "digits and underscores");
+                 ": the file must be NAME.yaml; NAME must start with a lower-case letter and contain only lower-case "
+                 "letters, digits and underscores");
 }
 
 /// A case can be named wherever a scenario or a suite can, so a case must not have the name of a scenario or suite.
@@ -132,15 +132,16 @@ void require_own_name(const scenarios::DataRoot& data, const std::string& name) 
 void require_whole(const ShrinkVerbOptions& options) {
   if (options.metric.empty() != !options.worse_than)
     throw BadInput(
-        "--metric and --worse-than must be given together: the metric, and the value beyond which a run fails");
-  if (options.worse_than && !std::isfinite(*options.worse_than)) throw BadInput("--worse-than is not a finite number");
+        "--metric and --worse-than must be given together: a run fails if its metric is worse than the value of "
+        "--worse-than");
+  if (options.worse_than && !std::isfinite(*options.worse_than)) throw BadInput("--worse-than must be a finite number");
 }
 
 std::string control_text(const Shrunk& shrunk, const scenarios::ShrinkOptions& options) {
-  if (!options.control) return "no control method";
+  if (!options.control) return "no control method was used";
   const std::string& name = options.control->info.name;
-  return shrunk.controlled ? name + " does not fail on it"
-                           : name + " also fails on the draw, so the control is not effective";
+  return shrunk.controlled ? name + " does not fail on the smaller draw"
+                           : name + " also fails on the draw, so the control method checks nothing";
 }
 
 int run_shrink(const Session& session, const ShrinkVerbOptions& options) {
@@ -159,7 +160,7 @@ int run_shrink(const Session& session, const ShrinkVerbOptions& options) {
   shrinking.control = control_of(options, *method, scenario, time_limit_s);
   shrinking.budget = options.budget;
   shrinking.on_trial = [&](const scenarios::ShrinkTrial& trial) {
-    session.note(fmt::format("{:>3} of at most {}: {}: {}, {} {}{}", trial.run, options.budget, trial.what,
+    session.note(fmt::format("run {:>3} of at most {}: {}: {}, {} {}{}", trial.run, options.budget, trial.what,
                              trial.kept ? "fails" : "does not fail", to_string(trial.outcome.status),
                              number_text(value_of(trial.outcome.scores, metric)),
                              trial.outcome.message.empty() ? "" : " (" + trial.outcome.message + ")"));
@@ -174,9 +175,10 @@ int run_shrink(const Session& session, const ShrinkVerbOptions& options) {
   session.print({lines_table(shrunk, metric), outcomes_table(shrunk, metric)}, to_json(shrunk, metric, options));
   session.note(fmt::format(
       "{}: {} runs, {}; {}; {}; case file: {}", shrunk.failure, shrunk.runs,
-      shrunk.complete ? "nothing more can be removed" : "the budget is used up; a larger --budget may remove more",
+      shrunk.complete ? "no further part can be removed" : "the budget is used up; a larger --budget may remove more",
       control_text(shrunk, shrinking),
-      shrunk.cure.empty() ? "no single true input cures it" : "the true input " + shrunk.cure + " cures it",
+      shrunk.cure.empty() ? "no single true input cures the failure"
+                          : "the true input " + shrunk.cure + " cures the failure",
       options.file.string()));
   return kDone;
 }
@@ -185,19 +187,23 @@ int run_shrink(const Session& session, const ShrinkVerbOptions& options) {
 
 Action declare_shrink(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<ShrinkVerbOptions>();
-  verb.add("SCENARIO", options->scenario, "scenario, named case, or scenario file")
+  verb.add("SCENARIO", options->scenario, "simplifies a failing draw of this scenario, named case, or scenario file")
       .required()
       .check(a_scenario(session));
-  verb.add("--seed", options->seed, "seed of the failing draw [for a named case: its own]");
-  verb.add("--method", options->method, "method that fails on the draw").required();
+  verb.add("--seed", options->seed,
+           "sets the seed of the failing draw [default: for a named case, the seed of the case]");
+  verb.add("--method", options->method, "names the method that fails on the draw").required();
   verb.add("--metric", options->metric,
-           "metric that decides about failure, with --worse-than [only status and verdicts]");
-  verb.add("--worse-than", options->worse_than, "limit of the metric in SI units; a run fails beyond it");
+           "names the metric that decides about failure, together with --worse-than [default: only status and verdicts "
+           "decide]");
+  verb.add("--worse-than", options->worse_than,
+           "sets the limit of the metric in SI units; a run with a worse value fails");
   verb.add("--control", options->control,
-           "control method that must succeed on the smaller draw, or 'none' [the oracle of the method's kind]");
-  verb.add("--budget", options->budget, "maximum number of simulated draws").whole(1, 100000).shows_default();
+           "names the control method, which must succeed on the smaller draw, or 'none' [default: the oracle of the "
+           "method's kind]");
+  verb.add("--budget", options->budget, "simulates at most this number of draws").whole(1, 100000).shows_default();
   verb.add("-o,--output", options->file,
-           "case file to write, NAME.yaml; the gate checks the cases in scenarios/regressions")
+           "writes this case file, NAME.yaml; the gate checks all cases in scenarios/regressions")
       .required();
   return [&session, options] { return run_shrink(session, *options); };
 }

@@ -46,7 +46,7 @@ struct SweepVerbOptions {
 void take_scenarios(const std::vector<std::string>& named, scenarios::Suite& suite) {
   if (named.empty()) return;
   if (!suite.recordings.empty() || !suite.classes.empty())
-    throw scenarios::BadInput("--scenario: does not apply, because suite '" + suite.name + "' names its " +
+    throw scenarios::BadInput("--scenario does not apply, because suite '" + suite.name + "' names its " +
                               (suite.recordings.empty() ? "draws" : "recordings"));
   for (const std::string& name : named) require_known("scenario of suite '" + suite.name + "'", name, suite.scenarios);
   std::erase_if(suite.scenarios, [&](const std::string& name) { return std::ranges::count(named, name) == 0; });
@@ -56,8 +56,9 @@ void take_scenarios(const std::vector<std::string>& named, scenarios::Suite& sui
 void say_what_it_holds(const Session& session, const SweepVerbOptions& options, const scenarios::Suite& suite) {
   if (!options.scenarios.empty() || suite.scenarios.size() < 2) return;
   if (std::ranges::count(suite.scenarios, options.suite) == 0) return;
-  session.note(fmt::format("suite '{0}' contains: {1}; use --scenario {0} for that scenario only", options.suite,
-                           fmt::join(suite.scenarios, " ")));
+  session.note(fmt::format(
+      "suite '{0}' contains the scenarios {1}; use --scenario {0} to run only the scenario with the name of the suite",
+      options.suite, fmt::join(suite.scenarios, " ")));
 }
 
 /// Builds the suite with the changes from the command line. Returns false if this shard has no seed.
@@ -66,12 +67,13 @@ bool select(const scenarios::DataRoot& data, const SweepVerbOptions& options, sc
   take_scenarios(options.scenarios, suite);
   const bool recorded = !suite.recordings.empty();
   if (recorded && (!options.seeds.empty() || !options.shard.empty()))
-    throw scenarios::BadInput("--seeds, --shard: do not apply, because a suite of recordings has no seeds");
+    throw scenarios::BadInput(
+        "--seeds and --shard do not apply, because a suite of recordings has no seeds; remove both options");
   if (!suite.classes.empty() && !options.seeds.empty())
-    throw scenarios::BadInput("--seeds: does not apply, because suite '" + suite.name + "' names its draws");
+    throw scenarios::BadInput("--seeds does not apply, because suite '" + suite.name + "' names its draws");
   if (!options.seeds.empty()) std::tie(suite.first_seed, suite.last_seed) = parse_seeds(options.seeds);
   if (!recorded && !options.recordings.empty())
-    throw scenarios::BadInput("--data: does not apply, because suite '" + suite.name + "' has no recordings");
+    throw scenarios::BadInput("--data does not apply, because suite '" + suite.name + "' has no recordings");
   if (!options.recordings.empty()) suite.recordings_folder = options.recordings;
   if (!options.methods.empty()) {
     // refuses an unknown name before the sweep starts
@@ -91,13 +93,15 @@ void certify(const Session& session, const scenarios::DataRoot& data, const std:
   options.stop = &stop;
   options.on_row = [&](const scenarios::CertificateRow&, double) {
     if (!announced)
-      session.note("measuring the certificate of this build; this happens once and takes about half a minute");
+      session.note(
+          "the program measures the certificate of this build; this happens once per build and takes about half a "
+          "minute");
     announced = true;
   };
   const scenarios::Certificate certificate = scenarios::certify_results(
       results, scenarios::CertificateStore(session.cache(), data), {data, session.program()}, options);
   if (!stop.load() && !certificate.passes()) {
-    session.note("the certificate of this build has failing rows; see 'tumble certify'");
+    session.note("some rows of this build's certificate fail; 'tumble certify' shows the rows");
   }
 }
 
@@ -136,9 +140,9 @@ bool leave_examples(const Session& session, const scenarios::DataRoot& data, con
   try {
     return tools::leave_examples(data, suite, options.database, leave);
   } catch (const scenarios::BadInput& error) {
-    std::fprintf(stderr, "tumble: no pictures of single draws: %s\n", error.what());
+    std::fprintf(stderr, "tumble: the pictures of single draws could not be created: %s\n", error.what());
   } catch (const std::filesystem::filesystem_error& error) {
-    std::fprintf(stderr, "tumble: no pictures of single draws: %s\n", error.what());
+    std::fprintf(stderr, "tumble: the pictures of single draws could not be created: %s\n", error.what());
   }
   return true;
 }
@@ -222,12 +226,12 @@ std::optional<scenarios::Question> ask(const SweepVerbOptions& options, const sc
                                        const scenarios::Suite& suite) {
   if (options.until.empty()) return std::nullopt;
   if (!options.shard.empty())
-    throw scenarios::BadInput("--until: does not apply with --shard, because a shard does not see all draws");
+    throw scenarios::BadInput("--until does not apply with --shard, because a shard contains only a part of the draws");
   if (!suite.recordings.empty() || !suite.curves.empty())
-    throw scenarios::BadInput("--until: does not apply, because suite '" + suite.name +
+    throw scenarios::BadInput("--until does not apply, because suite '" + suite.name +
                               "' contains recordings or curves");
   if (!suite.classes.empty())
-    throw scenarios::BadInput("--until: does not apply, because suite '" + suite.name +
+    throw scenarios::BadInput("--until does not apply, because suite '" + suite.name +
                               "' names its draws and has no range of seeds");
   const scenarios::Question question = parse_question(options.until, options.risk, suite);
   scenarios::Results results = scenarios::open_results(data, suite, options.database);
@@ -295,8 +299,9 @@ int run_sweep(const Session& session, const SweepVerbOptions& options) {
   say_what_is_kept(session, options, final);
   if (!complete) return say_stopped(final);
   if (shown) return kDone;
-  std::fputs("tumble: stopped: all draws are stored, but their pictures are missing; run again to create them\n",
-             stderr);
+  std::fputs(
+      "tumble: stopped: all draws are stored, but their pictures are missing; run again to create the pictures\n",
+      stderr);
   return kCheckFailed;
 }
 
@@ -304,43 +309,53 @@ int run_sweep(const Session& session, const SweepVerbOptions& options) {
 
 Action declare_sweep(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<SweepVerbOptions>();
-  verb.add("SUITE", options->suite, "suite, suite file, or scenario").required().check(a_suite(session));
-  verb.add("--scenario", options->scenarios, "scenario of the suite to run; repeat for more [all]").one_at_a_time();
-  verb.add("--seeds", options->seeds, "range of seeds A..B, both included [the suite's]")
+  verb.add("SUITE", options->suite, "runs this suite, suite file, or scenario").required().check(a_suite(session));
+  verb.add("--scenario", options->scenarios,
+           "runs only this scenario of the suite; repeat the option for more scenarios [default: all]")
+      .one_at_a_time();
+  verb.add("--seeds", options->seeds, "runs the seeds A..B, both included [default: the seeds of the suite]")
       .filled();  // an empty word would select all
-  verb.add("--method", options->methods, "method; repeat for more [the suite's]")
+  verb.add("--method", options->methods,
+           "runs this method; repeat the option for more methods [default: the methods of the suite]")
       .one_at_a_time();  // each option takes exactly one word
-  verb.add("--jobs", options->jobs, "number of parallel processes [all processors]").whole(1, 1024).shows_default();
-  verb.add("--shard", options->shard, "i/n: runs the i-th of n parts of the seeds").filled();
-  verb.add("--again", options->again, "repeats runs with these statuses, for example crashed,timeout,killed")
+  verb.add("--jobs", options->jobs, "runs this number of processes in parallel [default: number of processors]")
+      .whole(1, 1024)
+      .shows_default();
+  verb.add("--shard", options->shard, "runs the i-th of n parts of the seeds; write i/n").filled();
+  verb.add("--again", options->again, "repeats stored runs with these statuses, for example crashed,timeout,killed")
       .separated_by(',')
       .one_at_a_time();
   verb.add("--examples", options->examples,
-           "number of typical draws that are run again at the end for pictures, plots and replays in FILE.db.files for "
-           "'report'; not for shards [one per 8 draws, at most 3]")
+           "runs this number of typical draws again at the end, and writes their pictures, plots and replays to "
+           "FILE.db.files for 'tumble report'; does not apply to shards [default: one per 8 draws, at most 3]")
       .whole(0, 64);
   verb.add("--failures", options->failures,
-           "number of draws with most failed methods that are run again for a picture and a replay [one per 4 draws, "
-           "at most 8; none with --examples 0]")
+           "runs this number of draws with the most failed methods again, and writes a picture and a replay of each "
+           "[default: one per 4 draws, at most 8; none with --examples 0]")
       .whole(0, 64);
-  verb.add(
-          "--memory", options->memory_mib,
-          "limit in MiB for the data of a worker and of each method that it runs; beyond the limit the run is 'killed'")
+  verb.add("--memory", options->memory_mib,
+           "limits the memory for the data of a worker and of each method that the worker runs, MiB; a run beyond the "
+           "limit has status 'killed'")
       .within(64.0, 1e7)
       .shows_default();
   verb.add("--keep", options->keep,
-           "draws whose recording and estimates are stored in FILE.db.files/kept: none, failed, worst:N of each "
+           "stores recording and estimates of these draws in FILE.db.files/kept: none, failed, worst:N of each "
            "scenario and method, or all")
       .shows_default();
   verb.add("--until", options->until,
-           "A:B:METRIC[:MARGIN]: stops when the draws show whether method A is better than B by more than the margin "
-           "(in the metric's unit, or as 10% of B's value); evaluated 20 times")
+           "stops when the draws show whether method A is better than B by more than the margin: A:B:METRIC[:MARGIN]. "
+           "The margin is in the metric's unit, or a percentage of B's value such as 10%. The sweep evaluates the "
+           "question up to 20 times")
       .filled();
-  verb.add("--risk", options->risk, "accepted probability of an answer to --until although neither method is better")
+  verb.add("--risk", options->risk,
+           "sets the accepted probability that --until gives an answer although neither method is better")
       .within(1e-6, 0.5)
       .shows_default();
-  verb.add("--data", options->recordings, "folder of a suite's recordings [the suite file's]");
-  verb.add("--db", options->database, "results database; stored runs are not repeated").required();
+  verb.add("--data", options->recordings,
+           "reads the recordings of the suite from this folder [default: the folder in the suite's file]");
+  verb.add("--db", options->database,
+           "stores the results in this database; runs that are already stored are not repeated")
+      .required();
   return [&session, options] { return run_sweep(session, *options); };
 }
 

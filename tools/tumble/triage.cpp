@@ -71,7 +71,8 @@ json to_json(const std::vector<TriageRow>& rows, const std::string& metric) {
 
 std::string conclusion(const std::vector<TriageRow>& rows) {
   if (!rows.front().fails)
-    return "the run does not fail (see --metric and --limit); compare the values for the influence of each input";
+    return "the run does not fail (--metric and --limit define a failure); compare the values to see the influence of "
+           "each input";
   std::string cures;
   for (const TriageRow& row : rows) {
     if (&row != &rows.front() && !row.fails) cures += (cures.empty() ? "" : ", ") + row.input;
@@ -82,7 +83,7 @@ std::string conclusion(const std::vector<TriageRow>& rows) {
 
 scenarios::Failure failure_of(const TriageVerbOptions& options, const std::string& metric) {
   if (!options.limit) return {};
-  if (!std::isfinite(*options.limit)) throw BadInput("--limit is not a finite number");
+  if (!std::isfinite(*options.limit)) throw BadInput("--limit must be a finite number");
   return {metric, *options.limit};
 }
 
@@ -117,7 +118,7 @@ bool is_one_draw(const Session& session, const TriageVerbOptions& options) {
   const bool named = !options.what.ends_with(".yaml") && names_cases(session.data(), options.what);
   const bool one = !options.seed.empty() || (named && options.seeds.empty());
   if (one && (!options.seeds.empty() || !options.database.empty()))
-    throw BadInput("--seeds, --db: apply to a suite only, but a single draw is requested");
+    throw BadInput("--seeds and --db apply to a suite only, but a single draw is requested; remove both options");
   return one;
 }
 
@@ -140,7 +141,7 @@ int run_triage(const Session& session, const TriageVerbOptions& options) {
   asked.options.memory_mib = options.memory_mib;
   asked.suite = scenarios::load_suite(session.data(), options.what);
   if (!asked.suite.classes.empty() && !options.seeds.empty())
-    throw BadInput("--seeds: does not apply, because suite '" + asked.suite.name + "' names its draws");
+    throw BadInput("--seeds does not apply, because suite '" + asked.suite.name + "' names its draws");
   if (!options.seeds.empty()) std::tie(asked.suite.first_seed, asked.suite.last_seed) = parse_seeds(options.seeds);
   asked.database = options.database;
   return run_suite_triage(session, std::move(asked));
@@ -151,25 +152,30 @@ int run_triage(const Session& session, const TriageVerbOptions& options) {
 Action declare_triage(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<TriageVerbOptions>();
   verb.add("SCENARIO", options->what,
-           "with --seed: a scenario, named case or scenario file; without: a suite, suite file or scenario")
+           "with --seed, analyses one draw of this scenario, named case or scenario file; without --seed, analyses the "
+           "draws of this suite, suite file or scenario")
       .required()
       .check(known_name(session));
-  verb.add("--seed", options->seed, "seed of a single draw [all draws of the suite; for a named case: its own]");
-  verb.add("--seeds", options->seeds, "range of seeds A..B of a suite, both included [the suite's]");
-  verb.add("--db", options->database, "results database: only draws of the suite on which the method failed there");
-  verb.add("--jobs", options->jobs, "number of parallel processes, for a suite [all processors]")
+  verb.add("--seed", options->seed,
+           "sets the seed of a single draw [default: all draws of the suite; for a named case, the seed of the case]");
+  verb.add("--seeds", options->seeds,
+           "selects the seeds A..B of a suite, both included [default: the seeds of the suite]");
+  verb.add("--db", options->database, "reads this results database and selects only draws on which the method failed");
+  verb.add("--jobs", options->jobs,
+           "runs this number of processes in parallel, for a suite [default: number of processors]")
       .whole(1, 1024)
       .shows_default();
   verb.add("--memory", options->memory_mib,
-           "limit in MiB for the data of the process of a draw and of each of its runs, for a suite; a draw beyond the "
-           "limit has no result")
+           "limits the memory for the data of each process of a suite, MiB; a draw beyond the limit has no result")
       .within(64.0, 1e7)
       .shows_default();
-  verb.add("--method", options->method, "method that fails").required();
+  verb.add("--method", options->method, "names the method that fails").required();
   verb.add("--metric", options->metric,
-           "metric to list; with --limit it also decides about failure [the first metric of the method's kind]");
+           "lists this metric; with --limit the metric also decides about failure [default: the first metric of the "
+           "method's kind]");
   verb.add("--limit", options->limit,
-           "limit of the metric in SI units; a run fails beyond it [only status and map_failed decide]");
+           "sets the limit of the metric in SI units; a run beyond the limit fails [default: only status and "
+           "map_failed decide]");
   return [&session, options] { return run_triage(session, *options); };
 }
 

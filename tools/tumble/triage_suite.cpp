@@ -105,8 +105,8 @@ std::string conclusion(const std::vector<InputWorth>& worths) {
   const std::string name = first->input + " (" + first->doc + ")";
   if (first->cured > 0)
     return fmt::format("{} matters most: it cures {} of {} failures", name, first->cured, first->failed);
-  const std::string failures =
-      first->failed == 0 ? "no run failed (see --metric and --limit); " : "no single input cures a failure; ";
+  const std::string failures = first->failed == 0 ? "no run failed (--metric and --limit define a failure); "
+                                                  : "no single input cures a failure; ";
   if (first->better <= first->worse) return failures + "no input improves most draws";
   return failures + fmt::format("{} improves {} of {} draws", name, first->better, first->better + first->worse);
 }
@@ -135,7 +135,8 @@ std::string line_of(const DrawTriage& draw) {
   for (const scenarios::TriageRow& row : draw.rows) {
     if (!row.fails) cures += (cures.empty() ? "" : ", ") + row.input;
   }
-  return name + (cures.empty() ? "fails, cured by no input" : "fails, cured by " + cures);
+  return name +
+         (cures.empty() ? "fails, and no single input cures the failure" : "fails; the failure is cured by " + cures);
 }
 
 std::string first_trouble(const std::vector<DrawTriage>& draws) {
@@ -166,10 +167,11 @@ int run_suite_triage(const Session& session, SuiteTriage asked) {
   const auto troubled =
       std::count_if(triaged.begin(), triaged.end(), [](const DrawTriage& draw) { return !draw.trouble.empty(); });
   if (troubled > 0)
-    std::fprintf(stderr, "tumble: %td of %zu draws have no result or an incomplete one; the first: %s\n", troubled,
-                 triaged.size(), first_trouble(triaged).c_str());
+    std::fprintf(stderr,
+                 "tumble: %td of %zu draws have no result or an incomplete result; the first of these draws is %s\n",
+                 troubled, triaged.size(), first_trouble(triaged).c_str());
   if (triaged.size() == draws.size()) return kDone;
-  std::fprintf(stderr, "tumble: stopped: %zu of %zu draws; the table covers only these\n", triaged.size(),
+  std::fprintf(stderr, "tumble: stopped after %zu of %zu draws; the table covers only these draws\n", triaged.size(),
                draws.size());
   return kCheckFailed;
 }

@@ -24,7 +24,8 @@ VerbOption VerbOption::within(double low, double high) {
       [low, high, range](std::string& text) {
         double value = 0.0;
         const bool read = CLI::detail::lexical_cast(text, value);
-        return read && value >= low && value <= high ? std::string() : text + " is not within " + range;
+        return read && value >= low && value <= high ? std::string()
+                                                     : text + " is out of range; the number must be from " + range;
       },
       range));
   return *this;

@@ -14,36 +14,36 @@ const char* meaning(scenarios::Doubt::About about) {
     case About::readings:
       return "the IMU's readings contradict each other or gravity; do not use the estimate";
     case About::flights:
-      return "the specific force in flight does not fit the rotation; axes may be flipped or swapped, or the gyro may "
-             "have a wrong scale";
+      return "the specific force in free flight contradicts the rotation; axes may be flipped or swapped, or the gyro "
+             "may have a wrong scale";
     case About::stamps:
-      return "time stamps are rounded to this value, which is coarser than the IMU's period; import again to smooth "
-             "them";
+      return "the time stamps are rounded to this value, which is coarser than the IMU's period; import the recording "
+             "again to smooth the time stamps";
     case About::rate_unit:
-      return "the gyro's readings seem to have another unit";
+      return "the gyro's readings seem to be in another unit than rad/s; check the unit of the recording";
     case About::force_unit:
-      return "the accelerometer's readings seem to have another unit";
+      return "the accelerometer's readings seem to be in another unit than m/s^2; check the unit of the recording";
     case About::attitude:
-      return "the vertical is unknown for this many seconds, for example after a gap of the IMU; the covariance "
-             "includes this uncertainty";
+      return "the direction of gravity is unknown for this many seconds, for example after a gap of the IMU; the "
+             "covariance includes this uncertainty";
     case About::place:
       return "the position on the map is unknown; do not use the estimate";
     case About::lidar_scale:
       return "the scale of the lidar's ranges contradicts the motion measured by the IMU";
     case About::beyond_range:
-      return "readings beyond the range of the device are left out";
+      return "the method leaves out readings beyond the range of the device";
     case About::digest:
-      return "the recording contains no digest of its data, so damage cannot be detected";
+      return "the recording contains no digest of its data, so the program cannot detect damage";
     case About::learnt_rig:
-      return "deviations between the lever arm or inertia in the --learnt file and the values estimated in this run; "
-             "the file may belong to another rig. Rates beyond saturation depend on these values; the file is "
-             "unchanged";
+      return "the lever arm or inertia in the --learnt file differs from the estimate of this run by this number of "
+             "standard deviations, so the file may belong to another rig. Estimated rates beyond saturation depend on "
+             "these values. The program left the file unchanged";
     case About::unit_frozen:
-      return "repeats one reading from this time on";
+      return "the readings are constant from this time on; check the sensor";
     case About::unit_disagrees:
-      return "disagrees with the other IMUs from this time on and is left out";
+      return "the IMU disagrees with the other IMUs from this time on, and the method leaves out its readings";
     case About::unit_silent:
-      return "delivers no readings from this time on, for at least half a second";
+      return "the IMU delivers no readings from this time on, for at least half a second";
     case About::rates:
       break;
   }

@@ -92,11 +92,12 @@ void Feed::add_lidar(evalio::LidarMeasurement given) {
 
 void Feed::require_room() const {
   if (waiting_.size() < kSweepsMax) return;
-  const std::string last = last_sample_ns_ ? "the last one is at " + seconds(*last_sample_ns_) : "there was none yet";
-  throw std::runtime_error(
-      std::to_string(waiting_.size()) + " sweeps wait for samples of the IMU that cover them, from " +
-      seconds(waiting_.front().start_ns) + " to " + seconds(waiting_.back().end_ns) + ", must be less than " +
-      std::to_string(kSweepsMax) + ": " + last + "; does the data set have an IMU, in the lidar's clock?");
+  const std::string last =
+      last_sample_ns_ ? "the newest IMU sample is at " + seconds(*last_sample_ns_) : "no IMU sample has arrived";
+  throw std::runtime_error(std::to_string(waiting_.size()) + " sweeps wait for IMU samples, from " +
+                           seconds(waiting_.front().start_ns) + " to " + seconds(waiting_.back().end_ns) +
+                           ", must be less than " + std::to_string(kSweepsMax) + ": " + last +
+                           "; check that the data set has an IMU whose clock agrees with the lidar");
 }
 
 const evalio::Map<> Feed::map() {
@@ -116,7 +117,7 @@ const evalio::Map<> Feed::map() {
 }
 
 nb::handle Feed::odometry() const {
-  if (!odometry_.is_valid()) throw std::runtime_error("the pipeline is not initialized: initialize() comes first");
+  if (!odometry_.is_valid()) throw std::runtime_error("the pipeline is not initialized; call initialize() first");
   return odometry_;
 }
 

@@ -15,8 +15,9 @@ namespace {
 /// Modules can share classes only if they have the same nanobind ABI.
 void require_abi(const std::string& of_evalio) {
   if (of_evalio == NB_ABI_TAG) return;
-  throw std::runtime_error("tumble-evalio is compiled for nanobind's ABI " NB_ABI_TAG ", evalio here has " + of_evalio +
-                           ": install evalio >= 0.6.1, < 0.7, or compile tumble-evalio against the installed evalio");
+  throw std::runtime_error(
+      "tumble-evalio is compiled for nanobind's ABI " NB_ABI_TAG ", but the installed evalio has " + of_evalio +
+      "; install evalio >= 0.6.1, < 0.7, or compile tumble-evalio against the installed evalio");
 }
 
 }  // namespace

@@ -10,7 +10,7 @@ Rates           RegimeSmoother, RateSmoother, CarriedSmoother, Saave (whole reco
 Attitude        TumbleAttitude, Vqf, Strapdown
 Sphere          RollingSmoother, RollingFilter (live)
 Mapper          LidarInertialOdometry
-Recordings      read and write, with ground truth; rate, tumbling and rolling process a whole recording
+Recordings      read and write recordings with ground truth; rate, tumbling and rolling process a whole recording
 Estimates       read_tum, write_tum, read_estimate
 Figures         plot (Matplotlib); point_errors: distances of returns from their true positions
 The program     record, run, estimate, score, sweep, results; serve and describe_method add a Python function as a method

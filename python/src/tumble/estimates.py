@@ -49,7 +49,7 @@ def write_tum(path: str | os.PathLike[str], poses: Any) -> None:
             raise TumbleError(f"{name} is {rows.shape}, must be {(len(times), columns)}", "shape", name, rows.shape,
                               (len(times), columns))
         if not np.isfinite(rows).all():
-            raise TumbleError(f"{name} is not finite", "non_finite", name, float("nan"), "finite")
+            raise TumbleError(f"{name} contains a number that is not finite", "non_finite", name, float("nan"), "finite")
     with beside(path_of("path", path)) as part, open(part, "w", encoding="ascii") as out:
         for time_ns, p, q in zip(times.tolist(), positions.tolist(), quaternions.tolist(), strict=True):
             sign, whole = ("-", -time_ns) if time_ns < 0 else ("", time_ns)
@@ -81,11 +81,11 @@ def read_tum(path: str | os.PathLike[str], separator: str | None = None) -> Traj
                     continue
                 try:
                     if len(words) != 8:
-                        raise ValueError(f"{len(words)} numbers, must be 8")
+                        raise ValueError(f"the line has {len(words)} numbers, must have 8")
                     times.append(_nanoseconds(words[0]))
                     rows.append([float(word) for word in words[1:]])
                     if not np.isfinite(rows[-1]).all():
-                        raise ValueError("not finite")
+                        raise ValueError("a number is not finite")
                 except (ValueError, OverflowError) as error:
                     raise TumbleError(f"{name}:{number}: {error}", "file", f"{name}:{number}", line.strip(), "t x y z qx qy qz qw") from error
     except (OSError, UnicodeDecodeError) as error:
@@ -94,7 +94,7 @@ def read_tum(path: str | os.PathLike[str], separator: str | None = None) -> Traj
     try:
         stamps = np.array(times, dtype=np.int64)
     except OverflowError as error:
-        raise TumbleError(f"{name}: a time beyond 64 bits of nanoseconds", "file", name, max(times), 2**63 - 1) from error
+        raise TumbleError(f"{name}: a time exceeds 64 bits of nanoseconds", "file", name, max(times), 2**63 - 1) from error
     return Trajectory(stamps, numbers[:, :3], numbers[:, 3:])
 
 
@@ -130,7 +130,7 @@ def _columns(path: pathlib.Path) -> dict[str, Array]:
         names = file.readline().strip().split(",")
         rows = [line.strip().split(",") for line in file]
     if any(len(row) != len(names) for row in rows):
-        raise TumbleError(f"{path} has rows of other lengths than its header", "file", str(path), None, len(names))
+        raise TumbleError(f"{path}: a row and the header differ in their number of columns", "file", str(path), None, len(names))
     whole = [name.endswith("_ns") for name in names]
     return {name: np.array([row[k] for row in rows], dtype=np.int64 if whole[k] else float) for k, name in enumerate(names)}
 
@@ -144,7 +144,7 @@ def _rates(path: pathlib.Path) -> RateTable:
 
 
 def read_estimate(folder: str | os.PathLike[str]) -> Estimate:
-    """Reads the folder of an estimate, which `tumble estimate -o` and, per method, `tumble run -o` write."""
+    """Reads the folder of an estimate. `tumble estimate -o` writes one such folder, and `tumble run -o` writes one per method."""
     root = pathlib.Path(path_of("folder", folder))
     try:
         head = json.loads((root / "estimate.json").read_text(encoding="utf-8"))

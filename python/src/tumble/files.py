@@ -18,7 +18,7 @@ def optional(module: str, extra: str) -> Any:
     except ModuleNotFoundError as error:
         if error.name != module:
             raise
-        raise ImportError(f"this needs {module}: pip install 'tumble[{extra}]'") from error
+        raise ImportError(f"this function needs the package {module}; install it with: pip install 'tumble[{extra}]'") from error
 
 
 @contextlib.contextmanager

@@ -57,7 +57,7 @@ class Group:
         try:
             return [str(text) for text in self.group[name].asstr()[()]]
         except (AttributeError, TypeError, UnicodeDecodeError) as error:
-            raise TumbleError(f"{place} is not a list of texts, must be one", "file", place, None, "texts") from error
+            raise TumbleError(f"{place} must be a list of texts", "file", place, None, "texts") from error
 
     def member(self, name: str) -> Group:
         """Returns a subgroup."""

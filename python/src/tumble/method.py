@@ -38,7 +38,7 @@ def serve(kind: str, function: Callable[[Recording], Any], arguments: Sequence[s
     """Reads the recording, calls `function` with it, and writes the result to the file that the program requested.
 
     `function` returns, by kind:
-    rate                 (N, 3), rad/s in axes of the first IMU, one row per sample; or this and covariances (N, 3, 3); or an object with
+    rate                 (N, 3), rad/s in axes of the first IMU, one row per sample; or a tuple of these rates and covariances (N, 3, 3); or an object with
                          `rate` and `covariance` (Rates)
     attitude             an object with time_ns and quaternion (Attitudes)
     position, slam       an object with time_ns, position and quaternion (Poses, Trajectory)
@@ -47,7 +47,7 @@ def serve(kind: str, function: Callable[[Recording], Any], arguments: Sequence[s
         raise TumbleError(f"kind is '{kind}', must be one of {', '.join(KINDS)}", "unknown", "kind", kind, KINDS)
     words = sys.argv[1:] if arguments is None else list(arguments)
     if len(words) != 2:
-        raise SystemExit(f"usage: {sys.argv[0]} RECORDING.h5 OUTPUT (see tumble.describe_method)")
+        raise SystemExit(f"usage: {sys.argv[0]} RECORDING.h5 OUTPUT; tumble.describe_method explains how the program calls this script")
     recording = read(words[0], truth=False)
     result = function(recording)
     if kind == "rate":
@@ -88,7 +88,7 @@ def describe_method(path: str | os.PathLike[str], name: str, kind: str, script: 
                     robots: Sequence[str] = (), time_limit_s: float = 600.0) -> pathlib.Path:
     """Writes the file that describes `script`, which calls `serve`, as a method named KIND/NAME. The program runs it with this interpreter.
 
-    All keys of such files: scenarios/methods/EXTERNAL.md.
+    scenarios/methods/EXTERNAL.md lists all keys of such files.
     """
     if kind not in KINDS:
         raise TumbleError(f"kind is '{kind}', must be one of {', '.join(KINDS)}", "unknown", "kind", kind, KINDS)

@@ -30,7 +30,7 @@ def poses_at(time_ns: Array, poses: Any) -> tuple[Array, Array]:
     """
     known = np.asarray(poses.time_ns)
     if len(known) < 2:
-        raise TumbleError(f"poses is {len(known)} poses, must be at least 2", "too_few", "poses", len(known), 2)
+        raise TumbleError(f"poses has {len(known)} poses, must have at least 2", "too_few", "poses", len(known), 2)
     k = np.clip(np.searchsorted(known, time_ns, side="right") - 1, 0, len(known) - 2)
     share = ((time_ns - known[k]) / (known[k + 1] - known[k]))[:, None]
     share[(time_ns < known[0]) | (time_ns > known[-1])] = np.nan
@@ -59,7 +59,7 @@ def point_errors(recording: Recording, poses: Any, every: int = 1) -> tuple[Arra
     every = whole("every", every, 1, 2**63 - 1)
     truth = recording.truth
     if truth is None:
-        raise TumbleError("truth is missing, must be in the recording", "empty", "truth", None, "a truth")
+        raise TumbleError("truth is missing; read a recording with ground truth", "empty", "truth", None, "a truth")
     lidar = recording.sweeps
     counts: Array = np.diff(lidar.sweep_first.astype(np.int64))
     time_ns = (np.repeat(lidar.sweep_start_ns, counts) + lidar.offset_ns)[::every]
@@ -72,12 +72,12 @@ def point_errors(recording: Recording, poses: Any, every: int = 1) -> tuple[Arra
     true = position + np.einsum("nij,nj->ni", R_WB, returns_B)
     inside = np.isfinite(estimated).all(axis=1) & np.isfinite(true).all(axis=1)
     if not inside.any():
-        raise TumbleError("poses have no return of the lidar within their times, must have at least one", "empty", "poses", 0, 1)
+        raise TumbleError("no lidar return is within the times of the poses, must be at least one", "empty", "poses", 0, 1)
     estimated, true = estimated[inside], true[inside]
     known = np.asarray(poses.time_ns)
     begin = known[(known >= truth.time_ns[0]) & (known <= truth.time_ns[-1])][:1]
     if len(begin) == 0:
-        raise TumbleError("poses are not within the times of the truth, must have at least one there", "empty", "poses", 0, 1)
+        raise TumbleError("no pose is within the times of the truth, must be at least one", "empty", "poses", 0, 1)
     p_e, R_e = poses_at(begin, poses)
     p_t, R_t = poses_at(begin, truth)
     T_BI = truth.imu_T_BI[0]

@@ -32,9 +32,9 @@ def rate(imu: Imu, rates: Any, truth: Array | None = None, axes: str = "xyz") ->
     which the gyro clips on an axis are shaded.
     """
     if not axes or set(axes) - set("xyz"):
-        raise TumbleError(f"axes is '{axes}', must be of x, y, z", "unknown", "axes", axes, "xyz")
-    having("imu", imu, "an Imu, as recording.imus[0]", "time_ns", "gyro")
-    having("rates", rates, "an object with rate, covariance and clipped_axes, as tumble.rate returns", "rate", "covariance", "clipped_axes")
+        raise TumbleError(f"axes is '{axes}', must contain only x, y and z", "unknown", "axes", axes, "xyz")
+    having("imu", imu, "an Imu such as recording.imus[0]", "time_ns", "gyro")
+    having("rates", rates, "an object with rate, covariance and clipped_axes, such as the result of tumble.rate", "rate", "covariance", "clipped_axes")
     for name, rows in (("rates", rates.rate), ("truth", truth)):
         if rows is not None and np.shape(rows) != np.shape(imu.gyro):
             raise refusal("shape", name, np.shape(rows), np.shape(imu.gyro))
@@ -90,7 +90,7 @@ def map_by_error(recording: Recording, poses: Any, every: int = 10, worst_m: flo
     """
     points, error_m = point_errors(recording, poses, every)
     figure = _figure(figsize=(10.0, 4.8))
-    order = np.argsort(error_m)  # the worst on top
+    order = np.argsort(error_m)  # the returns with the largest errors are drawn last, on top
     top = float(np.quantile(error_m, 0.99)) if worst_m is None else worst_m
     for panel, (a, b) in zip(figure.subplots(1, 2), ((0, 1), (0, 2)), strict=True):
         dots = panel.scatter(points[order, a], points[order, b], c=error_m[order], s=0.6, lw=0, cmap="turbo", vmin=0.0, vmax=max(top, 1e-6))
@@ -101,10 +101,10 @@ def map_by_error(recording: Recording, poses: Any, every: int = 10, worst_m: flo
 
 
 def scores(frame: Any, metric: str, unit: str = "") -> Any:
-    """Plots one metric of a sweep (`tumble.sweep`, `tumble.results`) by method on a logarithmic scale: a dot per draw, a bar at the median.
+    """Plots one metric of a sweep (`tumble.sweep`, `tumble.results`) by method on a logarithmic scale: one dot per draw, and a bar at the median.
 
-    A draw that failed, or that has no value, is a cross at the top and counts as the worst value in the median. unit: unit of the axis;
-    by default from the end of the metric's name.
+    A draw that failed, or that has no value, appears as a cross at the top and counts as the worst value in the median. unit: unit of the axis;
+    default: the unit at the end of the metric's name.
     """
     having("frame", frame, "a data frame from tumble.results", "metric", "kind", "method", "status", "value")
     rows = frame[frame.metric == metric]
@@ -115,7 +115,7 @@ def scores(frame: Any, metric: str, unit: str = "") -> Any:
     values = {method: _values(ended[ended.method == method], rows[rows.method == method]) for method in sorted(set(ended.method))}
     finite = np.concatenate([each[np.isfinite(each)] for each in values.values()])
     if len(finite) == 0 or finite.max() <= 0.0:
-        raise TumbleError(f"{metric} has no value above 0, must have one", "empty", metric, None, 0.0)
+        raise TumbleError(f"{metric} has no value above 0, must have at least one for a logarithmic scale", "empty", metric, None, 0.0)
     least, most = max(finite[finite > 0].min(), 1e-12), finite.max()
     figure = _figure(figsize=(1.5 + 1.2 * len(values), 4.0))
     panel = figure.subplots()

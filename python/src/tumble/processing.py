@@ -19,11 +19,11 @@ RIG_BODY_L = ((-0.5, -0.4, -0.27), (0.5, 0.4, 0.23))
 
 
 def _require_imu(imu: Any) -> None:
-    having("imu", imu, "an Imu, as recording.imus[0]", "samples", "lever_arm_m", "period_ns", "gyro_range_rad_s", "accel_range_m_s2")
+    having("imu", imu, "an Imu such as recording.imus[0]", "samples", "lever_arm_m", "period_ns", "gyro_range_rad_s", "accel_range_m_s2")
 
 
 def sheet_of(imu: Imu) -> _tumble.ImuSheet:
-    """Returns the data sheet of an IMU from the recording. A noise density that is not stated has the library's default."""
+    """Returns the data sheet of an IMU from the recording. If the recording does not state a noise density, the library's default is used."""
     _require_imu(imu)
     numbers = {"gyro_range_rad_s": imu.gyro_range_rad_s, "accel_range_m_s2": imu.accel_range_m_s2}
     period_ns = imu.period_ns or (float(np.median(np.diff(imu.time_ns))) if len(imu) > 1 else 0.0)
@@ -40,7 +40,7 @@ def rate(imu: Imu, gravity_m_s2: float = 9.80665, live: bool = False, **options:
 
     Uses RegimeSmoother. The result equals the program's `rate/tumble` for a recording with one IMU.
 
-    live      uses RegimeStream, which looks only 0.2 s ahead (lag_s): the program's `rate/tumble_lag`
+    live      uses RegimeStream, which needs only the next 0.2 s of data (lag_s), as the program's `rate/tumble_lag`
     options   keywords of these classes; they override the values of the recording
     """
     _require_imu(imu)
@@ -92,7 +92,7 @@ def tumbling(recording: Recording, on_sample: Callable[[_tumble.TumblingOdometry
     """Estimates pose, velocity and map of a tumbling body with the first IMU and the first lidar of a recording.
 
     The data are added in the order of a live robot: each sample at the end of its window, each sweep after its last point. This is the
-    program's `slam/tumble_lag`.
+    program's method `slam/tumble_lag`.
 
     on_sample   is called after each sample with the odometry, whose newest() returns the live pose
     options     keywords of TumblingOdometry; they override the values of the recording
@@ -146,7 +146,7 @@ def rolling(recording: Recording, **options: Any) -> _tumble.RollingPoses:
     imus = [recording.first_imu, *(imu for imu in recording.imus[1:] if imu.name != "imu_reference")][:4]
     for imu in imus[1:]:
         if not np.array_equal(imu.time_ns, imus[0].time_ns):
-            raise TumbleError(f"{imu.name}.time_ns is not that of {imus[0].name}, must be the same", "time_order", f"{imu.name}.time_ns")
+            raise TumbleError(f"{imu.name}.time_ns differs from {imus[0].name}.time_ns, must be equal", "time_order", f"{imu.name}.time_ns")
     stated: dict[str, Any] = {"units": [(sheet_of(imu), imu.T_BI) for imu in imus], "radius_m": recording.sphere_radius_m,
                               "gravity_m_s2": recording.gravity_m_s2}
     odometry = _tumble.RollingOdometry(**(stated | options))

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Calls the program `tumble` from Python: simulate, estimate, score, sweep. The program is built from the whole tree and is not part of
-this package. It is searched in $TUMBLE_PROGRAM, then in $PATH."""
+this package. The package searches the program in $TUMBLE_PROGRAM, then in $PATH."""
 from __future__ import annotations
 
 import json
@@ -32,7 +32,7 @@ def program() -> str:
     found = shutil.which(named) if named else shutil.which("tumble")
     if found is None:
         place = f"$TUMBLE_PROGRAM ({named})" if named else "$PATH"
-        raise TumbleError(f"the program tumble is not in {place}: build it (see README.md of the tree) or set TUMBLE_PROGRAM", "program",
+        raise TumbleError(f"the program tumble was not found in {place}; build the program (see README.md of the tree) or set TUMBLE_PROGRAM to its path", "program",
                           "TUMBLE_PROGRAM", named, "the program")
     return found
 
@@ -49,7 +49,7 @@ def call(verb: str, *words: Path | Number, timeout_s: float | None = None) -> st
         output = ended.stderr.strip() or ended.stdout.strip()
         raise TumbleError(output, "program", verb, ended.returncode, 0)
     if ended.returncode != 0:
-        raise ProgramError(f"{' '.join(command)} ended with {ended.returncode}: {ended.stderr.strip()}")
+        raise ProgramError(f"{' '.join(command)} ended with exit status {ended.returncode}: {ended.stderr.strip()}")
     return ended.stdout
 
 
@@ -94,7 +94,7 @@ def _seed(field: str, given: Any) -> int:
 
 
 def record(scenario: Path, path: Path, seed: int = 1) -> pathlib.Path:
-    """Draws and simulates one situation and writes its recording."""
+    """Simulates one draw of a scenario and writes its recording."""
     call("record", _named("scenario", scenario), "--seed", _seed("seed", seed), "-o", path_of("path", path))
     return pathlib.Path(path)
 
@@ -102,7 +102,7 @@ def record(scenario: Path, path: Path, seed: int = 1) -> pathlib.Path:
 def estimate(recording: Path, method: Path, folder: Path, settings: Mapping[str, Number] | None = None) -> pathlib.Path:
     """Runs one method of the program on a recording and writes the folder of its estimate (`read_estimate`).
 
-    settings: parameters by full name, {"rate/tumble_lag.lag_s": 0.5}.
+    settings: parameters by full name, for example {"rate/tumble_lag.lag_s": 0.5}.
     """
     call("estimate", _named("recording", recording), "--method", path_of("method", method), *_settings(settings), "-o",
          path_of("folder", folder))
@@ -112,7 +112,7 @@ def estimate(recording: Path, method: Path, folder: Path, settings: Mapping[str,
 def score(estimate: Path, recording: Path, kind: str | None = None, frame: str | None = None) -> dict[str, float | None]:
     """Scores an estimate (a folder, or a TUM file with kind "position" or "slam") against the ground truth of a recording.
 
-    Returns metric to value; None if there was nothing to score.
+    Returns the value of each metric; None for a metric without data to score.
     """
     words = [*(["--kind", kind] if kind else []), *(["--frame", frame] if frame else [])]
     scored = json.loads(call("score", _named("estimate", estimate), _named("recording", recording), *words, "--json"))
@@ -121,9 +121,9 @@ def score(estimate: Path, recording: Path, kind: str | None = None, frame: str |
 
 def run(scenario: Path, seed: int = 1, methods: Path | Iterable[Path] = (), folder: Path | None = None,
         settings: Mapping[str, Number] | None = None) -> dict[str, Any]:
-    """Draws, simulates, estimates and scores one situation. With `folder`, also writes recording, estimates and pictures.
+    """Simulates one draw of a scenario, runs methods and scores their estimates. With `folder`, also writes recording, estimates and pictures.
 
-    methods: one or several names; default: all that apply. Returns the JSON output of the program.
+    methods: one or several names; default: all methods that apply. Returns the JSON output of the program.
     """
     words: list[Path | Number] = ["--seed", _seed("seed", seed), *_methods(methods), *_settings(settings)]
     if len(words) > 2 or folder is not None:
@@ -143,15 +143,15 @@ def sweep(suite: Path, db: Path, seeds: tuple[int, int] | None = None, methods: 
           data: Path | None = None, timeout_s: float | None = None) -> Any:
     """Runs a suite, a suite's file or a scenario, stores the scores in a results database, and returns `results(db)`.
 
-    seeds     first and last seed, both included; default: those of the suite
-    methods   one or several names, or files NAME.yaml that describe a command (`describe_method`); default: those of the suite
+    seeds     first and last seed, both included; default: the seeds of the suite
+    methods   one or several names, or files NAME.yaml that describe a command (`describe_method`); default: the methods of the suite
     jobs      number of concurrent processes; default: number of processors
     Results that the database already contains are not computed again. No pictures of single draws are written.
     """
     words: list[Path | Number] = ["--db", path_of("db", db), "--examples", 0, *_methods(methods)]
     if seeds is not None:
         if not isinstance(seeds, Sequence) or isinstance(seeds, str) or len(seeds) != 2:
-            raise refusal("type", "seeds", repr(seeds), "the first and the last")
+            raise refusal("type", "seeds", repr(seeds), "the first and the last seed")
         words += ["--seeds", f"{_seed('seeds', seeds[0])}..{_seed('seeds', seeds[1])}"]
     if jobs is not None:
         words += ["--jobs", whole("jobs", jobs, 1, 2**31 - 1)]
@@ -187,7 +187,7 @@ def score_rows(db: Path) -> list[dict[str, Any]]:
 def results(db: Path) -> Any:
     """Returns `score_rows` as a pandas data frame: `pip install tumble[tables]`.
 
-    A table of one metric: `frame[frame.metric == "ate_m"].pivot(index="seed", columns="method", values="value")`.
+    This expression gives a table of one metric: `frame[frame.metric == "ate_m"].pivot(index="seed", columns="method", values="value")`.
     """
     pandas = optional("pandas", "tables")
     return pandas.DataFrame(score_rows(db), columns=["scenario", "seed", "kind", "method", "status", "metric", "value"])

@@ -23,7 +23,7 @@ Array = npt.NDArray[Any]
 
 @dataclass(repr=False)
 class Imu(Shown):
-    """Samples of one IMU. T_BI (4, 4) is its pose in body axes, relative to the centre of mass. A range or density of 0 is not stated."""
+    """Samples of one IMU. T_BI (4, 4) is its pose in body axes, relative to the centre of mass. 0 for a range or density means unknown."""
 
     time_ns: Array  #: (N,) int64, end of each sample's window
     gyro: Array  #: (N, 3), rad/s, IMU axes
@@ -96,7 +96,7 @@ class Lidar(Shown):
         return len(self.sweep_start_ns)
 
     def __getitem__(self, index: int) -> Sweep:
-        """Returns sweep `index`. It ends after the sweep period, or at the start of the next sweep if that is earlier.
+        """Returns sweep `index`. A sweep ends after the sweep period, or when the next sweep starts, whichever is earlier.
 
         Points more than one microsecond after the end are dropped. If points have no individual times, the sweep has zero length and all
         points belong to its start.
@@ -124,7 +124,7 @@ class Lidar(Shown):
 
 @dataclass(repr=False)
 class Series(Shown):
-    """Samples of any other sensor: one number per time and quantity, `series["pressure_pa"]`. T_BX (4, 4) is its pose in body axes."""
+    """Samples of any other sensor: one number per time and quantity, for example `series["pressure_pa"]`. T_BX (4, 4) is its pose in body axes."""
 
     time_ns: Array  #: (N,) int64, end of each sample's window
     values: dict[str, Array]  #: by quantity, (N,) float64; the name of a quantity ends in its unit
@@ -158,7 +158,7 @@ class Recording(Shown):
     situation_yaml: str = ""
     attribution: str = ""  #: for a real recording: author and licence
     origin_ns: int = 0  #: for a real recording: stamp of time 0 in the clock of its source, ns since 1970; 0: unknown
-    tumble_version: str = ""  #: version of the program that wrote it
+    tumble_version: str = ""  #: version of the program that wrote the recording
     engine_version: str = ""  #: version of MuJoCo
     truth: Truth | None = None  #: ground truth; None: unknown or not read
     series: list[Series] = field(default_factory=list)  #: other sensors, for example a barometer
@@ -167,14 +167,14 @@ class Recording(Shown):
     def sweeps(self) -> Lidar:
         """The first lidar. Raises TumbleError `empty` if the recording has no lidar."""
         if not self.lidars:
-            raise TumbleError("lidars is empty, must be at least one", "empty", "lidars", 0, 1)
+            raise TumbleError("lidars is empty, must contain at least one lidar", "empty", "lidars", 0, 1)
         return self.lidars[0]
 
     @property
     def first_imu(self) -> Imu:
         """The primary IMU. Raises TumbleError `empty` if the recording has no IMU."""
         if not self.imus:
-            raise TumbleError("imus is empty, must be at least one", "empty", "imus", 0, 1)
+            raise TumbleError("imus is empty, must contain at least one IMU", "empty", "imus", 0, 1)
         return self.imus[0]
 
     @property
@@ -219,7 +219,7 @@ def _read_lidar(group: Group) -> Lidar:
     first = lidar.sweep_first
     fits = len(first) == len(lidar) + 1 and first[0] == 0 and first[-1] == len(lidar.position) and np.all(first[1:] >= first[:-1])
     if not fits and (len(lidar) or len(first) or len(lidar.position)):
-        raise TumbleError(f"{group.place}/sweep_first does not rise from 0 to {len(lidar.position)} over {len(lidar)} sweeps", "file",
+        raise TumbleError(f"{group.place}/sweep_first must rise from 0 to {len(lidar.position)} over {len(lidar)} sweeps", "file",
                           f"{group.place}/sweep_first", first, len(lidar.position))
     return lidar
 
@@ -252,7 +252,7 @@ def read(path: str | os.PathLike[str], truth: bool = True) -> Recording:
         try:
             top = Group(file, name)
             if top.attribute("format", str) != "tumble recording":
-                raise TumbleError(f"{name} is a '{top.attribute('format', str)}', must be a 'tumble recording'", "file", name)
+                raise TumbleError(f"{name} has the format '{top.attribute('format', str)}', must be 'tumble recording'", "file", name)
             sensors = Group(file["sensors"], name) if "sensors" in file else None
             if sensors is None:
                 raise missing(f"{name}: /sensors")

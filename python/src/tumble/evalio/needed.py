@@ -17,7 +17,7 @@ def needed_evalio() -> Any:
     try:
         return importlib.import_module("evalio")
     except ModuleNotFoundError as error:
-        raise _trouble("this needs evalio: pip install 'evalio>=0.6.1,<0.7'", None, ">= 0.6.1, < 0.7") from error
+        raise _trouble("this module needs evalio; install it with: pip install 'evalio>=0.6.1,<0.7'", None, ">= 0.6.1, < 0.7") from error
 
 
 def needed_bindings() -> Any:
@@ -27,7 +27,7 @@ def needed_bindings() -> Any:
         bindings = importlib.import_module("tumble_evalio")
         bindings.require_abi(tag)
     except ModuleNotFoundError as error:
-        raise _trouble("this needs tumble-evalio: pip install ./python/evalio", None, "tumble-evalio") from error
+        raise _trouble("this module needs tumble-evalio; install it with: pip install ./python/evalio", None, "tumble-evalio") from error
     except (ImportError, RuntimeError) as error:
         raise _trouble(f"tumble-evalio is not compatible with the installed evalio: {error}", tag, "the ABI of tumble-evalio") from error
     return bindings

@@ -45,7 +45,7 @@ def files() -> dict[str, pathlib.Path]:
     out = {path.stem: path for path in named}
     for path in named:
         if out[path.stem] != path:
-            raise TumbleError(f"TUMBLE_EVALIO_FILES has two files named {path.stem}, must be one", "file", "TUMBLE_EVALIO_FILES", path.stem, 1)
+            raise TumbleError(f"TUMBLE_EVALIO_FILES has two files named {path.stem}, names must differ", "file", "TUMBLE_EVALIO_FILES", path.stem, 1)
     return out
 
 
@@ -134,14 +134,14 @@ class _Sequences(Dataset):
         return pose(np.eye(4) if truth is None else np.linalg.inv(truth.imu_T_BI[0]))
 
     def imu_params(self) -> types.ImuParams:
-        """Parameters stated by the recording. If it is not simulated yet, those of the data sheet of the rig's IMU."""
+        """Returns the parameters that the recording states. Before the simulation, returns the data sheet of the rig's IMU."""
         if not self.path.exists():
             return _imu_params(sheets.mti30(), 9.80665, "mti30")
         recording = self.recording()
         return _imu_params(sheet_of(recording.imus[0]), recording.gravity_m_s2, recording.imus[0].device)
 
     def lidar_params(self) -> types.LidarParams:
-        """As imu_params. The ranges are those of the device's data sheet, if the package has it."""
+        """Returns the parameters of the lidar, as imu_params does. The ranges come from the device's data sheet, if the package has this sheet."""
         if not self.path.exists():
             return _lidar_params(16, 2000, 10.0, "rs16")
         lidar = self.recording().sweeps
@@ -172,7 +172,7 @@ def _fit(named: dict[str, pathlib.Path]) -> dict[str, pathlib.Path]:
 def _sequences() -> dict[str, str]:
     draws, named = _draws(), files()
     if both := sorted(draws.keys() & named.keys()):
-        raise TumbleError(f"TUMBLE_EVALIO_FILES has a file named {both[0]}, must not have the name of a draw", "file",
+        raise TumbleError(f"TUMBLE_EVALIO_FILES has a file named {both[0]}, must differ from the names of draws", "file",
                           "TUMBLE_EVALIO_FILES", both[0], "another name")
     return {name: name for name in [*draws, *_fit(named)]}
 
