@@ -146,7 +146,7 @@ Pace pace_of(const SensorSpec& sensor, double step_ns) {
   if (std::abs(ratio - whole) > 1e-9 * whole) {
     std::ostringstream text;
     text << "sensors." << sensor.name << ".output_rate_hz is " << sensor.values.at("output_rate_hz")
-         << " Hz, must divide the physics rate of " << 1e9 / step_ns << " Hz or be a multiple of it";
+         << " Hz; it must divide the physics rate of " << 1e9 / step_ns << " Hz or be a multiple of it";
     throw InvalidSituation(text.str());
   }
   return faster ? Pace{1, static_cast<int>(whole)} : Pace{static_cast<int>(whole), 1};
@@ -190,7 +190,7 @@ void require_bandwidths_below(const SensorSpec& sensor, double rate_hz) {
     if (sensor.values.at(name) < 0.5 * rate_hz) continue;
     std::ostringstream text;
     text << "sensors." << sensor.name << "." << name << " is " << sensor.values.at(name)
-         << " Hz, must be below half of the chain's rate of " << rate_hz << " Hz";
+         << " Hz; it must be below half of the chain's rate of " << rate_hz << " Hz";
     throw InvalidSituation(text.str());
   }
 }

@@ -49,10 +49,10 @@ void require_lines(const std::string& name, std::string_view text) {
   if (const std::size_t zero = text.find('\0'); zero != std::string_view::npos) {
     const auto line = std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(zero), '\n') + 1;
     throw BadInput(name + ":" + std::to_string(line) +
-                   ": contains a zero byte; the file is damaged or not a text file");
+                   ": contains a zero byte; the file is damaged or is not a text file");
   }
   if (text.find('\n') == std::string_view::npos && text.find('\r') != std::string_view::npos)
-    throw BadInput(name + ": its lines end in a carriage return only; they must end in a line feed");
+    throw BadInput(name + ": the lines end in a carriage return; they must end in a line feed");
 }
 
 }  // namespace

@@ -313,7 +313,7 @@ std::string delay_text(double delay_s) {
 
 std::string delay_remedy(double delay_s) {
   const bool late = delay_s > 0.0;
-  return fmt::format("stamps are {}, at most {:.2f} s is accepted: {} {:.3f} s {} them", delay_text(delay_s),
+  return fmt::format("stamps are {}, but at most {:.2f} s is accepted; {} {:.3f} s {} the stamps", delay_text(delay_s),
                      kDelayMax_s, late ? "subtract" : "add", std::abs(delay_s), late ? "from" : "to");
 }
 
