@@ -223,7 +223,7 @@ std::string series_truth_problem(const sim::SeriesTruth& series) {
 
 /// Returns how the structure of a sensor's readings differs from the structure of their truth.
 std::string series_mismatch(const sim::SeriesRecord& series, const sim::SeriesTruth& truth) {
-  if (truth.quantities.empty()) return "";  // a reference has none
+  if (truth.quantities.empty()) return "";  // a reference has no quantities
   if (truth.quantities.size() != series.quantities.size())
     return "truth and sensor differ in the number of quantities; the numbers must be equal";
   std::string problem;
@@ -234,7 +234,7 @@ std::string series_mismatch(const sim::SeriesRecord& series, const sim::SeriesTr
   return problem;
 }
 
-/// `imu` is a sim::ImuTruth or an IMU truth on disk; the other functions accept both kinds alike.
+/// `imu` is a sim::ImuTruth or an IMU truth on disk; the other functions also accept both types.
 template <class Imu>
 std::string imu_truth_problem(const Imu& imu) {
   return first_of(

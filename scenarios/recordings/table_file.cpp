@@ -22,7 +22,7 @@ namespace {
 /// Write block size [bytes].
 constexpr std::size_t kBlock = 1 << 16;
 
-/// Returns true for the characters that may stand between numbers in a table of blanks, such as a TUM file.
+/// Returns true for the characters that may separate numbers in a table with blanks, such as a TUM file.
 bool is_separator(char c) {
   return c == '\t' || c == ',' || c == ';';
 }

@@ -29,7 +29,7 @@ struct Spread {
 
 /// Source of the `published` values. In the report, this text follows the word "beside".
 inline constexpr const char* kPublishedMotion =
-    "values of the published campaign of the rig (32 tumbles down a hill), and target of the scenario 'hill'";
+    "the published campaign of the rig (32 tumbles down a hill) and the target of the scenario 'hill'";
 
 /// Returns one spread per quantity and scenario, with scenarios in the order of the simulated runs. For a fraction of
 /// runs ("draws that clip the gyro"), the value of each run is 0 or 1. The median is then the fraction of runs, and the

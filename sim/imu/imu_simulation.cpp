@@ -218,7 +218,7 @@ void simulate_imu(const Truth& truth, const SensorSpec& sensor, const Eigen::Iso
     const BodyState after = state_at(truth, k);
     const Ideal step = ideal_between(before, after, T_BI, gravity_m_s2);
     before = after;
-    if (shares > 1) {  // the physics does not resolve its step: rate and force are those of the whole step
+    if (shares > 1) {  // within a physics step, all readings have the rate and force of the whole step
       for (int share = 1; share <= shares; ++share) {
         device.step(step);
         if (compass) compass->step(k);

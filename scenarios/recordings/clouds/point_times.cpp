@@ -35,7 +35,7 @@ constexpr double kEpochMin_s = 1e8;
 /// of the period and do not contradict a stated unit.
 constexpr double kPointsThatSpan = 100.0;
 
-/// Of this many clouds with absolute times, at least two start more than two periods after the clock's zero.
+/// Among this many clouds with absolute times, at least two clouds start more than two periods after time zero.
 constexpr std::size_t kCloudsToCompare = 5;
 
 std::string lower(std::string text) {
