@@ -27,7 +27,7 @@ struct Spread {
   double median = 0, quantile_05 = 0, quantile_95 = 0;
 };
 
-/// Source of the `published` values. In the report, this text follows the word "beside".
+/// Source of the `published` values. In the report, this text follows the words "compared with".
 inline constexpr const char* kPublishedMotion =
     "the published campaign of the rig (32 tumbles down a hill) and the target of the scenario 'hill'";
 
