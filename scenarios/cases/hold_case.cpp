@@ -91,8 +91,9 @@ CaseResult hold_case(const std::string& name, const Expectation& expected, const
     result.fault = fmt::format("fails with status '{}', but the accepted result has the status '{}'",
                                to_string(outcome.status), expected.status);
   } else if (expected.value.has_value() != result.value.has_value()) {
-    result.fault = expected.metric + (result.value ? " has no accepted value, but has the value " + four_digits(*result.value)
-                                                   : " has no value, but the accepted result has one");
+    result.fault =
+        expected.metric + (result.value ? " has no accepted value, but has the value " + four_digits(*result.value)
+                                        : " has no value, but the accepted result has one");
   } else if (result.value) {
     const MetricInfo& info = metric_info(expected.metric);
     const double was = *expected.value, is = *result.value;

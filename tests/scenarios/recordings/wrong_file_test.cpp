@@ -190,7 +190,7 @@ TEST_F(WrongFile, OthersNeedNotWriteADigest) {
 
 TEST_F(WrongFile, AttributesOfTheWrongKind) {
   put_attribute("sensors/imus/0", "period_ns", H5T_NATIVE_DOUBLE, 2.5e6);
-  EXPECT_THAT(sensors_complaint(), HasSubstr("/sensors/imus/0/period_ns: attribute must be an integer"));
+  EXPECT_THAT(sensors_complaint(), HasSubstr("/sensors/imus/0/period_ns: the attribute must be an integer"));
 }
 
 TEST_F(WrongFile, NegativeSeed) {
