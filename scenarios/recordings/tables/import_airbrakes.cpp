@@ -45,8 +45,8 @@ Eigen::Vector3d vector(const CsvLine& line, const Columns3& columns, const char*
 
 std::int64_t stamp_ns(const CsvLine& line, std::size_t column, std::size_t columns) {
   if (line.fields.size() != columns) {
-    throw BadInput(fmt::format("{}: the row has {} columns, but the header has {}; the numbers must be equal",
-                               line.where, line.fields.size(), columns));
+    throw BadInput(fmt::format("{}: has {} columns, but the header has {}; the numbers must be equal", line.where,
+                               line.fields.size(), columns));
   }
   const double time_s = csv_number(line, column, "timestamp_seconds");
   if (!(time_s >= 0.0 && time_s <= kAirbrakesStampMax_s)) {

@@ -57,8 +57,8 @@ struct Log {
 /// Returns names such as "Vicon Orientation/W"; the name of a group is above the group's first column.
 std::vector<std::string> column_names(const CsvLine& groups, const CsvLine& names) {
   if (groups.fields.size() != names.fields.size()) {
-    fail(names, fmt::format("the row has {} columns, but the line above has {}; the numbers must be equal",
-                            names.fields.size(), groups.fields.size()));
+    fail(names, fmt::format("has {} columns, but the line above has {}; the numbers must be equal", names.fields.size(),
+                            groups.fields.size()));
   }
   std::vector<std::string> full;
   std::string group;

@@ -135,7 +135,7 @@ TEST_F(LoggerTable, StatedUnitsAreBelieved) {
 TEST_F(LoggerTable, LinesOfAnotherWidthAreSaidBeforeTheirTimes) {
   EXPECT_THAT(complaint_of(table("time,gyro_x,gyro_y,gyro_z,acc_x,acc_y,acc_z", {"12,5", "12,505", "12,51"},
                                  ",0,1,0,2,0,3,-0,5,0,0,9,8")),
-              HasSubstr("csv:2: the row has 14 columns, but the first line has 7; the numbers must be equal"));
+              HasSubstr("csv:2: has 14 columns, but the first line has 7; the numbers must be equal"));
 }
 
 TEST_F(LoggerTable, WhatIsMissingOrThereTwiceIsSaid) {
