@@ -217,7 +217,7 @@ TEST_F(ImportSweeps, HostileInputIsOneClearLine) {
   put("2.ply", sweep());
   EXPECT_THAT(complaint_of(), HasSubstr("1.ply: neither the sweep nor its points have a time stamp"));
   put("times.txt", "1.0\n");
-  EXPECT_THAT(complaint_of(), HasSubstr("times.txt: holds 1 time stamps, but there are 2 sweeps"));
+  EXPECT_THAT(complaint_of(), HasSubstr("times.txt: contains 1 time stamps, but there are 2 sweeps"));
   put("times.txt", "# s\n1.1\n1.0\n");
   EXPECT_THAT(complaint_of(), HasSubstr("times.txt:3: the time stamp 1000000000 ns does not increase, because the "
                                         "previous time stamp is 1100000000"));

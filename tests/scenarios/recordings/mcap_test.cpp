@@ -183,7 +183,7 @@ const Lie kLies[] = {
     {"MessageOutsideOfItsChunk", [](McapShape& s) { s.chunk = [](mcap::Chunk& c) { ++c.message_start_time; }; },
      "a message has the time 1000000000 ns, but its chunk states times from 1000000001"},
     {"NumberOfMessages", [](McapShape& s) { s.counts = [](mcap::Statistics& c) { ++c.channel_message_counts[1]; }; },
-     "channel 1 holds 50 messages, but the summary states 51"},
+     "channel 1 contains 50 messages, but the summary states 51"},
     {"NameOfAPacking", [](McapShape& s) { s.compression = "brotli"; },
      "the compression 'brotli' of a chunk is not supported; supported: none, lz4 and zstd"},
     {"SizeOfAPlainChunk", [](McapShape& s) { s.chunk = [](mcap::Chunk& c) { ++c.uncompressed_size; }; },
