@@ -127,9 +127,9 @@ TEST_F(EstimateFile, ComplaintsNameFileAndLine) {
   EXPECT_NE(
       complaint(write("nan.tum", "0 1 2 3 0 0 0 1\n1 nan 2 3 0 0 0 1\n")).find("nan.tum:2: the pose is not finite"),
       std::string::npos);
-  EXPECT_NE(complaint(write("d.tum", "0 1 2 3 0 0 0 1e200\n")).find("d.tum:1: quaternion of norm 1e+200"),
+  EXPECT_NE(complaint(write("d.tum", "0 1 2 3 0 0 0 1e200\n")).find("d.tum:1: the quaternion has norm 1e+200"),
             std::string::npos);
-  EXPECT_NE(complaint(write("c.tum", "0 1 2 3 0 0 0 0\n")).find("c.tum:1: quaternion of norm"), std::string::npos);
+  EXPECT_NE(complaint(write("c.tum", "0 1 2 3 0 0 0 0\n")).find("c.tum:1: the quaternion has norm"), std::string::npos);
   EXPECT_NE(complaint(write("d.tum", "1 1 2 3 0 0 0 1\n1 1 2 3 0 0 0 1\n")).find("d.tum:2: time stamps must increase"),
             std::string::npos);
   EXPECT_NE(complaint(write("f.tum", "0 1 2 3 0 0 0 1\n1.-5 1 2 3 0 0 0 1\n")).find("f.tum:2: '1.-5' is not"),

@@ -193,14 +193,14 @@ TEST_F(ExternalMethod, NonsenseIsRefusedWithLineValueAndBound) {
   EXPECT_THAT(left("0.2 nan 0 0 0 0 0 1"), HasSubstr("poses.tum:3: the pose is not finite"));
   EXPECT_THAT(left("0.2 0 0 0 nan 0 0 1"), HasSubstr("poses.tum:3: the pose is not finite"));
   EXPECT_THAT(left("0.2 0 0 0 0 0 0 1e200"), HasSubstr("poses.tum:3: the quaternion has norm 1e+200; it must be 1"));
-  EXPECT_THAT(left("0.2 0 0 0 0 0 0 1e200", "attitude"), HasSubstr("poses.tum:3: quaternion of norm 1e+200"));
+  EXPECT_THAT(left("0.2 0 0 0 0 0 0 1e200", "attitude"), HasSubstr("poses.tum:3: the quaternion has norm 1e+200"));
   EXPECT_THAT(left("0.2 1e300 0 0 0 0 0 1"),
               HasSubstr("poses.tum:3: the position is (1e+300, 0, 0) m; it must be finite and within 1e+07 m"));
   EXPECT_THAT(left("1000000 0 0 0 0 0 0 1"),
               HasSubstr("poses.tum:3: the stamp is 1000000 s; it must be within -10 and"));
-  EXPECT_THAT(left("1000000 0 0 0 0 0 0 1", "attitude"), HasSubstr("poses.tum:3: stamp 1000000 s"));
+  EXPECT_THAT(left("1000000 0 0 0 0 0 0 1", "attitude"), HasSubstr("poses.tum:3: the stamp is 1000000 s"));
   EXPECT_THAT(refused(describe("position", "printf '%s\\n' '-1000000000 0 0 0 0 0 0 1' > {output}")),
-              HasSubstr("poses.tum:1: stamp -1e+09 s"));
+              HasSubstr("poses.tum:1: the stamp is -1e+09 s"));
   EXPECT_THAT(refused(describe("rate", kRawByAwk + "; sed -i '7s/,[^,]*/,nan/' {output}")),
               HasSubstr("rates.csv:7: rate (nan,"));
   EXPECT_THAT(refused(describe("rate", kRawByAwk + "; sed -i '7s/,[^,]*/,1e7/' {output}")), HasSubstr("1e+06 rad/s"));
