@@ -146,7 +146,9 @@ INSTANTIATE_TEST_SUITE_P(
               {"run", "roll", "--seed", "1", "--method", "slam/icp"},
               "does not support the robot 'sphere'"},
         Wrong{"a map without a lidar", {"run", "twirl", "--seed", "1", "--method", "slam/icp"}, "needs a lidar"},
-        Wrong{"output that is a device", {"record", "roll", "--seed", "1", "-o", "/dev/null"}, "not a regular file"},
+        Wrong{"output that is a device",
+              {"record", "roll", "--seed", "1", "-o", "/dev/null"},
+              "it must be a regular file"},
         Wrong{"render without seed", {"render", "hill", "-o", "x.png"}, "--seed"}));
 
 TEST(Message, IsOfALengthThatCanBeRead) {

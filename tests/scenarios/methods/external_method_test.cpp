@@ -202,7 +202,7 @@ TEST_F(ExternalMethod, NonsenseIsRefusedWithLineValueAndBound) {
   EXPECT_THAT(refused(describe("position", "printf '%s\\n' '-1000000000 0 0 0 0 0 0 1' > {output}")),
               HasSubstr("poses.tum:1: the stamp is -1e+09 s"));
   EXPECT_THAT(refused(describe("rate", kRawByAwk + "; sed -i '7s/,[^,]*/,nan/' {output}")),
-              HasSubstr("rates.csv:7: rate (nan,"));
+              HasSubstr("rates.csv:7: the rate is (nan,"));
   EXPECT_THAT(refused(describe("rate", kRawByAwk + "; sed -i '7s/,[^,]*/,1e7/' {output}")), HasSubstr("1e+06 rad/s"));
 }
 
