@@ -160,7 +160,7 @@ TEST_F(CloudFile, KittiBinOfOtherColumnsIsRefused) {
     EXPECT_THAT(complaint_of("a.bin", sweep_of<double>(columns)),
                 AllOf(HasSubstr("% of its numbers, read as float32, have a magnitude above 1e+07 or below 1e-20; at "
                                 "most 1 % may have this"),
-                      HasSubstr("they fit " + std::to_string(columns) + " columns of float64")));
+                      HasSubstr("the numbers match " + std::to_string(columns) + " columns of float64")));
   }
   // a point more, and the size is no multiple of 16 either
   EXPECT_THAT(
