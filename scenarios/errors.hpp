@@ -17,7 +17,7 @@ class BadInput : public std::runtime_error {
 /// Throws BadInput if the length of the array `place.field` differs from the length of the record's other arrays.
 inline void require_length(const std::string& place, const char* field, std::size_t found, std::size_t expected) {
   if (found == expected) return;
-  throw BadInput(place + "." + field + " has " + std::to_string(found) + " entries, must have " +
+  throw BadInput(place + "." + field + " has " + std::to_string(found) + " entries; it must have " +
                  std::to_string(expected));
 }
 

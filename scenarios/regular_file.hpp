@@ -20,7 +20,7 @@ inline std::filesystem::file_status require_file(const std::filesystem::path& pa
   // A dangling link, or a path with a file in place of a folder, also counts as missing.
   if (found.type() == std::filesystem::file_type::not_found) throw BadInput(path.string() + ": no such file");
   if (error) throw BadInput(path.string() + ": cannot be read: " + error.message());
-  if (std::filesystem::is_directory(found)) throw BadInput(path.string() + ": is a folder, must be a file");
+  if (std::filesystem::is_directory(found)) throw BadInput(path.string() + ": is a folder; it must be a file");
   return found;
 }
 
@@ -32,11 +32,11 @@ inline void require_regular_file(const std::filesystem::path& path) {
     case std::filesystem::file_type::regular:
       return;
     case std::filesystem::file_type::fifo:
-      throw BadInput(path.string() + ": is a pipe, must be a regular file");
+      throw BadInput(path.string() + ": is a pipe; it must be a regular file");
     case std::filesystem::file_type::socket:
-      throw BadInput(path.string() + ": is a socket, must be a regular file");
+      throw BadInput(path.string() + ": is a socket; it must be a regular file");
     default:
-      throw BadInput(path.string() + ": is a device, must be a regular file");
+      throw BadInput(path.string() + ": is a device; it must be a regular file");
   }
 }
 

@@ -69,13 +69,13 @@ Values resolve(const std::string& place, const Values& given, std::span<const Pa
     }
     if (!(value >= parameter->low && value <= parameter->high)) {
       std::ostringstream text;
-      text << place << "." << name << " is " << value << " " << parameter->unit << ", must be within ["
+      text << place << "." << name << " is " << value << " " << parameter->unit << "; it must be within ["
            << parameter->low << ", " << parameter->high << "]";
       throw InvalidSituation(text.str());
     }
     if (is_whole(name) && value != std::floor(value)) {
       std::ostringstream text;
-      text << place << "." << name << " is " << value << ", must be a whole number";
+      text << place << "." << name << " is " << value << "; it must be a whole number";
       throw InvalidSituation(text.str());
     }
     out.set(name, value);

@@ -32,19 +32,22 @@ void add_lidar(const SensorContext& context, Recording& recording) {
 
 const SensorType& imu_sensor() {
   static const SensorType kType{
-      {"imu", "gyroscope, accelerometer and optional magnetometer", imu_parameters()}, add_imu, check_imu_values};
+      {"imu", "IMU with gyro, accelerometer and optional magnetometer", imu_parameters()}, add_imu, check_imu_values};
   return kType;
 }
 
 const SensorType& spinning_lidar_sensor() {
   static const SensorType kType{
-      {"spinning_lidar", "column of lasers that rotates about an axis", spinning_lidar_parameters()}, add_lidar};
+      {"spinning_lidar", "lidar with a column of lasers that rotates about an axis", spinning_lidar_parameters()},
+      add_lidar};
   return kType;
 }
 
 const SensorType& rosette_lidar_sensor() {
   static const SensorType kType{
-      {"rosette_lidar", "rosette scanner with one or several adjacent units", rosette_lidar_parameters()}, add_lidar};
+      {"rosette_lidar", "lidar with a rosette pattern and one or several scanning units side by side",
+       rosette_lidar_parameters()},
+      add_lidar};
   return kType;
 }
 

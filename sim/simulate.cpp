@@ -26,7 +26,7 @@ Eigen::Isometry3d site_pose(const engine::World& world, const SensorSpec& sensor
   }
   if (model.site_bodyid[site] != world.robot_body) {
     throw InvalidSituation("sensors." + sensor.name + ": site '" + sensor.site +
-                           "' is not on the body that carries the sensors");
+                           "' is not on the body that carries the sensors; choose a site of that body");
   }
   const mjtNum* p = model.site_pos + 3 * site;
   const mjtNum* q = model.site_quat + 4 * site;

@@ -35,7 +35,7 @@ Component resolve_component(const std::string& what, const Component& component,
 }
 
 SensorSpec resolve_sensor(const SensorSpec& sensor) {
-  if (sensor.name.empty()) throw InvalidSituation("sensors: a sensor has no name");
+  if (sensor.name.empty()) throw InvalidSituation("sensors: a sensor has no name; give each sensor a name");
   const std::string place = "sensors." + sensor.name;
   if (sensor.site.empty()) throw InvalidSituation(place + ": no site given");
   SensorSpec out = sensor;
@@ -81,7 +81,7 @@ ResolvedSituation ResolvedSituation::without_sensors(const std::function<bool(co
 ResolvedSituation resolve(const Situation& situation) {
   if (!(situation.duration_s > 0.0 && situation.duration_s <= kDurationMax_s)) {
     std::ostringstream text;
-    text << "duration_s is " << situation.duration_s << " s, must be within (0, " << kDurationMax_s << "]";
+    text << "duration_s is " << situation.duration_s << " s; it must be within (0, " << kDurationMax_s << "]";
     throw InvalidSituation(text.str());
   }
   Situation out = situation;
@@ -92,7 +92,8 @@ ResolvedSituation resolve(const Situation& situation) {
   std::set<std::string> names;
   for (const SensorSpec& sensor : situation.sensors) {
     out.sensors.push_back(resolve_sensor(sensor));
-    if (!names.insert(sensor.name).second) throw InvalidSituation("sensors: two are named '" + sensor.name + "'");
+    if (!names.insert(sensor.name).second)
+      throw InvalidSituation("sensors: two sensors have the same name '" + sensor.name + "'");
   }
   return ResolvedSituation(std::move(out));
 }

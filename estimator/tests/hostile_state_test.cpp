@@ -134,7 +134,7 @@ TYPED_TEST(HostileState, CutAnywhereIsRefused) {
   longer.push_back(std::byte{0});
   EXPECT_FALSE(estimator.load(longer).ok());
   reseal(longer);
-  EXPECT_STREQ(estimator.load(longer).field, "bytes after the state");
+  EXPECT_STREQ(estimator.load(longer).field, "number of bytes after the saved state");
   ASSERT_TRUE(estimator.load(saved).ok()) << "negative control";
   EXPECT_EQ(estimator.save(), saved);
   EXPECT_FALSE(estimator.load(longer).ok());
@@ -162,11 +162,11 @@ TYPED_TEST(HostileState, TheHeaderSaysWhatIsWrong) {
     reseal(changed);
     return std::string(estimator.load(changed).field);
   };
-  EXPECT_EQ(field_with(0, 'T'), "magic of the state");
-  EXPECT_EQ(field_with(8, 99), "version of the state");
-  EXPECT_EQ(field_with(12, 99), "kind of the state");
+  EXPECT_EQ(field_with(0, 'T'), "magic number of the saved state");
+  EXPECT_EQ(field_with(8, 99), "version of the saved state");
+  EXPECT_EQ(field_with(12, 99), "kind of the saved state");
   // whatever it is: a layout may have any byte
-  EXPECT_EQ(field_with(16, static_cast<std::uint8_t>(saved[16]) ^ 0x5au), "layout of the state");
+  EXPECT_EQ(field_with(16, static_cast<std::uint8_t>(saved[16]) ^ 0x5au), "layout of the saved state");
 }
 
 /// With a valid checksum, load() cannot detect every change: an accepted state saves the same bytes again, and

@@ -178,7 +178,7 @@ std::vector<ImuSample> at_rest(double unit_m_s2, double seconds) {
   return imu;
 }
 
-constexpr const char* kUnit = "accelerometer unit: specific force at rest as a share of gravity";
+constexpr const char* kUnit = "accelerometer unit: specific force at rest (share of gravity)";
 constexpr double kOneG = 9.80665;
 
 TEST(AccelerometerUnit, IsReportedByTumblingOdometryWithinTwoSeconds) {

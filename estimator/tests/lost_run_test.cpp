@@ -40,7 +40,7 @@ TEST(TumblingOdometry, DoubtsAPlaceThatInertiaAloneHasFound) {
   body.end_s = 9.0;
   run(body, 1.0, body.end_s, lost);
   const Status health = lost.health();
-  EXPECT_STREQ(health.field, "standard deviation of the position in the map");
+  EXPECT_STREQ(health.field, "standard deviation in m of the position in the map");
   EXPECT_GT(health.value, health.bound);
   EXPECT_EQ(health.bound, params_of(body).expert.mapping.expert.matching.distance_m);
   // one that wakes up from its bytes knows it too; the run has ended, its second pass with it
@@ -63,7 +63,7 @@ TEST(TumblingOdometry, DoubtsACalibrationThatMovedFurtherThanWasGiven) {
   run(body, 0.0, 0.0, far);
   const Status health = far.health();
   EXPECT_EQ(health.trouble, Trouble::out_of_range);
-  EXPECT_NE(health.message().find("calibration of lidar and IMU"), std::string::npos) << health.message();
+  EXPECT_NE(health.message().find("change of the lidar-IMU calibration"), std::string::npos) << health.message();
   EXPECT_GT(health.value, StatedCalibration::kMaxDeviations);
 }
 

@@ -143,7 +143,7 @@ TEST(RollingOdometry, AUnitOfWhichAnAxisFreezesIsLeftOutAndNamed) {
   units[1] = frozen_y(units[1]);
   for (std::size_t k = 0; k < units[0].size(); ++k)
     ASSERT_TRUE(harmed.add_imus(std::vector<ImuSample>{units[0][k], units[1][k], units[2][k]}).ok());
-  EXPECT_NE(harmed.health().message().find("unit 2's gyro y"), std::string::npos) << harmed.health().message();
+  EXPECT_NE(harmed.health().message().find("gyro y of IMU 2"), std::string::npos) << harmed.health().message();
   EXPECT_NEAR(sound.newest()->pose.p_WA_m.x(), kPathLength_m, 0.02 * kPathLength_m);
   EXPECT_NEAR(harmed.newest()->pose.p_WA_m.x(), kPathLength_m, 0.05 * kPathLength_m);
 }
@@ -155,7 +155,7 @@ TEST(RollingOdometry, TheOnlyUnitIsRefusedWithTheNameOfItsFrozenAxis) {
     if (!(status = odometry.add_imu(sample)).ok()) break;
   }
   EXPECT_EQ(status.trouble, Trouble::out_of_range);
-  EXPECT_NE(status.message().find("unit 1's gyro y"), std::string::npos) << status.message();
+  EXPECT_NE(status.message().find("gyro y of IMU 1"), std::string::npos) << status.message();
   EXPECT_EQ(odometry.health().message(), status.message());
 }
 

@@ -98,9 +98,9 @@ TEST(SavedStreams, OtherParametersAndStreamsAreNamed) {
   const std::vector<std::byte> saved = Kept<RateStream>(params).save();
   params.lag_s = 0.2;
   EXPECT_STREQ(Kept<RateStream>(params).load(saved).field, "lag_s");
-  EXPECT_STREQ(Kept<CarriedStream>().load(saved).field, "kind of the state");
+  EXPECT_STREQ(Kept<CarriedStream>().load(saved).field, "kind of the saved state");
   RateStream::Params restored;
-  EXPECT_STREQ(saved_params<RateStream>(Kept<RegimeStream>().save(), restored).field, "kind of the state");
+  EXPECT_STREQ(saved_params<RateStream>(Kept<RegimeStream>().save(), restored).field, "kind of the saved state");
 }
 
 /// Checks that an estimator can be constructed from its saved bytes alone.

@@ -125,7 +125,7 @@ def test_other_parameters_are_named(samples):
     with pytest.raises(tumble.TumbleError) as caught:
         tumble.RateStream(lever_arm_m=LEVER, lag_s=0.3).load(saved)
     assert (caught.value.trouble, caught.value.field, caught.value.value, caught.value.bound) == ("out_of_range", "lag_s", 0.2, 0.3)
-    with pytest.raises(tumble.TumbleError, match="kind of the state"):
+    with pytest.raises(tumble.TumbleError, match="kind of the saved state"):
         tumble.RegimeStream(lever_arm_m=LEVER).load(saved)
 
 

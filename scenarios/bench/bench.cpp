@@ -101,7 +101,8 @@ BenchResult collect_bench_result(const Results& results, const Suite& suite, con
 void add_published(std::span<const BenchResult> published, Results& results) {
   results.in_one_transaction([&] {
     for (const BenchResult& result : published) {
-      const std::string origin = fmt::format("published result of build {}, {}", result.build, result.date);
+      const std::string origin =
+          fmt::format("this is a published result of build {} from {}", result.build, result.date);
       results.set_note(method_note(result.kind, result.method), origin);
       for (const BenchDraw& draw : result.draws) {
         Outcome outcome;
@@ -124,12 +125,13 @@ void require_of_suite(const BenchResult& result, const Suite& suite) {
   const std::string digest = bench_suite_digest(suite);
   const std::string whose = full_name(result.kind, result.method);
   if (result.suite != suite.name || result.suite_digest != digest)
-    throw BadInput(fmt::format(
-        "{} belongs to suite {} {}; it must belong to suite {} {}: results of two suites cannot be compared", whose,
-        result.suite, result.suite_digest, suite.name, digest));
+    throw BadInput(
+        fmt::format("{} belongs to suite {} (digest {}); it must belong to suite {} (digest {}), because results of "
+                    "two suites cannot be compared",
+                    whose, result.suite, result.suite_digest, suite.name, digest));
   const std::vector<BenchDraw> draws = draws_of(suite);
   if (result.draws.size() != draws.size())
-    throw BadInput(fmt::format("{} has {} draws, must have {}", whose, result.draws.size(), draws.size()));
+    throw BadInput(fmt::format("{} has {} draws; it must have {}", whose, result.draws.size(), draws.size()));
   for (const BenchDraw& draw : draws)
     if (result.find(draw) == nullptr) throw BadInput(whose + " has no draw " + name_of(draw));
 }

@@ -57,10 +57,10 @@ BenchDraw draw_from(const ordered_json& node) {
 
 BenchResult result_from(const ordered_json& node) {
   if (!node.is_object() || node.value("format", "") != kFormat)
-    throw BadInput(std::string("this is not a line of format '") + kFormat + "'");
+    throw BadInput(std::string("this line does not have the format '") + kFormat + "'");
   const ordered_json version = node.value("format_version", ordered_json());
   if (version != kBenchFormatVersion)
-    throw BadInput(fmt::format("format_version {}, must be {}", version.dump(), kBenchFormatVersion));
+    throw BadInput(fmt::format("format_version is {}; it must be {}", version.dump(), kBenchFormatVersion));
   BenchResult result;
   const auto text = [&](const char* key) { return node.at(key).get<std::string>(); };
   result.suite = text("suite");
@@ -74,7 +74,8 @@ BenchResult result_from(const ordered_json& node) {
   result.date = text("date");
   for (const ordered_json& each : node.at("draws")) {
     BenchDraw draw = draw_from(each);
-    if (result.find(draw) != nullptr) throw BadInput(fmt::format("draw {} {} occurs twice", draw.scenario, draw.seed));
+    if (result.find(draw) != nullptr)
+      throw BadInput(fmt::format("draw {} {} occurs twice; each draw may occur once", draw.scenario, draw.seed));
     result.draws.push_back(std::move(draw));
   }
   return result;

@@ -37,10 +37,10 @@ std::string doc_of(const Shrunk& shrunk, const std::string& method, const std::s
     else
       needed += (needed.empty() ? "" : ", ") + line.what;
   }
-  std::string doc =
-      fmt::format("{}, {}, on draw {} of {} in simplified form; it still needs {}", method, shrunk.failure, seed,
-                  scenario, needed.empty() ? "no part that can be removed alone" : needed);
-  if (not_tried > 0) doc += "; " + std::to_string(not_tried) + " more parts were not tried";
+  std::string doc = fmt::format(
+      "The method {} fails ({}) on a simplified form of draw {} of scenario {}. The failure still needs: {}", method,
+      shrunk.failure, seed, scenario, needed.empty() ? "no part that can be removed on its own" : needed);
+  if (not_tried > 0) doc += "; " + std::to_string(not_tried) + " other parts were not tried";
   return doc + ".";
 }
 
@@ -83,22 +83,23 @@ CaseResult hold_case(const std::string& name, const Expectation& expected, const
   }
   const auto is_better = [&](const std::string& what) {
     result.better = true;
-    result.fault = what + ": run again with '--accept' to store the new result";
+    result.fault = what + "; run the command again with '--accept' to store the new result";
   };
   if (!result.fails) {
     is_better("cured: " + how_it_fails(result));
   } else if (to_string(outcome.status) != expected.status) {
-    result.fault =
-        fmt::format("fails with status {}; the accepted status was {}", to_string(outcome.status), expected.status);
+    result.fault = fmt::format("fails with status '{}', but the accepted result has the status '{}'",
+                               to_string(outcome.status), expected.status);
   } else if (expected.value.has_value() != result.value.has_value()) {
     result.fault =
-        expected.metric + (result.value ? " now has a value: " + four_digits(*result.value) : " no longer has a value");
+        expected.metric + (result.value ? " has no accepted value, but has the value " + four_digits(*result.value)
+                                        : " has no value, but the accepted result has one");
   } else if (result.value) {
     const MetricInfo& info = metric_info(expected.metric);
     const double was = *expected.value, is = *result.value;
     const bool within = std::abs(is) <= kCaseFactor * std::abs(was) && std::abs(was) <= kCaseFactor * std::abs(is);
     const std::string what =
-        fmt::format("{} is {}; the accepted value was {}", expected.metric, four_digits(is), four_digits(was));
+        fmt::format("{} is {}, but the accepted value is {}", expected.metric, four_digits(is), four_digits(was));
     if (!within && tumble::scenarios::is_better(info, is, was)) is_better("better: " + what);
     if (!within && !result.better) result.fault = what;
   }
@@ -119,7 +120,7 @@ void require_known(const Scenario& scenario) {
     const std::string place = scenario.file + ": expect: ";
     const std::vector<MethodPointer> found = find_methods(expected.method);
     if (found.size() != 1)
-      throw BadInput(place + "'" + expected.method + "' matches several methods; name one, for example 'slam/NAME'");
+      throw BadInput(place + "'" + expected.method + "' must name exactly one method, for example 'slam/NAME'");
     if (!outcome_status_named(expected.status)) throw BadInput(place + "unknown status '" + expected.status + "'");
     const auto known = metrics();
     const auto is_it = [&](const Metric& metric) {

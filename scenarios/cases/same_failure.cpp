@@ -23,7 +23,8 @@ bool is_beyond(const Outcome& outcome, const std::string& metric, double limit) 
 
 SameFailure::SameFailure(const Failure& failure, const Outcome& outcome) : status_(outcome.status) {
   if (status_ == OutcomeStatus::killed)
-    throw BadInput("the machine ended the run, so the run gives no result for the method: " + outcome.message);
+    throw BadInput("the machine ended the run (status 'killed'), so the run gives no result for the method: " +
+                   outcome.message);
   if (status_ != OutcomeStatus::ok) return;
   if (!failure.metric.empty() && is_beyond(outcome, failure.metric, failure.limit)) {
     metric_ = failure.metric;
@@ -38,12 +39,12 @@ SameFailure::SameFailure(const Failure& failure, const Outcome& outcome) : statu
     return;
   }
   std::ostringstream text;
-  text << "the run does not fail: its status is ok, and no metric fails";
+  text << "the run does not fail: its status is 'ok', and no metric fails";
   if (!failure.metric.empty()) {
     const Score* const score = find_score(outcome.scores, failure.metric);
     text << ", " << failure.metric << " is ";
     if (score != nullptr) {
-      text << score->value << "; it is not worse than " << failure.limit;
+      text << score->value << ", which is not worse than the limit " << failure.limit;
     } else {
       text << "missing";
     }

@@ -119,9 +119,9 @@ class Shrinking {
   /// Returns why the failure of a run differs from the failure of the original run. Empty if both failures are equal.
   std::string other_cause(const Run& run) const {
     if (shrunk_.controlled && options_.failure.holds(run.outcome(*options_.control, options_.timeout_s)))
-      return "the control method fails too: " + options_.control->info.name;
+      return "the control method also fails: " + options_.control->info.name;
     if (cure_ != nullptr && !run.is_cured(*cure_, method_, options_))
-      return "another cause: the true input " + cure_->name + " does not cure it";
+      return "the failure has another cause: the true input " + cure_->name + " does not cure the failure";
     return "";
   }
 
@@ -250,9 +250,9 @@ Shrunk shrink(const DataRoot& data, const Scenario& scenario, std::uint64_t seed
   if (options.control) {
     require_applies(*options.control, scenario);
     if (options.control->info.kind != method.info.kind)
-      throw BadInput(fmt::format("the control '{}' is of kind {}; it must be of the method's kind, {}",
-                                 options.control->info.name, to_string(options.control->info.kind),
-                                 to_string(method.info.kind)));
+      throw BadInput(
+          fmt::format("the control method '{}' is of kind {}; it must be of kind {}, like the failing method",
+                      options.control->info.name, to_string(options.control->info.kind), to_string(method.info.kind)));
   }
   return Shrinking(data, scenario, seed, method, options).run();
 }

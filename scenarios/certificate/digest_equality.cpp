@@ -67,7 +67,7 @@ std::vector<CertificateEntry> certify_digests(const CertificateInput& input, con
   order += digest_of(input, first_again, 1) != first_forward ? 1 : 0;
   std::vector<CertificateEntry> entries = {
       entry("digest_threads", setup.scenario,
-            "runs with 2 and 4 threads give the same bits as with 1: number of different digests", threads),
+            "runs with 2 and 4 threads give the same bits as runs with 1 thread: number of different digests", threads),
       entry("digest_order", setup.scenario + ", " + setup.other_scenario,
             "draws simulated in reverse order give the same bits: number of different digests", order)};
 

@@ -21,8 +21,9 @@ std::vector<CertificateEntry> certify_free_fall(const CertificateInput& input, c
   // The first step that ends in contact ends at most one step after the sphere touches the floor. Because of rounding,
   // the step may end exactly at the touch.
   return {{"free_fall_time", "sphere",
-           "a drop from height h takes sqrt(2 h / g): time of first contact minus this, in steps of the engine", "1",
-           (touched_s - expected_s) / trial.step_s(), -0.01, 1.01, ""}};
+           "a fall from height h takes sqrt(2 h / g): time of the first contact minus this time, in steps of the "
+           "physics engine",
+           "1", (touched_s - expected_s) / trial.step_s(), -0.01, 1.01, ""}};
 }
 
 }  // namespace tumble::scenarios

@@ -26,11 +26,11 @@ std::vector<CertificateEntry> certify_free_flight(const CertificateInput& input,
   }
   // With RK4 at steps of 0.5 ms, the measured changes are 1e-15 and 2e-7.
   return {
-      {"free_flight_energy", "rig", "a torque-free body keeps its rotational energy: largest relative change in 5 s",
+      {"free_flight_energy", "rig", "a body without torque keeps its rotational energy: maximum relative change in 5 s",
        "1", energy_drift, 0.0, 1e-8, ""},
       {"free_flight_momentum", "rig",
-       "a torque-free body keeps its angular momentum in W: largest relative change in 5 s", "1", momentum_drift, 0.0,
-       1e-5, ""}};
+       "a body without torque keeps its angular momentum in the world frame: maximum relative change in 5 s", "1",
+       momentum_drift, 0.0, 1e-5, ""}};
 }
 
 }  // namespace tumble::scenarios

@@ -105,17 +105,18 @@ std::vector<CertificateEntry> entries_of(const std::string& subject, const State
   // The bias instability is constant for averaging times up to half of its longest correlation time.
   const sim::AllanPoint& floor = sim::nearest_point(curve, stated.bias.in_run_s / 10.0);
   std::vector<CertificateEntry> entries = {
-      entry("imu_white_noise", subject, "Allan deviation at rest at 0.1 s: ratio to the data sheet", white,
+      entry("imu_white_noise", subject, "white noise at rest, Allan deviation at 0.1 s: ratio to the data sheet", white,
             stated.all(white.tau_s), sim::AllanNoise::white),
       entry(
           "imu_bias_instability", subject,
-          "Allan deviation at rest on the flat part, at a tenth of the bias correlation time: ratio to the data sheet",
+          "bias instability at rest, Allan deviation at a tenth of the bias correlation time: ratio to the data sheet",
           floor, stated.all(floor.tau_s), sim::AllanNoise::flicker)};
   if (stated.bias.walk_sqrt_s > 0.0) {
     const sim::AllanPoint& long_walk = sim::nearest_point(walk, 10.0);
-    entries.push_back(entry("imu_bias_walk", subject,
-                            "Allan deviation at rest of the bias random walk alone, at 10 s: ratio to the data sheet",
-                            long_walk, stated.walk(long_walk.tau_s), sim::AllanNoise::walk));
+    entries.push_back(
+        entry("imu_bias_walk", subject,
+              "bias random walk at rest, Allan deviation of this part alone at 10 s: ratio to the data sheet",
+              long_walk, stated.walk(long_walk.tau_s), sim::AllanNoise::walk));
   }
   return entries;
 }

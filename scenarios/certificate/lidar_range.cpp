@@ -85,7 +85,7 @@ std::vector<CertificateEntry> certify_lidar_range(const CertificateInput& input,
     CertificateEntry entry{
         "lidar_range_analytic",
         device,
-        "each point of a moving noise-free lidar lies on the plane that the beam hit: largest distance",
+        "each point of a moving lidar without noise is on the plane that the beam hit: maximum distance",
         "m",
         errors.largest_m,
         0.0,

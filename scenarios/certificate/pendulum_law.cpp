@@ -139,7 +139,7 @@ CertificateEntry energy(const CertificateInput& input, const PendulumSetup& setu
   }
   return {"pendulum_energy",
           "pendulum",
-          "a pendulum without friction keeps its energy above rest: largest relative change in 5 s",
+          "a pendulum without friction keeps its energy: maximum change in 5 s, relative to the energy above rest",
           "1",
           drift,
           0.0,
@@ -182,7 +182,7 @@ CertificateEntry periods(const CertificateInput& input, const PendulumSetup& set
   // pendulum, and about fifty times larger for the higher modes.
   return {"pendulum_period",
           "pendulum",
-          "periods of the three small oscillations equal their closed form: largest relative difference",
+          "the periods of the three small oscillations equal their closed form: maximum relative difference",
           "1",
           worst,
           0.0,
@@ -247,7 +247,7 @@ CertificateEntry force(const CertificateInput& input, const PendulumSetup& setup
   // a few parts in 1e8.
   return {"pendulum_specific_force",
           "pendulum",
-          "an ideal accelerometer on the lowest segment agrees with Lagrange's equations: largest difference",
+          "an ideal accelerometer on the lowest segment agrees with Lagrange's equations: maximum difference",
           "m/s^2",
           largest_m_s2,
           0.0,

@@ -76,12 +76,13 @@ std::vector<CertificateEntry> certify_tilted_rail(const CertificateInput& input,
     const std::string note = enough ? "" : "an element has fewer than 10 fully clipped samples of one sign";
     const double none = std::nan("");
     // The law is exact; rounding causes the measured error of 1e-15.
-    entries.push_back({"tilted_rail_slope", subject,
-                       "clipped readings of drawn devices lie on the planes of their elements: largest slope error",
-                       "1", enough ? errors.slope : none, 0.0, 1e-9, note});
+    entries.push_back(
+        {"tilted_rail_slope", subject,
+         "clipped readings of simulated devices are on the saturation planes of their elements: maximum slope error",
+         "1", enough ? errors.slope : none, 0.0, 1e-9, note});
     entries.push_back({"tilted_rail_distance", subject,
-                       "clipped readings of drawn devices lie on the planes of their elements: largest error of "
-                       "distance and offset, divided by the rail",
+                       "clipped readings of simulated devices are on the saturation planes of their elements: maximum "
+                       "error of distance and offset, relative to the saturation limit",
                        "1", enough ? errors.distance_share : none, 0.0, 1e-9, note});
   }
   return entries;

@@ -21,7 +21,7 @@ Expectation expectation_from(const YamlNode& node) {
   out.method = fields.at("method").text();
   const std::string run = fields.at("run").text();
   if (run != kFails && run != kHolds) {
-    fields.at("run").fail("is '" + run + "', must be '" + kFails + "' or '" + kHolds + "'");
+    fields.at("run").fail("is '" + run + "'; it must be '" + kFails + "' or '" + kHolds + "'");
   }
   out.fails = run == kFails;
   out.status = fields.at("status").identifier();

@@ -16,11 +16,11 @@ DataSheet::Entry parse_entry(const std::string& name, const YamlNode& node, cons
   const auto fields = node.fields(kKeys);
   DataSheet::Entry entry{name, fields.at("value").number(), fields.at("unit").text(), fields.at("source").text()};
   if (entry.unit != parameter.unit) {
-    fields.at("unit").fail(fmt::format("is '{}', must be '{}'", entry.unit, parameter.unit));
+    fields.at("unit").fail(fmt::format("is '{}'; it must be '{}'", entry.unit, parameter.unit));
   }
   if (!(entry.value >= parameter.low && entry.value <= parameter.high)) {
     std::ostringstream text;
-    text << "is " << entry.value << " " << parameter.unit << ", must be within [" << parameter.low << ", "
+    text << "is " << entry.value << " " << parameter.unit << "; it must be within [" << parameter.low << ", "
          << parameter.high << "]";
     fields.at("value").fail(text.str());
   }

@@ -32,7 +32,7 @@ std::string count_problem(const Distribution& d) {
     case Shape::normal:
       return n == 2 || n == 4 ? "" : "normal needs [mean, sigma] or [mean, sigma, low, high]";
     case Shape::choice:
-      return n >= 1 ? "" : "choice needs at least one value";
+      return n >= 1 ? "" : "choice must list at least one value";
   }
   return "unknown shape";
 }
@@ -56,7 +56,8 @@ std::string normal_problem(const std::vector<double>& numbers) {
     if (const std::string problem = range_problem(low, high); !problem.empty()) return problem;
     const double kept = sigma > 0.0 ? normal_below((high - mean) / sigma) - normal_below((low - mean) / sigma)
                                     : (mean >= low && mean <= high ? 1.0 : 0.0);
-    if (!(kept >= kLeastKept)) text << "[" << low << ", " << high << "] keeps less than 1 % of the normal distribution";
+    if (!(kept >= kLeastKept))
+      text << "[" << low << ", " << high << "] contains less than 1 % of the normal distribution; widen [low, high]";
   }
   return text.str();
 }

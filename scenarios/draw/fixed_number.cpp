@@ -22,8 +22,8 @@ using Numbers = std::map<std::string, Distribution>;
 Distribution constant(const Scenario& scenario, const std::string& key, double value, const sim::Parameter& parameter) {
   if (!(value >= parameter.low && value <= parameter.high)) {
     std::ostringstream text;
-    text << "is " << value << " " << parameter.unit << ", must be within [" << parameter.low << ", " << parameter.high
-         << "]";
+    text << "is " << value << " " << parameter.unit << "; it must be within [" << parameter.low << ", "
+         << parameter.high << "]";
     fail(scenario, key, text.str());
   }
   return {Distribution::Shape::constant, {value}, 0};
@@ -80,7 +80,7 @@ void fix_number(Scenario& scenario, const std::string& key, double value) {
   } else if (place == "sensors") {
     fix_of_sensor(scenario, key, rest, value, registry);
   } else {
-    fail(scenario, key, "no number has the key '" + place + "'" + suggestion(place, kPlaces));
+    fail(scenario, key, "the scenario has no number with the key '" + place + "'" + suggestion(place, kPlaces));
   }
 }
 

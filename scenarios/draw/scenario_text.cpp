@@ -49,7 +49,7 @@ Distribution parse_checked(const YamlNode& node, const sim::Parameter& parameter
     if (point >= parameter.low && point <= parameter.high) continue;
     std::ostringstream text;
     text << (out.shape == Shape::constant ? "is " : "can reach ") << point << " " << parameter.unit
-         << ", must be within [" << parameter.low << ", " << parameter.high << "]";
+         << "; it must be within [" << parameter.low << ", " << parameter.high << "]";
     node.fail(text.str());
   }
   return out;

@@ -135,7 +135,7 @@ std::string YamlNode::identifier() const {
     fail("'" + name + "' must be a lower-case letter followed by letters, digits and underscores");
   }
   if (name.size() > kIdentifierMax) {
-    fail(fmt::format("has {} characters, must be at most {}", name.size(), kIdentifierMax));
+    fail(fmt::format("has {} characters; it must have at most {}", name.size(), kIdentifierMax));
   }
   return name;
 }

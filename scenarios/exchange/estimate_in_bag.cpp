@@ -32,12 +32,11 @@ Eigen::Isometry3d mounting_of(const Estimate& estimate, const sim::Sensors& sens
       T_BA.translation() = truth != nullptr ? truth->p_BG_m : estimate.centre_B_m;
       break;
     case Frame::imu:
-      if (sensors.imus.empty())
-        throw BadInput("the poses of the estimate are those of an IMU, but the recording has no IMU");
+      if (sensors.imus.empty()) throw BadInput("the estimate contains poses of an IMU, but the recording has no IMU");
       return sensors.imus.front().T_BI;
     case Frame::lidar:
       if (sensors.lidars.empty())
-        throw BadInput("the poses of the estimate are those of a lidar, but the recording has no lidar");
+        throw BadInput("the estimate contains poses of a lidar, but the recording has no lidar");
       return sensors.lidars.front().T_BL;
   }
   return T_BA;
@@ -55,7 +54,8 @@ Alignment alignment_of(const Estimate& estimate, const StoredTruth* truth) {
     const std::int64_t after_ns = pose.time_ns % truth->period_ns;
     if (track.covers(after_ns)) return Alignment::at(pose, track.pose(after_ns));
   }
-  throw BadInput("the truth has no position at any time of the estimate's poses; check that both use the same clock");
+  throw BadInput(
+      "the truth covers none of the times of the estimate's poses; check that truth and estimate use the same clock");
 }
 
 Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
@@ -149,9 +149,10 @@ void add_clouds(const sim::Sensors& sensors, const std::vector<PointStore>* poin
 void require_own(const std::filesystem::path& path, const std::string& own) {
   const std::string made_from = estimated_sensors(path);
   if (made_from.empty() || made_from == own) return;
-  throw BadInput(fmt::format(
-      "the estimate was made from another recording (digest of its sensors: {}; digest of this recording: {})",
-      made_from, own));
+  throw BadInput(
+      fmt::format("the estimate was made from another recording (digest of that recording: {}; digest of this "
+                  "recording: {}); use the recording that the estimate was made from",
+                  made_from, own));
 }
 
 /// Converts a method name such as "slam/tumble" to a name that ROS accepts for topics and frames.
@@ -168,9 +169,8 @@ BagTrack in_bag(const std::string& name, const Estimate& estimate, const sim::Se
                 const std::vector<PointStore>* points, const StoredTruth* truth) {
   if (estimate.poses.empty())
     throw BadInput(
-        "the estimate contains no poses, so nothing can be added to the bag: rates and attitudes have no message in "
-        "it; "
-        "choose an estimate of a position or slam method");
+        "the estimate contains no poses, and a bag cannot store rates or attitudes alone; choose an estimate of a "
+        "position or slam method");
   const Eigen::Isometry3d T_AB = mounting_of(estimate, sensors, truth).inverse();
   const Alignment alignment = alignment_of(estimate, truth);
   BagTrack out;

@@ -23,7 +23,7 @@ std::string labels_text(const AxisLabels& labels) {
   }
   return fmt::format(
       "caution: gravity in the accelerometer rotates as if the accelerometer's axes x, y, z were the axes {}{}; check "
-      "the signs and the order of the axes",
+      "the signs and the order of the axes in the driver",
       axes.text(), labels.gyro_flipped ? " of a gyro with opposite sign" : " of the gyro");
 }
 
@@ -40,7 +40,7 @@ std::string imu_note(const sim::ImuRecord& imu, double gravity_m_s2) {
   for (const ImuSample& sample : samples) plausibility.step(sample, state);
   if (const double frozen_s = plausibility.frozen_s(state); frozen_s > 0.0)
     return fmt::format(
-        "caution: gyro or accelerometer repeats exactly the same reading for {} s; the sensor may be frozen",
+        "caution: the gyro or the accelerometer repeats exactly the same reading for {} s; the sensor may be frozen",
         rounded(frozen_s));
   if (const std::optional<AxisLabels> labels = plausibility.better_axis_labels(state)) return labels_text(*labels);
   const Status verdict = plausibility.verdict(state);

@@ -194,9 +194,8 @@ std::string pairs_text(const RotationAgreement& found) {
 std::string unit_text(const std::string& where, const RotationAgreement& found, GyroUnit unit) {
   const bool degrees = unit == GyroUnit::deg_s;
   const std::string read = fmt::format(
-      "with rates in {}, the lidar's rotation is {} times the gyro's rotation, accurate to {}{}; the ratio must be "
-      "within 0.5 "
-      "and 2",
+      "if the rates are in {}, the lidar rotates {} times as far as the gyro (accurate to {}){}; this ratio must be "
+      "within 0.5 and 2",
       degrees ? "deg/s" : "rad/s", rounded(found.unit), percent(found.unit_error), pairs_text(found));
   if ((found.unit < 1.0) == degrees) return "caution: " + read;
   const std::string fits = degrees ? "rad/s" : "deg/s";
@@ -206,30 +205,32 @@ std::string unit_text(const std::string& where, const RotationAgreement& found, 
 std::string delay_text(const RotationAgreement& found) {
   if (std::abs(found.delay_s) < kDelaySaid_s) return "";
   return fmt::format(
-      "caution: the lidar's rotation follows the gyro's {}{}; check that both use one clock and that sweep stamps are "
-      "start times. With this delay removed, ",
+      "caution: the lidar's rotation follows the gyro's rotation {}{}; check that both use one clock and that sweep "
+      "stamps are start times. After removal of this delay, ",
       rounded(std::abs(found.delay_s)), found.delay_s > 0.0 ? " s later" : " s earlier");
 }
 
 std::string axes_text(const RotationAgreement& found) {
   if (found.error_as_read <= kAgrees && kConclusive * found.error_as_read <= found.axes_error) {
-    return fmt::format(
-        "the lidar's rotation equals the gyro's{}, within {}{}", pairs_text(found), percent(found.error_as_read),
-        kConclusive * found.next_error > found.axes_error ? ": units, signs and axes agree"
-                                                          : ": units agree; this motion cannot distinguish all axes");
+    return fmt::format("the rotations of lidar and gyro agree{} within {}{}", pairs_text(found),
+                       percent(found.error_as_read),
+                       kConclusive * found.next_error > found.axes_error
+                           ? ": units, signs and axes agree"
+                           : ": units agree; this motion does not suffice to check all axes");
   }
   const std::string off =
-      fmt::format("caution: the lidar's rotation differs from the gyro's{} (difference {}); it would agree if ",
+      fmt::format("caution: the rotations of lidar and gyro differ{} (difference {}). They would agree if ",
                   pairs_text(found), percent(found.error_as_read));
   if (found.axes_error <= kAgrees) {
     return fmt::format(
-        "{}the lidar's axes were {} (difference {}); check the signs and order of the axes, and the mounting", off,
+        "{}the lidar's axes were {} (difference {}). Check the signs and order of the axes, and the mounting", off,
         found.axes.text(), percent(found.axes_error));
   }
   const Eigen::Quaterniond& q = found.turned;
   return fmt::format(
-      "{}the lidar were rotated by the quaternion x y z w {} {} {} {} (difference {}); check the mounting", off,
-      rounded(q.x()), rounded(q.y()), rounded(q.z()), rounded(q.w()), percent(found.turned_error));
+      "{}the lidar's orientation relative to the IMU were the quaternion x y z w {} {} {} {} (difference {}). Check "
+      "the mounting",
+      off, rounded(q.x()), rounded(q.y()), rounded(q.z()), rounded(q.w()), percent(found.turned_error));
 }
 
 }  // namespace

@@ -41,7 +41,8 @@ std::string unit_like(std::string_view unit, double times) {
   constexpr double kFactor = 5.0;  // an answer may cover only a part of the recording
   for (const auto& [name, length_s] : kUnits) {
     const double share = times * length_s / asked_s;  // fraction of the recording if the stamps had this unit
-    if (unit != name && share > 1.0 / kFactor && share < kFactor) return fmt::format("; the values look like {}", name);
+    if (unit != name && share > 1.0 / kFactor && share < kFactor)
+      return fmt::format("; the values seem to be in {}", name);
   }
   return "";
 }
@@ -53,14 +54,15 @@ std::string text_of(const Vector& v) {
 
 void require_position(const Eigen::Vector3d& p_m, const std::string& where) {
   if (p_m.allFinite() && p_m.cwiseAbs().maxCoeff() <= kPositionMax_m) return;
-  throw BadInput(
-      fmt::format("{}: position {} m, must be finite and within {:g} m", where, text_of(p_m), kPositionMax_m));
+  throw BadInput(fmt::format("{}: the position is {} m; it must be finite and within {:g} m of the origin", where,
+                             text_of(p_m), kPositionMax_m));
 }
 
 void require_attitude(const Eigen::Quaterniond& q, const std::string& where) {
   const double norm = q.coeffs().stableNorm();
   if (std::abs(norm - 1.0) <= kAnswerNormTolerance) return;
-  throw BadInput(fmt::format("{}: quaternion of norm {:g}, must be 1 within {:g}", where, norm, kAnswerNormTolerance));
+  throw BadInput(
+      fmt::format("{}: the quaternion has norm {:g}; it must be 1 within {:g}", where, norm, kAnswerNormTolerance));
 }
 
 /// Checks that a covariance is finite, with variances of at least 0 and correlations of at most 1.
@@ -68,13 +70,14 @@ template <int N>
 void require_covariance(const Eigen::Matrix<double, N, N>& C, const std::string& where) {
   if (!C.allFinite()) throw BadInput(where + ": the covariance has a value that is not finite");
   if (const double least = C.diagonal().minCoeff(); least < 0.0)
-    throw BadInput(fmt::format("{}: variance {:g}; it must be at least 0", where, least));
+    throw BadInput(fmt::format("{}: a variance is {:g}; it must be at least 0", where, least));
   for (int i = 0; i < N; ++i) {
     for (int j = i + 1; j < N; ++j) {
       const double most = std::sqrt(C(i, i)) * std::sqrt(C(j, j));
       if (std::abs(C(i, j)) > (1.0 + kCorrelationTolerance) * most)
         throw BadInput(
-            fmt::format("{}: covariance {:g} between variances {:g} and {:g}; its magnitude must be at most {:g}",
+            fmt::format("{}: a covariance is {:g}, with the variances {:g} and {:g}; the magnitude of the covariance "
+                        "must be at most {:g}",
                         where, C(i, j), C(i, i), C(j, j), most));
     }
   }
@@ -111,19 +114,20 @@ void AnswerBounds::require_size(const std::filesystem::path& file, std::uintmax_
   const std::string name = file.filename().string();
   // Rejects symbolic links, which could lead to files that the method did not write.
   if (!std::filesystem::is_regular_file(std::filesystem::symlink_status(file)))
-    throw BadInput(name + ": is not a regular file");
+    throw BadInput(name + ": is not a regular file; the method must write a regular file");
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(file, error);
   if (error) throw BadInput(name + ": " + error.message());
   if (size > bytes)
-    throw BadInput(fmt::format("{}: has {} bytes; it may have at most {} for this recording", name, size, bytes));
+    throw BadInput(fmt::format("{}: has {} bytes; for this recording, it may have at most {}", name, size, bytes));
 }
 
 void AnswerBounds::require_time(std::int64_t time_ns, const std::string& where) const {
   if (time_ns >= first_ns_ - kMargin_ns && time_ns <= last_ns_ + kMargin_ns) return;
   const auto seconds = [](std::int64_t ns) { return static_cast<double>(ns) * 1e-9; };
   throw BadInput(
-      fmt::format("{}: stamp {:.9g} s; it must be within {:.9g} to {:.9g} s, the recording with a margin of 10 s",
+      fmt::format("{}: the stamp is {:.9g} s; it must be within {:.9g} and {:.9g} s (the time of the recording with a "
+                  "margin of 10 s)",
                   where, seconds(time_ns), seconds(first_ns_ - kMargin_ns), seconds(last_ns_ + kMargin_ns)));
 }
 
@@ -140,9 +144,10 @@ void AnswerBounds::require_unit(std::span<const double> stamps_s, const char* un
   const std::string like = unit_like(unit, times);
   if (far && like.empty()) return;  // probably a few wrong stamps
   const std::size_t row = far ? static_cast<std::size_t>(outside - stamps_s.begin()) : stamps_s.size() - 1;
-  throw BadInput(fmt::format(
-      "{}: stamp {:.9g} s: {} stamps span {:.3g} s, but the recording lasts {:.3g} s; stamps must be in {}{}",
-      place(row), stamps_s[row], stamps_s.size(), most - least, length_s_, unit, like));
+  throw BadInput(
+      fmt::format("{}: the stamp is {:.9g} s, and all {} stamps span {:.3g} s, but the recording lasts {:.3g} s; "
+                  "stamps must be in {}{}",
+                  place(row), stamps_s[row], stamps_s.size(), most - least, length_s_, unit, like));
 }
 
 void AnswerBounds::require_unit(const Estimate& estimate, const char* unit, const Place& place) const {
@@ -162,7 +167,7 @@ void AnswerBounds::require_rates(const std::vector<RateState>& rates, const Plac
   for (std::size_t k = 0; k < rates.size(); ++k) {
     const Eigen::Vector3d& rate_rad_s = rates[k].w_WI_I_rad_s;
     if (!rate_rad_s.allFinite() || rate_rad_s.cwiseAbs().maxCoeff() > kRateMax_rad_s)
-      throw BadInput(fmt::format("{}: rate {} rad/s, must be finite and within {:g} rad/s", place(k),
+      throw BadInput(fmt::format("{}: the rate is {} rad/s; it must be finite and within {:g} rad/s", place(k),
                                  text_of(rate_rad_s), kRateMax_rad_s));
     require_covariance(rates[k].covariance_rad2_s2, place(k));
     require_time(rates[k].time_ns, place(k));

@@ -23,7 +23,9 @@ Method attitude_autogain() {
   MethodInfo info;
   info.name = "autogain";
   info.kind = Kind::attitude;
-  info.doc = "Madgwick step and complementary step, weighted by the rate. Made for rolling spheres.";
+  info.doc =
+      "Combines a step of Madgwick's filter and a step of a complementary filter; the rate determines their weights. "
+      "Made for rolling spheres.";
   info.source = "Zevering et al., IMU-based pose-estimation for spherical robots, IEEE MFI 2021, eqs 2-5";
   info.settings = {&attitude_autogain_settings()};
   return make_method(std::move(info), run_attitude_autogain);

@@ -24,8 +24,7 @@ Method attitude_complementary() {
   info.name = "complementary";
   info.kind = Kind::attitude;
   info.doc =
-      "Integrates the gyro and corrects the tilt towards the specific force by the smallest rotation, with one time "
-      "constant.";
+      "Integrates the gyro and corrects the tilt with the direction of the specific force, with one time constant.";
   info.source = "textbook complementary filter";
   info.settings = {&attitude_complementary_settings()};
   return make_method(std::move(info), run_attitude_complementary);

@@ -29,7 +29,9 @@ Method attitude_eskf() {
   MethodInfo info;
   info.name = "eskf";
   info.kind = Kind::attitude;
-  info.doc = "Error-state Kalman filter of attitude and gyro bias; the specific force measures the vertical.";
+  info.doc =
+      "Estimates attitude and gyro bias with an error-state Kalman filter, in which the specific force measures the "
+      "vertical.";
   info.source = "textbook, J. Sola, Quaternion kinematics for the error-state Kalman filter, arXiv 1711.02508";
   info.settings = {&attitude_eskf_settings()};
   return make_method(std::move(info), run_attitude_eskf);

@@ -23,7 +23,7 @@ Method attitude_integrate() {
   MethodInfo info;
   info.name = "integrate";
   info.kind = Kind::attitude;
-  info.doc = "Integrates the gyro of the primary IMU; the first sample gives the initial tilt.";
+  info.doc = "Integrates the gyro of the primary IMU; the first accelerometer reading gives the initial tilt.";
   info.source = "textbook strapdown integration";
   info.settings = {&attitude_integrate_settings()};
   return make_method(std::move(info), run_attitude_integrate);

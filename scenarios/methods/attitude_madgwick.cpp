@@ -23,7 +23,7 @@ Method attitude_madgwick() {
   MethodInfo info;
   info.name = "madgwick";
   info.kind = Kind::attitude;
-  info.doc = "Madgwick's gradient-descent filter on gyro and accelerometer of the primary IMU.";
+  info.doc = "Applies Madgwick's gradient-descent filter to gyro and accelerometer of the primary IMU.";
   info.source = "S. Madgwick, An efficient orientation filter for inertial and inertial/magnetic sensor arrays, 2010";
   info.settings = {&attitude_madgwick_settings()};
   return make_method(std::move(info), run_attitude_madgwick);

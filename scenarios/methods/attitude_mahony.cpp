@@ -23,7 +23,8 @@ Method attitude_mahony() {
   MethodInfo info;
   info.name = "mahony";
   info.kind = Kind::attitude;
-  info.doc = "Explicit complementary filter on SO(3) with gyro bias, on gyro and accelerometer of the primary IMU.";
+  info.doc =
+      "Applies the explicit complementary filter on SO(3) with gyro bias to gyro and accelerometer of the primary IMU.";
   info.source = "R. Mahony, T. Hamel, J.-M. Pflimlin, Nonlinear complementary filters, IEEE TAC 53(5), 2008";
   info.settings = {&attitude_mahony_settings()};
   return make_method(std::move(info), run_attitude_mahony);

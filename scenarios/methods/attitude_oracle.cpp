@@ -51,7 +51,8 @@ Method attitude_oracle() {
   MethodInfo info;
   info.name = "oracle";
   info.kind = Kind::attitude;
-  info.doc = "Bound: attitude/tumble with unclipped gyros; noise, bias and bandwidth are unchanged.";
+  info.doc =
+      "Shows the bound: applies attitude/tumble to gyros without saturation; noise, bias and bandwidth are unchanged.";
   info.ours = true;
   info.settings = {&attitude_tumble_settings()};
   info.needs_truth = true;

@@ -25,8 +25,8 @@ Method attitude_vqf() {
   info.name = "vqf";
   info.kind = Kind::attitude;
   info.doc =
-      "Low-passes the specific force in a nearly inertial frame and estimates the gyro bias at rest and in motion. It "
-      "uses no magnetometer.";
+      "Low-passes the specific force in a nearly inertial frame and estimates the gyro bias at rest and in motion, "
+      "without a magnetometer.";
   info.source = "D. Laidig, T. Seel, VQF, Information Fusion 91, 2023";
   info.settings = {&attitude_vqf_settings()};
   return make_method(std::move(info), run_attitude_vqf);

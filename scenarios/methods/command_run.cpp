@@ -28,7 +28,7 @@ std::string less_folder(std::string text, const std::filesystem::path& folder) {
 }
 
 std::string with_last_words(const std::string& what, const CommandEnd& end) {
-  return what + (end.last_words.empty() ? "" : "; its last output was: " + end.last_words);
+  return what + (end.last_words.empty() ? "" : "; the last output of the command was: " + end.last_words);
 }
 
 void require_done(const CommandEnd& end) {
@@ -36,7 +36,8 @@ void require_done(const CommandEnd& end) {
   if (end.how == CommandEnd::How::out_of_time)
     throw NoAnswer(
         NoAnswer::Why::out_of_time,
-        with_last_words(end.reason + "; the key time_limit_s of the method's description sets the limit", end));
+        with_last_words(end.reason + "; to change the limit, set the key time_limit_s in the method's description",
+                        end));
   throw NoAnswer(NoAnswer::Why::crashed, with_last_words(end.reason, end));
 }
 

@@ -27,15 +27,16 @@ void require_stamps(const Table& table, const std::vector<std::int64_t>& stamps_
   for (std::size_t k = 0; k < stamps_ns.size(); ++k) {
     const Table::Row& row = table.rows[k];
     if (table.integer(row, 0) == stamps_ns[k]) continue;
-    throw BadInput(fmt::format("{}:{}: time {}; it must be {}, the time of the pose in the same row", path, row.line,
-                               table.integer(row, 0), stamps_ns[k]));
+    throw BadInput(fmt::format("{}:{}: the time is {}; it must be {}, the time of the pose in the same row", path,
+                               row.line, table.integer(row, 0), stamps_ns[k]));
   }
 }
 
 void write_covariances(const std::filesystem::path& path, const std::vector<std::int64_t>& stamps_ns,
                        const std::vector<Eigen::Matrix3d>& covariances) {
   if (covariances.size() != stamps_ns.size()) {
-    throw std::invalid_argument(fmt::format("{} covariances for {} stamps", covariances.size(), stamps_ns.size()));
+    throw std::invalid_argument(fmt::format("there are {} covariances for {} stamps; their numbers must be equal",
+                                            covariances.size(), stamps_ns.size()));
   }
   const auto unstated = [](const Eigen::Matrix3d& covariance) { return covariance.isZero(0.0); };
   if (std::all_of(covariances.begin(), covariances.end(), unstated)) return;

@@ -54,7 +54,8 @@ Eigen::Quaterniond read_quaternion(const Table& table, const Table::Row& row, st
                        table.number(row, first + 2));
   const double norm = q.coeffs().stableNorm();
   if (std::abs(norm - 1.0) > 1e-2)
-    throw BadInput(fmt::format("{}:{}: quaternion of norm {:g}, must be 1", table.path.string(), row.line, norm));
+    throw BadInput(
+        fmt::format("{}:{}: the quaternion has norm {:g}; it must be 1", table.path.string(), row.line, norm));
   return normalise ? q.normalized() : q;
 }
 
@@ -165,7 +166,7 @@ void read_contacts(const std::filesystem::path& path, Estimate& estimate) {
     if (!flagged) continue;
     const std::int64_t uncertain = table.integer(row, 2);
     if (uncertain != 0 && uncertain != 1) {
-      throw BadInput(fmt::format("{}:{}: uncertain is {}, must be 0 or 1", path.string(), row.line, uncertain));
+      throw BadInput(fmt::format("{}:{}: uncertain is {}; it must be 0 or 1", path.string(), row.line, uncertain));
     }
     estimate.uncertain.push_back(uncertain == 1);
   }
@@ -225,7 +226,7 @@ void read_sweeps(const std::filesystem::path& folder, Estimate& estimate) {
   for (const Table::Row& row : poses.rows) {
     const std::int64_t index = poses.integer(row, 0);
     if (index < 0 || index >= static_cast<std::int64_t>(estimate.sweeps.size())) {
-      throw BadInput(poses.path.string() + ":" + std::to_string(row.line) + ": there is no sweep " +
+      throw BadInput(poses.path.string() + ":" + std::to_string(row.line) + ": the estimate has no sweep " +
                      std::to_string(index));
     }
     estimate.sweeps[static_cast<std::size_t>(index)].trajectory.push_back(read_pose(poses, row, 1, 2));
@@ -291,7 +292,7 @@ json header_of(const std::string& method, Kind kind, const Estimate& estimate, c
 
 void read_header(const std::filesystem::path& path, Kind& kind, std::string& method, Estimate& estimate) {
   if (std::error_code error; !std::filesystem::exists(path, error))
-    throw BadInput(path.string() + ": no such file; the folder does not hold an estimate");
+    throw BadInput(path.string() + ": the file does not exist, so the folder does not contain an estimate");
   std::ifstream file = open_regular_file(path);
   const json header = json::parse(file, nullptr, false);
   if (!header.is_object()) throw BadInput(path.string() + ": not a JSON object");
@@ -337,13 +338,14 @@ void write_estimate(const std::filesystem::path& folder, const std::string& meth
   }
   write_position_covariances(folder / "position_covariance.csv", estimate.poses);
   if (!estimate.uncertain.empty() && estimate.uncertain.size() != estimate.contacts.size()) {
-    throw std::invalid_argument(fmt::format("an estimate has {} flags of uncertainty for {} contacts",
-                                            estimate.uncertain.size(), estimate.contacts.size()));
+    throw std::invalid_argument(
+        fmt::format("the estimate has {} flags of uncertainty for {} contacts; their numbers must be equal",
+                    estimate.uncertain.size(), estimate.contacts.size()));
   }
   if (!estimate.contacts.empty()) {
     if (estimate.contacts.size() != estimate.poses.size()) {
-      throw std::invalid_argument(
-          fmt::format("an estimate has {} contacts for {} poses", estimate.contacts.size(), estimate.poses.size()));
+      throw std::invalid_argument(fmt::format("the estimate has {} contacts for {} poses; their numbers must be equal",
+                                              estimate.contacts.size(), estimate.poses.size()));
     }
     write_contacts(folder / "contacts.csv", estimate);
   }

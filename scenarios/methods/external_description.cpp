@@ -64,14 +64,15 @@ std::vector<std::string> words_of(const YamlNode& node) {
   for (const YamlNode& item : node.items()) {
     words.push_back(item.text());
     if (words.back().size() > kWordMax)
-      item.fail(fmt::format("has a word of {} characters; a word may have at most {}", words.back().size(), kWordMax));
+      item.fail(fmt::format("has an argument of {} characters; an argument may have at most {}", words.back().size(),
+                            kWordMax));
     try {
       placeholders_in(words.back());
     } catch (const BadInput& error) {
       item.fail(error.what());
     }
   }
-  if (words.empty()) node.fail("must have at least one word");
+  if (words.empty()) node.fail("must have at least one argument");
   return words;
 }
 
@@ -135,12 +136,14 @@ void read_command(const std::map<std::string, YamlNode>& fields, ExternalDescrip
     if (fields.contains(key)) fields.at(key).fail("applies to a Python function only, but this method is a command");
   out.command = words_of(fields.at("command"));
   if (!names_output(out.command))
-    fields.at("command").fail("no word of the command contains {output}, the path of the result");
+    fields.at("command").fail(
+        "no argument contains the placeholder {output}; add this placeholder, which stands for the path of the result");
   out.output = out.kind == Kind::rate ? ExternalDescription::Output::rates : ExternalDescription::Output::tum;
   if (fields.contains("output")) out.output = output_named(fields.at("output"));
   if ((out.output == ExternalDescription::Output::rates) != (out.kind == Kind::rate) &&
       out.output != ExternalDescription::Output::estimate)
-    fields.at("output").fail("kind rate needs the output 'rates'; the other kinds need a TUM file");
+    fields.at("output").fail(
+        "kind 'rate' needs the output 'rates' or 'estimate'; the other kinds need the output 'tum' or 'estimate'");
   if (fields.contains("version")) out.version = words_of(fields.at("version"));
 }
 
@@ -173,8 +176,8 @@ Kind kind_of_function(const std::string& text, const std::string& file) {
   if (found.empty()) found = kinds_found(text, assigned);
   if (found.size() != 1)
     throw BadInput(
-        fmt::format("{}: defines {} functions named rate, attitude, position or slam; it must define exactly one (a "
-                    "file NAME.yaml can name another function)",
+        fmt::format("{}: defines {} functions named rate, attitude, position or slam; it must define exactly one (to "
+                    "use another function name, write a file NAME.yaml)",
                     file, found.size()));
   return found.front();
 }

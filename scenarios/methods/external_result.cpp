@@ -52,19 +52,21 @@ std::vector<RateState> read_rates(const std::filesystem::path& file, const sim::
   const std::string header = header_line(file);
   const bool with_covariance = header == kWithCovariance;
   if (!with_covariance && header != kRateColumns)
-    throw BadInput(fmt::format("{}:1: header '{}', must be '{}' or the same with ',cxx,cxy,cxz,cyy,cyz,czz' added",
-                               file.filename().string(), header.substr(0, 120), kRateColumns));
+    throw BadInput(fmt::format(
+        "{}:1: the header is '{}'; it must be '{}' or the same header with ',cxx,cxy,cxz,cyy,cyz,czz' at its end",
+        file.filename().string(), header.substr(0, 120), kRateColumns));
   const Table table = Table::read(file, ',', header, with_covariance ? 10 : 4);
   if (table.rows.size() != stamps.size())
-    throw BadInput(fmt::format("{}: {} rows, must be {}, one per sample of {}", file.filename().string(),
+    throw BadInput(fmt::format("{}: has {} rows; it must have {}, one per sample of {}", file.filename().string(),
                                table.rows.size(), stamps.size(), sensors.imus.front().name));
   std::vector<RateState> rates(stamps.size());
   for (std::size_t k = 0; k < rates.size(); ++k) {
     const Table::Row& row = table.rows[k];
     const std::int64_t time_ns = table.integer(row, 0);
     if (time_ns < stamps[k] - kStampTolerance_ns || time_ns > stamps[k] + kStampTolerance_ns)
-      throw BadInput(fmt::format("{}:{}: time {} ns, but sample {} has the time {} ns", file.filename().string(),
-                                 row.line, time_ns, k, stamps[k]));
+      throw BadInput(fmt::format(
+          "{}:{}: the time is {} ns, but sample {} of the recording has the time {} ns; the times must be equal",
+          file.filename().string(), row.line, time_ns, k, stamps[k]));
     rates[k].time_ns = stamps[k];
     rates[k].w_WI_I_rad_s = {table.number(row, 1), table.number(row, 2), table.number(row, 3)};
     if (with_covariance) rates[k].covariance_rad2_s2 = covariance(table, row);
@@ -111,8 +113,8 @@ Estimate read_folder(const ExternalDescription& description, const std::filesyst
   std::string method;
   Estimate estimate = read_estimate(folder, kind, method, description.frame);
   if (kind != description.kind)
-    throw BadInput(fmt::format("the command wrote an estimate of kind {}, but {} states kind {}", to_string(kind),
-                               description.file.filename().string(), to_string(description.kind)));
+    throw BadInput(fmt::format("the command wrote an estimate of kind {}, but the description {} states kind {}",
+                               to_string(kind), description.file.filename().string(), to_string(description.kind)));
   return estimate;
 }
 
@@ -161,7 +163,7 @@ std::vector<MapPoint> read_points(const std::filesystem::path& file) {
   const auto given = [](const auto& columns) {
     return std::ranges::all_of(columns, [](const auto* each) { return each != nullptr; });
   };
-  if (!given(place)) throw BadInput(file.filename().string() + ": columns x, y and z are needed");
+  if (!given(place)) throw BadInput(file.filename().string() + ": the columns x, y and z are missing");
   std::vector<MapPoint> points(cloud.points);
   for (std::size_t k = 0; k < points.size(); ++k) {
     const auto vector = [k](const auto& columns) -> Eigen::Vector3f {

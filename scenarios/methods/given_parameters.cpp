@@ -64,7 +64,9 @@ std::vector<Method> with_parameters(std::span<const MethodPointer> methods, std:
         throw BadInput(error.what());
       }
     }
-    if (!concerned) throw BadInput("'" + text + "': this run does not include the method '" + given.method + "'");
+    if (!concerned)
+      throw BadInput("'" + text + "': the parameter belongs to no method of this run; add the method '" + given.method +
+                     "'");
   }
   std::vector<Method> out;
   for (std::size_t k = 0; k < methods.size(); ++k) out.push_back(with(*methods[k], chosen[k]));

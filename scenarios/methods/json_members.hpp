@@ -42,7 +42,7 @@ class JsonMembers {
     complain(key, "one of " + known);
   }
   [[noreturn]] void complain(const char* key, const std::string& wanted) const {
-    throw BadInput(path_.string() + ": '" + key + "' is " + shortened(member(key).dump()) + ", must be " + wanted);
+    throw BadInput(path_.string() + ": '" + key + "' is " + shortened(member(key).dump()) + "; it must be " + wanted);
   }
 
  private:

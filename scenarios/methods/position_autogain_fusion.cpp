@@ -63,7 +63,8 @@ Method position_autogain_fusion() {
   info.name = "autogain_fusion";
   info.kind = Kind::position;
   info.doc =
-      "Averages the rolling velocity and the limited integral of the acceleration, with the attitude of autogain.";
+      "Averages the rolling velocity and a limited integral of the acceleration, and uses the attitude of "
+      "attitude/autogain.";
   info.source = "Zevering et al., IMU-based pose-estimation for spherical robots, IEEE MFI 2021, eqs 2-13";
   info.settings = {&attitude_settings(), &fusion_settings()};
   info.robots = {"sphere"};

@@ -51,7 +51,9 @@ Method position_double_integration() {
   MethodInfo info;
   info.name = "double_integration";
   info.kind = Kind::position;
-  info.doc = "Integrates the accelerometer twice with the integrated attitude; the drift is unbounded.";
+  info.doc =
+      "Integrates the accelerometer twice, with the attitude of the integrated gyro; the position drifts without "
+      "bound.";
   info.source = "textbook strapdown inertial navigation";
   info.settings = {&rest_settings(), &position_double_integration_settings()};
   info.robots = {"sphere"};

@@ -59,9 +59,9 @@ Method position_observer() {
   info.name = "observer";
   info.kind = Kind::position;
   info.doc =
-      "Rolling velocity plus a contact velocity. During slip events, the contact velocity integrates the difference "
-      "between measured and rolling acceleration.";
-  info.source = "our own, for comparison only; superseded by position/tumble";
+      "Adds a contact velocity to the rolling velocity. During slip events, the contact velocity integrates the "
+      "difference between measured and rolling acceleration.";
+  info.source = "ours, only for comparison with position/tumble";
   info.settings = {&rest_settings(), &position_observer_settings()};
   info.robots = {"sphere"};
   return make_method(std::move(info), run_position_observer);

@@ -105,7 +105,7 @@ Estimate run_exact_attitude(const sim::Sensors& sensors, const sim::Values& para
   const sim::Truth& truth = *oracle.truth;
   const std::vector<std::int64_t>& times_ns = sensors.imus.front().time_ns;
   if (truth.imus.empty() || truth.imus.front().rate_rad_s.size() != times_ns.size() || truth.q_WB.empty()) {
-    throw BadInput("the truth does not belong to this recording: it has no rates of the primary IMU");
+    throw BadInput("the truth does not belong to this recording, because it has no rates of the primary IMU");
   }
   const Eigen::Matrix3d R_BI = truth.imus.front().T_BI.linear();
   std::size_t next = 0;
@@ -182,8 +182,8 @@ Method position_oracle() {
   info.name = "oracle";
   info.kind = Kind::position;
   info.doc =
-      "Bound: our smoother with the exact attitude at all times; shows the error of the other sensors and of the "
-      "contact.";
+      "Shows the bound: our smoother receives the true attitude. The remaining error is that of the accelerometer and "
+      "of the contact state.";
   info.ours = true;
   info.settings = {&settings_with_attitude()};
   info.needs_truth = true;
@@ -196,8 +196,8 @@ Method position_oracle_contact() {
   info.name = "oracle_contact";
   info.kind = Kind::position;
   info.doc =
-      "Bound: our smoother with the true contact state (grip, slip or none) at all times; shows the error of the "
-      "sensors.";
+      "Shows the bound: our smoother receives the true contact state (grip, slip or none). The remaining error is that "
+      "of the sensors.";
   info.ours = true;
   info.settings = {&settings_with_contact()};
   info.needs_truth = true;

@@ -43,7 +43,8 @@ Method position_rolling() {
   info.name = "rolling";
   info.kind = Kind::position;
   info.doc =
-      "Rolling without slip on a level plane: integrates the gyro after removal of its bias at rest; v = r w x n.";
+      "Assumes rolling without slip on a level plane: removes the gyro bias at rest, integrates the gyro, and computes "
+      "the velocity as v = r w x n.";
   info.source = "textbook rolling constraint";
   info.settings = {&rest_settings(), &position_rolling_settings()};
   info.robots = {"sphere"};

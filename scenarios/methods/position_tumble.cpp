@@ -205,19 +205,20 @@ void append_pose(const RollingOdometry::Pose& pose, double radius_m, Estimate& e
 
 Method position_tumble() {
   return position_method("tumble",
-                         "RollingOdometry, the public API of the library, with the whole recording: an inertial filter "
-                         "with rolling as a velocity measurement and with the hypotheses grip, slip, bump and slope.",
+                         "Runs RollingOdometry (public API) on the whole recording: an inertial smoother that uses "
+                         "rolling as a velocity measurement, with the hypotheses grip, slip, bump and slope.",
                          whole_settings(), run_whole);
 }
 
 Method position_tumble_lag() {
-  return position_method("tumble_lag",
-                         "RollingOdometry with a fixed lag: each pose is smoothed with the data of that lag.",
-                         lag_settings(), run_lag);
+  return position_method(
+      "tumble_lag",
+      "Runs RollingOdometry with a fixed lag: each pose also uses the data of the following lag_s seconds.",
+      lag_settings(), run_lag);
 }
 
 Method position_tumble_live() {
-  return position_method("tumble_live", "RollingOdometry live: each pose uses past data only.", live_settings(),
+  return position_method("tumble_live", "Runs RollingOdometry live: each pose uses only past data.", live_settings(),
                          run_live);
 }
 

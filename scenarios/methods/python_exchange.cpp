@@ -150,9 +150,9 @@ class Answer {
     const std::uintmax_t most = bounds.table_bytes() + bounds.map_bytes();
     if (memory.size() > most)
       throw BadInput(
-          fmt::format("the answer has {} bytes, must be at most {} for this recording", memory.size(), most));
+          fmt::format("the result has {} bytes; for this recording, it may have at most {}", memory.size(), most));
     bytes_ = memory.contents();
-    if (bytes_.empty()) throw BadInput("the function ended the interpreter without an answer");
+    if (bytes_.empty()) throw BadInput("the Python interpreter ended before the function returned a result");
     std::uint64_t length = 0;
     if (bytes_.size() >= sizeof(length)) std::memcpy(&length, bytes_.data(), sizeof(length));
     if (length == 0 || length > bytes_.size() - sizeof(length)) fail();
@@ -193,7 +193,7 @@ class Answer {
 
  private:
   [[noreturn]] static void fail() {
-    throw BadInput("the answer in memory is damaged; check whether the function wrote into it");
+    throw BadInput("the result in memory is damaged; check whether the function wrote into the result");
   }
 
   std::string bytes_;
@@ -233,7 +233,7 @@ std::vector<PoseState> read_poses(const Answer& answer) {
     poses[k].p_WA_m = row_of(positions, k);
     const Eigen::Quaterniond q{Eigen::Map<const Eigen::Vector4d>(&quaternions[4 * k])};
     if (!(std::abs(q.coeffs().stableNorm() - 1.0) <= kQuaternionTolerance) || (k > 0 && times_ns[k] <= times_ns[k - 1]))
-      throw BadInput(fmt::format("pose {} of the answer has no valid attitude, or its time does not increase", k));
+      throw BadInput(fmt::format("pose {} of the result has no valid attitude, or its time does not increase", k));
     poses[k].q_WA = q.normalized();
   }
   return poses;
@@ -276,7 +276,7 @@ Estimate read_answer(const SharedMemory& memory, Kind kind, Frame frame, const s
     return estimate;
   }
   estimate.poses = read_poses(answer);
-  const AnswerBounds::Place place = [](std::size_t k) { return fmt::format("pose {} of the answer", k); };
+  const AnswerBounds::Place place = [](std::size_t k) { return fmt::format("pose {} of the result", k); };
   bounds.require_unit(estimate, "nanoseconds", place);
   bounds.require_poses(estimate.poses, place);
   if (kind == Kind::attitude) {
@@ -286,7 +286,7 @@ Estimate read_answer(const SharedMemory& memory, Kind kind, Frame frame, const s
   if (kind == Kind::slam && answer.has("map")) read_map(answer, estimate);
   bounds.require_slam(estimate);
   if (const std::string complaint = turning_complaint(estimate, sensors); !complaint.empty())
-    throw BadInput("the answer is invalid: " + complaint);
+    throw BadInput("the result is invalid: " + complaint);
   return estimate;
 }
 

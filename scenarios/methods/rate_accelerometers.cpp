@@ -73,8 +73,8 @@ Method rate_accelerometers() {
   info.name = "accelerometers";
   info.kind = Kind::rate;
   info.doc =
-      "Gyro-free extended Kalman filter on the differences of all accelerometers and on the unclipped gyro axes. It "
-      "uses the accelerometer of the reference IMU too, but not its gyro. Made for long fast rotation with "
+      "Estimates the rate with an extended Kalman filter from the differences of all accelerometers and from the "
+      "unclipped gyro axes. It also uses the accelerometer of the reference IMU. Made for long fast rotation with "
       "accelerometers far apart.";
   info.source = "the family of Pachter's and Lee's gyro-free inertial systems";
   info.settings = {&rate_accelerometers_settings()};

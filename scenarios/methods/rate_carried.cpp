@@ -23,8 +23,8 @@ Method rate_carried() {
   info.name = "carried";
   info.kind = Kind::rate;
   info.doc =
-      "Smoother over the whole recording of a hand-held body. Gravity's rotation in the sensor axes determines the "
-      "rate of a clipped gyro.";
+      "Smooths the whole recording of a hand-held body. The rotation of gravity in the sensor axes determines the rate "
+      "of a clipped gyro.";
   info.ours = true;
   info.settings = {&carried_settings()};
   return make_method(std::move(info), at_sample_times<run_rate_carried>);

@@ -25,9 +25,9 @@ Method rate_constant_jerk() {
   info.name = "constant_jerk";
   info.kind = Kind::rate;
   info.doc =
-      "Smoother per axis with random-walk angular jerk and bounded rate; clipped readings are bounds. Made for motions "
-      "that pass the rail once, without impacts while clipped.";
-  info.source = "textbook: Rauch, Tung and Striebel 1965 with a constant-jerk model (Matern 5/2)";
+      "Smooths each axis with a random walk of the angular jerk; clipped readings are lower bounds of the rate. Made "
+      "for motions that exceed the saturation limit once, without impacts while clipped.";
+  info.source = "textbook: smoother of Rauch, Tung and Striebel (1965) with a constant-jerk model (Matern 5/2)";
   info.settings = {&rate_constant_jerk_settings()};
   return make_method(std::move(info), run_rate_constant_jerk);
 }

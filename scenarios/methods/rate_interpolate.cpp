@@ -26,8 +26,8 @@ Method rate_interpolate() {
   info.name = "interpolate";
   info.kind = Kind::rate;
   info.doc =
-      "Cubic interpolation over each clipped gap, with value and slope of both ends, kept beyond the rail. Made for "
-      "gaps that are short relative to the motion and contain no impact.";
+      "Interpolates each clipped gap with a cubic that has the values and slopes of both ends and stays beyond the "
+      "saturation limit. Made for gaps that are short relative to the motion and contain no impact.";
   info.source = "textbook: cubic interpolation";
   info.settings = {&rate_interpolate_settings()};
   return make_method(std::move(info), run_rate_interpolate);

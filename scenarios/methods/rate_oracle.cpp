@@ -33,7 +33,9 @@ Method rate_oracle() {
   MethodInfo info;
   info.name = "oracle";
   info.kind = Kind::rate;
-  info.doc = "Bound: the same gyro without saturation; noise, bias and bandwidth are unchanged.";
+  info.doc =
+      "Shows the bound: returns the readings of the same gyro without saturation; noise, bias and bandwidth are "
+      "unchanged.";
   info.ours = true;
   info.needs_truth = true;
   return make_method(std::move(info), at_sample_times<run_rate_oracle>);

@@ -35,8 +35,8 @@ Method rate_raw() {
   info.name = "raw";
   info.kind = Kind::rate;
   info.doc =
-      "Unchanged gyro readings of the primary IMU, including clipped ones; the variance is the noise of the data "
-      "sheet.";
+      "Returns the gyro readings of the primary IMU unchanged, including clipped readings; the variance is the noise "
+      "of the data sheet.";
   info.source = "baseline without a method";
   info.baseline = true;
   return make_method(std::move(info), run_rate_raw);

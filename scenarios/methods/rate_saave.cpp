@@ -58,9 +58,9 @@ Method rate_saave() {
   info.name = "saave";
   info.kind = Kind::rate;
   info.doc =
-      "Estimates the clipped axis from the centripetal force in free flight, then applies a white-noise-on-jerk "
-      "smoother. With the exact lever arm, its median error on `hill` is 83.5 % below that of the clipped gyro (83.4 % "
-      "published).";
+      "Estimates the clipped axis from the centripetal force in free flight, then applies a smoother with white noise "
+      "on jerk. With the exact lever arm, its median error on `hill` is 83.5 % smaller than that of the clipped gyro "
+      "(published: 83.4 %).";
   info.source = "Deschenes et al., Saturation-Aware Angular Velocity Estimation, ICRA 2024";
   info.settings = {&saave_settings()};
   info.robots = {"rig", "pendulum"};

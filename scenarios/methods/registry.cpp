@@ -73,7 +73,7 @@ MethodPointer method_of_file(const std::string& file, double time_limit_s) {
   auto method = std::make_shared<const Method>(external_method(file, time_limit_s));
   for (const Method& own : methods()) {
     if (full_name(own.info) == full_name(method->info))
-      throw BadInput(file + ": " + full_name(own.info) + " is a method of this build; choose another name for yours");
+      throw BadInput(file + ": " + full_name(own.info) + " is the name of a built-in method; choose another name");
   }
   return method;
 }
@@ -90,7 +90,7 @@ std::vector<MethodPointer> find_within(const std::string& name, double time_limi
   if (found.empty()) {
     const std::string near = sim::nearest_name(name, known);
     throw BadInput("unknown method '" + name + "'; " +
-                   (near.empty() ? "see 'tumble list methods'" : "did you mean '" + near + "'?"));
+                   (near.empty() ? "'tumble list methods' lists all methods" : "did you mean '" + near + "'?"));
   }
   return found;
 }
@@ -104,7 +104,7 @@ std::string full_name(const MethodInfo& info) {
 std::string MethodInfo::why_not(const Subject& subject) const {
   const bool known = !robots.empty() && !subject.robot.empty();
   if (known && std::find(robots.begin(), robots.end(), subject.robot) == robots.end())
-    return "does not apply to the robot '" + subject.robot + "'";
+    return "does not support the robot '" + subject.robot + "'";
   if (kind == Kind::slam && !subject.has_lidar) return "needs a lidar, but the recording has none";
   return {};
 }
@@ -165,8 +165,8 @@ std::vector<MethodPointer> find_methods_within(std::span<const std::string> name
       if (is_new) {
         found.push_back(std::move(method));
       } else if (is_method_file(name) && before->second != name) {
-        throw BadInput(
-            fmt::format("'{}' and '{}' have the same name, {}", before->second, name, full_name(method->info)));
+        throw BadInput(fmt::format("'{}' and '{}' have the same name, {}; give each method its own name",
+                                   before->second, name, full_name(method->info)));
       }
     }
   }

@@ -52,7 +52,8 @@ void SettingsTable::add(const std::string& field_name, double value, const Field
   sim::Parameter row{texts_.emplace_back(name_of(field_name)), value, field.low, field.high, field.unit, field.meaning};
   const bool stated = is_among(field_name, options_.stated);
   if (stated) {
-    row.doc = texts_.emplace_back(std::string(field.meaning) + "; default: the value stated in the recording, if any");
+    row.doc =
+        texts_.emplace_back(std::string(field.meaning) + "; default: the value that the recording states, if any");
     stated_.insert(row.name);
   }
   if (whole) whole_.insert(row.name);
@@ -96,7 +97,7 @@ sim::Values resolve_settings(const std::string& place, const sim::Values& given,
     if (any(&SettingsTable::is_stated) && !given.has(name)) continue;
     if (any(&SettingsTable::is_whole) && value != std::floor(value)) {
       std::ostringstream text;
-      text << place << "." << name << " is " << value << ", must be a whole number";
+      text << place << "." << name << " is " << value << "; it must be a whole number";
       throw sim::InvalidSituation(text.str());
     }
     out.set(name, value);

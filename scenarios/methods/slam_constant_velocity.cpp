@@ -90,15 +90,14 @@ Estimate run_slam_constant_velocity(const sim::Sensors& sensors, const sim::Valu
 }  // namespace
 
 Method slam_constant_velocity() {
-  return rig_slam(
-      {.name = "constant_velocity",
-       .doc = "Lidar only: predicts the pose by constant velocity, deskews the sweep once, and registers it point to "
-              "plane as a rigid body. It cannot follow the rate of a tumble, which changes by radians per second from "
-              "sweep to sweep. It needs no IMU; without point times it does not deskew. Not modelled: the adaptive "
-              "threshold and the point-to-point distance of the original.",
-       .source = "the family of KISS-ICP, Vizzo et al., RA-L 2023",
-       .settings = {&rigid_settings()}},
-      run_slam_constant_velocity);
+  return rig_slam({.name = "constant_velocity",
+                   .doc = "Uses the lidar only: predicts the pose with constant velocity, deskews the sweep once, and "
+                          "registers the sweep point to plane as a rigid body. The rate of a tumble changes too much "
+                          "between two sweeps for this method. Without point times, the method does not deskew. The "
+                          "adaptive threshold and the point-to-point distance of the original are not modelled.",
+                   .source = "the family of KISS-ICP, Vizzo et al., RA-L 2023",
+                   .settings = {&rigid_settings()}},
+                  run_slam_constant_velocity);
 }
 
 }  // namespace tumble::scenarios

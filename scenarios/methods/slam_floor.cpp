@@ -79,8 +79,8 @@ Estimate run_slam_floor(const sim::Sensors& sensors, const sim::Values& paramete
 
 Method slam_floor() {
   return rig_slam({.name = "floor",
-                   .doc = "Bound: registration with the true motion within each sweep and the true mounting. The "
-                          "remaining error is that of registration and map.",
+                   .doc = "Shows the bound: registration receives the true motion within each sweep and the true "
+                          "mounting. The remaining error is that of registration and map.",
                    .ours = true,
                    .settings = {&rigid_settings()},
                    .needs_truth = true},

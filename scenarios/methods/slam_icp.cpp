@@ -31,11 +31,12 @@ Estimate run_slam_icp(const sim::Sensors& sensors, const sim::Values& parameters
 }  // namespace
 
 Method slam_icp() {
-  return rig_slam({.name = "icp",
-                   .doc = "Deskews sweeps with the rates of saave and registers them point to plane to a voxel map.",
-                   .source = "after Deschenes et al., ICRA 2024, with our own registration",
-                   .settings = {&slam_icp_chain_settings(), &slam_icp_rate_settings()}},
-                  run_slam_icp);
+  return rig_slam(
+      {.name = "icp",
+       .doc = "Deskews each sweep with the rates of rate/saave and registers the sweep point to plane to a voxel map.",
+       .source = "based on Deschenes et al., ICRA 2024, with our own registration",
+       .settings = {&slam_icp_chain_settings(), &slam_icp_rate_settings()}},
+      run_slam_icp);
 }
 
 }  // namespace tumble::scenarios

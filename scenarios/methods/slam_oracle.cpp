@@ -26,12 +26,13 @@ Estimate run_slam_oracle(const sim::Sensors& sensors, const sim::Values& paramet
 }  // namespace
 
 Method slam_oracle() {
-  return rig_slam({.name = "oracle",
-                   .doc = "Bound: the chain of tumble with an unclipped gyro; the accelerometer is unchanged.",
-                   .ours = true,
-                   .settings = {&slam_oracle_settings()},
-                   .needs_truth = true},
-                  at_sample_times<run_slam_oracle>);
+  return rig_slam(
+      {.name = "oracle",
+       .doc = "Shows the bound: runs slam/tumble with a gyro without saturation; the accelerometer is unchanged.",
+       .ours = true,
+       .settings = {&slam_oracle_settings()},
+       .needs_truth = true},
+      at_sample_times<run_slam_oracle>);
 }
 
 }  // namespace tumble::scenarios

@@ -19,7 +19,7 @@ struct MapParams {
   static void fields(Self& p, Visitor& visit) {
     visit.group("map_", p.map);
     visit(p.nearest_m,
-          {"nearest_m", "m", 0.0, 100.0, "range below which returns belong to the sphere itself and are dropped"});
+          {"nearest_m", "m", 0.0, 100.0, "returns nearer than this range belong to the sphere itself and are dropped"});
   }
 };
 
@@ -134,7 +134,7 @@ Method posed(MethodInfo info, const Method& position, RunCore run) {
 Method slam_poses_rolling() {
   MethodInfo info;
   info.name = "poses_rolling";
-  info.doc = "Maps with the poses of the rolling constraint, without registration.";
+  info.doc = "Builds the map with the poses of position/rolling, without registration.";
   info.source = "textbook rolling constraint";
   return posed(std::move(info), rolling(), run_poses_rolling);
 }
@@ -142,7 +142,7 @@ Method slam_poses_rolling() {
 Method slam_poses_autogain_fusion() {
   MethodInfo info;
   info.name = "poses_autogain_fusion";
-  info.doc = "Maps with the published poses of autogain_fusion, without registration.";
+  info.doc = "Builds the map with the poses of position/autogain_fusion (published method), without registration.";
   info.source = "Zevering et al., IMU-based pose-estimation for spherical robots, IEEE MFI 2021";
   return posed(std::move(info), autogain_fusion(), run_poses_autogain_fusion);
 }
@@ -150,7 +150,7 @@ Method slam_poses_autogain_fusion() {
 Method slam_poses_tumble() {
   MethodInfo info;
   info.name = "poses_tumble";
-  info.doc = "Maps with the poses of our position method, without registration.";
+  info.doc = "Builds the map with the poses of position/tumble (our method), without registration.";
   info.ours = true;
   return posed(std::move(info), tumble(), run_poses_tumble);
 }

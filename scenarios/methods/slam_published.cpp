@@ -26,13 +26,15 @@ Estimate run_slam_published(const sim::Sensors& sensors, const sim::Values& para
 }  // namespace
 
 Method slam_published() {
-  return rig_slam({.name = "published",
-                   .doc = "The published chain with its launch-file constants: rates of saave, Madgwick attitude, "
-                          "accelerometer odometry with feedback from the registration, time weighting, and trimmed "
-                          "point-to-plane registration. Its faults are parameters. The complete map is kept in memory.",
-                   .source = "Deschenes et al., ICRA 2024, and the authors' launch files",
-                   .settings = {&published_settings(), &slam_published_rate_settings()}},
-                  run_slam_published);
+  return rig_slam(
+      {.name = "published",
+       .doc =
+           "Runs the published chain with the constants of its launch files: rates of rate/saave, Madgwick attitude, "
+           "accelerometer odometry corrected by the registration, time weighting, and trimmed point-to-plane "
+           "registration. Parameters switch its known faults on and off. The complete map stays in memory.",
+       .source = "Deschenes et al., ICRA 2024, and the authors' launch files",
+       .settings = {&published_settings(), &slam_published_rate_settings()}},
+      run_slam_published);
 }
 
 }  // namespace tumble::scenarios

@@ -35,35 +35,37 @@ struct AlongParams {
   static void fields(Self& p, Visitor& visit) {
     visit(p.grip_sigma_share,
           {"along_grip_sigma_share", "1", 1e-6, 1.0,
-           "standard deviation of the rolling velocity while gripping, as a share of it (scale error)"});
+           "standard deviation of the rolling velocity while gripping, as a share of the velocity (scale error)"});
     visit(p.still_sigma_m_s, {"along_still_sigma_m_s", "m/s", 1e-9, 10.0,
-                              "least standard deviation of the rolling velocity, and its value at rest"});
-    visit(p.loose_sigma_share,
-          {"along_loose_sigma_share", "1", 1e-6, 10.0,
-           "standard deviation of the velocity during an event or while the radius is uncertain, as a share of it"});
-    visit(p.loose_sigma_m_s, {"along_loose_sigma_m_s", "m/s", 1e-9, 10.0,
-                              "least standard deviation of the velocity in that case while moving"});
+                              "minimum standard deviation of the rolling velocity; also the value at rest"});
+    visit(p.loose_sigma_share, {"along_loose_sigma_share", "1", 1e-6, 10.0,
+                                "standard deviation of the velocity during a slip event, or while the radius is "
+                                "uncertain, as a share of the velocity"});
+    visit(
+        p.loose_sigma_m_s,
+        {"along_loose_sigma_m_s", "m/s", 1e-9, 10.0,
+         "minimum standard deviation of the velocity in motion during a slip event, or while the radius is uncertain"});
     visit(p.rotation_sigma_rad, {"along_rotation_sigma_rad", "rad", 1e-9, 1.0,
                                  "standard deviation of the rotation between the ends of two sweeps, per axis"});
-    visit(p.moving_m_s, {"along_moving_m_s", "m/s", 1e-6, 10.0, "speed from which the sphere counts as moving"});
+    visit(p.moving_m_s, {"along_moving_m_s", "m/s", 1e-6, 10.0, "the sphere counts as moving from this speed on"});
     visit(p.correction_m,
           {"along_correction_m", "m", 1e-6, 100.0,
-           "largest accepted position correction by registration; the rolling error per sweep is below 1 mm"});
+           "maximum accepted position correction by registration; the rolling error per sweep is below 1 mm"});
     visit(p.correction_rad,
-          {"along_correction_rad", "rad", 1e-6, 3.0, "largest accepted rotation correction by registration"});
+          {"along_correction_rad", "rad", 1e-6, 3.0, "maximum accepted rotation correction by registration"});
     visit(p.loose_correction_m, {"along_loose_correction_m", "m", 0.0, 100.0,
                                  "additional accepted position correction while the radius is uncertain"});
-    visit(p.segment_m,
-          {"along_segment_m", "m", 0.01, 100.0, "length of the rolled path over which the lidar measures the radius"});
-    visit(p.segment_sigma_m, {"along_segment_sigma_m", "m", 1e-6, 10.0,
-                              "least standard deviation of this length, from the centre and the registration"});
-    visit(p.corrected_sigmas,
-          {"along_corrected_sigmas", "1", 0.0, 1e3,
-           "difference between the lidar's and the stated radius, in standard deviations, above which "
-           "the lidar's radius is used"});
+    visit(p.segment_m, {"along_segment_m", "m", 0.01, 100.0,
+                        "length of the rolled path over which the lidar measures the radius of the sphere"});
+    visit(p.segment_sigma_m,
+          {"along_segment_sigma_m", "m", 1e-6, 10.0,
+           "minimum standard deviation of this length, caused by the errors of the centre and of the registration"});
+    visit(p.corrected_sigmas, {"along_corrected_sigmas", "1", 0.0, 1e3,
+                               "the radius measured by the lidar is used if it differs from the stated radius by more "
+                               "than this many standard deviations"});
     visit(p.corrected_share, {"along_corrected_share", "1", 0.0, 1.0,
-                              "least difference between the lidar's and the stated radius, as a share, above which the "
-                              "lidar's radius is used"});
+                              "the radius measured by the lidar is used if it differs from the stated radius by more "
+                              "than this share of the stated radius"});
   }
 };
 
@@ -259,7 +261,8 @@ Method slam_rolling_prior() {
   MethodInfo info;
   info.name = "rolling_prior";
   info.kind = Kind::slam;
-  info.doc = "Rig registration with the poses of our position method as the prior between two sweeps.";
+  info.doc =
+      "Registers sweeps as on the rig, with the poses of position/tumble (our method) as the prior between two sweeps.";
   info.ours = true;
   info.settings = stages_after({&prior_settings(), &along_settings()}, followed());
   info.robots = {"sphere"};

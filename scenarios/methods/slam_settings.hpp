@@ -22,7 +22,7 @@ struct SlamParams {
     visit.group("", p.odometry);
     visit(p.flight_arc, on_off("flight_arc",
                                "1: in flight, the position follows the ballistic arc of the calibrated centre of mass; "
-                               "0: it follows the accelerometer",
+                               "0: the position follows the accelerometer",
                                Rank::first));
   }
 };

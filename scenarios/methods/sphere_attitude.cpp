@@ -41,7 +41,8 @@ const Settings<RestParams>& rest_settings() {
 
 void require_sphere(const char* method, const sim::Sensors& sensors) {
   if (!(sensors.sphere_radius_m > 0.0)) {
-    throw BadInput(fmt::format("method {} needs the recording of a sphere, but sphere_radius_m is 0", method));
+    throw BadInput(fmt::format(
+        "method {} needs a recording of a sphere, but this recording states the radius sphere_radius_m = 0", method));
   }
 }
 

@@ -26,7 +26,8 @@ struct RestParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.rest_s,
-          {"rest_s", "s", 0.01, 60.0, "length of the initial rest, whose means give gyro bias and tilt", Rank::first});
+          {"rest_s", "s", 0.01, 60.0,
+           "duration of the initial rest; the mean readings during this rest give gyro bias and tilt", Rank::first});
   }
 };
 const Settings<RestParams>& rest_settings();

@@ -37,11 +37,11 @@ std::optional<Eigen::Quaterniond> q_AI(Frame frame, const sim::Sensors& sensors)
 
 std::string text_of(const TurningFit& fit, const std::string& frame) {
   std::string out;
-  if (fit.written == Written::w_first) out = "the quaternions had w first (expected order: x y z w)";
+  if (fit.written == Written::w_first) out = "the quaternions were stored with w first (expected order: x y z w)";
   if (fit.written == Written::w_first_inverse)
     out =
-        "the quaternions had w first and described the world in sensor axes (expected: x y z w, the sensor in world "
-        "axes)";
+        "the quaternions were stored with w first and described the world in sensor axes (expected: x y z w, the "
+        "sensor in world axes)";
   if (fit.written == Written::inverse)
     out = "the quaternions described the world in sensor axes (expected: the sensor in world axes)";
   if (fit.frame == 0) return out;
@@ -70,8 +70,8 @@ std::string turning_complaint(const Estimate& estimate, const sim::Sensors& sens
   const TurningFit& best = check.reading.undelayed;
   if (check.pairs == 0 || check.stated.difference <= kTurnsOtherwise || best.difference >= kTurnsAsSaid) return "";
   return fmt::format(
-      "the attitudes in frame {} do not rotate as the gyro does (difference {:.0f} % over {} pairs), but would "
-      "(difference {:.0f} %) if {}",
+      "the attitudes in frame {} rotate differently from the gyro (difference {:.0f} % over {} pairs of poses); they "
+      "would agree (difference {:.0f} %) if {}",
       to_string(estimate.frame), 100.0 * check.stated.difference, check.pairs, 100.0 * best.difference,
       text_of(best, frames[best.frame].name));
 }
@@ -85,8 +85,8 @@ std::string clock_complaint(const Estimate& estimate, const sim::Sensors& sensor
       !is_delayed(likely.delay_s))
     return "";
   return fmt::format(
-      "the attitudes do not rotate as the gyro does (difference {:.0f} % over {} pairs), but would (difference {:.0f} "
-      "%) at other times: their {}",
+      "the attitudes rotate differently from the gyro (difference {:.0f} % over {} pairs of poses); with a corrected "
+      "clock they would agree (difference {:.0f} %): their {}",
       100.0 * check.stated.difference, check.pairs, 100.0 * likely.difference, delay_remedy(likely.delay_s));
 }
 

@@ -60,7 +60,8 @@ Notes write_bag(const path& recording, const path& out, const ExportChoices& cho
   ExportNames names = export_names(sensors);
   Notes left_out;
   for (const sim::SeriesRecord& series : sensors.series)
-    left_out.push_back("'" + series.name + "', a " + series.kind + ", is left out: bags have no message type for it");
+    left_out.push_back("'" + series.name + "', a " + series.kind +
+                       ", is left out, because bags have no message type for this sensor");
   return joined(joined(std::move(names.imus.notes), names.lidars.notes), left_out);
 }
 
@@ -119,7 +120,7 @@ void require_own_kind(const std::string& format, const path& out) {
   if (own == kEndings.end() || ending.empty() || own->second.contains(ending)) return;
   if (!std::filesystem::is_regular_file(out)) return;
   throw BadInput(
-      fmt::format("{}: exists and is of another kind than the format '{}'; name another output, ending in {}",
+      fmt::format("{}: the output exists and does not have the format '{}'; choose another output name that ends in {}",
                   out.string(), format, fmt::join(own->second, " or ")));
 }
 

@@ -37,8 +37,8 @@ const char* kind_of(const std::filesystem::path& path) {
 }
 
 [[noreturn]] void refuse(const std::filesystem::path& path, const std::string& kind) {
-  throw BadInput(path.string() + ": is " + kind + ", must be a recording (FILE.h5); 'tumble import " + path.string() +
-                 " -o FILE.h5' converts bags, sweeps and tables");
+  throw BadInput(path.string() + ": is " + kind + "; it must be a recording (FILE.h5); 'tumble import " +
+                 path.string() + " -o FILE.h5' converts bags, sweeps and tables");
 }
 
 }  // namespace

@@ -60,27 +60,27 @@ void Group::write_number(const std::string& name, Scalar scalar, const void* val
 Handle Group::open_attribute(const std::string& name) const {
   if (!has_attribute(name)) fail(name, "attribute is missing");
   Handle attribute(H5Aopen(group_.get(), name.c_str(), H5P_DEFAULT), H5Aclose);
-  if (!attribute.valid()) fail(name, "attribute cannot be read" + last_error());
+  if (!attribute.valid()) fail(name, "the attribute cannot be read" + last_error());
   const Handle space(H5Aget_space(attribute.get()), H5Sclose);
-  if (H5Sget_simple_extent_npoints(space.get()) != 1) fail(name, "attribute must be a single value");
+  if (H5Sget_simple_extent_npoints(space.get()) != 1) fail(name, "the attribute must have a single value");
   return attribute;
 }
 
 std::string Group::text_attribute(const std::string& name) const {
   const Handle attribute = open_attribute(name);
   const Handle type(H5Aget_type(attribute.get()), H5Tclose);
-  if (H5Tget_class(type.get()) != H5T_STRING) fail(name, "attribute must be text");
+  if (H5Tget_class(type.get()) != H5T_STRING) fail(name, "the attribute must be text");
   if (H5Tis_variable_str(type.get()) > 0) {  // as h5py writes them
     char* text = nullptr;
     if (H5Aread(attribute.get(), type.get(), &text) < 0 || text == nullptr)
-      fail(name, "attribute cannot be read" + last_error());
+      fail(name, "the attribute cannot be read" + last_error());
     std::string out(text);
     H5free_memory(text);
     return out;
   }
   std::string text(H5Tget_size(type.get()), '\0');
-  if (text.size() > kLongestText) fail(name, "text is longer than 16 MiB");
-  if (H5Aread(attribute.get(), type.get(), text.data()) < 0) fail(name, "attribute cannot be read" + last_error());
+  if (text.size() > kLongestText) fail(name, "the text is longer than 16 MiB, which is the maximum");
+  if (H5Aread(attribute.get(), type.get(), text.data()) < 0) fail(name, "the attribute cannot be read" + last_error());
   return until_zero(text.data(), text.size());
 }
 
@@ -88,34 +88,37 @@ double Group::double_attribute(const std::string& name) const {
   const Handle attribute = open_attribute(name);
   const Handle type(H5Aget_type(attribute.get()), H5Tclose);
   const H5T_class_t kind = H5Tget_class(type.get());
-  if (kind != H5T_FLOAT && kind != H5T_INTEGER) fail(name, "attribute must be a number");
+  if (kind != H5T_FLOAT && kind != H5T_INTEGER) fail(name, "the attribute must be a number");
   double value = 0.0;
-  if (H5Aread(attribute.get(), H5T_NATIVE_DOUBLE, &value) < 0) fail(name, "attribute cannot be read" + last_error());
+  if (H5Aread(attribute.get(), H5T_NATIVE_DOUBLE, &value) < 0)
+    fail(name, "the attribute cannot be read" + last_error());
   return value;
 }
 
 std::int64_t Group::int_attribute(const std::string& name) const {
   const Handle attribute = open_attribute(name);
   const Handle type(H5Aget_type(attribute.get()), H5Tclose);
-  if (H5Tget_class(type.get()) != H5T_INTEGER) fail(name, "attribute must be an integer");
+  if (H5Tget_class(type.get()) != H5T_INTEGER) fail(name, "the attribute must be an integer");
   std::int64_t value = 0;
-  if (H5Aread(attribute.get(), H5T_NATIVE_INT64, &value) < 0) fail(name, "attribute cannot be read" + last_error());
+  if (H5Aread(attribute.get(), H5T_NATIVE_INT64, &value) < 0) fail(name, "the attribute cannot be read" + last_error());
   // HDF5 limits values that do not fit to the range of the type
-  if (!is_signed(type) && value == std::numeric_limits<std::int64_t>::max()) fail(name, "attribute is too large");
+  if (!is_signed(type) && value == std::numeric_limits<std::int64_t>::max())
+    fail(name, "the attribute is too large for a signed 64-bit integer");
   return value;
 }
 
 std::uint64_t Group::uint_attribute(const std::string& name) const {
   const Handle attribute = open_attribute(name);
   const Handle type(H5Aget_type(attribute.get()), H5Tclose);
-  if (H5Tget_class(type.get()) != H5T_INTEGER) fail(name, "attribute must be an integer");
+  if (H5Tget_class(type.get()) != H5T_INTEGER) fail(name, "the attribute must be an integer");
   if (is_signed(type)) {
     const std::int64_t value = int_attribute(name);
-    if (value < 0) fail(name, "attribute must not be negative");
+    if (value < 0) fail(name, "the attribute must be at least 0");
     return static_cast<std::uint64_t>(value);
   }
   std::uint64_t value = 0;
-  if (H5Aread(attribute.get(), H5T_NATIVE_UINT64, &value) < 0) fail(name, "attribute cannot be read" + last_error());
+  if (H5Aread(attribute.get(), H5T_NATIVE_UINT64, &value) < 0)
+    fail(name, "the attribute cannot be read" + last_error());
   return value;
 }
 
@@ -148,7 +151,7 @@ std::vector<std::string> Group::read_texts(const std::string& name) const {
   H5Sget_simple_extent_dims(space.get(), &count, nullptr);
   std::vector<std::string> texts;
   if (H5Tis_variable_str(type.get()) > 0) {
-    if (count > kLongestText / sizeof(char*)) fail(name, "has too many rows");
+    if (count > kLongestText / sizeof(char*)) fail(name, "has more rows than can be read");
     std::vector<char*> rows(count, nullptr);
     if (count > 0 && H5Dread(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, rows.data()) < 0) {
       fail(name, "cannot be read" + last_error());
@@ -158,7 +161,7 @@ std::vector<std::string> Group::read_texts(const std::string& name) const {
     return texts;
   }
   const std::size_t length = H5Tget_size(type.get());
-  if (length == 0 || count > kLongestText / length) fail(name, "is longer than 16 MiB");
+  if (length == 0 || count > kLongestText / length) fail(name, "is longer than 16 MiB, which is the maximum");
   std::vector<char> block(length * count);
   if (count > 0 && H5Dread(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, block.data()) < 0) {
     fail(name, "cannot be read" + last_error());

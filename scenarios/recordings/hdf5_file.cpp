@@ -85,7 +85,7 @@ Handle create_in_memory(const std::string& name, void** image) {
   if (H5Pset_fapl_core(access.get(), kGrowth, false) < 0 || H5Pset_file_image_callbacks(access.get(), &calls) < 0) {
     throw BadInput(name + ": cannot be prepared for writing" + last_error());
   }
-  // The name must not be that of an existing file, because HDF5 would read the existing file into memory first.
+  // The name must differ from the names of existing files, because HDF5 would first read such a file into memory.
   return create_file(name, name + " in memory", access);
 }
 

@@ -62,7 +62,7 @@ class RecordingReader {
     const std::string word = group_.text_attribute(name);
     const auto* found = std::find(kPointTimes.begin(), kPointTimes.end(), word);
     if (found == kPointTimes.end())
-      group_.fail(name, fmt::format("is '{}', must be measured, not_skewed or unknown", word));
+      group_.fail(name, fmt::format("is '{}'; it must be measured, not_skewed or unknown", word));
     given = static_cast<sim::PointTimes>(found - kPointTimes.begin());
   }
   void texts(const char* name, std::vector<std::string>& texts) { texts = group_.read_texts(name); }
@@ -98,7 +98,8 @@ template <class Columns>
 void require_one_length(const Columns& columns, const std::string& file) {
   for (const std::size_t other : {columns.point_W_m.size(), columns.normal_W.size(), columns.slip_velocity_W_m_s.size(),
                                   columns.normal_force_n.size(), columns.surface_id.size()}) {
-    if (other != columns.time_ns.size()) throw BadInput(file + ": truth/contacts: the datasets differ in length");
+    if (other != columns.time_ns.size())
+      throw BadInput(file + ": truth/contacts: the datasets differ in length; they must have the same length");
   }
 }
 
@@ -126,7 +127,10 @@ void require_format(const hdf5::Group& root) {
 
 hdf5::Group truth_group(const hdf5::InputFile& file, const std::filesystem::path& path) {
   require_format(file.root());
-  if (!file.root().has("truth")) throw BadInput(path.string() + ": has no truth; it may be a real recording");
+  if (!file.root().has("truth"))
+    throw BadInput(
+        path.string() +
+        ": the recording has no truth; only simulated recordings and recordings with a reference have truth");
   return file.root().open("truth");
 }
 
@@ -134,8 +138,9 @@ void require_sound(const std::string& file, const std::string& problem, const st
                    const std::string& found) {
   if (!problem.empty()) throw BadInput(file + ": " + problem);
   if (!stored.empty() && stored != found) {
-    throw BadInput(fmt::format("{}: damaged or changed: the digest of its data is {}, but the stored digest is {}",
-                               file, found, stored));
+    throw BadInput(
+        fmt::format("{}: the file is damaged or was changed: the digest of its data is {}, but the stored digest is {}",
+                    file, found, stored));
   }
 }
 

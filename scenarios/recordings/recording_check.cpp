@@ -40,13 +40,13 @@ std::string pose_problem(const char* name, const Eigen::Isometry3d& pose) {
   if (!pose.matrix().allFinite()) return std::string(name) + " is not finite";
   const double departure = (rotation.transpose() * rotation - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   if (!(departure <= kUnitTolerance) || rotation.determinant() < 0.0)
-    return std::string(name) + " is not a rotation with a translation";
+    return std::string(name) + " is not a rigid transform (rotation and translation)";
   return "";
 }
 
 std::string at_least(const char* name, double value, double bound) {
   if (std::isfinite(value) && value >= bound) return "";
-  return fmt::format("{} is {}, must be at least {}", name, value, bound);
+  return fmt::format("{} is {}; it must be at least {}", name, value, bound);
 }
 
 std::string positive(const char* name, std::int64_t value) {
@@ -61,7 +61,7 @@ std::string first_of(std::initializer_list<std::string> problems) {
 /// Checks rows that a sensor may lack.
 std::string optional_length_problem(const char* name, std::size_t length, std::size_t needed) {
   if (length == 0 || length == needed) return "";
-  return fmt::format("{} has {} rows, must have {} or none", name, length, needed);
+  return fmt::format("{} has {} rows; it must have {} or none", name, length, needed);
 }
 
 /// Names must be UTF-8 without control characters, for tables.
@@ -70,11 +70,11 @@ std::string text_problem(const char* name, const std::string& text) {
   for (const unsigned char c : text) {
     const bool continues = (c & 0xc0) == 0x80;
     if (continues != (following > 0) || (following == 0 && (c < 0x20 || c == 0x7f)) || c >= 0xf8) {
-      return std::string(name) + " is not plain text in UTF-8";
+      return std::string(name) + " must be UTF-8 text without control characters";
     }
     following = continues ? following - 1 : c >= 0xf0 ? 3 : c >= 0xe0 ? 2 : c >= 0xc0 ? 1 : 0;
   }
-  return following == 0 ? "" : std::string(name) + " is not plain text in UTF-8";
+  return following == 0 ? "" : std::string(name) + " must be UTF-8 text without control characters";
 }
 
 /// Checks that times count from the start of the recording. Times beyond three years belong to another clock, and
@@ -107,8 +107,8 @@ std::string sweep_problem(const sim::LidarRecord& lidar, std::size_t points) {
   const std::size_t sweeps = lidar.sweep_start_ns.size();
   if (sweeps == 0 && points == 0 && lidar.sweep_first.empty()) return "";
   if (lidar.sweep_first.size() != sweeps + 1) {
-    return fmt::format("sweep_first has {} rows, must have one more than sweep_start_ns ({})", lidar.sweep_first.size(),
-                       sweeps);
+    return fmt::format("sweep_first has {} rows; it must have one more than sweep_start_ns ({})",
+                       lidar.sweep_first.size(), sweeps);
   }
   if (lidar.sweep_first.front() != 0 || lidar.sweep_first.back() != points) {
     return "sweep_first must increase from 0 to the number of points, " + std::to_string(points);
@@ -173,7 +173,7 @@ std::string lidar_problem(const sim::LidarRecord& lidar, const Points& points) {
 std::string column_problem(const std::string& name) {
   const auto plain = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
   if (!name.empty() && std::all_of(name.begin(), name.end(), plain)) return "";
-  return "the name must consist of letters, digits and _, at least one";
+  return "the name must consist of letters, digits and _, and must not be empty";
 }
 
 /// Checks the unique names of a sensor's quantities or constants.
@@ -223,8 +223,9 @@ std::string series_truth_problem(const sim::SeriesTruth& series) {
 
 /// Returns how the structure of a sensor's readings differs from the structure of their truth.
 std::string series_mismatch(const sim::SeriesRecord& series, const sim::SeriesTruth& truth) {
-  if (truth.quantities.empty()) return "";  // a reference has none
-  if (truth.quantities.size() != series.quantities.size()) return "truth and sensor differ in the number of quantities";
+  if (truth.quantities.empty()) return "";  // a reference has no quantities
+  if (truth.quantities.size() != series.quantities.size())
+    return "truth and sensor differ in the number of quantities; the numbers must be equal";
   std::string problem;
   for (std::size_t i = 0; i < truth.quantities.size() && problem.empty(); ++i) {
     problem = in("quantities/" + std::to_string(i),
@@ -233,7 +234,7 @@ std::string series_mismatch(const sim::SeriesRecord& series, const sim::SeriesTr
   return problem;
 }
 
-/// `imu` is a sim::ImuTruth or an IMU truth on disk; the other functions accept both kinds alike.
+/// `imu` is a sim::ImuTruth or an IMU truth on disk; the other functions also accept both types.
 template <class Imu>
 std::string imu_truth_problem(const Imu& imu) {
   return first_of(
@@ -255,7 +256,7 @@ std::string imu_truth_problem(const Imu& imu) {
 std::string surface_problem(std::int32_t id, std::size_t surfaces) {
   // -1: unknown, -2: the robot's own cage
   if (id >= -2 && id < static_cast<std::int64_t>(surfaces)) return "";
-  return fmt::format("surface_id {} has no name in surfaces ({})", id, surfaces);
+  return fmt::format("surface_id {} has no name, because 'surfaces' has only {} names", id, surfaces);
 }
 
 template <class Lidar>
@@ -364,9 +365,12 @@ std::string find_problem(const StoredTruth& truth) {
 }
 
 std::string find_mismatch(const sim::Sensors& sensors, const sim::Truth& truth) {
-  if (truth.imus.size() != sensors.imus.size()) return "truth and sensors differ in the number of IMUs";
-  if (truth.lidars.size() != sensors.lidars.size()) return "truth and sensors differ in the number of lidars";
-  if (truth.series.size() != sensors.series.size()) return "truth and sensors differ in the number of series";
+  if (truth.imus.size() != sensors.imus.size())
+    return "truth and sensors differ in the number of IMUs; the numbers must be equal";
+  if (truth.lidars.size() != sensors.lidars.size())
+    return "truth and sensors differ in the number of lidars; the numbers must be equal";
+  if (truth.series.size() != sensors.series.size())
+    return "truth and sensors differ in the number of series; the numbers must be equal";
   std::string problem;
   for (std::size_t i = 0; i < truth.imus.size() && problem.empty(); ++i) {
     const sim::ImuRecord& imu = sensors.imus[i];

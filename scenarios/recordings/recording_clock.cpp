@@ -66,9 +66,10 @@ std::optional<std::int64_t> clock_shift_ns(const StampSpan& moved, const StampSp
 }
 
 std::string clock_note(const std::string& what, std::int64_t shift_ns) {
-  return fmt::format("{} count from {}; {} s are {} them, because exported recordings start at {} s", what,
-                     shift_ns > 0 ? "zero" : "the start of exported recordings", std::abs(shift_ns) / kSecond_ns,
-                     shift_ns > 0 ? "added to" : "subtracted from", kExportOrigin_ns / kSecond_ns);
+  return fmt::format(
+      "the times of {} count from {}; {} s are {} these times, because exported recordings start at {} s", what,
+      shift_ns > 0 ? "zero" : "the start of exported recordings", std::abs(shift_ns) / kSecond_ns,
+      shift_ns > 0 ? "added to" : "subtracted from", kExportOrigin_ns / kSecond_ns);
 }
 
 void start_clock(Imported& recording) {
@@ -89,8 +90,8 @@ void attach_imus(Imported& recording, Imported imu) {
                                        {0, kExportOrigin_ns, -kExportOrigin_ns});
   if (!shift_ns) {
     throw BadInput(
-        fmt::format("the IMU readings are from {} to {} ns of the sweeps' clock, but the sweeps are from {} to {} ns; "
-                    "check that both use the same clock",
+        fmt::format("the IMU readings cover {} to {} ns on the sweeps' clock, but the sweeps cover {} to {} ns; check "
+                    "that both use the same clock",
                     imu_first + ahead_ns, imu_last + ahead_ns, first, last));
   }
   if (*shift_ns != 0) recording.notes.push_back(clock_note("the IMU readings", *shift_ns));

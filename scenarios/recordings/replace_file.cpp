@@ -76,7 +76,7 @@ void require_replaceable(const fs::path& given, const fs::path& place) {
   const std::optional<struct stat> old = status_of(place);
   if (!old) return;
   if (S_ISDIR(old->st_mode)) fail(given, EISDIR);
-  if (!S_ISREG(old->st_mode)) fail(given, "it is not a regular file but a device, a pipe or a socket");
+  if (!S_ISREG(old->st_mode)) fail(given, "the output is a device, a pipe or a socket; it must be a regular file");
   if (access(place.c_str(), W_OK) != 0) fail(given, errno);
 }
 
@@ -91,7 +91,7 @@ void require_outside(const fs::path& output, std::span<const fs::path> inputs) {
     if (error) continue;
     const bool within = std::mismatch(folder.begin(), folder.end(), place.begin(), place.end()).first == folder.end();
     if (within && place != folder)
-      fail(output, fmt::format("the output is a file of the input {}; name another output", input.string()));
+      fail(output, fmt::format("the output is a file of the input {}; choose another output name", input.string()));
   }
 }
 
@@ -167,7 +167,8 @@ void OutputFile::move_into_place() {
     const std::optional<struct stat> own = status_of(unfinished_);
     const bool same_owner = own && own->st_uid == old->st_uid && own->st_gid == old->st_gid;
     if (!same_owner && fchown(file.get(), old->st_uid, old->st_gid) != 0) {
-      fail(given_, "the file belongs to another user, and its owner cannot be kept");
+      fail(given_,
+           "the file belongs to another user, and this program cannot keep the owner; choose another output name");
     }
     if (fchmod(file.get(), old->st_mode & 07777) != 0) fail(given_, errno);
   }
@@ -187,9 +188,9 @@ OutputFolder::OutputFolder(const fs::path& folder) : folder_(folder) {
   const bool empty = fs::is_empty(folder, error);
   if (error) fail(folder, error.message());
   if (!empty) {
-    throw BadInput(
-        folder.string() +
-        ": contains files already, which would mix with those of this run; name a new folder or empty this one");
+    throw BadInput(folder.string() +
+                   ": the folder contains files, which would mix with the files of this run; choose a new folder or "
+                   "empty this folder");
   }
   on_signal_.emplace(folder, made_ ? Unfinished::Kind::folder : Unfinished::Kind::contents);
 }
@@ -224,7 +225,7 @@ void require_not_an_input(const fs::path& output, std::span<const fs::path> inpu
   for (const fs::path& input : inputs) {
     const std::optional<struct stat> other = input.empty() ? std::nullopt : status_of(input);
     if (other && other->st_dev == own->st_dev && other->st_ino == own->st_ino) {
-      throw BadInput(output.string() + ": is both input and output; name another output");
+      throw BadInput(output.string() + ": the file is both input and output; choose another output name");
     }
   }
 }

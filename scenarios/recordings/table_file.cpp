@@ -22,7 +22,7 @@ namespace {
 /// Write block size [bytes].
 constexpr std::size_t kBlock = 1 << 16;
 
-/// Returns true for the characters that may stand between numbers in a table of blanks, such as a TUM file.
+/// Returns true for the characters that may separate numbers in a table with blanks, such as a TUM file.
 bool is_separator(char c) {
   return c == '\t' || c == ',' || c == ';';
 }
@@ -52,8 +52,8 @@ bool read_line(std::istream& file, const std::filesystem::path& path, int number
     if (c == '\n') return true;
     line += static_cast<char>(c);
     if (line.size() > kLineMax)
-      throw BadInput(fmt::format("{}:{}: the line has more than {} bytes; it is not a line of a table", path.string(),
-                                 number, kLineMax));
+      throw BadInput(fmt::format("{}:{}: the line has more than {} bytes, so this is not a line of a table",
+                                 path.string(), number, kLineMax));
   }
   return !line.empty();
 }
@@ -118,15 +118,16 @@ Table Table::read(const std::filesystem::path& path, char separator, const std::
     if (separator == ' ') std::replace_if(line.begin(), line.end(), is_separator, ' ');
     if (header_due) {
       if (line != header)
-        throw BadInput(fmt::format("{}:1: header is '{}', must be '{}'", path.string(), shortened(line), header));
+        throw BadInput(
+            fmt::format("{}:1: the header is '{}'; it must be '{}'", path.string(), shortened(line), header));
       header_due = false;
       continue;
     }
     if (line.empty() || line.front() == '#') continue;
     Row row{number, split(line, separator)};
     if (row.cells.size() != columns) {
-      throw BadInput(path.string() + ":" + std::to_string(number) + ": " + std::to_string(row.cells.size()) +
-                     " columns, must be " + std::to_string(columns));
+      throw BadInput(path.string() + ":" + std::to_string(number) + ": the row has " +
+                     std::to_string(row.cells.size()) + " columns; it must have " + std::to_string(columns));
     }
     table.rows.push_back(std::move(row));
   }

@@ -89,12 +89,13 @@ bool step_rest_rms(const ScoredEstimate& scored, double& value) {
 
 std::vector<Metric> attitude_metrics() {
   return {
-      {{"inclination_rmse_rad", Unit::rad, "rms angle between estimated and true vertical, in motion", Sense::lower,
-        Place::headline},
+      {{"inclination_rmse_rad", Unit::rad,
+        "root mean square (rms) angle between estimated and true vertical, in motion", Sense::lower, Place::headline},
        Kind::attitude,
        rmse<&AttitudeError::inclination_rad, false>},
-      {{"heading_rmse_rad", Unit::rad, "rms heading error in motion, with the heading aligned at the start",
-        Sense::lower, Place::held},
+      {{"heading_rmse_rad", Unit::rad,
+        "rms error of the heading in motion; estimated and true heading are aligned at the start", Sense::lower,
+        Place::held},
        Kind::attitude,
        rmse<&AttitudeError::heading_rad, false>},
       {{"inclination_coverage_3sigma", Unit::share,
@@ -103,8 +104,8 @@ std::vector<Metric> attitude_metrics() {
        Kind::attitude,
        tilt_coverage},
       {{"inclination_nees_median", Unit::number,
-        "median of squared tilt error over reported variance, in motion, relative to the median of a normal "
-        "distribution",
+        "consistency of the tilt in motion: median of squared error over reported variance, divided by its value for a "
+        "normal distribution; 1 is correct",
         Sense::two_sided, Place::held, 1.0},
        Kind::attitude,
        tilt_nees_median},
@@ -114,15 +115,15 @@ std::vector<Metric> attitude_metrics() {
       {{"inclination_rmse_rest_rad", Unit::rad, "rms angle between estimated and true vertical, at rest", Sense::lower},
        Kind::attitude,
        rmse<&AttitudeError::inclination_rad, true>},
-      {{"heading_rmse_rest_rad", Unit::rad, "rms heading error at rest, with the heading aligned at the start",
-        Sense::lower},
+      {{"heading_rmse_rest_rad", Unit::rad,
+        "rms error of the heading at rest; estimated and true heading are aligned at the start", Sense::lower},
        Kind::attitude,
        rmse<&AttitudeError::heading_rad, true>},
       {{"attitude_rmse_rest_rad", Unit::rad, "rms angle of the attitude error, at rest", Sense::lower},
        Kind::attitude,
        rmse<&AttitudeError::total_rad, true>},
       {{"attitude_step_rest_rms_rad", Unit::rad,
-        "rms change of the attitude from sample to sample at standstill (jitter)", Sense::lower},
+        "rms change of the estimated attitude from sample to sample at standstill (jitter)", Sense::lower},
        Kind::attitude,
        step_rest_rms},
   };

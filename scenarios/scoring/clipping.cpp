@@ -26,18 +26,19 @@ double noise_rad_s(const sim::ImuRecord& record) {
 
 ClippingTruth::ClippingTruth(const sim::Sensors& sensors, const sim::Truth& truth) {
   if (sensors.imus.empty() || truth.imus.empty())
-    throw BadInput("the recording or the truth has no IMU; rates cannot be scored");
+    throw BadInput("the recording or the truth has no IMU, so rates cannot be scored");
   record_ = &sensors.imus.front();
   truth_ = &truth.imus.front();
   tolerance_rad_s_ = std::max(kToleranceMinRadS, noise_rad_s(*record_));
   const std::size_t count = record_->time_ns.size();
   if (truth_->rate_rad_s.empty() && count > 0)
-    throw BadInput(
-        fmt::format("the truth has no rates of imu '{}'; it may be a reference that has poses only", record_->name));
+    throw BadInput(fmt::format(
+        "the truth has no rates of imu '{}'; the truth may be a reference that contains only poses", record_->name));
   const bool reference = truth_->gyro_unclipped_rad_s.empty() && count > 0;
   if (record_->gyro_rad_s.size() != count || truth_->rate_rad_s.size() != count ||
       (!reference && truth_->gyro_unclipped_rad_s.size() != count)) {
-    throw BadInput(fmt::format("the readings of imu '{}' and its truth differ in number", record_->name));
+    throw BadInput(fmt::format("imu '{}' and its truth have different numbers of samples; the numbers must be equal",
+                               record_->name));
   }
   for (std::size_t i = 0; i < truth_->gyro_elements.size() && i < 3; ++i)
     elements_.row(static_cast<Eigen::Index>(i)) = truth_->gyro_elements[i].transpose();

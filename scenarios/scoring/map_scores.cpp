@@ -20,7 +20,7 @@ constexpr float kSamePointM = 1e-3f;     // points in one cell of this size are 
 constexpr double kSeenRangeM = 100.0;    // hits farther from the start are not expected in maps
 
 static_assert(kErrorLimitM > kToleranceM && kErrorLimitM > kFineToleranceM,
-              "an error at the limit must be outside both tolerances");
+              "an error at the limit must exceed both tolerances");
 
 // Returns the map points in W after alignment of position and yaw at the start.
 std::vector<Eigen::Vector3f> map_in_world(const ScoredEstimate& scored) {
@@ -136,19 +136,19 @@ std::vector<Metric> map_metrics() {
        Kind::slam,
        map_coverage},
       {{"map_error_mean_m", Unit::m,
-        "mean distance of map points to the true surface, with each distance limited to 0.5 m", Sense::lower,
+        "mean distance of map points to the true surface; distances above 0.5 m count as 0.5 m", Sense::lower,
         Place::held},
        Kind::slam,
        mean_error},
       {{"map_unique_share", Unit::share,
-        "number of 1 mm cells with a map point, over the number of map points; below 1 if points are inserted twice",
+        "number of cells of 1 mm that contain map points, divided by the number of map points; below 1 if points are "
+        "inserted twice",
         Sense::higher, Place::held, kNoTarget, Compared::by_difference},
        Kind::slam,
        unique_share},
       {{"map_failed", Unit::verdict,
-        "1 if more than 15 % of the map is off the surface, if the map covers less than half of the visible surface, "
-        "or "
-        "if there were sweeps but no map; otherwise 0",
+        "1 if more than 15 % of the map points are off the true surface, if the map covers less than half of the "
+        "visible surface, or if there were sweeps but no map; otherwise 0",
         Sense::lower, Place::held},
        Kind::slam,
        failed},

@@ -99,12 +99,12 @@ bool nees_median(const ScoredEstimate& scored, double& value) {
 
 std::vector<Metric> position_metrics() {
   return {
-      {{"position_end_error_m", Unit::m, "position error at the end, with position and yaw aligned at the start",
-        Sense::lower},
+      {{"position_end_error_m", Unit::m,
+        "position error at the end; estimate and truth are aligned in position and yaw at the start", Sense::lower},
        Kind::position,
        end_error},
-      {{"position_end_error_share", Unit::share,
-        "position error at the end, as a share of the true path of the body's centre", Sense::lower, Place::headline},
+      {{"position_end_error_share", Unit::share, "position error at the end, as a share of the length of the true path",
+        Sense::lower, Place::headline},
        Kind::position,
        end_error_share},
       {{"position_height_error_max_m", Unit::m, "largest height error", Sense::lower, Place::held},
@@ -116,11 +116,13 @@ std::vector<Metric> position_metrics() {
        Kind::position,
        position_coverage_3sigma},
       {{"position_nees_median", Unit::number,
-        "median of squared position error over reported variance, relative to the median of a normal distribution",
+        "consistency of the position: median of squared error over reported variance, divided by its value for a "
+        "normal distribution; 1 is correct",
         Sense::two_sided, Place::held, 1.0},
        Kind::position,
        nees_median},
-      {{"position_rest_drift_m", Unit::m, "largest position drift during one standstill", Sense::lower},
+      {{"position_rest_drift_m", Unit::m, "maximum drift of the estimated position during one standstill",
+        Sense::lower},
        Kind::position,
        rest_drift},
   };

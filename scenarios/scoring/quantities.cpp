@@ -9,9 +9,9 @@ namespace tumble::scenarios {
 
 std::vector<MetricInfo> cost_quantities() {
   return {
-      {"estimate_cpu_s", Unit::s, "CPU time of the estimate, without reading and scoring"},
+      {"estimate_cpu_s", Unit::s, "CPU time of the estimation, without reading and scoring"},
       {"simulate_cpu_s", Unit::s, "CPU time of the simulation"},
-      {"estimate_peak_mib", Unit::mib, "peak memory of the estimate, in addition to the recording"},
+      {"estimate_peak_mib", Unit::mib, "peak memory of the estimation, in addition to the memory of the recording"},
   };
 }
 
@@ -31,17 +31,19 @@ std::vector<MetricInfo> motion_quantities() {
       {"motion_moving_s", Unit::s, "time between first and last motion"},
       {"motion_path_m", Unit::m, "path length of the centre of mass"},
       {"motion_peak_rate_rad_s", Unit::rad_s, "largest angular velocity"},
-      {"motion_peak_accel_m_s2", Unit::m_s2, "largest specific force without saturation"},
+      {"motion_peak_accel_m_s2", Unit::m_s2, "maximum true specific force at the IMU"},
       {"motion_flight_share", Unit::share, "share of the motion time without contact"},
       {"motion_impacts", Unit::number, "number of impacts"},
       {"motion_clips", Unit::verdict, "1 if any sample of the primary gyro is clipped, otherwise 0"},
       {"motion_clipped_share", Unit::share, "share of the samples in motion with a clipped gyro axis"},
       {"motion_clipped_samples", Unit::number, "number of samples in motion with a clipped gyro axis"},
-      {"motion_clip_depth_max_rad_s", Unit::rad_s, "largest saturation deficit of a gyro axis"},
-      {"motion_clip_length_max_s", Unit::s, "longest segment of clipped samples"},
+      {"motion_clip_depth_max_rad_s", Unit::rad_s,
+       "maximum saturation deficit of a gyro axis (true rate minus clipped reading)"},
+      {"motion_clip_length_max_s", Unit::s, "duration of the longest segment of clipped samples"},
       {"motion_several_axes_share", Unit::share, "share of the clipped samples with at least two clipped axes"},
       {"motion_cross_axis_share", Unit::share,
-       "share of the clipped samples in which an axis that is not clipped has a cross-axis error"},
+       "share of the clipped samples in which the clipping of one axis causes an error on an unclipped axis "
+       "(cross-axis error)"},
       {"motion_accel_clipped_share", Unit::share, "share of the samples in motion with a clipped accelerometer axis"},
   };
 }

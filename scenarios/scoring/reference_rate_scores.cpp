@@ -154,33 +154,34 @@ void add_reference(const std::string& name, const std::string& doc, std::vector<
 
 std::vector<Metric> reference_rate_metrics() {
   std::vector<Metric> all;
-  all.push_back({{"rate_error_clipped_p90_rad_s", Unit::rad_s,
-                  "90th percentile of the rate error (norm) over clipped samples, against a reference", Sense::lower},
-                 Kind::rate,
-                 clipped_error<error_norm, 90, 7u>});
-  add_pair<error_speed, 7u>("speed_error", "error of the rate's magnitude over clipped samples, against a reference",
-                            all);
-  add_pair<error_axis<0>, 1u>("error_x", "error of axis x while clipped, against a reference", all);
-  add_pair<error_axis<1>, 2u>("error_y", "error of axis y while clipped, against a reference", all);
-  add_pair<error_axis<2>, 4u>("error_z", "error of axis z while clipped, against a reference", all);
+  all.push_back(
+      {{"rate_error_clipped_p90_rad_s", Unit::rad_s,
+        "90th percentile of the rate error (norm) over clipped samples, compared with a reference", Sense::lower},
+       Kind::rate,
+       clipped_error<error_norm, 90, 7u>});
+  add_pair<error_speed, 7u>("speed_error",
+                            "error of the rate's magnitude over clipped samples, compared with a reference", all);
+  add_pair<error_axis<0>, 1u>("error_x", "error of axis x while clipped, compared with a reference", all);
+  add_pair<error_axis<1>, 2u>("error_y", "error of axis y while clipped, compared with a reference", all);
+  add_pair<error_axis<2>, 4u>("error_z", "error of axis z while clipped, compared with a reference", all);
   add_reference<error_norm>(
-      "reference_error",
-      "norm of the difference between the reference's rates and the gyro, in motion without clipping", all);
+      "reference_error", "norm of the difference between the rates of reference and gyro, in motion without clipping",
+      all);
   add_reference<error_speed>(
       "reference_speed_error",
-      "difference between the magnitudes of the reference's rates and of the gyro, in motion without clipping", all);
+      "difference between the magnitudes of the rates of reference and gyro, in motion without clipping", all);
   all.push_back(
       {{"rate_reference_coverage_3sigma", Unit::share,
         "share of clipped axes whose error is within three standard deviations of method and reference combined",
         Sense::two_sided, Place::detail, kNormal3Sigma, Compared::by_difference},
        Kind::rate,
        reference_coverage});
-  all.push_back({{"rate_clipped_called_measured", Unit::share,
-                  "share of axes clipped according to the reference that the method reports as measured, neither "
-                  "clipped nor suspect",
-                  Sense::lower},
-                 Kind::rate,
-                 called_measured});
+  all.push_back(
+      {{"rate_clipped_called_measured", Unit::share,
+        "share of the axes that are clipped according to the reference, but that the method reports as measured",
+        Sense::lower},
+       Kind::rate,
+       called_measured});
   all.push_back({{"rate_reference_clipped_samples", Unit::number,
                   "number of samples with an axis that is clipped according to the reference", Sense::none},
                  Kind::rate,

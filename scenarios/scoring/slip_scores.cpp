@@ -65,7 +65,8 @@ class Events {
 
 std::vector<SlipSpan> true_spans(const sim::Truth& truth) {
   if (truth.label.size() != truth.q_WB.size()) {
-    throw BadInput(fmt::format("truth.label has {} entries, must have {}", truth.label.size(), truth.q_WB.size()));
+    throw BadInput(fmt::format("truth.label has {} entries; it must have {}, one per physics step", truth.label.size(),
+                               truth.q_WB.size()));
   }
   Events events;
   for (std::size_t k = 0; k < truth.label.size(); ++k) {
@@ -88,8 +89,8 @@ bool counts(const SlipSpan& span, const sim::Truth& truth) {
 /// Returns the slip intervals of the estimate. A label applies from its own instant to the instant of the next label.
 std::vector<SlipSpan> claimed_spans(const Estimate& estimate) {
   if (estimate.contacts.size() != estimate.poses.size()) {
-    throw BadInput(
-        fmt::format("the estimate has {} contacts for {} poses", estimate.contacts.size(), estimate.poses.size()));
+    throw BadInput(fmt::format("the estimate has {} contacts for {} poses; their numbers must be equal",
+                               estimate.contacts.size(), estimate.poses.size()));
   }
   Events events;
   for (std::size_t k = 0; k + 1 < estimate.contacts.size(); ++k) {
@@ -226,26 +227,27 @@ bool flagged_share(const ScoredEstimate& scored, double& value) {
 
 std::vector<Metric> slip_metrics() {
   return {
-      {{"slip_precision", Unit::share, "share of reported slip and slide events that are true; 1 if none is reported",
-        Sense::higher, Place::held, kNoTarget, Compared::by_difference},
+      {{"slip_precision", Unit::share,
+        "share of the reported slip and slide events that are true; 1 if the method reports no event", Sense::higher,
+        Place::held, kNoTarget, Compared::by_difference},
        Kind::position,
        precision},
-      {{"slip_recall", Unit::share, "share of true slip events that are detected", Sense::higher, Place::held,
+      {{"slip_recall", Unit::share, "share of the true slip events that the method detects", Sense::higher, Place::held,
         kNoTarget, Compared::by_difference},
        Kind::position,
        recall},
       {{"slip_delay_s", Unit::s,
-        "median delay from the true start of a detected event to its report; 0 if reported earlier", Sense::lower},
+        "median delay from the true start of a detected event to its report; earlier reports count as 0", Sense::lower},
        Kind::position,
        delay},
       {{"slip_flag_recall", Unit::share,
-        "share of true events with a position error above 0.1 m during which the reported standard deviation grows by "
-        "at least 0.03 m",
+        "share of the true events with a position error above 0.1 m during which the reported standard deviation grows "
+        "by at least 0.03 m",
         Sense::higher, Place::detail, kNoTarget, Compared::by_difference},
        Kind::position,
        flag_recall},
       {{"slip_flagged_share", Unit::share,
-        "share of all true events during which the reported standard deviation grows by at least 0.03 m", Sense::none},
+        "share of the true events during which the reported standard deviation grows by at least 0.03 m", Sense::none},
        Kind::position,
        flagged_share},
   };

@@ -68,12 +68,13 @@ bool jump_rad_s(const ScoredEstimate& scored, double& value) {
 std::vector<Metric> sweep_border_metrics() {
   return {
       {{"sweep_jump_m_s", Unit::m_s,
-        "rms jump of the estimated velocity at sweep boundaries, minus the true change of velocity", Sense::lower,
-        Place::held},
+        "rms jump of the estimated velocity at sweep boundaries, after subtraction of the true change of velocity",
+        Sense::lower, Place::held},
        Kind::slam,
        jump_m_s},
       {{"sweep_jump_rad_s", Unit::rad_s,
-        "rms jump of the rate (from the attitudes) at sweep boundaries, minus the true change of rate", Sense::lower},
+        "rms jump of the rate (from the attitudes) at sweep boundaries, after subtraction of the true change of rate",
+        Sense::lower},
        Kind::slam,
        jump_rad_s},
   };

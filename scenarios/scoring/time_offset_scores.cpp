@@ -87,15 +87,16 @@ Metric offset_metric(const char* name, const char* doc, Kind kind, bool (*comput
 
 std::vector<Metric> time_offset_metrics() {
   constexpr const char* kPoses =
-      "delay of the poses' attitudes, negative if early: least squares of the errors over the true rate";
+      "delay of the poses' attitudes (negative: too early), by least squares of the attitude errors over the true rate";
   return {
       offset_metric("rate_time_offset_s",
-                    "delay of the rates, negative if early: least squares of the errors without clipped axes over the "
-                    "true angular acceleration",
+                    "delay of the rates (negative: too early), by least squares of the errors of unclipped axes over "
+                    "the true angular acceleration",
                     Kind::rate, rate_offset),
-      offset_metric("attitude_time_offset_s",
-                    "delay of the attitudes, negative if early: least squares of the errors over the true rate",
-                    Kind::attitude, attitude_offset),
+      offset_metric(
+          "attitude_time_offset_s",
+          "delay of the attitudes (negative: too early), by least squares of the attitude errors over the true rate",
+          Kind::attitude, attitude_offset),
       offset_metric("pose_time_offset_s", kPoses, Kind::position, pose_offset),
       offset_metric("pose_time_offset_s", kPoses, Kind::slam, pose_offset),
   };

@@ -79,13 +79,13 @@ bool rpe_rad(const ScoredEstimate& scored, double& value) {
 
 std::vector<Metric> trajectory_metrics(Kind kind) {
   return {
-      {{"ate_m", Unit::m, "rms position error, with position and yaw aligned at the start only", Sense::lower,
-        Place::held},
+      {{"ate_m", Unit::m, "rms position error; estimate and truth are aligned in position and yaw only at the start",
+        Sense::lower, Place::held},
        kind,
        ate},
       {{"ate_rad", Unit::rad,
-        "rms rotation error, up to pi, with position and yaw aligned at the start only; includes the error from late "
-        "time stamps",
+        "rms rotation error, from 0 to pi; estimate and truth are aligned in position and yaw only at the start; "
+        "includes the error of late time stamps",
         Sense::lower, Place::held},
        kind,
        ate_rotation},
@@ -93,7 +93,7 @@ std::vector<Metric> trajectory_metrics(Kind kind) {
         Place::held},
        kind,
        rpe_m},
-      {{"rpe_1m_rad", Unit::rad, "rms rotation error of the relative motion over 1 m of true path, up to pi",
+      {{"rpe_1m_rad", Unit::rad, "rms rotation error of the relative motion over 1 m of true path, from 0 to pi",
         Sense::lower, Place::held},
        kind,
        rpe_rad},

@@ -16,10 +16,11 @@ namespace {
 Eigen::Isometry3d mounting(const sim::Truth& truth, Frame frame) {
   switch (frame) {
     case Frame::imu:
-      if (truth.imus.empty()) throw BadInput("the truth has no IMU; poses of frame imu cannot be scored");
+      if (truth.imus.empty()) throw BadInput("the truth has no IMU, so poses of the frame 'imu' cannot be scored");
       return truth.imus.front().T_BI;
     case Frame::lidar:
-      if (truth.lidars.empty()) throw BadInput("the truth has no lidar; poses of frame lidar cannot be scored");
+      if (truth.lidars.empty())
+        throw BadInput("the truth has no lidar, so poses of the frame 'lidar' cannot be scored");
       return truth.lidars.front().T_BL;
     case Frame::body:
       break;
@@ -55,7 +56,7 @@ std::vector<bool> rest_mask(const sim::Truth& truth) {
 
 TruthTrack::TruthTrack(const sim::Truth& truth, Frame frame) : truth_(&truth), T_BA_(mounting(truth, frame)) {
   const std::size_t count = truth.p_WB_m.size();
-  if (count == 0) throw BadInput("the truth has no motion");
+  if (count == 0) throw BadInput("the truth contains no motion samples");
   if (truth.period_ns <= 0)
     throw BadInput(fmt::format("truth.period_ns is {}; it must be greater than 0", truth.period_ns));
   require_length("truth", "q_WB", truth.q_WB.size(), count);

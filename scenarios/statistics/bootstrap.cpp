@@ -59,8 +59,8 @@ double acceleration(std::span<const double> sorted) {
 }  // namespace
 
 MedianBootstrap::MedianBootstrap(std::size_t size, std::size_t resamples) : size_(size) {
-  if (size == 0) throw BadInput("bootstrap: there are no values");
-  if (resamples < 100) throw BadInput(fmt::format("bootstrap: resamples is {}, must be at least 100", resamples));
+  if (size == 0) throw BadInput("bootstrap: there are no values; at least one value is needed");
+  if (resamples < 100) throw BadInput(fmt::format("bootstrap: resamples is {}; it must be at least 100", resamples));
   // Equation statistics.md (S1) gives the lower middle of n uniform numbers. Equation (S1) also gives the next
   // larger number, conditional on the lower middle.
   sim::Stream stream(size, "statistics.bootstrap");
@@ -79,12 +79,14 @@ MedianBootstrap::MedianBootstrap(std::size_t size, std::size_t resamples) : size
 
 Interval MedianBootstrap::interval(std::span<const double> values, double risk) const {
   if (values.size() != size_)
-    throw BadInput(fmt::format("bootstrap: {} values, but the bootstrap was made for {}", values.size(), size_));
+    throw BadInput(
+        fmt::format("bootstrap: there are {} values, but the bootstrap was created for {}; the numbers must be equal",
+                    values.size(), size_));
   if (!(risk > 0.0 && risk < 1.0))
-    throw BadInput(fmt::format("bootstrap: risk is {}, must be within (0, 1)", std::to_string(risk)));
+    throw BadInput(fmt::format("bootstrap: risk is {}; it must be within (0, 1)", std::to_string(risk)));
   std::vector<double> sorted(values.begin(), values.end());
   if (std::any_of(sorted.begin(), sorted.end(), [](double v) { return std::isnan(v); }))
-    throw BadInput("bootstrap: a value is NaN");
+    throw BadInput("bootstrap: a value is NaN; all values must be numbers");
   std::sort(sorted.begin(), sorted.end());
   const double median = sorted_median(sorted);
   if (size_ < kValuesMin) return {median, -kInfinity, kInfinity};

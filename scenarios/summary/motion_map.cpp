@@ -89,9 +89,10 @@ std::vector<MotionPoint> thinned(const std::vector<MotionPoint>& points) {
 /// Returns the maxima from the two publications on the rig by Deschênes and others. The earlier publication reports
 /// rates and forces. The later publication reports forces in its abstract, and an angular acceleration.
 std::vector<PublishedExtreme> published() {
-  return {{"rig down a hill, 32 tumbles", "Deschênes and others, ICRA 2024: 18.6 rad/s, 157.8 m/s² (a device of 16 g)",
+  return {{"rig, 32 tumbles down a hill",
+           "Deschênes and others, ICRA 2024: up to 18.6 rad/s and 157.8 m/s² (the accelerometer has a range of 16 g)",
            18.6, 157.8},
-          {"collisions of a rig", "Deschênes and others, CRV 2021: 200 m/s²; rates are not stated",
+          {"collisions of a rig", "Deschênes and others, CRV 2021: up to 200 m/s²; the paper does not state rates",
            std::numeric_limits<double>::quiet_NaN(), 200.0}};
 }
 

@@ -32,21 +32,21 @@ struct Quantity {
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 constexpr std::array kQuantities = {
-    Quantity{"motion_peak_rate_rad_s", "largest rate", "rad/s", 1.0, "up to 18.6; aim: 8 to 25, median 13 to 16", 8.0,
-             25.0},
-    Quantity{"motion_clipped_share", "share of the moving samples with a clipped gyro axis", "%", 100.0, "", kNone,
+    Quantity{"motion_peak_rate_rad_s", "largest rate", "rad/s", 1.0, "up to 18.6; target: 8 to 25, median 13 to 16",
+             8.0, 25.0},
+    Quantity{"motion_clipped_share", "share of the samples in motion with a clipped gyro axis", "%", 100.0, "", kNone,
              kNone},
-    Quantity{"motion_several_axes_share", "share of a draw's clipped samples with at least two clipped axes", "%",
+    Quantity{"motion_several_axes_share", "share of the clipped samples with at least two clipped axes, per draw", "%",
              100.0, "", kNone, kNone},
-    Quantity{"motion_several_axes_share", "share of all draws' clipped samples with at least two clipped axes", "%",
-             100.0, "aim: 10 to 40", kNone, kNone, Over::clipped_samples},
+    Quantity{"motion_several_axes_share", "share of the clipped samples with at least two clipped axes, over all draws",
+             "%", 100.0, "target: 10 to 40", kNone, kNone, Over::clipped_samples},
     Quantity{"motion_cross_axis_share",
-             "share of all draws' clipped samples with a cross-axis error on an axis that is not clipped", "%", 100.0,
+             "share of the clipped samples with a cross-axis error on an unclipped axis, over all draws", "%", 100.0,
              "", kNone, kNone, Over::clipped_samples},
     Quantity{"motion_path_m", "path", "m", 1.0, "5 to 10", 5.0, 10.0},
     Quantity{"motion_peak_accel_m_s2", "largest specific force", "m/s²", 1.0,
              "up to 157.8; a 16 g device saturates at 156.9", 157.8, 157.8},
-    Quantity{"motion_clips", "share of draws that clip the gyro", "%", 100.0, "aim: 90", kNone, kNone,
+    Quantity{"motion_clips", "share of the draws in which the gyro clips", "%", 100.0, "target: 90", kNone, kNone,
              Over::share_of_draws},
 };
 

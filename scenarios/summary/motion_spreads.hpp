@@ -27,9 +27,9 @@ struct Spread {
   double median = 0, quantile_05 = 0, quantile_95 = 0;
 };
 
-/// Source of the `published` values. In the report, this text follows the word "beside".
+/// Source of the `published` values. In the report, this text follows the words "compared with".
 inline constexpr const char* kPublishedMotion =
-    "the published campaign of the rig (32 tumbles down a hill) and the target of the scenario hill";
+    "the published campaign of the rig (32 tumbles down a hill) and the target of the scenario 'hill'";
 
 /// Returns one spread per quantity and scenario, with scenarios in the order of the simulated runs. For a fraction of
 /// runs ("draws that clip the gyro"), the value of each run is 0 or 1. The median is then the fraction of runs, and the

@@ -31,9 +31,12 @@ void require_contest(const std::string& metric, const std::string& kind) {
   const auto all = metrics();
   const auto own = std::find_if(all.begin(), all.end(), [&](const Metric& m) { return m.info.name == info.name; });
   if (own == all.end() || info.sense == Sense::none)
-    throw BadInput(fmt::format("metric '{}' of a question is unknown, or has no better direction", metric));
+    throw BadInput(
+        fmt::format("metric '{}' of a question is unknown or cannot rank methods; choose a metric for which lower or "
+                    "higher is better",
+                    metric));
   if (to_string(own->kind) != kind)
-    throw BadInput(fmt::format("metric '{}' is of kind {}; it must have the kind of the methods, '{}'", metric,
+    throw BadInput(fmt::format("metric '{}' is of kind '{}'; it must be of kind '{}', like the methods", metric,
                                to_string(own->kind), kind));
 }
 
@@ -118,20 +121,23 @@ void require_sound(const Question& question) {
   const std::string kind = kind_of(question.method);
   for (const std::string& name : {question.method, question.against}) {
     if (kind_of(name).empty())
-      throw BadInput(fmt::format("method '{}' of a question needs its kind, for example 'rate/tumble'", name));
-    if (kind_of(name) != kind)
       throw BadInput(
-          fmt::format("methods '{}' and '{}' have different kinds; no metric compares them", question.method, name));
+          fmt::format("method '{}' of a question must be written with its kind, for example 'rate/tumble'", name));
+    if (kind_of(name) != kind)
+      throw BadInput(fmt::format(
+          "methods '{}' and '{}' have different kinds, so no metric can compare them; choose methods of one kind",
+          question.method, name));
   }
   if (question.method == question.against)
-    throw BadInput(fmt::format("method '{}' is compared with itself; name two methods", question.method));
+    throw BadInput(fmt::format("method '{}' is compared with itself; name two different methods", question.method));
   require_contest(question.metric, kind);
   if (!(question.margin.value >= 0.0 && std::isfinite(question.margin.value)))
-    throw BadInput(fmt::format("margin is {}, must be finite and at least 0", std::to_string(question.margin.value)));
+    throw BadInput(
+        fmt::format("the margin is {}; it must be finite and at least 0", std::to_string(question.margin.value)));
   if (!(question.risk > 0.0 && question.risk < 1.0))
-    throw BadInput(fmt::format("risk is {}, must be within (0, 1)", std::to_string(question.risk)));
+    throw BadInput(fmt::format("the risk is {}; it must be within (0, 1)", std::to_string(question.risk)));
   if (question.looks < 1 || question.looks > kLooksMax)
-    throw BadInput(fmt::format("looks are {}, must be within [1, {}]", question.looks, kLooksMax));
+    throw BadInput(fmt::format("the number of looks is {}; it must be within [1, {}]", question.looks, kLooksMax));
   if (question.scenarios.empty()) throw BadInput("a question needs at least one scenario");
   if (question.last_seed < question.first_seed) throw BadInput("a question needs at least one seed");
 }
@@ -140,10 +146,11 @@ void claim(Results& results, const Question& question, const std::filesystem::pa
   const std::string known = results.note(kQuestionNote), asked = question.describe();
   if (known == asked) return;
   if (!known.empty())
-    throw BadInput(fmt::format("{}: stores the question '{}', but now the question is '{}'; name another file",
+    throw BadInput(fmt::format("{}: this file stores the question '{}', but this run asks '{}'; choose another file",
                                database.string(), known, asked));
   if (!results.outcomes().empty())
-    throw BadInput(database.string() + ": holds draws that were made before the question was set; name another file");
+    throw BadInput(database.string() +
+                   ": this file contains draws from a run without this question; choose another file");
   results.set_note(kQuestionNote, asked);
 }
 

@@ -19,7 +19,7 @@ void require_named(const std::string& what, std::span<const std::string> names, 
   for (const std::string& name : names) {
     if (known.contains(name)) continue;
     const std::string near = sim::nearest_name(name, std::vector<std::string>(known.begin(), known.end()));
-    throw BadInput("the results hold no " + what + " '" + name + "'" +
+    throw BadInput("the results contain no " + what + " '" + name + "'" +
                    (near.empty() ? "" : "; did you mean '" + near + "'?"));
   }
 }

@@ -74,7 +74,7 @@ DatabaseOwner::DatabaseOwner(const fs::path& database) : database_(database), lo
       close(fd);
       if (error != EWOULDBLOCK) fail_to_lock(lock_, error);
       throw BadInput(database.string() + ": " + holder +
-                     " is writing to this database; name another file, or wait until that process ends");
+                     " is writing to this database; choose another file, or wait until that process ends");
     }
     if (is_at(lock_, fd)) {
       fd_ = fd;

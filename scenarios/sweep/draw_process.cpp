@@ -104,7 +104,7 @@ Lidars lidars_for(const DrawTask& task, bool recordings_unseen) {
   return read ? Lidars::simulated : Lidars::left_out;
 }
 
-/// A simulated run whose sensor data a setting modified. Empty if there is no setting.
+/// A simulated run with sensor data that a setting modified. Empty if there is no setting.
 struct Given {
   Setting setting;
   std::optional<SimulatedDraw> draw, scored;

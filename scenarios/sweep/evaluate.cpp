@@ -130,7 +130,7 @@ void assess(const Method& method, const SimulatedDraw& draw, const sim::Surface*
     const ScoredEstimate scored(estimate, {&draw.recording.sensors, &draw.recording.truth, surface});
     outcome.status = verdict(method.info.kind, scored);
     if (outcome.status == OutcomeStatus::diverged)
-      outcome.message = "the estimate diverged from the truth, left the recording's time range, or is not finite";
+      outcome.message = "the estimate diverged from the truth, is outside the recording's time range, or is not finite";
     for (Score& score : score(method.info.kind, scored)) outcome.scores.push_back(std::move(score));
   } catch (const std::bad_alloc&) {
     outcome.status = OutcomeStatus::killed;

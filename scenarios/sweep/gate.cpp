@@ -103,7 +103,7 @@ void hold_worst_draw(const MetricInfo& info, const std::vector<GatePair>& pairs,
   const double slack = by_difference(info) ? margin_of(info, policy) : 0.0;
   if (!(badness(info, now.now) > policy.worst * badness(info, before.before) + slack)) return;
   result.seed = now.seed;
-  result.fault = fmt::format("worst draw: {} at seed {}; the worst draw of the accepted run had {}",
+  result.fault = fmt::format("the worst draw has {} at seed {}, but the worst draw of the accepted run has {}",
                              three_digits(now.now), now.seed, three_digits(before.before));
 }
 
@@ -142,7 +142,7 @@ GateResult hold_metric(const GatePairs& found, const MethodRun& before, const Me
   hold_middle(found.pairs, info, policy, tests, result);
   if (!found.lost.empty()) {
     result.seed = found.lost.front();
-    result.fault = "no longer has a value at seed " + std::to_string(found.lost.front());
+    result.fault = "has no value, in contrast to the accepted run, at seed " + std::to_string(found.lost.front());
     if (found.lost.size() > 1) result.fault += " and " + std::to_string(found.lost.size() - 1) + " more";
   } else if (result.passes()) {
     hold_worst_draw(info, found.pairs, policy, result);
@@ -235,11 +235,12 @@ const MethodRun* GateRun::find(const std::string& scenario, Kind kind, const std
 
 std::vector<GateResult> hold_to_gate(const GateRun& run, const Gate& gate) {
   if (gate.accepted.methods.empty())
-    throw BadInput(fmt::format("the gate of {} has no accepted results; run 'tumble gate SUITE --accept'", gate.suite));
+    throw BadInput(fmt::format(
+        "the gate of {} has no accepted results; run 'tumble gate SUITE --accept' to create them", gate.suite));
   if (run.seeds != gate.accepted.seeds) {
     throw BadInput(
-        fmt::format("the gate of {} accepted {} draws with other seeds than the {} of this run; run 'tumble gate {} "
-                    "--accept' to accept this run",
+        fmt::format("the accepted run of the gate {} has {} draws with other seeds than the {} draws of this run; use "
+                    "the same seeds, or run 'tumble gate {} --accept' to accept this run",
                     gate.suite, gate.accepted.seeds.size(), run.seeds.size(), gate.suite));
   }
   std::vector<Pooled> all = pooled_metrics(gate.accepted);
@@ -273,7 +274,7 @@ std::vector<GateResult> hold_to_gate(const GateRun& run, const Gate& gate) {
 }
 
 void require_acceptable(const GateRun& run) {
-  if (run.methods.empty()) throw BadInput("cannot accept this run: it has no outcomes");
+  if (run.methods.empty()) throw BadInput("cannot accept this run, because it has no outcomes");
   for (const MethodRun& method : run.methods) {
     const std::string what =
         "cannot accept this run: " + method.scenario + ", " + to_string(method.kind) + "/" + method.method;

@@ -51,13 +51,14 @@ struct GateLine {
 std::vector<std::uint64_t> read_seeds(const GateLine& line) {
   const std::array<std::string, kKeyCells> head = {"scenario", "kind", "method", "metric"};
   if (line.cells.size() <= kKeyCells || !std::equal(head.begin(), head.end(), line.cells.begin())) {
-    line.fail("the header must be scenario,kind,method,metric and then one seed per column");
+    line.fail("the header must be 'scenario,kind,method,metric' followed by one seed per column");
   }
   std::vector<std::uint64_t> seeds;
   for (std::size_t i = kKeyCells; i < line.cells.size(); ++i) {
     std::uint64_t seed = 0;
     if (!read_number(line.cells[i], seed)) line.fail("'" + line.cells[i] + "' is not a seed");
-    if (!seeds.empty() && seed <= seeds.back()) line.fail("seeds must increase; found " + line.cells[i]);
+    if (!seeds.empty() && seed <= seeds.back())
+      line.fail("seeds must increase from column to column; found " + line.cells[i]);
     seeds.push_back(seed);
   }
   return seeds;
@@ -81,7 +82,8 @@ void require_method(const GateLine& line, const MethodRun& run, std::span<const 
   try {
     find_methods(full_name(run.kind, run.method));
   } catch (const BadInput& error) {
-    line.fail(std::string(error.what()) + " (a method described by a file is named by that file: --method FILE.yaml)");
+    line.fail(std::string(error.what()) +
+              " (to use a method that a file describes, give the file: --method FILE.yaml)");
   }
 }
 
@@ -97,7 +99,7 @@ void read_values(const GateLine& line, MethodRun& run) {
   const std::vector<std::string> known = held_metrics(run.kind);
   const std::string& metric = line.cells[3];
   if (std::find(known.begin(), known.end(), metric) == known.end()) {
-    line.fail("'" + metric + "' is not a metric that gates compare for kind " + to_string(run.kind) +
+    line.fail("'" + metric + "' is not a metric of the gate for methods of kind " + to_string(run.kind) +
               suggestion(metric, known));
   }
   const auto [place, is_new] = run.values.try_emplace(metric);
@@ -114,12 +116,13 @@ void read_values(const GateLine& line, MethodRun& run) {
 
 void read_row(const GateLine& line, std::span<const MethodPointer> described, GateRun& run) {
   if (line.cells.size() != kKeyCells + run.seeds.size()) {
-    line.fail(std::to_string(line.cells.size()) + " columns, must be " + std::to_string(kKeyCells + run.seeds.size()));
+    line.fail("has " + std::to_string(line.cells.size()) + " columns; it must have " +
+              std::to_string(kKeyCells + run.seeds.size()));
   }
   const Kind kind = read_kind(line);
   const bool opens = line.cells[3] == kStatusRow;
   const MethodRun* known = run.find(line.cells[0], kind, line.cells[2]);
-  if (opens && known != nullptr) line.fail("the status of this method occurs twice");
+  if (opens && known != nullptr) line.fail("the status row of this method occurs twice");
   if (!opens && (known == nullptr || known != &run.methods.back()))
     line.fail("this row must follow the status row of its method");
   if (opens) {
@@ -134,7 +137,8 @@ void read_row(const GateLine& line, std::span<const MethodPointer> described, Ga
 double within(const YamlNode& node, double low, double high) {
   const double value = node.number();
   if (!(value >= low && value <= high)) {
-    node.fail(fmt::format("is {}, must be within [{}, {}]", number_text(value), number_text(low), number_text(high)));
+    node.fail(
+        fmt::format("is {}; it must be within [{}, {}]", number_text(value), number_text(low), number_text(high)));
   }
   return value;
 }
@@ -165,7 +169,7 @@ Gate load_gate(const DataRoot& data, const std::string& name, std::span<const Me
   const bool is_file = name.ends_with(".yaml");
   const std::filesystem::path path = is_file ? std::filesystem::path(name) : data.gates() / (name + ".yaml");
   if (!std::filesystem::exists(path)) {
-    throw BadInput(fmt::format("there is no accepted run of '{}'{}; create it with 'tumble gate {} --accept'", name,
+    throw BadInput(fmt::format("there is no accepted run of '{}'{}; create one with 'tumble gate {} --accept'", name,
                                suggestion(name, gate_names(data)), name));
   }
   const YamlNode root = YamlNode::parse(read_text_file(path), path.string());
@@ -173,7 +177,8 @@ Gate load_gate(const DataRoot& data, const std::string& name, std::span<const Me
   const auto fields = root.fields(required);
   Gate gate;
   gate.suite = fields.at("suite").text();
-  if (!is_file && gate.suite != name) fields.at("suite").fail(fmt::format("is '{}', must be '{}'", gate.suite, name));
+  if (!is_file && gate.suite != name)
+    fields.at("suite").fail(fmt::format("is '{}'; it must be '{}'", gate.suite, name));
   gate.policy.risk = within(fields.at("risk"), 1e-6, 0.5);
   gate.policy.margin = within(fields.at("margin"), 0.0, 10.0);
   gate.policy.share_margin = within(fields.at("share_margin"), 0.0, 1.0);

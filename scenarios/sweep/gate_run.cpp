@@ -43,7 +43,8 @@ void add(const Outcome& outcome, GateRun& run) {
 
 GateRun gate_run(std::span<const Outcome> outcomes, std::uint64_t first, std::uint64_t last) {
   if (last < first || last - first >= kDrawsMax) {
-    throw BadInput(fmt::format("a gate has 1 to {} seeds; given were seeds {} to {}", kDrawsMax, first, last));
+    throw BadInput(
+        fmt::format("a gate must have 1 to {} seeds, but the given range is {} to {}", kDrawsMax, first, last));
   }
   GateRun run;
   for (std::uint64_t seed = first; seed <= last; ++seed) run.seeds.push_back(seed);

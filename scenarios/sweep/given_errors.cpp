@@ -26,7 +26,7 @@ Eigen::Vector3d direction(const sim::Situation& situation, const char* name) {
 
 sim::ImuRecord& primary(sim::Sensors& sensors, const sim::Truth& truth) {
   if (sensors.imus.empty() || truth.imus.empty())
-    throw BadInput("the recording has no IMU; this error cannot be applied");
+    throw BadInput("the recording has no IMU, so this error cannot be applied");
   return sensors.imus.front();
 }
 
@@ -45,7 +45,7 @@ void lever_arm(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situat
 void extrinsic_rotation(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation, double size) {
   const Eigen::Matrix3d R_BI_given = primary(sensors, truth).T_BI.linear();
   if (sensors.lidars.empty() || truth.lidars.empty())
-    throw BadInput("the recording has no lidar; this error cannot be applied");
+    throw BadInput("the recording has no lidar, so this error cannot be applied");
   const Eigen::Matrix3d R_IL_true = truth.imus.front().T_BI.linear().transpose() * truth.lidars.front().T_BL.linear();
   const Eigen::AngleAxisd error(size, direction(situation, "extrinsic_rotation"));
   sensors.lidars.front().T_BL.linear() = R_BI_given * R_IL_true * error.toRotationMatrix();
@@ -60,8 +60,10 @@ void time_offset(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situ
 
 /// Increases the stated radius of the sphere by the size of the error.
 void radius(sim::Sensors& sensors, const sim::Truth&, const sim::Situation&, double size) {
-  if (!(sensors.sphere_radius_m > 0.0)) throw BadInput("the recording has no sphere radius; this error needs a sphere");
-  if (!(sensors.sphere_radius_m + size > 0.0)) throw BadInput("radius_error_m makes the radius zero or negative");
+  if (!(sensors.sphere_radius_m > 0.0))
+    throw BadInput("the recording states no sphere radius, but this error needs a recording of a sphere");
+  if (!(sensors.sphere_radius_m + size > 0.0))
+    throw BadInput("radius_error_m makes the radius zero or negative; choose a smaller error");
   sensors.sphere_radius_m += size;
 }
 
@@ -111,26 +113,28 @@ void report_rail(std::span<const sim::Parameter> known, double size, sim::Values
 std::span<const GivenError> given_errors() {
   static const std::array kErrors = {
       GivenError{{"lever_arm_error_m", 0.0, 0.0, 1.0, "m",
-                  "error of the lever arm, in a direction drawn once per draw; 0: exact"},
+                  "error of the stated lever arm, in a random direction for each draw; 0: exact lever arm"},
                  false,
                  lever_arm},
       GivenError{{"extrinsic_rotation_rad", 0.0, 0.0, 3.14, "rad",
-                  "rotation error between IMU and lidar, about an axis drawn once per draw"},
+                  "error of the stated rotation between IMU and lidar, about a random axis for each draw"},
                  true,
                  extrinsic_rotation},
-      GivenError{
-          {"time_offset_s", 0.0, -1.0, 1.0, "s", "delay of the time stamps of the primary IMU"}, false, time_offset},
+      GivenError{{"time_offset_s", 0.0, -1.0, 1.0, "s", "delay added to the time stamps of the primary IMU"},
+                 false,
+                 time_offset},
       GivenError{{"radius_error_m", 0.0, -1.0, 1.0, "m",
-                  "error of the sphere's radius; positive: the stated radius is too large"},
+                  "error of the stated radius of the sphere; positive: the stated radius is too large"},
                  false,
                  radius},
       GivenError{{"rate_error_rad_s", 0.0, 0.0, 1000.0, "rad/s",
-                  "clipped readings are replaced by unclipped ones with an error of this magnitude, constant over each "
-                  "clipped segment; methods see them as valid readings"},
+                  "clipped readings are replaced by unclipped readings with an error of this magnitude, which is "
+                  "constant over each clipped segment; methods receive these readings as valid"},
                  false,
                  rate_error},
       GivenError{{"stated_rail_error", 0.0, -0.9, 9.0, "1",
-                  "error of the stated gyro range, as a share of the true rail; the device's clip flags are withheld"},
+                  "error of the stated gyro range, as a share of the true saturation limit; methods do not receive the "
+                  "device's clip flags"},
                  false,
                  stated_rail,
                  report_rail},

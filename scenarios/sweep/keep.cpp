@@ -93,7 +93,7 @@ Keep parse_keep(const std::string& text) {
       return {Keep::Which::worst, count};
   }
   throw BadInput(
-      fmt::format("the selection of draws to keep is '{}', must be none, failed, all, or worst:N with N from 1 to {}",
+      fmt::format("the selection of kept draws is '{}'; it must be none, failed, all, or worst:N with N from 1 to {}",
                   text, kCountMax));
 }
 

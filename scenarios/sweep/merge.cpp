@@ -36,8 +36,10 @@ void require_same_origin(const Notes& first, const Notes& other, const fs::path&
                                                          {"data", "was made from models and scenarios"}};
   for (const auto& [key, words] : origins) {
     if (text_of(first, key) == text_of(other, key)) continue;
-    throw BadInput(fmt::format("{}: {} '{}', but the first database by '{}'; --mixed-builds joins them anyway",
-                               path.string(), words, text_of(other, key), text_of(first, key)));
+    throw BadInput(
+        fmt::format("{}: this database {} '{}', which differs from '{}' of the first database; to join the databases "
+                    "anyway, set --mixed-builds",
+                    path.string(), words, text_of(other, key), text_of(first, key)));
   }
 }
 
@@ -47,8 +49,9 @@ void join_method_notes(const Notes& shard, const fs::path& path, bool mixed, Res
     if (!is_method_note(key)) continue;
     const std::string known = into.note(key);
     if (!known.empty() && known != theirs && !mixed)
-      throw BadInput(fmt::format("{}: {} is '{}', but in another database '{}'; --mixed-builds joins them anyway",
-                                 path.string(), key, theirs, known));
+      throw BadInput(
+          fmt::format("{}: {} is '{}', but in another database '{}'; to join the databases anyway, set --mixed-builds",
+                      path.string(), key, theirs, known));
     into.set_note(key, known.empty() || known == theirs ? theirs : "mixed");
   }
 }

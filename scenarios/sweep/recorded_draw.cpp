@@ -34,8 +34,8 @@ std::vector<std::filesystem::path> matches(const std::string& pattern, const std
   for (std::size_t i = 0; status == 0 && i < found.gl_pathc; ++i) paths.emplace_back(found.gl_pathv[i]);
   globfree(&found);
   if (paths.empty()) {
-    throw BadInput(fmt::format("no recording matches '{}' in {}; set --data to the folder of the recordings", pattern,
-                               folder.string()));
+    throw BadInput(fmt::format("no recording matches '{}' in the folder {}; set --data to the folder of the recordings",
+                               pattern, folder.string()));
   }
   return paths;
 }
@@ -63,9 +63,10 @@ std::vector<RecordedDraw> find_recordings(std::span<const std::string> patterns,
   std::vector<RecordedDraw> recordings;
   for (const std::filesystem::path& path : paths) {
     if (!recordings.empty() && recordings.back().name == path.stem().string()) {
-      throw BadInput(fmt::format(
-          "{}: there is another recording with this name, {}; results identify recordings by name only, so rename one",
-          path.string(), recordings.back().path.string()));
+      throw BadInput(
+          fmt::format("{}: another recording, {}, has the same name; results identify recordings only by name, so "
+                      "rename one of them",
+                      path.string(), recordings.back().path.string()));
     }
     const RecordingInfo info = read_info(path);
     const sim::Sensors sensors = read_sensors(path);
@@ -97,8 +98,9 @@ SimulatedDraw read_draw(const RecordedDraw& recording) {
   if (draw.has_truth) draw.recording.truth = read_truth(recording.path);
   draw.recording_digest = digest(draw.recording.sensors, draw.has_truth ? &draw.recording.truth : nullptr);
   if (draw.recording_digest != recording.digest) {
-    throw BadInput(fmt::format("{}: has digest {}, but it had {} when the sweep began", recording.path.string(),
-                               draw.recording_digest, recording.digest));
+    throw BadInput(fmt::format(
+        "{}: the recording changed during the sweep: its digest is {}, but was {} at the start; start the sweep again",
+        recording.path.string(), draw.recording_digest, recording.digest));
   }
   return draw;
 }

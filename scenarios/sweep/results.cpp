@@ -74,7 +74,7 @@ Results::Results(const std::filesystem::path& path, Mode mode) {
     impl_->check(mode);
   } catch (const SQLite::Exception& error) {
     if (error.getErrorCode() == kSqliteBusy) throw BadInput(path.string() + ": " + kBusy);
-    throw BadInput(path.string() + ": not a usable results database: " + error.what());
+    throw BadInput(path.string() + ": the file is not a usable results database: " + error.what());
   }
 }
 

@@ -18,7 +18,7 @@ namespace tumble::scenarios {
 inline constexpr int kBusyTimeoutMs = 20000;
 inline constexpr int kSqliteBusy = 5;  // as in sqlite3.h
 inline constexpr const char* kBusy =
-    "another program is writing to this database; try again when that program has ended";
+    "another program is writing to this database; try again after that program has ended";
 
 /// Converts an unsigned seed to SQLite's signed integer with equal bits.
 inline std::int64_t stored_seed(std::uint64_t seed) {
@@ -90,18 +90,19 @@ struct Results::Impl {
 
   void check(Mode mode) {
     if (number("application_id") != kApplicationId)
-      throw BadInput(path.string() + ": not a results database of this program");
+      throw BadInput(path.string() + ": the file is not a results database of this program");
     const int version = number("user_version");
     if (version != kSchemaVersion && !(mode == Mode::read_only && version == kReadableVersion)) {
       throw BadInput(path.string() + ": schema version " + std::to_string(number("user_version")) +
                      "; this build needs version " + std::to_string(kSchemaVersion));
     }
     const std::string missing = missing_of_schema(database);
-    if (!missing.empty()) throw BadInput(path.string() + ": not a usable results database: it lacks " + missing);
+    if (!missing.empty())
+      throw BadInput(path.string() + ": the file is not a usable results database, because it lacks " + missing);
     const std::string build = read_note("build");
     if (mode != Mode::read_only && build != build_id()) {
       throw BadInput(path.string() + ": written by build '" + build + "', but this is build '" + build_id() +
-                     "'; outcomes of two builds cannot be mixed; name another file");
+                     "'; one file cannot contain outcomes of two builds, so choose another file");
     }
   }
 

@@ -184,7 +184,8 @@ class Joining {
     held_.bindNoCopy(5, row.varied);
     held_.bind(6, row.setting);
     if (!held_.executeStep())
-      throw BadInput(fmt::format("{}: a row of draw {} is stored more than once", path_.string(), row.scenario));
+      throw BadInput(fmt::format("{}: a row of draw {} is stored more than once; the database is damaged",
+                                 path_.string(), row.scenario));
     const std::int64_t id = held_.getColumn(0).getInt64();
     const std::string status_text = held_.getColumn(1).getString(), recording = held_.getColumn(2).getString(),
                       estimate = held_.getColumn(3).getString();
@@ -208,9 +209,10 @@ class Joining {
   }
 
   [[noreturn]] void complain(const ShardRow& row, const std::string& known, const std::string& digest) const {
-    throw BadInput(fmt::format(
-        "{}: {}: status is {} with digest '{}', but elsewhere {} with digest '{}'; one build must give one result",
-        path_.string(), words(row), row.status, row.estimate_digest, known, digest));
+    throw BadInput(
+        fmt::format("{}: {}: the status is {} with digest '{}', but another database has {} with digest '{}'; one "
+                    "build must give the same result everywhere",
+                    path_.string(), words(row), row.status, row.estimate_digest, known, digest));
   }
 
   /// Throws BadInput if two rows with equal digests differ in a score other than cost.
@@ -243,8 +245,9 @@ class Joining {
 
   [[noreturn]] void differ(const ShardRow& row, const std::string& metric, const std::string& here,
                            const std::string& elsewhere) const {
-    throw BadInput(fmt::format("{}: {}: {} is {}, but elsewhere {}; one build must give one result", path_.string(),
-                               words(row), metric, here, elsewhere));
+    throw BadInput(
+        fmt::format("{}: {}: {} is {}, but {} in another database; one build must give the same result everywhere",
+                    path_.string(), words(row), metric, here, elsewhere));
   }
 
   /// Visits the scores of a row of the shard, sorted by name. The caller must request the rows in order.

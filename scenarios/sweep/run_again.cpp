@@ -67,9 +67,9 @@ Setting setting_from(const std::string& text) {
   const char* const end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(begin, end, setting.value);
   if (setting.key.empty() || begin == end || error != std::errc() || stop != end || !std::isfinite(setting.value))
-    throw BadInput(
-        "'" + text +
-        "': must have the form KEY=NUMBER, for example world.rock_count=10; join keys that vary together with '+'");
+    throw BadInput("'" + text +
+                   "': must have the form KEY=NUMBER, for example world.rock_count=10; keys that vary together are "
+                   "joined with '+'");
   return setting;
 }
 

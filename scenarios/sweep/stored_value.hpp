@@ -19,7 +19,7 @@ double stored_value(const SQLite::Column& column, const std::filesystem::path& p
   if (type == SQLite::FLOAT || type == SQLite::INTEGER) return column.getDouble();
   if (type == SQLite::Null) return std::numeric_limits<double>::quiet_NaN();
   throw BadInput(path.string() + ": " + row() + ": is " + (type == SQLite::TEXT ? "text" : "a blob") +
-                 ", must be a number or null");
+                 "; it must be a number or null");
 }
 
 }  // namespace tumble::scenarios

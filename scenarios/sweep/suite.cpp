@@ -72,7 +72,7 @@ void read_curves(const DataRoot& data, const YamlNode& node, Suite& suite) {
   for (const auto& [text, values] : node.entries()) {
     Variation curve = read_variation(data, suite, text, values);
     for (const Variation& other : suite.curves) {
-      if (other.key() == curve.key()) values.fail(fmt::format("a curve over '{}' exists already", curve.key()));
+      if (other.key() == curve.key()) values.fail(fmt::format("a curve over '{}' occurs twice", curve.key()));
     }
     suite.curves.push_back(std::move(curve));
   }
@@ -145,14 +145,15 @@ void read_draws(const DataRoot& data, const YamlNode& root, const std::map<std::
                 Suite& suite) {
   if (fields.contains("recordings")) {
     for (const char* key : {"scenarios", "seeds", "draws", "vary"}) {
-      if (fields.contains(key)) fields.at(key).fail("is not allowed in a suite of recordings");
+      if (fields.contains(key)) fields.at(key).fail("is not allowed in a suite of recordings; remove this key");
     }
     read_recordings(fields.at("recordings"), suite);
     return;
   }
   if (fields.contains("draws")) {
     for (const char* key : {"scenarios", "seeds"}) {
-      if (fields.contains(key)) fields.at(key).fail("is not allowed in a suite that names its draws");
+      if (fields.contains(key))
+        fields.at(key).fail("is not allowed in a suite that lists its draws (key 'draws'); remove this key");
     }
     read_classes(data, fields.at("draws"), suite);
     return;
@@ -175,8 +176,8 @@ void require_no_scenario(const YamlNode& root) {
   for (const auto& [key, value] : root.entries()) {
     if (key == "motion")
       value.fail(
-          "this key belongs to a scenario, but a suite names scenarios of the catalogue: move this file to "
-          "scenarios/catalogue and give its name, or draw from it with 'tumble run'");
+          "this key belongs to a scenario file, but a suite file is expected. Move the file to scenarios/catalogue and "
+          "give the name of the scenario, or use the file with 'tumble run'");
   }
 }
 
@@ -220,7 +221,7 @@ Suite read_suite(const DataRoot& data, const std::filesystem::path& path) {
 Suite suite_of_scenario(const std::string& name) {
   Suite suite;
   suite.name = name;
-  suite.doc = "every method on the scenario " + name;
+  suite.doc = "runs every method on the scenario " + name;
   suite.scenarios = {name};
   suite.methods = every_method();
   return suite;
@@ -247,7 +248,8 @@ void require_seeds(const Suite& suite) {
   if (suite.last_seed < suite.first_seed)
     throw BadInput(fmt::format("suite {}: the last seed is below the first", suite.name));
   if (suite.last_seed - suite.first_seed >= kSeedsMax)
-    throw BadInput(fmt::format("suite {}: has more than {} seeds; split the range into parts", suite.name, kSeedsMax));
+    throw BadInput(
+        fmt::format("suite {}: has more than {} seeds; split the range of seeds into parts", suite.name, kSeedsMax));
 }
 
 std::vector<std::string> suite_names(const DataRoot& data) {

@@ -80,7 +80,7 @@ void conclude(Worker& worker, bool late, const Failure& failure, DrawTriage& dra
   if (late) worker.process.kill();
   const Process::End end = worker.process.wait();
   if (read_rows(worker.said, failure, draw)) return;
-  draw.trouble = late ? "the draw did not finish within its time limit" : "the draw's process " + end.describe();
+  draw.trouble = late ? "the draw did not end within its time limit" : "the draw's process " + end.describe();
 }
 
 /// Starts the process of a simulated run. Returns false if another process must end first.

@@ -33,8 +33,8 @@ void claim(Results& results, const DataRoot& data, const Suite& suite, const std
     results.set_note("data", digest);
   } else if (known != digest) {
     throw BadInput(
-        fmt::format("{}: was made from other models or scenarios (digest {}, now {}); outcomes of two catalogues "
-                    "cannot be mixed; name another file",
+        fmt::format("{}: the results in this file were made from other models or scenarios (digest {}; digest of this "
+                    "run: {}). One file cannot contain outcomes of both, so choose another file",
                     database.string(), known, digest));
   }
   results.set_note("suite", suite.name);
@@ -58,9 +58,10 @@ void claim_methods(Results& results, std::span<const MethodPointer> methods) {
     const std::string key = method_note(method->info.kind, method->info.name);
     const std::string known = results.note(key);
     if (!known.empty() && known != method->info.version)
-      throw BadInput(fmt::format(
-          "the database holds rows of another version of {} ('{}', now '{}'); name another file or another method", key,
-          known, method->info.version));
+      throw BadInput(
+          fmt::format("the database contains rows of another version of {} ('{}'; version of this run: '{}'); choose "
+                      "another file or another method name",
+                      key, known, method->info.version));
     results.set_note(key, method->info.version);
   }
 }
@@ -222,7 +223,7 @@ class Sweep {
   // The process of a task died, so the remaining methods of the task have no result.
   void account_for_death(const DrawTask& draw, bool late, const Process::End& end) {
     const std::string what =
-        late ? "the draw did not finish within its time limit" : "the draw's process " + end.describe();
+        late ? "the draw did not end within its time limit" : "the draw's process " + end.describe();
     if (updating_kept_) {
       progress_.not_kept = what;
       return;
@@ -317,7 +318,7 @@ std::uint64_t SweepProgress::not_ok() const {
 void require_worker_memory(double mib) {
   constexpr double kMinMib = 64.0, kMaxMib = 1e7;
   if (!(mib >= kMinMib && mib <= kMaxMib))
-    throw BadInput(fmt::format("memory is {} MiB, must be within [64, 1e7]", std::to_string(mib)));
+    throw BadInput(fmt::format("the memory limit is {} MiB; it must be within [64, 1e7]", std::to_string(mib)));
 }
 
 Results open_results(const DataRoot& data, const Suite& suite, const std::filesystem::path& database) {
@@ -333,16 +334,18 @@ SweepProgress sweep(const DataRoot& data, const Suite& suite, const std::filesys
 
 void require_sound(const Suite& suite, const SweepOptions& options) {
   if (options.jobs < 1 || options.jobs > kJobsMax) {
-    throw BadInput(fmt::format("jobs is {}, must be within [1, {}]", options.jobs, kJobsMax));
+    throw BadInput(fmt::format("jobs is {}; it must be within [1, {}]", options.jobs, kJobsMax));
   }
   require_seeds(suite);
   for (const OutcomeStatus status : options.again) {
     if (!may_run_again(status)) {
-      throw BadInput(std::string("'") + to_string(status) + "' cannot be run again; possible: crashed timeout killed");
+      throw BadInput(std::string("'") + to_string(status) +
+                     "' cannot be run again; possible statuses: crashed, timeout, killed");
     }
   }
   if (!suite.recordings.empty() && options.keep.which != Keep::Which::none)
-    throw BadInput(fmt::format("suite {}: its draws are recordings, which exist already; set --keep none", suite.name));
+    throw BadInput(fmt::format(
+        "suite {}: the draws of this suite are recordings that already exist as files; set --keep none", suite.name));
   require_worker_memory(options.memory_mib);
 }
 

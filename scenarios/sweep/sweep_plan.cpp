@@ -45,7 +45,8 @@ SweepPlan::SweepPlan(const DataRoot& data, const Suite& suite, const SweepOption
   const auto idle = [](const auto& each) { return each.methods.empty(); };
   if (std::all_of(scenarios_.begin(), scenarios_.end(), idle) &&
       std::all_of(recordings_.begin(), recordings_.end(), idle)) {
-    throw BadInput("suite " + suite.name + ": none of its methods applies to its scenarios");
+    throw BadInput("suite " + suite.name +
+                   ": none of the suite's methods applies to its scenarios; add a method for this robot");
   }
   // If no situation can be drawn from a scenario of the catalogue, the caller gets an exception instead of an outcome.
   for (const Planned& each : scenarios_) draw(data, each.scenario, suite.first_seed);
@@ -63,7 +64,7 @@ void SweepPlan::require_same_recordings(const Results& results) const {
     for (const Outcome& row : results.outcomes_of(each.recording.name, kRecordingSeed)) {
       if (row.recording_digest.empty() || row.recording_digest == each.recording.digest) continue;
       throw BadInput(each.recording.path.string() + ": has digest " + each.recording.digest +
-                     ", but the results were made from a recording with digest " + row.recording_digest +
+                     ", but the results belong to a recording with the digest " + row.recording_digest +
                      "; name another database");
     }
   }

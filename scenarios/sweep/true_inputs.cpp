@@ -186,16 +186,23 @@ bool everything(sim::Sensors& sensors, const sim::Truth& truth) {
 
 std::span<const TrueInput> true_inputs() {
   static const std::array kInputs = {
-      TrueInput{"gyro_unclipped", "gyros without saturation, all other errors kept", unclipped_gyro},
-      TrueInput{"gyro_exact", "true mean rate of each sample", exact_gyro},
-      TrueInput{"accel_unclipped", "accelerometers without saturation, all other errors kept", unclipped_accel},
-      TrueInput{"accel_exact", "true mean specific force of each sample", exact_accel},
-      TrueInput{"mounting_exact", "true lever arms and orientations of all sensors", exact_mounting},
-      TrueInput{"stamps_exact", "true times of the IMU samples", exact_stamps},
-      TrueInput{"lidar_ranges_exact", "true ranges of all lidar returns", exact_ranges},
-      TrueInput{"lidar_unbent", "sweeps without skew (cast within a microsecond), ranges as measured", unbent_sweeps},
-      TrueInput{"series_exact", "readings of other sensors without errors", exact_series},
-      TrueInput{"all", "all of these together", everything},
+      TrueInput{"gyro_unclipped", "replaces the gyro readings by readings without saturation; all other errors remain",
+                unclipped_gyro},
+      TrueInput{"gyro_exact", "replaces each gyro reading by the true mean rate of the sample", exact_gyro},
+      TrueInput{"accel_unclipped",
+                "replaces the accelerometer readings by readings without saturation; all other errors remain",
+                unclipped_accel},
+      TrueInput{"accel_exact", "replaces each accelerometer reading by the true mean specific force of the sample",
+                exact_accel},
+      TrueInput{"mounting_exact", "replaces the calibration by the true positions and orientations of all sensors",
+                exact_mounting},
+      TrueInput{"stamps_exact", "replaces the time stamps of the IMU by the true times", exact_stamps},
+      TrueInput{"lidar_ranges_exact", "replaces the lidar ranges by the true ranges", exact_ranges},
+      TrueInput{"lidar_unbent",
+                "replaces the sweeps by sweeps without skew (all points within a microsecond); the range errors remain",
+                unbent_sweeps},
+      TrueInput{"series_exact", "removes the errors of all other sensors", exact_series},
+      TrueInput{"all", "applies all other replacements together", everything},
   };
   return kInputs;
 }

@@ -65,7 +65,7 @@ std::pair<std::string, std::string> method_and_parameter(const std::string& key)
 void require_settable(const std::string& key, const sim::Parameter& parameter, double value) {
   if (value >= parameter.low && value <= parameter.high) return;
   std::ostringstream text;
-  text << "'" << key << "' is " << value << " " << parameter.unit << ", must be within [" << parameter.low << ", "
+  text << "'" << key << "' is " << value << " " << parameter.unit << "; it must be within [" << parameter.low << ", "
        << parameter.high << "]";
   throw BadInput(text.str());
 }
@@ -90,7 +90,7 @@ void check_given(const std::string& key, std::span<const double> values, const S
   const GivenError& error = given_error(key);
   for (const double value : values) require_settable(key, error.parameter, value);
   if (scenario.sensors.empty() || scenario.sensors.front().kind != "imu") {
-    throw BadInput(fmt::format("'{}': the first sensor of scenario {} is not an IMU", key, scenario.name));
+    throw BadInput(fmt::format("'{}': the first sensor of scenario {} must be an IMU", key, scenario.name));
   }
   const bool lidar = std::any_of(scenario.sensors.begin(), scenario.sensors.end(),
                                  [](const Scenario::Sensor& sensor) { return sensor.kind.ends_with("lidar"); });
@@ -127,8 +127,8 @@ void check(const Variation& variation, const DataRoot& data, std::span<const std
   for (const std::string& key : variation.keys) {
     const Reach own = reach_of(key), first = reach_of(variation.keys.front());
     if (own != first) {
-      throw BadInput(fmt::format("'{}' is {} and '{}' {}; these keys cannot vary together", key, words(own),
-                                 variation.keys.front(), words(first)));
+      throw BadInput(fmt::format("'{}' is {} and '{}' is {}; keys of different kinds cannot vary together", key,
+                                 words(own), variation.keys.front(), words(first)));
     }
     if (own == Reach::method) check_parameter(key, variation.values);
     for (const std::string& name : scenarios) {
@@ -153,7 +153,8 @@ SimulatedDraw with_setting(const SimulatedDraw& draw, const Setting& setting) {
   SimulatedDraw changed = draw;
   if (reach(setting) == Reach::input) {
     if (!draw.built)
-      throw BadInput(fmt::format("{} applies to simulated draws only; {} is a recording", setting.key, draw.scenario));
+      throw BadInput(
+          fmt::format("{} applies only to simulated draws, but {} is a recording", setting.key, draw.scenario));
     for (const std::string& key : keys_of(setting.key)) {
       given_error(key).put_in(changed.recording.sensors, changed.recording.truth, changed.built->situation(),
                               setting.value);

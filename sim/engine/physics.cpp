@@ -58,7 +58,8 @@ void Physics::set_state(const BodyState& state) {
     constexpr double kSame = 1e-9;
     const BodyState now = this->state();
     if ((now.p_WB_m - state.p_WB_m).norm() > kSame || now.q_WB.angularDistance(state.q_WB) > kSame) {
-      throw InvalidSituation("motion: the robot hangs on its joints, so its pose cannot be set");
+      throw InvalidSituation(
+          "motion: the robot is attached by joints, so its pose cannot be set; choose the motion 'swing'");
     }
     return;
   }

@@ -45,7 +45,7 @@ std::vector<AllanPoint> allan_deviation(std::span<const double> samples, double 
   if (!(period_s > 0.0) || !std::isfinite(period_s))
     throw std::invalid_argument("allan_deviation: period_s must be above 0");
   if (per_decade < 1 || per_decade > 100)
-    throw std::invalid_argument("allan_deviation: per_decade must be within [1, 100]");
+    throw std::invalid_argument("allan_deviation: per_decade (averaging times per decade) must be within [1, 100]");
   std::vector<AllanPoint> curve;
   if (samples.size() < kLeastClusters) return curve;
   const std::vector<double> sums = integrate(samples);
@@ -61,14 +61,14 @@ std::vector<AllanPoint> allan_deviation(std::span<const double> samples, double 
 }
 
 std::vector<AllanPoint> mean_deviation(std::span<const std::vector<AllanPoint>> series) {
-  if (series.empty()) throw std::invalid_argument("mean_deviation: no series");
+  if (series.empty()) throw std::invalid_argument("mean_deviation: there is no series; give at least one");
   std::vector<AllanPoint> mean = series.front();
   for (std::size_t i = 0; i < mean.size(); ++i) {
     double variance = 0.0;
     std::size_t count = 0;
     for (const std::vector<AllanPoint>& each : series) {
       if (each.size() != mean.size() || each[i].tau_s != mean[i].tau_s || each[i].samples != mean[i].samples)
-        throw std::invalid_argument("mean_deviation: the averaging times differ");
+        throw std::invalid_argument("mean_deviation: the averaging times of the series differ; they must be equal");
       variance += each[i].deviation * each[i].deviation * static_cast<double>(each[i].series);
       count += each[i].series;
     }
@@ -79,7 +79,7 @@ std::vector<AllanPoint> mean_deviation(std::span<const std::vector<AllanPoint>> 
 }
 
 const AllanPoint& nearest_point(std::span<const AllanPoint> curve, double tau_s) {
-  if (curve.empty()) throw std::invalid_argument("nearest_point: the curve is empty");
+  if (curve.empty()) throw std::invalid_argument("nearest_point: the curve has no points; it must have at least one");
   return *std::min_element(curve.begin(), curve.end(), [&](const AllanPoint& a, const AllanPoint& b) {
     return std::abs(std::log(a.tau_s / tau_s)) < std::abs(std::log(b.tau_s / tau_s));
   });

@@ -11,9 +11,9 @@
 
 namespace tumble::sim {
 
-/// Replaces one axis of single samples by a wild reading, as an error on the device's bus does. The wild reading is
-/// uniform within 1.5 times the stated range and independent of the signal. It is no saturation, so that the truth's
-/// unclipped reading has the same value. Not modelled: several wild samples in a row, and wrong time stamps.
+/// Replaces one axis of single samples by a wrong reading, as an error on the device's bus does. The wrong reading is
+/// uniform within 1.5 times the stated range and independent of the signal. It does not count as saturation, so the
+/// truth's unclipped reading has the same value. Runs of several wrong samples and wrong time stamps are not modelled.
 class Glitches {
  public:
   /// Reads `glitch_share` and the stated ranges. A share of 0 draws no random numbers.

@@ -11,54 +11,56 @@ namespace tumble::sim {
 namespace {
 
 constexpr std::string_view kClampDoc =
-    "rail kind clamp: level at which the output stops, at or above the stated range; 0: no saturation";
+    "saturation level: the output stops at this value, which is at or above the stated range; 0: no saturation";
 constexpr std::string_view kAxisSpreadDoc =
-    "rail kind plateau: standard deviation of the level between axes and signs, truncated at 3 of them; 0: off";
+    "standard deviation of the saturation level between axes and signs, truncated at 3 sigma; 0: equal levels";
 constexpr std::string_view kEventSpreadDoc =
-    "rail kind plateau: standard deviation of the level between clipping events, truncated at 3 of them; 0: off";
+    "standard deviation of the saturation level between clipping events, truncated at 3 sigma; 0: constant level";
 constexpr std::string_view kWrapDoc =
-    "rail kind wrap: 1: a reading beyond the level changes its sign, as when a 16-bit word overflows";
+    "1: a reading beyond the saturation level changes its sign, as when a 16-bit word overflows; 0: off";
 constexpr std::string_view kRecoveryDoc =
-    "rail kind slow_recovery: time constant of the offset that clipping leaves; 0: off";
+    "time constant with which the offset after clipping decays (slow recovery); 0: off";
 constexpr std::string_view kRecoveryShareDoc =
-    "rail kind slow_recovery: largest offset that clipping leaves, as a share of the level";
+    "maximum offset after clipping (slow recovery), as a share of the saturation level";
 constexpr std::string_view kElementMisalignmentDoc =
-    "axes of the sensing elements, along which they clip: standard deviation of each off-diagonal entry of their "
-    "matrix, truncated at 3 of them; the device inverts the matrix after saturation; 0: upright";
+    "misalignment of the sensing elements before compensation: standard deviation of each off-diagonal entry of their "
+    "matrix, truncated at 3 sigma; 0: upright saturation limits";
 constexpr std::string_view kElementScaleDoc =
-    "scale of the sensing elements: standard deviation of each diagonal entry of their matrix about 1, truncated at 3 "
-    "of them";
+    "scale error of the sensing elements before compensation: standard deviation of each diagonal entry of their "
+    "matrix, truncated at 3 sigma";
 constexpr std::string_view kElementOffsetDoc =
-    "zero offset of the sensing elements, subtracted after saturation, so that the two signs clip at different "
-    "readings: standard deviation, truncated at 3 of them";
+    "standard deviation of the zero offset of the sensing elements, truncated at 3 sigma; the device subtracts the "
+    "offset after saturation, so positive and negative readings clip at different values";
 constexpr std::string_view kInRunDoc =
-    "in-run instability: floor of the Allan deviation (a bounded process, flicker over three decades)";
+    "in-run instability of the bias: flat part of the Allan deviation (flicker noise over three decades)";
 constexpr std::string_view kInRunTimeDoc =
-    "longest correlation time of the in-run instability; its Allan deviation is flat from 1/200 to 1/2 of it";
+    "longest correlation time of the in-run instability; the Allan deviation is flat from 1/200 to 1/2 of this time";
 constexpr std::string_view kWalkDoc = "random walk of the bias: standard deviation after one second";
 constexpr std::string_view kTurnOnDoc = "standard deviation of the turn-on bias";
 constexpr std::string_view kScaleDoc = "standard deviation of each axis's scale error";
 constexpr std::string_view kMisalignmentDoc = "standard deviation of each cross-axis angle";
-constexpr std::string_view kNoiseDoc = "density of the white noise; a sample at rate f has density * sqrt(f)";
-constexpr std::string_view kBandwidthDoc = "-3 dB of the analogue low-pass, second order; 0: off";
-constexpr std::string_view kQuantumDoc = "resolution of the converter, before digital low-pass and mean; 0: off";
+constexpr std::string_view kNoiseDoc =
+    "density of the white noise; at sample rate f, the standard deviation of a sample is density * sqrt(f)";
+constexpr std::string_view kBandwidthDoc = "cut-off frequency (-3 dB) of the analogue second-order low-pass; 0: off";
+constexpr std::string_view kQuantumDoc =
+    "resolution of the analogue-to-digital converter, which acts before digital low-pass and averaging; 0: off";
 constexpr std::string_view kWindowDoc =
-    "window of the plain mean that forms a reading, rounded to physics steps; 0: the device integrates between outputs "
-    "or between readings of its own rate";
+    "averaging window of a reading, rounded to physics steps; 0: the window is the time between two readings";
 constexpr std::string_view kUpdateDoc =
-    "sample and hold: the device's own readings per second, not synchronous with the outputs, which repeat the last "
-    "reading; 0: one reading per output; else at least 0.1";
+    "sample and hold: the device takes this many readings per second, and each output repeats the last reading; 0: one "
+    "reading per output; otherwise at least 0.1";
 constexpr std::string_view kHandoverDoc =
-    "range of the precise part of each axis (back below 0.9 of it); the coarse part is used beyond; 0: always coarse";
-constexpr std::string_view kPreciseNoiseDoc = "density of the white noise of the precise part";
+    "above this value, an axis switches from its precise sensor to its coarse sensor, and back below 0.9 of it; 0: "
+    "always coarse";
+constexpr std::string_view kPreciseNoiseDoc = "density of the white noise of the precise sensor";
 constexpr std::string_view kStartDelayDoc =
-    "time before the first reading, for a device that starts after the recording; 0: off";
-constexpr std::string_view kPreciseQuantumDoc = "resolution of the precise part; 0: off";
+    "time from the start of the recording to the first reading of the device; 0: the device starts with the recording";
+constexpr std::string_view kPreciseQuantumDoc = "resolution of the precise sensor; 0: off";
 
 constexpr std::array kParameters = {
     Parameter{"output_rate_hz", 100.0, 1.0, 8000.0, "Hz",
-              "samples per second; must divide the physics rate of 2000 Hz or be a multiple of it; readings within one "
-              "physics step then differ only by noise"},
+              "samples per second; must divide the physics rate of 2000 Hz or be a multiple of it; above 2000 Hz, "
+              "readings within one physics step differ only by noise"},
     Parameter{"gyro_range_rad_s", 34.9, 0.1, 1000.0, "rad/s", "range stated by the data sheet"},
     Parameter{"gyro_rail_rad_s", 0.0, 0.0, 1000.0, "rad/s", kClampDoc},
     Parameter{"gyro_plateau_axis_spread_rad_s", 0.0, 0.0, 100.0, "rad/s", kAxisSpreadDoc},
@@ -71,7 +73,7 @@ constexpr std::array kParameters = {
     Parameter{"gyro_element_offset_rad_s", 0.0, 0.0, 100.0, "rad/s", kElementOffsetDoc},
     Parameter{"gyro_noise_rad_s_sqrt_hz", 0.0, 0.0, 1.0, "rad/s/sqrt(Hz)", kNoiseDoc},
     Parameter{"gyro_bandwidth_hz", 0.0, 0.0, 900.0, "Hz", kBandwidthDoc},
-    Parameter{"gyro_delay_s", 0.0, 0.0, 0.1, "s", "delay of the gyroscope's signal; 0: off"},
+    Parameter{"gyro_delay_s", 0.0, 0.0, 0.1, "s", "delay of the gyro's signal; 0: off"},
     Parameter{"gyro_bias_turn_on_rad_s", 0.0, 0.0, 1.0, "rad/s", kTurnOnDoc},
     Parameter{"gyro_bias_in_run_rad_s", 0.0, 0.0, 1.0, "rad/s", kInRunDoc},
     Parameter{"gyro_bias_in_run_s", 1000.0, 0.1, 1e5, "s", kInRunTimeDoc},
@@ -79,10 +81,10 @@ constexpr std::array kParameters = {
     Parameter{"gyro_scale_error", 0.0, 0.0, 0.2, "1", kScaleDoc},
     Parameter{"gyro_misalignment_rad", 0.0, 0.0, 0.2, "rad", kMisalignmentDoc},
     Parameter{"gyro_g_sensitivity_s_m", 0.0, 0.0, 0.01, "rad/s/(m/s^2)",
-              "false rate per specific force along the same axis"},
-    Parameter{
-        "gyro_g_sensitivity_spread_s_m", 0.0, 0.0, 0.01, "rad/s/(m/s^2)",
-        "standard deviation of each of the nine entries of the additional matrix of false rate per specific force"},
+              "g-sensitivity: rate error per specific force along the same axis"},
+    Parameter{"gyro_g_sensitivity_spread_s_m", 0.0, 0.0, 0.01, "rad/s/(m/s^2)",
+              "standard deviation of each of the nine entries of the additional g-sensitivity matrix (rate error per "
+              "specific force)"},
     Parameter{"gyro_window_s", 0.0, 0.0, 0.1, "s", kWindowDoc},
     Parameter{"gyro_update_hz", 0.0, 0.0, 8000.0, "Hz", kUpdateDoc},
     Parameter{"gyro_quantum_rad_s", 0.0, 0.0, 1.0, "rad/s", kQuantumDoc},
@@ -114,21 +116,23 @@ constexpr std::array kParameters = {
     Parameter{"accel_handover_m_s2", 0.0, 0.0, 1e5, "m/s^2", kHandoverDoc},
     Parameter{"accel_precise_noise_m_s2_sqrt_hz", 0.0, 0.0, 1.0, "m/s^2/sqrt(Hz)", kPreciseNoiseDoc},
     Parameter{"accel_precise_quantum_m_s2", 0.0, 0.0, 10.0, "m/s^2", kPreciseQuantumDoc},
-    Parameter{"digital_bandwidth_hz", 0.0, 0.0, 900.0, "Hz",
-              "-3 dB of the low-pass after sampling, second order; 0: only the mean over the output window"},
-    Parameter{"clip_after_low_pass", 0.0, 0.0, 1.0, "1",
-              "0: saturation acts before digital low-pass and mean; 1: after them"},
-    Parameter{"clip_flags", 0.0, 0.0, 1.0, "1", "1: the device flags axes that saturated"},
-    Parameter{"time_offset_s", 0.0, -0.1, 0.1, "s", "time stamp minus true end of the window"},
-    Parameter{"time_jitter_s", 0.0, 0.0, 0.1, "s",
-              "standard deviation of the time stamp, truncated at 3 of them; below a sixth of the period; 0: off"},
-    Parameter{"dropout_share", 0.0, 0.0, 0.5, "1", "share of lost samples; 0: off"},
-    Parameter{"dropout_mean_samples", 1.0, 1.0, 1e4, "1", "mean length of a run of lost samples"},
-    Parameter{"start_delay_s", 0.0, 0.0, 60.0, "s", kStartDelayDoc},
     Parameter{
-        "glitch_share", 0.0, 0.0, 0.5, "1",
-        "share of samples in which one axis has a wild reading, uniform within 1.5 times the stated range; 0: off"},
-    Parameter{"magnetometer", 0.0, 0.0, 1.0, "1", "1: the magnetic field is recorded with every sample"},
+        "digital_bandwidth_hz", 0.0, 0.0, 900.0, "Hz",
+        "cut-off frequency (-3 dB) of the digital second-order low-pass; 0: only the mean over the averaging window"},
+    Parameter{"clip_after_low_pass", 0.0, 0.0, 1.0, "1",
+              "0: saturation acts before digital low-pass and averaging; 1: saturation acts after them"},
+    Parameter{"clip_flags", 0.0, 0.0, 1.0, "1", "1: the device sets a flag for each saturated axis"},
+    Parameter{"time_offset_s", 0.0, -0.1, 0.1, "s", "time stamp minus true end of the averaging window"},
+    Parameter{"time_jitter_s", 0.0, 0.0, 0.1, "s",
+              "standard deviation of the time stamp, truncated at 3 sigma; must be below a sixth of the sample period; "
+              "0: off"},
+    Parameter{"dropout_share", 0.0, 0.0, 0.5, "1", "share of lost samples; 0: off"},
+    Parameter{"dropout_mean_samples", 1.0, 1.0, 1e4, "1", "mean number of samples that are lost in a row"},
+    Parameter{"start_delay_s", 0.0, 0.0, 60.0, "s", kStartDelayDoc},
+    Parameter{"glitch_share", 0.0, 0.0, 0.5, "1",
+              "share of samples in which one axis has a wrong reading, drawn uniformly within 1.5 times the stated "
+              "range; 0: off"},
+    Parameter{"magnetometer", 0.0, 0.0, 1.0, "1", "1: each sample contains the magnetic field; 0: no magnetometer"},
     Parameter{"mag_range_t", 1e-3, 1e-6, 1.0, "T", "range stated by the data sheet"},
     Parameter{"mag_rail_t", 0.0, 0.0, 1.0, "T", "level at which the output stops; 0: no saturation"},
     Parameter{"mag_noise_t", 0.0, 0.0, 1e-3, "T", "standard deviation of each sample's white noise"},
@@ -140,12 +144,13 @@ constexpr std::array kParameters = {
     Parameter{"earth_inclination_rad", 1.14, -1.5708, 1.5708, "rad", "angle of the Earth's field below the horizon"},
     Parameter{"earth_north_rad", 0.0, -3.1416, 3.1416, "rad", "magnetic north, from the world's x axis towards y"},
     Parameter{"magnetic_sources", 0.0, 0.0, 100.0, "1",
-              "number of dipoles that disturb the field near the path; 0: none"},
+              "number of magnetic dipoles that disturb the field near the path; 0: none"},
     Parameter{"magnetic_source_moment_a_m2", 5.0, 0.0, 1e4, "A m^2",
-              "moment of a dipole, log-uniform within a factor of 3; 5: some kilograms of steel"},
+              "magnetic moment of a dipole, drawn log-uniformly within a factor of 3; 5 corresponds to some kilograms "
+              "of steel"},
     Parameter{"magnetic_source_nearest_m", 0.4, 0.05, 100.0, "m", "minimum distance of a dipole from the path"},
     Parameter{"magnetic_source_farthest_m", 1.5, 0.05, 100.0, "m",
-              "maximum distance of a dipole from its random position of the path"},
+              "maximum distance of a dipole from its random point on the path"},
 };
 
 constexpr double kSlowestUpdate_hz = 0.1;
@@ -163,7 +168,7 @@ void check_rail(const Values& values, const std::string& place, const std::strin
   if (rail > 0.0 && 3.0 * spread >= rail) {
     std::ostringstream text;
     text << place << "." << axis_name << " and " << event_name << " are " << spread
-         << " together, must be below a third of " << rail_name << ", which is " << rail;
+         << " together; they must be below a third of " << rail_name << ", which is " << rail;
     throw InvalidSituation(text.str());
   }
   const std::string offset_name = prefix + "_element_offset_" + unit;
@@ -171,12 +176,12 @@ void check_rail(const Values& values, const std::string& place, const std::strin
   if (rail > 0.0 && offset > 0.0 && 3.0 * (spread + offset) >= rail) {
     std::ostringstream text;
     text << place << "." << offset_name << " and the plateau's spreads are " << spread + offset
-         << " together, must be below a third of " << rail_name << ", which is " << rail;
+         << " together; they must be below a third of " << rail_name << ", which is " << rail;
     throw InvalidSituation(text.str());
   }
   if (values.at(prefix + "_wrap") > 0.5 && values.at(prefix + "_slow_recovery_s") > 0.0) {
     throw InvalidSituation(place + "." + prefix + "_slow_recovery_s must be 0 with " + prefix +
-                           "_wrap: an overflowing word has no slow recovery");
+                           "_wrap, because a word that overflows has no slow recovery");
   }
 }
 
@@ -187,7 +192,7 @@ void check_update(const Values& values, const std::string& place, const std::str
   const double update_hz = values.at(name);
   if (update_hz == 0.0 || update_hz >= kSlowestUpdate_hz) return;
   std::ostringstream text;
-  text << place << "." << name << " is " << update_hz << " Hz, must be 0 (off) or at least " << kSlowestUpdate_hz;
+  text << place << "." << name << " is " << update_hz << " Hz; it must be 0 (off) or at least " << kSlowestUpdate_hz;
   throw InvalidSituation(text.str());
 }
 

@@ -146,7 +146,7 @@ Pace pace_of(const SensorSpec& sensor, double step_ns) {
   if (std::abs(ratio - whole) > 1e-9 * whole) {
     std::ostringstream text;
     text << "sensors." << sensor.name << ".output_rate_hz is " << sensor.values.at("output_rate_hz")
-         << " Hz, must divide the physics rate of " << 1e9 / step_ns << " Hz or be a multiple of it";
+         << " Hz; it must divide the physics rate of " << 1e9 / step_ns << " Hz or be a multiple of it";
     throw InvalidSituation(text.str());
   }
   return faster ? Pace{1, static_cast<int>(whole)} : Pace{static_cast<int>(whole), 1};
@@ -190,7 +190,7 @@ void require_bandwidths_below(const SensorSpec& sensor, double rate_hz) {
     if (sensor.values.at(name) < 0.5 * rate_hz) continue;
     std::ostringstream text;
     text << "sensors." << sensor.name << "." << name << " is " << sensor.values.at(name)
-         << " Hz, must be below half of the chain's rate of " << rate_hz << " Hz";
+         << " Hz; it must be below half of the chain's rate of " << rate_hz << " Hz";
     throw InvalidSituation(text.str());
   }
 }
@@ -218,7 +218,7 @@ void simulate_imu(const Truth& truth, const SensorSpec& sensor, const Eigen::Iso
     const BodyState after = state_at(truth, k);
     const Ideal step = ideal_between(before, after, T_BI, gravity_m_s2);
     before = after;
-    if (shares > 1) {  // the physics does not resolve its step: rate and force are those of the whole step
+    if (shares > 1) {  // within a physics step, all readings have the rate and force of the whole step
       for (int share = 1; share <= shares; ++share) {
         device.step(step);
         if (compass) compass->step(k);

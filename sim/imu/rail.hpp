@@ -22,7 +22,7 @@ class Rail {
   struct Params {
     double level = 0.0;         ///< [unit of the signal]; 0: no saturation
     double axis_spread = 0.0;   ///< standard deviation, truncated at three standard deviations
-    double event_spread = 0.0;  ///< standard deviation, truncated likewise
+    double event_spread = 0.0;  ///< standard deviation, truncated at three standard deviations
     bool wrap = false;
     double recovery_s = 0.0;      ///< 0: immediate
     double recovery_share = 0.0;  ///< share of the level

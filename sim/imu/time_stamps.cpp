@@ -14,8 +14,8 @@ TimeStamps::TimeStamps(const Values& values, const std::string& place, std::int6
       stream_(stream) {
   if (6.0 * jitter_ns_ >= static_cast<double>(period_ns)) {
     std::ostringstream text;
-    text << place << ".time_jitter_s is " << values.at("time_jitter_s") << " s, must be below a sixth of the period of "
-         << static_cast<double>(period_ns) * 1e-9 << " s";
+    text << place << ".time_jitter_s is " << values.at("time_jitter_s")
+         << " s; it must be below a sixth of the period of " << static_cast<double>(period_ns) * 1e-9 << " s";
     throw InvalidSituation(text.str());
   }
   const double share = values.at("dropout_share");

@@ -30,7 +30,7 @@ SpinningPattern::SpinningPattern(const Values& values)
   firing_period_ns_ = current ? 2800 : period_ns(values, "firing_period_s");
   slot_period_ns_ = current ? 55500 : period_ns(values, "sequence_period_s");
   if (slot_length_ns() >= slot_period_ns_) {
-    throw InvalidSituation("spinning_lidar: sixteen times firing_period_s must fit into sequence_period_s");
+    throw InvalidSituation("spinning_lidar: sequence_period_s must be at least sixteen times firing_period_s");
   }
   std::array<double, kMaxChannels> elevation_rad;
   for (int c = 0; c < kMaxChannels; ++c) {

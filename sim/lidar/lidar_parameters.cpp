@@ -17,52 +17,59 @@ constexpr Parameter elevation(std::string_view name, double value_rad) {
 // Spinning and rosette lidars have the range errors kRangeNoise and the following parameters. The default values are
 // from the RS-16 and the Mid-100.
 constexpr Parameter kRangeNoise{
-    "range_noise_m", 0.02, 0.0, 10.0, "m", "standard deviation of a range, white from point to point; 0: off"};
-constexpr Parameter kReferenceReflectivity{
-    "detection_reflectivity", 0.2, 0.001, 1.0, "1", "diffuse reflectivity at which detection_range_m holds"};
+    "range_noise_m", 0.02, 0.0, 10.0, "m", "standard deviation of a range, independent from point to point; 0: off"};
+constexpr Parameter kReferenceReflectivity{"detection_reflectivity",
+                                           0.2,
+                                           0.001,
+                                           1.0,
+                                           "1",
+                                           "diffuse reflectivity of the surface for which detection_range_m is stated"};
 constexpr Parameter kSteepness{"detection_steepness",
                                4.0,
                                0.1,
                                100.0,
                                "1",
-                               "k of the share of returns kept, s^k / (1 + s^k), with the signal s = (reflectivity "
-                               "cos(incidence) / detection_reflectivity) (detection_range_m / range)^2"};
-constexpr Parameter kDropout{"dropout_share", 0.0, 0.0, 1.0, "1", "share of returns lost independent of their signal"};
+                               "exponent k of the detection probability s^k / (1 + s^k), with the signal s = "
+                               "(reflectivity cos(incidence) / detection_reflectivity) (detection_range_m / range)^2"};
+constexpr Parameter kDropout{
+    "dropout_share", 0.0, 0.0, 1.0, "1", "share of returns that are lost independently of their signal"};
 constexpr Parameter kSweepDropout{"sweep_dropout_share", 0.0, 0.0, 0.9, "1", "share of lost sweeps; 0: off"};
-constexpr Parameter kStartDelay{"start_delay_s",
-                                0.0,
-                                0.0,
-                                60.0,
-                                "s",
-                                "time before the first sweep, for a device that starts after the recording; 0: off"};
+constexpr Parameter kStartDelay{
+    "start_delay_s",
+    0.0,
+    0.0,
+    60.0,
+    "s",
+    "time from the start of the recording to the first sweep; 0: the lidar starts with the recording"};
 constexpr Parameter kIntensityQuantum{
     "intensity_quantum", 1.0 / 255.0, 0.0, 1.0, "1", "resolution of the reported intensity; 0: off"};
 constexpr Parameter kBeamRays{
-    "beam_rays", 1.0, 1.0, 16.0, "1", "number of rays that sample the width of a beam; 1: off, the beam is its axis"};
+    "beam_rays", 1.0, 1.0,
+    16.0,        "1", "number of rays that sample the width of a beam; 1: one ray along the axis of the beam"};
 constexpr Parameter kEchoLength{"echo_length_m",
                                 0.75,
                                 0.0,
                                 100.0,
                                 "m",
-                                "with beam_rays above 1: echoes whose ranges differ by less than this merge into one "
-                                "mixed return; 0.75 m corresponds to an assumed pulse of 5 ns"};
+                                "with beam_rays above 1: echoes whose ranges differ by less than this value merge into "
+                                "one mixed return; 0.75 m corresponds to a pulse of 5 ns (assumed)"};
 
 constexpr Parameter divergence(std::string_view name, double value_rad) {
-  return {name, value_rad, 0.0, 0.1, "rad", "full angle of the beam's width in this direction of L"};
+  return {name, value_rad, 0.0, 0.1, "rad", "full opening angle of the beam in this direction of the lidar axes"};
 }
 
 constexpr Parameter kCage{
-    "sees_own_cage", 1.0, 0.0, 1.0, "1", "1: the robot's own struts give returns; 0: transparent"};
+    "sees_own_cage", 1.0, 0.0, 1.0, "1", "1: the robot's own struts give returns; 0: beams pass through the struts"};
 
 // The elevations [rad] are the calibrated elevations of the published rig.
 constexpr std::array kSpinning = {
-    Parameter{"spin_rate_hz", 10.0, 1.0, 50.0, "Hz", "turns per second; one turn is one sweep"},
-    Parameter{"clockwise", 1.0, 0.0, 1.0, "1", "1: the azimuth turns from x towards -y; 0: towards +y"},
-    Parameter{"firing_period_s", 3e-6, 1e-7, 1e-3, "s", "time between two channels of a sequence"},
+    Parameter{"spin_rate_hz", 10.0, 1.0, 50.0, "Hz", "rotations per second; one rotation is one sweep"},
+    Parameter{"clockwise", 1.0, 0.0, 1.0, "1", "1: the lidar rotates from x towards -y; 0: from x towards +y"},
+    Parameter{"firing_period_s", 3e-6, 1e-7, 1e-3, "s", "time between the firings of two channels of a sequence"},
     Parameter{"sequence_period_s", 50e-6, 2e-6, 1e-2, "s", "time between two sequences of all channels"},
     Parameter{"current_driver_timing", 0.0, 0.0, 1.0, "1",
-              "1: timing of the RS-16 in the vendor's current rs_driver, with channels 2.8 us and sequences 55.5 us "
-              "apart; ignores firing_period_s and sequence_period_s"},
+              "1: use the timing of the vendor's current rs_driver for the RS-16 (channels 2.8 us, sequences 55.5 us) "
+              "instead of firing_period_s and sequence_period_s; 0: off"},
     elevation("elevation_01_rad", -0.262371856),
     elevation("elevation_02_rad", -0.227077808),
     elevation("elevation_03_rad", -0.192403351),
@@ -79,15 +86,16 @@ constexpr std::array kSpinning = {
     elevation("elevation_14_rad", 0.086844093),
     elevation("elevation_15_rad", 0.052016048),
     elevation("elevation_16_rad", 0.017060593),
-    Parameter{"mirror_radius_m", 0.04638, 0.0, 1.0, "m", "R1: distance from the spin axis at which the beams leave"},
-    Parameter{"mirror_drop_m", 0.010875, -1.0, 1.0, "m", "R2: distance below the origin of L at which the beams leave"},
+    Parameter{"mirror_radius_m", 0.04638, 0.0, 1.0, "m", "R1: distance of the beams' origin from the rotation axis"},
+    Parameter{"mirror_drop_m", 0.010875, -1.0, 1.0, "m",
+              "R2: distance of the beams' origin below the origin of the lidar axes"},
     Parameter{"range_min_m", 0.2, 0.0, 100.0, "m", "minimum range; nearer returns are lost"},
     Parameter{"range_max_m", 150.0, 0.1, 10000.0, "m", "maximum range; farther returns are lost"},
     kRangeNoise,
     Parameter{"range_quantum_m", 0.005, 0.0, 1.0, "m", "resolution of the reported range; 0: off"},
     Parameter{"detection_range_m", 150.0, 0.0, 10000.0, "m",
-              "range at which half of the returns with detection_reflectivity and normal incidence are lost; 0: no "
-              "such loss"},
+              "range at which half of the returns from a surface of detection_reflectivity at normal incidence are "
+              "lost; 0: no loss by range"},
     kReferenceReflectivity,
     kSteepness,
     kDropout,
@@ -100,28 +108,29 @@ constexpr std::array kSpinning = {
     kEchoLength,
     kCage,
     Parameter{"driver_stamp_fault", 0.0, 0.0, 1.0, "1",
-              "1: time stamps as in the published rig's driver, with two sequences per block of one period, which "
-              "compresses time twofold within packets of 24 sequences"},
+              "1: time stamps have the error of the published rig's driver: within a packet of 24 sequences, time "
+              "passes at half the true rate; 0: correct time stamps"},
 };
 
 constexpr std::array kRosette = {
-    Parameter{"units", 3.0, 1.0, 3.0, "1", "number of adjacent scanning units"},
+    Parameter{"units", 3.0, 1.0, 3.0, "1", "number of scanning units side by side"},
     Parameter{"unit_spacing_rad", 0.5235987755982988, 0.0, 1.6, "rad", "yaw between neighbouring units"},
     Parameter{"point_period_s", 10e-6, 1e-7, 1e-3, "s", "time between two points of a unit"},
     Parameter{"sweep_period_s", 0.1, 1e-3, 10.0, "s", "duration of the sweeps into which points are grouped"},
-    Parameter{"prism_1_rate_hz", 7294.0 / 60.0, -1000.0, 1000.0, "Hz", "turns per second of the first prism"},
-    Parameter{"prism_2_rate_hz", -4664.0 / 60.0, -1000.0, 1000.0, "Hz", "turns per second of the second prism"},
+    Parameter{"prism_1_rate_hz", 7294.0 / 60.0, -1000.0, 1000.0, "Hz", "rotations per second of the first prism"},
+    Parameter{"prism_2_rate_hz", -4664.0 / 60.0, -1000.0, 1000.0, "Hz", "rotations per second of the second prism"},
     Parameter{"prism_1_amplitude", 0.1713, 0.0, 1.0, "1", "tangent of the first prism's deflection"},
     Parameter{"prism_2_amplitude", 0.1744, 0.0, 1.0, "1", "tangent of the second prism's deflection"},
     Parameter{"mixed_amplitude", 0.0022, 0.0, 1.0, "1",
-              "tangent of the deflection at twice the first rate minus the second; 0: off"},
+              "tangent of the additional deflection at twice the rate of the first prism minus the rate of the second; "
+              "0: off"},
     Parameter{"range_min_m", 1.0, 0.0, 100.0, "m", "minimum range; nearer returns are lost"},
     Parameter{"range_max_m", 260.0, 0.1, 10000.0, "m", "maximum range; farther returns are lost"},
     kRangeNoise,
     Parameter{"range_quantum_m", 0.001, 0.0, 1.0, "m", "resolution of the reported range; 0: off"},
     Parameter{"detection_range_m", 130.0, 0.0, 10000.0, "m",
-              "range at which half of the returns with detection_reflectivity and normal incidence are lost; 0: no "
-              "such loss"},
+              "range at which half of the returns from a surface of detection_reflectivity at normal incidence are "
+              "lost; 0: no loss by range"},
     kReferenceReflectivity,
     kSteepness,
     kDropout,
@@ -132,9 +141,9 @@ constexpr std::array kRosette = {
     divergence("divergence_horizontal_rad", 0.03 * kDegree_rad),
     divergence("divergence_vertical_rad", 0.28 * kDegree_rad),
     kEchoLength,
-    Parameter{
-        "sees_own_cage", 0.0, 0.0, 1.0, "1",
-        "1: the robot's own struts give returns; 0: they are transparent, as is the shell around the sphere's lidar"},
+    Parameter{"sees_own_cage", 0.0, 0.0, 1.0, "1",
+              "1: the robot's own struts give returns; 0: beams pass through the struts, as through the shell around "
+              "the sphere's lidar"},
 };
 
 }  // namespace

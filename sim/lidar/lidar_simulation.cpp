@@ -47,7 +47,8 @@ void append_sweep(const SweepPoints& sweep, LidarRecord& record, LidarTruth& tru
 /// Returns the number of sweeps that end within the motion; the last sample of the motion is valid for one more period.
 std::int64_t whole_sweeps(const MotionTrack& motion, std::int64_t sweep_period_ns) {
   if (motion.period_ns <= 0 || motion.p_WB_m.size() != motion.q_WB.size()) {
-    throw std::invalid_argument("simulate_lidar: motion needs a positive period and as many attitudes as positions");
+    throw std::invalid_argument(
+        "simulate_lidar: the motion must have a positive period and as many attitudes as positions");
   }
   if (motion.p_WB_m.size() < 2) return 0;
   return static_cast<std::int64_t>(motion.p_WB_m.size()) * motion.period_ns / sweep_period_ns;

@@ -236,7 +236,8 @@ RayScene::RayScene(const SceneGeometry& geometry) : impl_(std::make_unique<Impl>
   impl_->device.reset(rtcNewDevice(kDevice));
   // a lack of memory must not be reported as a missing CPU feature
   if (!impl_->device && rtcGetDeviceError(nullptr) == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
-  if (!impl_->device) throw std::runtime_error("lidar: Embree cannot create a device; the CPU must have AVX2 and FMA");
+  if (!impl_->device)
+    throw std::runtime_error("lidar: the ray-tracing library Embree cannot start; the CPU must have AVX2 and FMA");
   impl_->scene.reset(rtcNewScene(impl_->device.get()));
   rtcSetSceneFlags(impl_->scene.get(), RTC_SCENE_FLAG_ROBUST);  // no ray passes between two adjacent triangles
   for (const SceneShape& part : geometry.shapes) {

@@ -173,7 +173,7 @@ void append_geom(const mjModel& model, int geom, const Isometry3d& T_FS, std::in
   } else {
     const char* name = mj_id2name(&model, mjOBJ_GEOM, geom);
     throw InvalidSituation("lidar: geom '" + std::string(name != nullptr ? name : std::to_string(geom)) +
-                           "' has a type without a surface for rays: " + std::to_string(type));
+                           "' has a geometry type that the lidar simulation does not support: " + std::to_string(type));
   }
 }
 

@@ -119,7 +119,7 @@ void SweepCaster::cast_block(Workspace& work) const {
     } else {
       for (int k = 0; k < spread_.rays(); ++k) {
         spread_.bend(firings, k, work.bent);
-        // the cage mask considers only the axes of beams, so every ray beside an axis is cast against the cage
+        // the cage mask considers only the axes of beams, so every ray next to an axis is cast against the cage
         cast_channel(work.block, work.poses, c, !cage_.empty(), work.bent, work.beam[k]);
       }
       spread_.merge(work.beam, out.echoes);

@@ -13,7 +13,7 @@ constexpr std::array kDropParameters = {
     Parameter{"release_s", 0.15, 0.0, 1.0, "s", "duration of the release, during which the hand's force fades out"},
     Parameter{"height_m", 1.0, 0.1, 20.0, "m", "height of the held robot's lowest point above the ground at the start"},
     Parameter{"forward_m", 0.0, -5.0, 10.0, "m", "distance of the held robot from the start, down the slope"},
-    Parameter{"roll_rad", 0.0, -3.2, 3.2, "rad", "attitude of the held robot: rotation about its x axis, then"},
+    Parameter{"roll_rad", 0.0, -3.2, 3.2, "rad", "attitude of the held robot: rotation about the robot's x axis, then"},
     Parameter{"pitch_rad", 0.0, -1.6, 1.6, "rad", "about y, then"},
     Parameter{"yaw_rad", 0.0, -3.2, 3.2, "rad", "about z"},
 };
@@ -53,8 +53,8 @@ std::unique_ptr<Motion> make_drop(const Values& values, const engine::World& wor
 }  // namespace
 
 const MotionType& drop_motion() {
-  static const MotionType kType{{"drop", "the robot is held above the ground and released", kDropParameters},
-                                make_drop};
+  static const MotionType kType{
+      {"drop", "a hand holds the robot above the ground and releases the robot", kDropParameters}, make_drop};
   return kType;
 }
 

@@ -28,7 +28,7 @@ Eigen::Quaterniond turn_up(const Eigen::Vector3d& from) {
 
 Hand::Hand(const std::string& motion, const Values& values, const engine::World& world)
     : world_(world), values_(values), radius_m_(world.sphere_radius_m), p_BG_m_(-world.com_offset_m) {
-  if (radius_m_ <= 0.0) throw InvalidSituation("motion." + motion + ": only a sphere can be rolled by hand");
+  if (radius_m_ <= 0.0) throw InvalidSituation("motion." + motion + ": this motion needs the robot 'sphere'");
   const mjModel& model = *world.model;
   mass_kg_ = model.body_mass[world.robot_body];
   inertia_kg_m2_ = Eigen::Map<const Eigen::Vector3d>(model.body_inertia + 3 * world.robot_body).mean();

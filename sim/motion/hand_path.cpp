@@ -14,19 +14,21 @@ namespace {
 constexpr std::array kHandPathParameters = with_hand(std::array{
     Parameter{"rest_s", 1.5, 0.0, 30.0, "s", "rest before the path"},
     Parameter{"shape", 0.0, 0.0, kPathShapes - 1.0, "1",
-              "0: line along +x; 1: L, two equal legs; 2: eight; 3: free, smooth and random"},
-    Parameter{"length_m", 4.0, 0.05, 100.0, "m", "length of the path; its bounding box is centred in the world"},
+              "0: line along +x; 1: L with two equal legs; 2: figure eight; 3: smooth random path"},
+    Parameter{"length_m", 4.0, 0.05, 100.0, "m",
+              "length of the path; the bounding box of the path is centred in the world"},
     Parameter{"heading_rad", 0.0, -3.2, 3.2, "rad", "rotation of the path about the vertical"},
-    Parameter{"sway_m", 0.0, 0.0, 2.0, "m", "amplitude with which a line sways from side to side"},
-    Parameter{"sway_length_m", 4.0, 0.5, 50.0, "m", "wavelength of the sway"},
+    Parameter{"sway_m", 0.0, 0.0, 2.0, "m", "amplitude with which a line bends from side to side"},
+    Parameter{"sway_length_m", 4.0, 0.5, 50.0, "m", "wavelength of these bends"},
     Parameter{"speed_m_s", 0.6, 0.02, 5.0, "m/s", "target speed between start and end"},
     Parameter{"acceleration_m_s2", 1.0, 0.05, 20.0, "m/s^2", "acceleration of starting and stopping"},
     Parameter{"smooth_s", 0.15, 0.01, 2.0, "s",
-              "time over which the path is averaged twice, which rounds corners and avoids force jumps"},
+              "time over which the path is averaged twice; a larger value makes rounder corners"},
     Parameter{"stroke_share", 0.0, 0.0, 0.5, "1",
-              "root mean square of the variation of the speed, 0.3 to 1.5 Hz: a hand pushes in strokes; assumed"},
+              "root mean square of the variation of the speed, as a share of the speed, from 0.3 to 1.5 Hz, because a "
+              "hand pushes in strokes; assumed"},
     Parameter{"patch_1_push_ratio", 1.0, 0.2, 5.0, "1",
-              "speed on patch 1 relative to the speed before, caused by a push through the centre; 1: none"},
+              "speed on patch 1 relative to the speed before, caused by a push through the centre; 1: no push"},
     Parameter{"patch_2_push_ratio", 1.0, 0.2, 5.0, "1", "as patch 1"},
     Parameter{"patch_3_push_ratio", 1.0, 0.2, 5.0, "1", "as patch 1"},
 });
@@ -89,7 +91,9 @@ class Schedule {
     const double length_m = arc_length_m_.back();
     double s_m = 0.0, v_m_s = 0.0;
     for (double time_s = 0.0; length_m - s_m > 1e-3; time_s += kTick_s) {
-      if (time_s > kPathLongest_s) throw InvalidSituation("motion.hand_path: the path takes longer than 600 s");
+      if (time_s > kPathLongest_s)
+        throw InvalidSituation(
+            "motion.hand_path: the path takes longer than 600 s; shorten the path or raise the speed");
       double aim_m_s = speed_m_s * std::max(1.0 + strokes.at(time_s), 0.2);
       bool pushed = false;
       for (std::size_t i = 0; i < std::min(world.patches.size(), kHandPatches); ++i) {
@@ -164,11 +168,11 @@ std::unique_ptr<Motion> make_hand_path(const Values& values, const engine::World
 }  // namespace
 
 const MotionType& hand_path_motion() {
-  static const MotionType kType{
-      {"hand_path",
-       "a hand leads a sphere along a line, an L, an eight or a free path, with pushes and bursts on patches",
-       kHandPathParameters},
-      make_hand_path};
+  static const MotionType kType{{"hand_path",
+                                 "a hand leads a sphere along a line, an L, a figure eight or a random path, and "
+                                 "pushes or spins the sphere on patches",
+                                 kHandPathParameters},
+                                make_hand_path};
   return kType;
 }
 

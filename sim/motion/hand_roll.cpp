@@ -13,11 +13,11 @@ namespace {
 constexpr std::array kHandRollParameters = with_hand(std::array{
     Parameter{"rest_s", 1.5, 0.0, 30.0, "s", "rest before the first leg"},
     Parameter{"leg_1_m", 1.0, 0.0, 20.0, "m", "first leg, along +x"},
-    Parameter{"leg_2_m", 1.0, 0.0, 20.0, "m", "second leg; 0: a straight path"},
-    Parameter{"turn_rad", std::numbers::pi / 2, -3.2, 3.2, "rad", "turn to the left between the legs"},
+    Parameter{"leg_2_m", 1.0, 0.0, 20.0, "m", "length of the second leg; 0: a straight path"},
+    Parameter{"turn_rad", std::numbers::pi / 2, -3.2, 3.2, "rad", "left turn between the legs"},
     Parameter{"speed_m_s", 0.6, 0.02, 5.0, "m/s",
-              "largest speed on a leg; each leg is a minimum-jerk motion from rest to rest"},
-    Parameter{"pause_s", 0.3, 0.0, 30.0, "s", "stop between the legs"},
+              "maximum speed on a leg; each leg is a minimum-jerk motion from rest to rest"},
+    Parameter{"pause_s", 0.3, 0.0, 30.0, "s", "duration of the stop between the legs"},
 });
 
 /// Straight path of minimum jerk from rest to rest with length L and time fraction u: s = L (10 u^3 - 15 u^4 + 6 u^5);

@@ -10,7 +10,8 @@ HoldingHand::HoldingHand(const engine::World& world, const Eigen::Quaterniond& q
     : mass_kg_(world.model->body_mass[world.robot_body]),
       inertia_W_kg_m2_(tumble::sim::inertia_W_kg_m2(*world.model, world.robot_body, q_WB)),
       weight_n_(0.0, 0.0, -mass_kg_ * world.model->opt.gravity[2]) {
-  if (!(height_m > 0.0)) throw InvalidSituation("motion: the robot must be held above the ground");
+  if (!(height_m > 0.0))
+    throw InvalidSituation("motion: the height of the held robot above the ground must be greater than 0");
   start_.q_WB = q_WB;
   start_.p_WB_m =
       world.start_W_m + offset_W_m + Eigen::Vector3d(0, 0, clearance_m(*world.model, world.robot_body, q_WB, height_m));

@@ -10,12 +10,14 @@ namespace tumble::sim {
 
 /// Parameters of an initial impulse: its direction and the resulting spin.
 inline constexpr std::array kImpulseParameters = {
-    Parameter{"direction_rad", 0.0, -3.2, 3.2, "rad", "direction of the impulse about z; 0: down the slope"},
+    Parameter{"direction_rad", 0.0, -3.2, 3.2, "rad",
+              "direction of the push, as a rotation about z; 0: down the slope"},
     Parameter{"spin_forward_rad_s", 4.0, -30.0, 30.0, "rad/s",
-              "angular impulse over inertia about the axis of forward rolling"},
+              "angular velocity change by the push about the axis of forward rolling (angular impulse over inertia)"},
     Parameter{"spin_side_rad_s", 0.0, -30.0, 30.0, "rad/s",
-              "angular impulse over inertia about the direction of the impulse"},
-    Parameter{"spin_up_rad_s", 0.0, -30.0, 30.0, "rad/s", "angular impulse over inertia about the vertical"},
+              "angular velocity change by the push about the direction of the push (angular impulse over inertia)"},
+    Parameter{"spin_up_rad_s", 0.0, -30.0, 30.0, "rad/s",
+              "angular velocity change by the push about the vertical (angular impulse over inertia)"},
 };
 
 /// Returns the linear and angular impulse in world axes [N s, N m s] that gives a body at rest the horizontal velocity

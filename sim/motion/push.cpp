@@ -13,8 +13,8 @@ constexpr std::array kOwnPushParameters = {
     Parameter{"rest_s", 1.75, 0.0, 30.0, "s", "rest before the push"},
     Parameter{"push_s", 0.2, 0.02, 2.0, "s", "duration of the push; force and torque rise and fall as a raised cosine"},
     Parameter{"yaw_rad", 0.0, -3.2, 3.2, "rad", "heading of the robot at rest; 0: its x axis points down the slope"},
-    Parameter{"velocity_m_s", 2.0, 0.0, 10.0, "m/s", "horizontal impulse over mass"},
-    Parameter{"lift_m_s", 1.0, 0.0, 10.0, "m/s", "upward impulse over mass"},
+    Parameter{"velocity_m_s", 2.0, 0.0, 10.0, "m/s", "horizontal velocity change by the push (impulse over mass)"},
+    Parameter{"lift_m_s", 1.0, 0.0, 10.0, "m/s", "upward velocity change by the push (impulse over mass)"},
 };
 constexpr std::array kPushParameters = joined(kOwnPushParameters, kImpulseParameters);
 
@@ -52,7 +52,9 @@ std::unique_ptr<Motion> make_push(const Values& values, const engine::World& wor
 
 const MotionType& push_motion() {
   static const MotionType kType{
-      {"push", "the robot rests, is pushed by force and torque, and then moves freely", kPushParameters}, make_push};
+      {"push", "the robot rests, a force and a torque push the robot, and then the robot moves freely",
+       kPushParameters},
+      make_push};
   return kType;
 }
 

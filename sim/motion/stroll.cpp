@@ -18,16 +18,17 @@ constexpr std::array kStrollParameters = {
     Parameter{"height_m", 1.0, 0.1, 10.0, "m", "height of the held robot's lowest point above the ground at the start"},
     Parameter{"heading_rad", 0.0, -3.2, 3.2, "rad", "rotation of the whole path about the vertical"},
     Parameter{"half_length_m", 2.4, 0.2, 20.0, "m",
-              "half length a of the eight x = a sin u, y = b sin 2u, which starts at its crossing"},
-    Parameter{"half_width_m", 1.2, 0.1, 20.0, "m", "half width b of the eight"},
-    Parameter{"loops", 1.0, 0.1, 100.0, "1", "number of rounds of the eight"},
-    Parameter{"speed_m_s", 1.2, 0.05, 3.0, "m/s", "speed at the crossing, where it is largest"},
+              "half length a of the figure eight x = a sin u, y = b sin 2u; the path starts at the crossing"},
+    Parameter{"half_width_m", 1.2, 0.1, 20.0, "m", "half width b of the figure eight"},
+    Parameter{"loops", 1.0, 0.1, 100.0, "1", "number of rounds of the figure eight"},
+    Parameter{"speed_m_s", 1.2, 0.05, 3.0, "m/s", "speed at the crossing, which is the maximum speed"},
     Parameter{"ease_s", 1.5, 0.2, 10.0, "s", "time in which the walker reaches that speed, and stops at the end"},
     Parameter{"step_hz", 1.8, 0.2, 4.0, "Hz", "steps per second of the walker; assumed"},
     Parameter{"step_m", 0.015, 0.0, 0.1, "m", "amplitude with which the steps lift the robot; assumed"},
-    Parameter{"sway_rad", 0.08, 0.0, 0.5, "rad", "root mean square of roll, pitch and yaw, 0.2 to 1.2 Hz; assumed"},
+    Parameter{"sway_rad", 0.08, 0.0, 0.5, "rad",
+              "root mean square of the robot's roll, pitch and yaw, from 0.2 to 1.2 Hz; assumed"},
     Parameter{"sway_m", 0.02, 0.0, 0.2, "m", "root mean square of the position's tremor, per axis; assumed"},
-    Parameter{"hand_seed", 0.0, 0.0, 1e9, "1", "number that selects the hand's random behaviour, rounded down"},
+    Parameter{"hand_seed", 0.0, 0.0, 1e9, "1", "seed of the hand's random behaviour; the number is rounded down"},
 };
 
 constexpr double kSwayLow_hz = 0.2, kSwayHigh_hz = 1.2;
@@ -106,7 +107,7 @@ std::unique_ptr<Motion> make_stroll(const Values& values, const engine::World& w
 
 const MotionType& stroll_motion() {
   static const MotionType kType{
-      {"stroll", "a walker carries the robot along a horizontal eight, from rest to rest", kStrollParameters},
+      {"stroll", "a walker carries the robot along a horizontal figure eight, from rest to rest", kStrollParameters},
       make_stroll};
   return kType;
 }

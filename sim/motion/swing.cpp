@@ -14,18 +14,20 @@ namespace {
 
 constexpr std::array kSwingParameters = {
     Parameter{"rest_s", 1.75, 0.5, 30.0, "s", "time before the hand grips the robot"},
-    Parameter{"lift_s", 1.0, 0.2, 10.0, "s", "time in which the hand leads the lowest segment aside and up"},
-    Parameter{"hold_s", 0.5, 0.0, 10.0, "s", "time for which the hand holds the segment there"},
-    Parameter{"release_s", 0.03, 0.005, 1.0, "s", "time in which the grip ends"},
+    Parameter{"lift_s", 1.0, 0.2, 10.0, "s", "time in which the hand moves the lowest segment aside and up"},
+    Parameter{"hold_s", 0.5, 0.0, 10.0, "s", "time for which the hand holds the lifted segment"},
+    Parameter{"release_s", 0.03, 0.005, 1.0, "s", "time in which the hand releases the segment"},
     Parameter{"interval_s", 19.0, 2.0, 120.0, "s",
-              "mean time between releases, varied by a tenth; at least lift and hold"},
-    Parameter{"aside_m", 0.4, 0.0, 3.0, "m", "mean distance aside, across the hinges"},
+              "mean time between two releases, varied by up to a tenth; must be at least the times of lift and hold"},
+    Parameter{"aside_m", 0.4, 0.0, 3.0, "m",
+              "mean distance by which the segment is moved aside, perpendicular to the hinges"},
     Parameter{"up_m", 0.45, 0.0, 3.0, "m", "mean distance up"},
-    Parameter{"spread_m", 0.05, 0.0, 0.5, "m", "standard deviation of both between swings, truncated at 2 of them"},
+    Parameter{"spread_m", 0.05, 0.0, 0.5, "m",
+              "standard deviation of both distances between swings, truncated at 2 sigma"},
     Parameter{"sideways_m", 0.02, 0.0, 0.5, "m",
-              "standard deviation of the distance along the hinges, truncated at 2 of them"},
+              "standard deviation of the distance along the hinges, truncated at 2 sigma"},
     Parameter{"other_side_share", 0.3, 0.0, 1.0, "1", "share of the swings that start on the other side"},
-    Parameter{"hand_seed", 0.0, 0.0, 1e9, "1", "number that selects the hand's random behaviour, rounded down"},
+    Parameter{"hand_seed", 0.0, 0.0, 1e9, "1", "seed of the hand's random behaviour; the number is rounded down"},
 };
 
 constexpr double kSwingLongest_s = 3600.0;
@@ -69,7 +71,8 @@ class Swing : public Motion {
         hold_s_(values.at("hold_s")),
         release_s_(values.at("release_s")),
         mass_kg_(world.model->body_subtreemass[world.model->body_rootid[world.robot_body]]) {
-    if (world.free) throw InvalidSituation("motion.swing: the robot is not attached by joints");
+    if (world.free)
+      throw InvalidSituation("motion.swing: the robot is not attached by joints; choose the robot 'pendulum'");
     start_ = engine::state_at_rest(world);
     Stream stream(static_cast<std::uint64_t>(values.at("hand_seed")), "hand.swing");
     lifts_ = plan_lifts(values, stream);
@@ -116,7 +119,7 @@ std::unique_ptr<Motion> make_swing(const Values& values, const engine::World& wo
 
 const MotionType& swing_motion() {
   static const MotionType kType{
-      {"swing", "a hand repeatedly leads a hanging robot aside and releases it", kSwingParameters}, make_swing};
+      {"swing", "a hand repeatedly moves a hanging robot aside and releases the robot", kSwingParameters}, make_swing};
   return kType;
 }
 

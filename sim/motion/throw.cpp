@@ -55,8 +55,9 @@ std::unique_ptr<Motion> make_throw(const Values& values, const engine::World& wo
 }  // namespace
 
 const MotionType& throw_motion() {
-  static const MotionType kType{{"throw", "the robot is held above the ground, swung and released", kThrowParameters},
-                                make_throw};
+  static const MotionType kType{
+      {"throw", "a hand holds the robot above the ground, swings the robot and releases the robot", kThrowParameters},
+      make_throw};
   return kType;
 }
 

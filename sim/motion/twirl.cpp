@@ -17,24 +17,27 @@ constexpr std::array kTwirlParameters = {
     Parameter{"rest_s", 1.75, 0.5, 30.0, "s", "time for which the robot is held still before the first stroke"},
     Parameter{"height_m", 1.0, 0.1, 10.0, "m", "height of the held robot's lowest point above the ground at the start"},
     Parameter{"yaw_rad", 0.0, -3.2, 3.2, "rad", "heading of the held robot"},
-    Parameter{"spin_rad_s", 10.5, 0.0, 40.0, "rad/s", "mean of the strokes' peak rates about the robot's x axis"},
+    Parameter{"spin_rad_s", 10.5, 0.0, 40.0, "rad/s", "mean peak rate of the strokes about the robot's x axis"},
     Parameter{"spin_spread_rad_s", 2.0, 0.0, 20.0, "rad/s",
-              "standard deviation of the peak rates, truncated at 2.5 of them"},
-    Parameter{"stroke_s", 0.9, 0.1, 5.0, "s", "duration of a stroke; the rate rises for a third of it"},
+              "standard deviation of the peak rates, truncated at 2.5 sigma"},
+    Parameter{"stroke_s", 0.9, 0.1, 5.0, "s", "duration of a stroke; the rate rises during the first third"},
     Parameter{"interval_s", 1.65, 0.1, 20.0, "s",
-              "mean time between strokes, varied by a quarter; a stroke starts only after the previous one has ended"},
+              "mean time between strokes, varied by up to a quarter; a stroke starts only after the previous stroke "
+              "has ended"},
     Parameter{"turn_back_share", 0.45, 0.0, 1.0, "1",
-              "share of the strokes that turn in the direction opposite to the previous one"},
+              "share of the strokes that rotate against the direction of the previous stroke"},
     Parameter{"twist_rad", 0.4, 0.0, 3.0, "rad",
-              "root mean square of the tremor about x in addition to the strokes, 0.3 to 4 Hz; as on the real wand"},
+              "root mean square of the tremor about x in addition to the strokes, from 0.3 to 4 Hz; measured on the "
+              "real wand"},
     Parameter{"sway_rad", 0.03, 0.0, 0.5, "rad",
-              "root mean square of the tremor in pitch and yaw, 0.3 to 4 Hz; assumed"},
+              "root mean square of the tremor in pitch and yaw, from 0.3 to 4 Hz; assumed"},
     Parameter{"sway_m", 0.01, 0.0, 0.2, "m",
               "root mean square of the tremor of the grip's position, per axis; assumed"},
-    Parameter{"grip_x_m", 0.0, -0.5, 0.5, "m", "point that the hand holds, in the robot's design frame, B axes"},
+    Parameter{"grip_x_m", 0.0, -0.5, 0.5, "m",
+              "point of the robot that the hand holds, in the robot's design frame, body axes"},
     Parameter{"grip_y_m", 0.0, -0.5, 0.5, "m", "the same along y"},
     Parameter{"grip_z_m", 0.0, -0.5, 0.5, "m", "the same along z"},
-    Parameter{"hand_seed", 0.0, 0.0, 1e9, "1", "number that selects the hand's random behaviour, rounded down"},
+    Parameter{"hand_seed", 0.0, 0.0, 1e9, "1", "seed of the hand's random behaviour; the number is rounded down"},
 };
 
 constexpr double kTwirlSwayLow_hz = 0.3, kTwirlSwayHigh_hz = 4.0;
@@ -132,7 +135,7 @@ std::unique_ptr<Motion> make_twirl(const Values& values, const engine::World& wo
 
 const MotionType& twirl_motion() {
   static const MotionType kType{
-      {"twirl", "a hand carries the robot and twirls it about its x axis, stroke by stroke", kTwirlParameters},
+      {"twirl", "a hand carries the robot and twirls the robot about its x axis in strokes", kTwirlParameters},
       make_twirl};
   return kType;
 }

@@ -15,7 +15,8 @@ constexpr const char* kLibrary = "libOSMesa.so.8";
 
 [[noreturn]] void fail() {
   const char* reason = dlerror();
-  throw std::runtime_error(std::string("render: OSMesa cannot be loaded: ") + (reason != nullptr ? reason : kLibrary));
+  throw std::runtime_error(std::string("render: the library OSMesa cannot be loaded; install it (tools/setup): ") +
+                           (reason != nullptr ? reason : kLibrary));
 }
 
 template <class Function>

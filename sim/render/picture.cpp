@@ -31,7 +31,7 @@ void check(const Picture& picture) {
 
 Picture film_strip(std::span<const Picture> pictures, int columns) {
   if (pictures.empty() || columns < 1)
-    throw std::invalid_argument("film_strip: needs pictures and at least one column");
+    throw std::invalid_argument("film_strip: there must be at least one picture and one column");
   const int width = pictures[0].width, height = pictures[0].height;
   const int rows = (static_cast<int>(pictures.size()) + columns - 1) / columns;
   columns = std::min(columns, static_cast<int>(pictures.size()));
@@ -42,7 +42,7 @@ Picture film_strip(std::span<const Picture> pictures, int columns) {
     const Picture& picture = pictures[i];
     check(picture);
     if (picture.width != width || picture.height != height)
-      throw std::invalid_argument("film_strip: pictures differ in size");
+      throw std::invalid_argument("film_strip: the pictures differ in size; they must have the same size");
     const int left = static_cast<int>(i) % columns * (width + kGap),
               top = static_cast<int>(i) / columns * (height + kGap);
     for (int row = 0; row < height; ++row) {

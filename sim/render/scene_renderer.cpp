@@ -28,7 +28,7 @@ class Current {
  public:
   explicit Current(OSMesaContext context) {
     if (context == nullptr || osmesa().make_current(context, pixels_, GL_UNSIGNED_BYTE, kSide, kSide) != GL_TRUE) {
-      throw std::runtime_error("render: no OSMesa context can be made");
+      throw std::runtime_error("render: OSMesa cannot create a rendering context");
     }
   }
   ~Current() { osmesa().make_current(nullptr, nullptr, GL_UNSIGNED_BYTE, 0, 0); }
@@ -143,7 +143,7 @@ SceneRenderer::SceneRenderer(engine::World world, int shadow_pixels) : impl_(std
   mjr_defaultContext(&impl_->engine_context);
   mjr_makeContext(&model, &impl_->engine_context, mjFONTSCALE_100);
   impl_->has_engine_context = true;
-  if (impl_->engine_context.offFBO == 0) throw std::runtime_error("render: OSMesa gives no frame buffer object");
+  if (impl_->engine_context.offFBO == 0) throw std::runtime_error("render: OSMesa cannot create a frame buffer");
 }
 
 SceneRenderer::~SceneRenderer() = default;
@@ -189,7 +189,7 @@ void SceneRenderer::Impl::add_robots(const View& view, const mjvOption& option, 
 
 Picture SceneRenderer::draw(const View& view) {
   if (view.width < 1 || view.height < 1 || view.width > kLargestSide || view.height > kLargestSide) {
-    throw std::invalid_argument("render: pictures have 1 to 4096 pixels a side");
+    throw std::invalid_argument("render: width and height of a picture must be 1 to 4096 pixels");
   }
   const mjModel& model = *impl_->world.model;
   mj_resetData(&model, impl_->data.get());
@@ -229,7 +229,8 @@ Picture SceneRenderer::draw(const View& view) {
   if (engine.offWidth != area.width || engine.offHeight != area.height)
     mjr_resizeOffscreen(area.width, area.height, &engine);
   mjr_setBuffer(mjFB_OFFSCREEN, &engine);
-  if (engine.currentBuffer != mjFB_OFFSCREEN) throw std::runtime_error("render: no off-screen buffer");
+  if (engine.currentBuffer != mjFB_OFFSCREEN)
+    throw std::runtime_error("render: OpenGL cannot create the off-screen buffer");
   mjr_render(area, &scene, &engine);
   std::vector<std::uint8_t> large(3 * static_cast<std::size_t>(area.width) * static_cast<std::size_t>(area.height));
   mjr_readPixels(large.data(), nullptr, area, &engine);

@@ -10,10 +10,11 @@ namespace {
 
 constexpr std::array kPendulumParameters = {
     Parameter{"height_m", 1.3, 0.2, 20.0, "m", "height of the uppermost hinge above the ground; assumed"},
-    Parameter{"segment_m", 0.25, 0.02, 2.0, "m",
-              "length of each segment between hinges; gives the periods of RepoIMU's pendulum, about 1.46 and 0.67 s"},
+    Parameter{
+        "segment_m", 0.25, 0.02, 2.0, "m",
+        "length of each segment between hinges; 1.46 s and 0.67 s are the periods of the real pendulum (RepoIMU)"},
     Parameter{"segment_mass_kg", 0.3, 0.01, 20.0, "kg",
-              "mass of each segment; assumed, because the free motion does not depend on it"},
+              "mass of each segment; assumed, because the free motion does not depend on the mass"},
     Parameter{"hinge_damping_nm_s", 0.0, 0.0, 1.0, "N m s", "viscous friction of each hinge"},
     Parameter{"hinge_friction_nm", 0.0, 0.0, 1.0, "N m", "dry friction of each hinge"},
     Parameter{"play_stiffness_nm", 20.0, 0.1, 1000.0, "N m/rad",
@@ -61,7 +62,7 @@ void shape_pendulum(mjSpec* spec, const Values& values, engine::World& world) {
 
 const RobotType& pendulum_robot() {
   static const RobotType kType{
-      {"pendulum", "three segments in a row on hinges, with an IMU on the lowest", kPendulumParameters},
+      {"pendulum", "three segments in a row on hinges, with an IMU on the lowest segment", kPendulumParameters},
       "pendulum.xml",
       shape_pendulum,
       "segment_3",

@@ -9,17 +9,21 @@ namespace tumble::sim {
 namespace {
 
 constexpr std::array kSphereParameters = {
-    Parameter{"radius_m", 0.145, 0.05, 1.0, "m", "outer radius of the shell; 29 cm across as published"},
-    Parameter{"shell_mass_kg", 1.6, 0.05, 50.0, "kg", "thin shell; slip_study"},
+    Parameter{"radius_m", 0.145, 0.05, 1.0, "m",
+              "outer radius of the shell; the published sphere has a diameter of 29 cm"},
+    Parameter{"shell_mass_kg", 1.6, 0.05, 50.0, "kg", "mass of the thin shell; source: slip study"},
     Parameter{"inner_mass_kg", 2.6, 0.05, 50.0, "kg",
-              "mass of instruments and battery, a homogeneous ball; slip_study"},
-    Parameter{"inner_radius_m", 0.08, 0.01, 0.9, "m", "radius of that ball; assumed"},
-    Parameter{"inner_x_m", 0.0, -0.03, 0.03, "m",
-              "centre of that ball relative to the geometric centre, B axes; up to 12 mm each in slip_study"},
+              "mass of instruments and battery, modelled as a homogeneous ball; source: slip study"},
+    Parameter{"inner_radius_m", 0.08, 0.01, 0.9, "m", "radius of this inner ball; assumed"},
+    Parameter{
+        "inner_x_m", 0.0, -0.03, 0.03, "m",
+        "centre of the inner ball relative to the geometric centre, body axes; up to 12 mm per axis in the slip study"},
     Parameter{"inner_y_m", 0.0, -0.03, 0.03, "m", "the same along y"},
-    Parameter{"inner_z_m", 0.0, -0.03, 0.03, "m", "the same along z; negative: the heavy side is down at the start"},
-    Parameter{"contact_time_s", 0.004, 0.002, 0.1, "s",
-              "time constant of a contact (MuJoCo solref[0]); a hard shell, it sinks 0.02 mm under its weight"},
+    Parameter{"inner_z_m", 0.0, -0.03, 0.03, "m",
+              "centre of the inner ball along z; negative: the heavy side is down at the start"},
+    Parameter{
+        "contact_time_s", 0.004, 0.002, 0.1, "s",
+        "time constant of a contact (MuJoCo solref[0]); the hard shell sinks 0.02 mm under the weight of the sphere"},
     Parameter{"contact_damping_ratio", 1.0, 0.05, 1.5, "1", "damping ratio of a contact (MuJoCo solref[1])"},
 };
 

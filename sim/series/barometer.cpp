@@ -20,7 +20,7 @@ constexpr auto kBarometerParameters = joined(
         Parameter{"pressure_bias_pa", 0.0, 0.0, 1e4, "Pa", "standard deviation of the constant error; 0: off"},
         Parameter{"pressure_quantum_pa", 0.0, 0.0, 1e4, "Pa", "resolution of the output; 0: off"},
         Parameter{"ground_pressure_pa", 101325.0, 1e3, 2e5, "Pa", "air pressure at the world's origin"},
-        Parameter{"air_temperature_k", 288.15, 150.0, 400.0, "K", "air temperature, the same at every height"},
+        Parameter{"air_temperature_k", 288.15, 150.0, 400.0, "K", "air temperature, which is the same at every height"},
     });
 
 /// Adds a barometer to the recording. The model excludes wind, pressure caused by the robot's own motion, and lag of
@@ -52,9 +52,10 @@ double air_pressure_pa(double ground_pressure_pa, double temperature_k, double g
 }
 
 const SensorType& barometer_sensor() {
-  static const SensorType kType{{"barometer", "air pressure, which decreases with height", kBarometerParameters},
-                                add_barometer,
-                                check_pressure_range};
+  static const SensorType kType{
+      {"barometer", "barometer: measures the air pressure, which decreases with height", kBarometerParameters},
+      add_barometer,
+      check_pressure_range};
   return kType;
 }
 

@@ -22,7 +22,7 @@ std::size_t steps_in_window(const SensorSpec& sensor, std::int64_t step_ns) {
   if (whole >= 1.0 && std::abs(steps - whole) <= 1e-9 * whole) return static_cast<std::size_t>(whole);
   std::ostringstream text;
   text << "sensors." << sensor.name << ".output_rate_hz is " << sensor.values.at("output_rate_hz")
-       << " Hz, must divide the physics rate of " << 1e9 / static_cast<double>(step_ns) << " Hz";
+       << " Hz; it must divide the physics rate of " << 1e9 / static_cast<double>(step_ns) << " Hz";
   throw InvalidSituation(text.str());
 }
 

@@ -16,16 +16,18 @@ namespace tumble::sim {
 
 /// Parameters of every series sensor: output rate, time stamps and losses.
 inline constexpr std::array kSeriesParameters = {
-    Parameter{
-        "output_rate_hz", 50.0, 0.1, 2000.0, "Hz",
-        "samples per second; must divide the physics rate of 2000 Hz; each sample is the mean since the previous one"},
-    Parameter{"time_offset_s", 0.0, -0.1, 0.1, "s", "time stamp minus true end of the window"},
+    Parameter{"output_rate_hz", 50.0, 0.1, 2000.0, "Hz",
+              "samples per second; must divide the physics rate of 2000 Hz; each sample is the mean since the previous "
+              "sample"},
+    Parameter{"time_offset_s", 0.0, -0.1, 0.1, "s", "time stamp minus true end of the averaging window"},
     Parameter{"time_jitter_s", 0.0, 0.0, 0.1, "s",
-              "standard deviation of the time stamp, truncated at 3 of them; below a sixth of the period; 0: off"},
+              "standard deviation of the time stamp, truncated at 3 sigma; must be below a sixth of the sample period; "
+              "0: off"},
     Parameter{"dropout_share", 0.0, 0.0, 0.5, "1", "share of lost samples; 0: off"},
-    Parameter{"dropout_mean_samples", 1.0, 1.0, 1e4, "1", "mean length of a run of lost samples"},
+    Parameter{"dropout_mean_samples", 1.0, 1.0, 1e4, "1", "mean number of samples that are lost in a row"},
     Parameter{"start_delay_s", 0.0, 0.0, 60.0, "s",
-              "time before the first reading, for a device that starts after the recording; 0: off"},
+              "time from the start of the recording to the first reading of the device; 0: the device starts with the "
+              "recording"},
 };
 
 /// Errors of readings, relative to the mean of the quantity over the averaging window; an error of 0 is off.

@@ -24,7 +24,7 @@ int engine_integrator(Integrator integrator) {
 /// Applies the options to the model before MuJoCo creates its state from the model.
 engine::World world_for(const BuiltSituation& built, const TrialOptions& options) {
   if (!(options.step_s >= 0.0 && options.step_s <= 0.1)) {
-    throw InvalidSituation("trial: step_s is " + std::to_string(options.step_s) + " s, must be within [0, 0.1]");
+    throw InvalidSituation("trial: step_s is " + std::to_string(options.step_s) + " s; it must be within [0, 0.1]");
   }
   engine::World world = engine::copy_of(built.world());
   if (options.step_s > 0.0) world.model->opt.timestep = options.step_s;

@@ -33,7 +33,7 @@ void settle(engine::Physics& physics, const mjModel& model, int body, Motion& mo
   }
   BodyState rest = physics.state();
   if (rest.v_WB_m_s.norm() > kRestSpeed_m_s)
-    throw SimulationFailure("the robot did not come to rest before the start, at 0 s");
+    throw SimulationFailure("the robot did not come to rest before the recording starts (0 s)");
   rest.time_s = 0.0;
   physics.set_state(rest);
 }
@@ -72,7 +72,8 @@ Truth record_truth(engine::World& world, Motion& motion, double duration_s) {
     before = after;
   }
   if (distance_m < kLeastDistance_m)
-    throw SimulationFailure("the robot never moved, until " + std::to_string(duration_s) + " s");
+    throw SimulationFailure("the robot did not move until the end of the simulation at " + std::to_string(duration_s) +
+                            " s");
   // no step ends at time 0, so the specific force at time 0 is that of the first step, because the robot is at rest
   truth.f_B_m_s2.insert(truth.f_B_m_s2.begin(), truth.f_B_m_s2.front());
   truth.label = label_contacts(truth);

@@ -12,11 +12,12 @@ namespace tumble::sim {
 namespace {
 
 constexpr std::array kOwnCliffParameters = {
-    Parameter{"drop_count", 2, 1, 6, "1", "number of drops, one below the other"},
-    Parameter{"drop_height_m", 1.2, 0.2, 5.0, "m", "height of each drop; its face is one ground cell wide, 0.2 m"},
+    Parameter{"drop_count", 2, 1, 6, "1", "number of vertical drops, one below another"},
+    Parameter{"drop_height_m", 1.2, 0.2, 5.0, "m",
+              "height of each drop; the face of a drop is one ground cell (0.2 m) wide"},
     Parameter{"ledge_length_m", 2.0, 0.3, 8.0, "m",
               "horizontal length of the ledge below a drop, rounded to whole cells"},
-    Parameter{"ledge_slope_rad", 0.35, 0.0, 1.0, "rad", "fall of a ledge along +x"},
+    Parameter{"ledge_slope_rad", 0.35, 0.0, 1.0, "rad", "downward slope of a ledge along +x"},
 };
 constexpr std::array kCliffParameters = joined(kOwnCliffParameters, hillside::kCoverParameters);
 
@@ -41,7 +42,8 @@ void build_cliff(mjSpec* spec, const Values& values, std::uint64_t seed, engine:
 
 const WorldType& cliff_world() {
   static const WorldType kType{
-      {"cliff", "terraces of 40 by 40 m: flat top, steep drops along +x, sloping ledges, run-out, rocks, trunks",
+      {"cliff",
+       "terraces of 40 m by 40 m with a flat top, steep drops along +x, sloping ledges, a run-out, rocks and trunks",
        kCliffParameters},
       build_cliff};
   return kType;

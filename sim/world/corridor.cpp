@@ -16,9 +16,11 @@ constexpr std::array kOwnCorridorParameters = {
     Parameter{"length_m", 16.0, 4.0, 60.0, "m", "length of the corridor along x, centred on the origin"},
     Parameter{"half_width_m", 1.4, 0.6, 5.0, "m", "half distance between the walls"},
     Parameter{"wall_height_m", 2.6, 1.0, 10.0, "m", "height of walls and ceiling"},
-    Parameter{"bay_shortest_m", 1.0, 0.3, 10.0, "m", "shortest bare wall between two doors, pillars or niches"},
+    Parameter{"bay_shortest_m", 1.0, 0.3, 10.0, "m",
+              "minimum length of bare wall between two doors, pillars or niches"},
     Parameter{"bay_longest_m", 2.4, 0.3, 10.0, "m", "longest one"},
-    Parameter{"niche_depth_m", 0.9, 0.2, 5.0, "m", "deepest niche; a door is recessed by a sixth to a half of it"},
+    Parameter{"niche_depth_m", 0.9, 0.2, 5.0, "m",
+              "maximum depth of a niche; doors are recessed by a sixth to a half of this depth"},
     Parameter{"beam_count", 4, 0, 50, "1", "number of beams below the ceiling"},
 };
 constexpr std::array kCorridorParameters = joined(kGroundParameters, kOwnCorridorParameters);
@@ -154,7 +156,7 @@ void build_corridor(mjSpec* spec, const Values& values, std::uint64_t seed, engi
 
 const WorldType& corridor_world() {
   static const WorldType kType{
-      {"corridor", "corridor along x with doors, niches, pillars and beams, closed at both ends", kCorridorParameters},
+      {"corridor", "corridor along x with doors, niches, pillars and beams; both ends are closed", kCorridorParameters},
       build_corridor};
   return kType;
 }

@@ -13,12 +13,12 @@ namespace tumble::sim {
 namespace {
 
 constexpr std::array kOwnFloorParameters = {
-    Parameter{"patch_1_x_m", 0.0, -30, 30, "m", "centre of a patch of other friction"},
-    Parameter{"patch_1_y_m", 0.0, -30, 30, "m", "centre of a patch of other friction"},
-    Parameter{"patch_1_half_x_m", 0.0, 0, 30, "m", "half width along its own x axis; 0: no patch"},
-    Parameter{"patch_1_half_y_m", 0.0, 0, 30, "m", "half width along its own y axis; 0: no patch"},
-    Parameter{"patch_1_yaw_rad", 0.0, -3.2, 3.2, "rad", "turn of the patch about z"},
-    Parameter{"patch_1_friction", 0.05, 0, 2, "1", "sliding friction within the patch"},
+    Parameter{"patch_1_x_m", 0.0, -30, 30, "m", "centre of a patch with its own friction"},
+    Parameter{"patch_1_y_m", 0.0, -30, 30, "m", "centre of a patch with its own friction"},
+    Parameter{"patch_1_half_x_m", 0.0, 0, 30, "m", "half width of the patch along its own x axis; 0: no patch"},
+    Parameter{"patch_1_half_y_m", 0.0, 0, 30, "m", "half width of the patch along its own y axis; 0: no patch"},
+    Parameter{"patch_1_yaw_rad", 0.0, -3.2, 3.2, "rad", "rotation of the patch about z"},
+    Parameter{"patch_1_friction", 0.05, 0, 2, "1", "sliding friction coefficient on the patch"},
     Parameter{"patch_2_x_m", 0.0, -30, 30, "m", "as patch 1"},
     Parameter{"patch_2_y_m", 0.0, -30, 30, "m", "as patch 1"},
     Parameter{"patch_2_half_x_m", 0.0, 0, 30, "m", "as patch 1"},
@@ -32,13 +32,14 @@ constexpr std::array kOwnFloorParameters = {
     Parameter{"patch_3_yaw_rad", 0.0, -3.2, 3.2, "rad", "as patch 1"},
     Parameter{"patch_3_friction", 0.05, 0, 2, "1", "as patch 1"},
     Parameter{"obstacle_1_kind", 0.0, 0.0, 3.0, "1",
-              "0: none; 1: bar with a round top; 2: board; 3: step up to a podium"},
-    Parameter{"obstacle_1_x_m", 0.0, -30, 30, "m", "middle of the obstacle; for a podium its edge"},
-    Parameter{"obstacle_1_y_m", 0.0, -30, 30, "m", "middle of the obstacle"},
-    Parameter{"obstacle_1_yaw_rad", 0.0, -3.2, 3.2, "rad", "rotation about z; 0: across the x axis"},
-    Parameter{"obstacle_1_height_m", 0.015, 0.001, 0.08, "m", "height above the floor"},
+              "kind of obstacle: 0: none; 1: bar with a round top; 2: board; 3: step up to a podium"},
+    Parameter{"obstacle_1_x_m", 0.0, -30, 30, "m",
+              "position of the obstacle's middle; for a podium, position of its edge"},
+    Parameter{"obstacle_1_y_m", 0.0, -30, 30, "m", "position of the obstacle's middle"},
+    Parameter{"obstacle_1_yaw_rad", 0.0, -3.2, 3.2, "rad", "rotation of the obstacle about z; 0: across the x axis"},
+    Parameter{"obstacle_1_height_m", 0.015, 0.001, 0.08, "m", "height of the obstacle above the floor"},
     Parameter{"obstacle_1_depth_m", 0.1, 0.02, 10.0, "m",
-              "width across its edge, for board and podium; a bar is a cylinder of 5 cm radius sunk into the floor"},
+              "width of a board or podium; a bar is a cylinder of 5 cm radius that is sunk into the floor"},
     Parameter{"obstacle_2_kind", 0.0, 0.0, 3.0, "1", "as obstacle 1"},
     Parameter{"obstacle_2_x_m", 0.0, -30, 30, "m", "as obstacle 1"},
     Parameter{"obstacle_2_y_m", 0.0, -30, 30, "m", "as obstacle 1"},
@@ -114,7 +115,7 @@ void build_floor(mjSpec* spec, const Values& values, std::uint64_t seed, engine:
 
 const WorldType& floor_world() {
   static const WorldType kType{
-      {"floor", "room with a floor, walls, ceiling, furniture, obstacles and patches of other friction",
+      {"floor", "room with a floor, walls, ceiling, furniture, obstacles and patches with their own friction",
        kFloorParameters},
       build_floor};
   return kType;

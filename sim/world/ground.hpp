@@ -11,18 +11,18 @@ namespace tumble::sim {
 
 /// Parameters of the ground on which a sphere rolls, for every world that has ground for a sphere.
 inline constexpr std::array kGroundParameters = {
-    Parameter{"friction", 0.6, 0.0, 2.0, "1", "sliding friction of the floor outside of the patches"},
+    Parameter{"friction", 0.6, 0.0, 2.0, "1", "sliding friction coefficient of the floor outside the patches"},
     Parameter{"spin_friction_m", 0.0005, 0.0, 0.1, "m",
-              "friction moment about the normal over normal force (MuJoCo's torsional friction)"},
-    Parameter{
-        "soft_time_s", 0.0, 0.0, 0.1, "s",
-        "time constant of a contact with the ground (MuJoCo solref[0]); 0: as hard as the robot. A sphere of 29 cm "
-        "sinks 0.02 mm at 4 ms, 0.5 mm at 20 ms"},
-    Parameter{"soft_damping_ratio", 1.0, 0.05, 1.5, "1", "damping ratio of that contact (MuJoCo solref[1])"},
-    Parameter{"roughness_m", 0.0, 0.0, 0.03, "m", "root mean square of the ground's unevenness; 0: a perfect plane"},
+              "friction moment about the contact normal divided by the normal force (MuJoCo's torsional friction)"},
+    Parameter{"soft_time_s", 0.0, 0.0, 0.1, "s",
+              "time constant of a contact with the ground (MuJoCo solref[0]); a longer time makes the ground softer: "
+              "the sphere sinks 0.02 mm at 4 ms, 0.5 mm at 20 ms; 0: as hard as the robot"},
+    Parameter{"soft_damping_ratio", 1.0, 0.05, 1.5, "1",
+              "damping ratio of a contact with the ground (MuJoCo solref[1])"},
+    Parameter{"roughness_m", 0.0, 0.0, 0.03, "m", "root mean square height of the ground's unevenness; 0: a plane"},
     Parameter{"roughness_shortest_m", 0.15, 0.1, 5.0, "m", "shortest wavelength of the unevenness"},
     Parameter{"roughness_longest_m", 1.0, 0.1, 10.0, "m",
-              "longest wavelength of the unevenness; the height is proportional to the wavelength"},
+              "longest wavelength of the unevenness; the height of a wave is proportional to its wavelength"},
 };
 
 /// Sets friction and softness of the ground for `geom`. MuJoCo uses the larger friction of two touching geoms, and the

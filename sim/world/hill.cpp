@@ -10,8 +10,8 @@ namespace tumble::sim {
 namespace {
 
 constexpr std::array kOwnHillParameters = {
-    Parameter{"slope_rad", 0.6, 0.05, 1.2, "rad", "steepness of the slope between top and run-out"},
-    Parameter{"drop_m", 4.0, 0.2, 12.0, "m", "height of the slope; gentler slopes are longer"},
+    Parameter{"slope_rad", 0.6, 0.05, 1.2, "rad", "angle of the slope between top and run-out"},
+    Parameter{"drop_m", 4.0, 0.2, 12.0, "m", "height of the slope; at equal height, a gentler slope is longer"},
 };
 constexpr std::array kHillParameters = joined(kOwnHillParameters, hillside::kCoverParameters);
 
@@ -27,7 +27,8 @@ void build_hill(mjSpec* spec, const Values& values, std::uint64_t seed, engine::
 
 const WorldType& hill_world() {
   static const WorldType kType{
-      {"hill", "hill of 40 by 40 m: flat top, slope along +x, run-out, relief, rocks, trunks", kHillParameters},
+      {"hill", "hill of 40 m by 40 m with a flat top, a slope along +x, a run-out, relief, rocks and trunks",
+       kHillParameters},
       build_hill};
   return kType;
 }

@@ -22,22 +22,25 @@ inline constexpr double kStart_x_m = kEdge_m - kSetBack_m;
 
 /// Parameters of relief and cover, which follow the parameters of a world in its table.
 inline constexpr std::array kCoverParameters = {
-    Parameter{"relief_m", 0.12, 0.0, 1.0, "m", "root mean square of the relief; 0: none"},
+    Parameter{"relief_m", 0.12, 0.0, 1.0, "m", "root mean square height of the relief; 0: none"},
     Parameter{"relief_shortest_m", 2.5, 0.5, 20.0, "m", "shortest wavelength of the relief"},
     Parameter{"relief_longest_m", 9.0, 0.5, 40.0, "m", "longest wavelength of the relief"},
     Parameter{"relief_exponent", 3.0, 0.0, 6.0, "1",
-              "exponent with which the relief's power per wave number decreases"},
+              "exponent with which the relief's power decreases with the wave number; a larger value makes a smoother "
+              "relief"},
     Parameter{"relief_ruled", 0, 0, 1, "1", "1: the relief depends only on x, so that contour lines are straight"},
-    Parameter{"bump_height_m", 0.2, 0.0, 0.6, "m", "largest bump or hollow, 0.5 to 1.6 m wide; 0: none"},
-    Parameter{"bump_count", 500, 0, 5000, "1", "number of bumps and hollows on the 1600 m^2"},
+    Parameter{"bump_height_m", 0.2, 0.0, 0.6, "m",
+              "maximum height of a bump or depth of a hollow, each 0.5 to 1.6 m wide; 0: none"},
+    Parameter{"bump_count", 500, 0, 5000, "1", "number of bumps and hollows on the whole ground (1600 m^2)"},
     Parameter{"rock_count", 40, 0, 400, "1", "number of rocks, which are half-buried ellipsoids"},
-    Parameter{"rock_size_m", 0.3, 0.05, 1.5, "m", "largest half axis of a rock; sizes are drawn below it"},
-    Parameter{"rock_half_width_m", 18.0, 1.0, 18.0, "m", "rocks lie within this distance of the fall line"},
+    Parameter{"rock_size_m", 0.3, 0.05, 1.5, "m", "maximum half axis of a rock; the sizes of the rocks are random"},
+    Parameter{"rock_half_width_m", 18.0, 1.0, 18.0, "m", "maximum distance of the rocks from the fall line"},
     Parameter{"trunk_count", 40, 0, 300, "1", "number of tree trunks, which are vertical cylinders"},
-    Parameter{"trunk_radius_m", 0.15, 0.03, 0.6, "m", "largest radius of a trunk"},
-    Parameter{"trunk_half_width_m", 18.0, 2.0, 18.0, "m", "trunks stand within this distance of the fall line"},
+    Parameter{"trunk_radius_m", 0.15, 0.03, 0.6, "m", "maximum radius of a trunk"},
+    Parameter{"trunk_half_width_m", 18.0, 2.0, 18.0, "m", "maximum distance of the trunks from the fall line"},
     Parameter{"clear_half_width_m", 2.5, 0.0, 15.0, "m", "minimum distance of trunks from the fall line"},
-    Parameter{"buildings", 1, 0, 1, "1", "1: a building below and a wall beside the slope, out of reach"},
+    Parameter{"buildings", 1, 0, 1, "1",
+              "1: a building below the slope and a wall next to the slope, which the robot cannot reach; 0: none"},
 };
 
 /// Fraction of the relief's height that applies at a position, within [0, 1].

@@ -13,11 +13,11 @@ namespace tumble::sim {
 namespace {
 
 constexpr std::array kOwnRampParameters = {
-    Parameter{"slope_rad", 0.12, 0.01, 0.5, "rad", "slope of the ramp up along +x"},
-    Parameter{"ramp_x_m", -1.0, -20.0, 20.0, "m", "foot of the ramp"},
+    Parameter{"slope_rad", 0.12, 0.01, 0.5, "rad", "angle of the upward ramp along +x"},
+    Parameter{"ramp_x_m", -1.0, -20.0, 20.0, "m", "x position of the foot of the ramp"},
     Parameter{"ramp_length_m", 1.5, 0.3, 20.0, "m", "horizontal length of the ramp"},
-    Parameter{"plateau_m", 1.0, 0.1, 20.0, "m", "length of the plateau above it"},
-    Parameter{"slope_down_rad", 0.12, 0.01, 1.2, "rad", "slope of the ramp down on the far side"},
+    Parameter{"plateau_m", 1.0, 0.1, 20.0, "m", "length of the plateau above the ramp"},
+    Parameter{"slope_down_rad", 0.12, 0.01, 1.2, "rad", "angle of the downward ramp on the far side"},
 };
 constexpr std::array kRampParameters = joined(joined(kGroundParameters, kRoomParameters), kOwnRampParameters);
 constexpr double kHalfWidth_m = 1.5;
@@ -58,8 +58,8 @@ void build_ramp(mjSpec* spec, const Values& values, std::uint64_t seed, engine::
 }  // namespace
 
 const WorldType& ramp_world() {
-  static const WorldType kType{{"ramp", "room with a ramp up along +x, a plateau and a ramp down", kRampParameters},
-                               build_ramp};
+  static const WorldType kType{
+      {"ramp", "room with an upward ramp along +x, a plateau and a downward ramp", kRampParameters}, build_ramp};
   return kType;
 }
 

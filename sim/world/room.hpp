@@ -12,7 +12,8 @@ namespace tumble::sim {
 inline constexpr std::array kRoomParameters = {
     Parameter{"room_half_m", 5.0, 2.5, 30.0, "m", "half width of the square room"},
     Parameter{"wall_height_m", 2.5, 0.2, 10.0, "m", "height of the four walls"},
-    Parameter{"ceiling", 0.0, 0.0, 1.0, "1", "1: the room has a ceiling (transparent in pictures)"},
+    Parameter{"ceiling", 0.0, 0.0, 1.0, "1",
+              "1: the room has a ceiling, which is transparent in pictures; 0: no ceiling"},
     Parameter{"pillar_count", 6, 0, 100, "1", "number of vertical pillars, as features for the lidar"},
     Parameter{"box_count", 8, 0, 100, "1", "number of boxes on the floor, as features for the lidar"},
     Parameter{"shelf_count", 0, 0, 100, "1", "number of tall cupboards along the walls, as features for the lidar"},

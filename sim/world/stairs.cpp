@@ -18,8 +18,8 @@ constexpr std::array kOwnStairsParameters = {
     Parameter{"step_rise_m", 0.17, 0.05, 0.5, "m", "height of a step"},
     Parameter{"step_tread_m", 0.29, 0.15, 1.0, "m", "depth of a step"},
     Parameter{"flight_half_width_m", 2.5, 0.8, 8.0, "m",
-              "half width of the flight, which has a cheek wall on each side"},
-    Parameter{"cheek_height_m", 0.4, 0.05, 2.0, "m", "height of the cheek walls above the edges of the steps"},
+              "half width of the flight of stairs, which has a side wall on each side"},
+    Parameter{"cheek_height_m", 0.4, 0.05, 2.0, "m", "height of the side walls above the edges of the steps"},
 };
 constexpr std::array kStairsParameters = joined(kOwnStairsParameters, hillside::kCoverParameters);
 
@@ -70,7 +70,8 @@ void build_stairs(mjSpec* spec, const Values& values, std::uint64_t seed, engine
 
 const WorldType& stairs_world() {
   static const WorldType kType{
-      {"stairs", "flight of stone steps along +x down a grassy slope of 40 by 40 m, level at the top and the foot",
+      {"stairs",
+       "flight of stone steps along +x down a grassy slope of 40 m by 40 m, with level ground at the top and the foot",
        kStairsParameters},
       build_stairs};
   return kType;

@@ -18,10 +18,10 @@ namespace {
 constexpr std::array kOwnTubeParameters = {
     Parameter{"length_m", 16.0, 4.0, 60.0, "m", "length of the tube along x, centred on the origin"},
     Parameter{"half_width_m", 1.9, 0.8, 10.0, "m", "half width at the ground"},
-    Parameter{"height_m", 2.2, 1.0, 10.0, "m", "height from the ground to the crown"},
-    Parameter{"gutter_m", 0.1, 0.0, 1.0, "m", "rise of the ground from the middle to the walls"},
+    Parameter{"height_m", 2.2, 1.0, 10.0, "m", "height from the ground to the top of the tube"},
+    Parameter{"gutter_m", 0.1, 0.0, 1.0, "m", "height by which the ground rises from the middle to the walls"},
     Parameter{"wall_roughness_m", 0.08, 0.0, 0.5, "m",
-              "root mean square of the walls' unevenness, with wavelengths of 0.3 to 3 m"},
+              "root mean square height of the walls' unevenness, with wavelengths of 0.3 to 3 m"},
     Parameter{"bend_m", 0.3, 0.0, 3.0, "m", "amplitude with which the tube winds from side to side"},
     Parameter{"bend_length_m", 9.0, 2.0, 60.0, "m", "wavelength of the winding"},
     Parameter{"rock_count", 24, 0, 200, "1", "number of rocks on the ground, away from the path"},
@@ -130,7 +130,8 @@ void build_tube(mjSpec* spec, const Values& values, std::uint64_t seed, engine::
 
 const WorldType& tube_world() {
   static const WorldType kType{
-      {"tube", "lava tube along x: rough ground that rises to the sides, rough vault, rocks", kTubeParameters},
+      {"tube", "lava tube along x with rough ground that rises to the sides, a rough ceiling and rocks",
+       kTubeParameters},
       build_tube};
   return kType;
 }

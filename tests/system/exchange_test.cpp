@@ -219,7 +219,7 @@ TEST(Exchange, AnMcapIsToldByItsNameAndHoldsEstimates) {
   ASSERT_EQ(imported.status, 0) << imported.err;
   EXPECT_EQ(json_of(imported)["has_reference"], true);
   EXPECT_THAT(json_of(imported)["notes"].dump(),
-              HasSubstr("/position_rolling/points: its points are in frame 'world'"));
+              HasSubstr("/position_rolling/points: the points are in frame 'world'"));
   const Ended tum = run_program({"export", back, "-o", (folder / "rolled.tum").string(), "--quiet"});
   ASSERT_EQ(tum.status, 0) << tum.err;
   const Ended again = run_program({"score", (folder / "rolled.tum").string(), recording, "--frame", "body", "--json"});

@@ -135,7 +135,7 @@ TEST_F(GivenTrajectory, QuaternionsInAnotherOrderAreSaid) {
     EXPECT_EQ(ended.status, 0) << ended.err;
     return ended.err;
   };
-  EXPECT_THAT(said(true), HasSubstr("if the quaternions had w first (expected order: x y z w)"));
+  EXPECT_THAT(said(true), HasSubstr("if the quaternions were stored with w first (expected order: x y z w)"));
   EXPECT_THAT(said(false), Not(HasSubstr("caution")));
 }
 
@@ -150,7 +150,7 @@ TEST_F(GivenTrajectory, AFileOfAnEstimateIsNotWrittenOver) {
         {"export", recording_, "--format", "mcap", "--estimate", estimate.string(), "-o", target}}) {
     const Ended ended = run_program(arguments);
     EXPECT_EQ(ended.status, 2) << arguments.front();
-    EXPECT_THAT(ended.err, HasSubstr("name another output")) << arguments.front();
+    EXPECT_THAT(ended.err, HasSubstr("choose another output name")) << arguments.front();
     EXPECT_EQ(read_file(target), whole) << arguments.front();
   }
 }

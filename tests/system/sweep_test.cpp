@@ -221,7 +221,7 @@ TEST(Sweep, NamedDrawsAreNoSeedsInARow) {
     const Ended ended = run_shortened(arguments);
     EXPECT_EQ(ended.status, 2) << what;
     EXPECT_THAT(ended.err, HasSubstr(what));
-    EXPECT_THAT(ended.err, HasSubstr("names its draws"));
+    EXPECT_THAT(ended.err, HasSubstr("lists its draws"));
   };
   const std::string database = (folder / "x.db").string();
   refused({"sweep", suite.string(), "--db", database, "--until", "rate/raw:rate/saave:rate_error_clipped_median_rad_s"},
@@ -251,8 +251,8 @@ TEST(Sweep, RefusesWhatItCannotKeepOrAsk) {
           "a shard contains only a part of the draws");
   // what is met once the database is open: one that the sweep made goes again
   refused({"--again", "ok"}, "'ok' cannot be run again");
-  refused({}, "split the range into parts", "1..20000000");
-  refused({"--shard", "1/2"}, "split the range into parts", "0..18446744073709551615");
+  refused({}, "split the range of seeds into parts", "1..20000000");
+  refused({"--shard", "1/2"}, "split the range of seeds into parts", "0..18446744073709551615");
   EXPECT_TRUE(fs::is_empty(database.parent_path())) << fs::directory_iterator(database.parent_path())->path();
 }
 

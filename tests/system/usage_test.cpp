@@ -141,12 +141,14 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"seeds that are empty", {"sweep", "demo", "--seeds", "", "--db", "x.db"}, "--seeds"},
         Wrong{"learnt in a folder",
               {"run", "hill", "--seed", "1", "--method", "rate/tumble", "--learnt", "/"},
-              "is a folder, must be a file"},
+              "is a folder; it must be a file"},
         Wrong{"methods that do not apply",
               {"run", "roll", "--seed", "1", "--method", "slam/icp"},
-              "does not apply to the robot 'sphere'"},
+              "does not support the robot 'sphere'"},
         Wrong{"a map without a lidar", {"run", "twirl", "--seed", "1", "--method", "slam/icp"}, "needs a lidar"},
-        Wrong{"output that is a device", {"record", "roll", "--seed", "1", "-o", "/dev/null"}, "not a regular file"},
+        Wrong{"output that is a device",
+              {"record", "roll", "--seed", "1", "-o", "/dev/null"},
+              "it must be a regular file"},
         Wrong{"render without seed", {"render", "hill", "-o", "x.png"}, "--seed"}));
 
 TEST(Message, IsOfALengthThatCanBeRead) {

@@ -57,7 +57,7 @@ TEST(MotionSpreads, PoolsTheClippedSamplesOfAllDraws) {
   const std::vector<Spread> spreads = motion_spreads(draws());
   const auto pooled = std::find_if(spreads.begin(), spreads.end(), [](const Spread& spread) {
     return spread.scenario == "hill" &&
-           spread.quantity == "share of all draws' clipped samples with at least two clipped axes";
+           spread.quantity == "share of the clipped samples with at least two clipped axes, over all draws";
   });
   ASSERT_NE(pooled, spreads.end());
   // 10, 20, 30, 40 samples with shares of 0.2, 0.3, 0.4, 0.5

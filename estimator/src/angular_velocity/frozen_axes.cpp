@@ -151,9 +151,9 @@ const FrozenAxes::Axis& FrozenAxes::axis(Triad triad, int axis, const State& sta
 
 Status FrozenAxes::verdict(const State& state) const {
   constexpr std::array<const char*, 6> kFields = {
-      "seconds for which gyro x repeats one reading",  "seconds for which gyro y repeats one reading",
-      "seconds for which gyro z repeats one reading",  "seconds for which accel x repeats one reading",
-      "seconds for which accel y repeats one reading", "seconds for which accel z repeats one reading"};
+      "time in s for which gyro x repeats one reading",  "time in s for which gyro y repeats one reading",
+      "time in s for which gyro z repeats one reading",  "time in s for which accel x repeats one reading",
+      "time in s for which accel y repeats one reading", "time in s for which accel z repeats one reading"};
   for (std::size_t c = 0; c < kFields.size(); ++c) {
     if (state.axes[c].frozen) return {Trouble::out_of_range, kFields[c], state.axes[c].repeated_s, params_.frozen_s};
   }

@@ -126,7 +126,8 @@ void require_known(const KnownSensorErrors& learnt) {
   for (const double value : learnt.errors.vector()) require_within("learnt errors", value, -0.2, 0.2);
   for (const double value : learnt.covariance.reshaped()) require_within("learnt errors' covariance", value, -1.0, 1.0);
   const Vector pivots = learnt.covariance.ldlt().vectorD();
-  require_within("learnt errors' covariance, least pivot", pivots.minCoeff(), -1e-9 * pivots.maxCoeff(), 1.0);
+  require_within("minimum pivot of the covariance of the estimated sensor errors", pivots.minCoeff(),
+                 -1e-9 * pivots.maxCoeff(), 1.0);
 }
 
 Vector prior_deviations(const SensorErrorPriors& sizes, double share) {

@@ -203,7 +203,8 @@ Status Problem::solve(CarriedSmoother::Report& report) {
     if (before && !descend_from(*before, report.cost)) break;
     before = Iterate{nodes_, constants_, report.cost};
     double largest = 0.0;
-    if (!step(largest)) return {kLost, "iteration of the carried body", k + 1.0, static_cast<double>(k)};
+    if (!step(largest))
+      return {kLost, "iteration of the smoother for hand-held motion", k + 1.0, static_cast<double>(k)};
     report.iterations = k + 1;
     report.converged = largest < kConverged;
     if (report.converged && k > kFollowFirst) break;
@@ -245,7 +246,7 @@ Status Problem::covariances(CarriedSmoother::Report& report) {
   noise_ = assumed;
   std::fill(jerk_.begin(), jerk_.end(), 1.0);
   System::BorderVector unused;
-  if (!eliminate(unused)) return {kLost, "covariance of the carried body", report.cost, 0.0};
+  if (!eliminate(unused)) return {kLost, "covariance of the smoother for hand-held motion", report.cost, 0.0};
   report.constants_covariance = constants_covariance_;
   covariances_.resize(nodes_.size());
   System::Conditional here, next;

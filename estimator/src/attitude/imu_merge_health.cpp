@@ -105,7 +105,7 @@ Status ImuMerge::verdict(const State& state) const {
   for (const Unit& unit : state.units) {
     if (unit.frozen) repeated_s = std::max({repeated_s, unit.rate_repeat.repeated_s, unit.force_repeat.repeated_s});
   }
-  return {Trouble::out_of_range, "seconds for which every IMU repeats one reading while the body turns", repeated_s,
+  return {Trouble::out_of_range, "time in s for which every IMU repeats one reading while the body rotates", repeated_s,
           params_.expert.frozen.after_s};
 }
 

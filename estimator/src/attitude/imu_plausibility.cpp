@@ -202,32 +202,32 @@ bool ImuPlausibility::explains_more(const State& state) const {
 Status ImuPlausibility::verdict(const State& state) const {
   const double force = force_share(state);
   if (force < params_.expert.force.share_min) {
-    return {Trouble::out_of_range, "steady specific force as a share of gravity", force,
+    return {Trouble::out_of_range, "mean specific force in steady windows (share of gravity)", force,
             params_.expert.force.share_min};
   }
   if (force > params_.expert.force.share_max) {
-    return {Trouble::out_of_range, "steady specific force as a share of gravity", force,
+    return {Trouble::out_of_range, "mean specific force in steady windows (share of gravity)", force,
             params_.expert.force.share_max};
   }
   if (const double frozen = frozen_s(state); frozen > 0.0) {
-    return {Trouble::out_of_range, "seconds for which a triad repeats one reading", frozen,
+    return {Trouble::out_of_range, "time in s for which gyro or accelerometer repeats one reading", frozen,
             params_.expert.frozen.repeats_s};
   }
   if (better_axis_labels(state)) {
     const double least = *least_unexplained(state);
-    return {
-        Trouble::out_of_range,
-        "turning that the gyro leaves unexplained with axes or signs named otherwise, as a share of that with these",
-        least / state.unexplained_rad2.front(), params_.expert.naming.unexplained_share_max};
+    return {Trouble::out_of_range,
+            "rotation left unexplained by other gyro axes or signs (share of that for the stated axes)",
+            least / state.unexplained_rad2.front(), params_.expert.naming.unexplained_share_max};
   }
   if (const double still = force_rotated_share(state); still < params_.expert.turning.still_share) {
-    return {Trouble::out_of_range, "turning of a steady force as a share of the gyro's", still,
+    return {Trouble::out_of_range, "rotation of a steady force (share of the rotation measured by the gyro)", still,
             params_.expert.turning.still_share};
   }
   const double slope = rotation_slope(state);
   const double least = params_.expert.turning.slope_min, most = params_.expert.turning.slope_max;
   if ((slope > most || slope < least) && explains_more(state))
-    return {Trouble::out_of_range, "turning of gravity over that of the gyro", slope, slope < least ? least : most};
+    return {Trouble::out_of_range, "ratio of gravity's rotation (accelerometer) to the rotation measured by the gyro",
+            slope, slope < least ? least : most};
   return {};
 }
 

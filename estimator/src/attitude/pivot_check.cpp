@@ -197,7 +197,7 @@ Status PivotCheck::verdict(const Found& found) const {
   const double least = std::max(params_.evidence_least, params_.evidence_of_each * static_cast<double>(found.counted));
   const auto better = static_cast<double>(found.better), worse = static_cast<double>(found.worse);
   if (found.evidence > least && better >= params_.segments_least && better >= params_.better_over_worse * worse) {
-    return {Trouble::out_of_range, "evidence, of turning about a point, for a gyro named or scaled otherwise",
+    return {Trouble::out_of_range, "evidence from rotation about a pivot for other axes, signs or scale of the gyro",
             found.evidence, least};
   }
   const double off = std::abs(found.scale - 1.0);
@@ -205,7 +205,7 @@ Status PivotCheck::verdict(const Found& found) const {
   const double segments_least =
       std::max(params_.scale_segments_least, params_.scale_share_least * static_cast<double>(found.explained));
   if (static_cast<double>(found.scale_segments) >= segments_least && off > bound) {
-    return {Trouble::out_of_range, "scale by which rates explain a turning about a point", found.scale,
+    return {Trouble::out_of_range, "scale of the gyro estimated from rotation about a pivot", found.scale,
             found.scale < 1.0 ? 1.0 - bound : 1.0 + bound};
   }
   return {};

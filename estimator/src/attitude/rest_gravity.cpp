@@ -161,8 +161,8 @@ Status RestGravity::size_verdict(const Size& state) const {
   if (std::abs(size - 1.0) > params_.size_share_max) {
     const bool unit = size > 0.0 && (size < 1.0 / kOtherUnit || size > kOtherUnit);
     return {Trouble::out_of_range,
-            unit ? "accelerometer unit: specific force at rest as a share of gravity"
-                 : "specific force at rest as a share of gravity",
+            unit ? "accelerometer unit: specific force at rest (share of gravity)"
+                 : "specific force at rest (share of gravity)",
             size, 1.0 + std::copysign(params_.size_share_max, size - 1.0)};
   }
   return {};
@@ -172,11 +172,13 @@ Status RestGravity::verdict(const State& state) const {
   if (const Status size = size_verdict(state); !size.ok()) return size;
   const double allowed = allowed_rad(state.miss_sigma_rad);
   if (state.miss_rad > allowed) {
-    return {Trouble::out_of_range, "angle by which the rates miss gravity's direction from one rest to the next",
-            state.miss_rad, allowed};
+    return {Trouble::out_of_range,
+            "error in rad of gravity's direction after gyro integration from one rest to the next", state.miss_rad,
+            allowed};
   }
   if (state.velocity_share > state.velocity_allowed_share) {
-    return {Trouble::out_of_range, "velocity that the rates leave from one rest to the next as a share of gravity's",
+    return {Trouble::out_of_range,
+            "velocity error after integration from one rest to the next (share of gravity times elapsed time)",
             state.velocity_share, state.velocity_allowed_share};
   }
   return {};

@@ -22,7 +22,7 @@ std::uint64_t checksum(std::span<const std::byte> bytes, std::uint64_t before = 
 
 namespace detail {
 
-static_assert(sizeof(std::size_t) == 8 && sizeof(int) == 4, "states are of machines of 64 bits");
+static_assert(sizeof(std::size_t) == 8 && sizeof(int) == 4, "saved states need a 64-bit machine");
 
 /// Converts numbers between memory order and little-endian, in either direction.
 void copy_little_endian(const std::byte* from, std::byte* to, std::size_t count, std::size_t width);

@@ -57,7 +57,7 @@ class StateVisitor {
     } else if constexpr (requires { V::members(value, self()); }) {
       V::members(value, self());
     } else {
-      static_assert(!std::is_enum_v<V>, "an enumeration is visited with its last value");
+      static_assert(!std::is_enum_v<V>, "visit an enumeration together with its last value");
       members(value, self());
     }
   }

@@ -48,7 +48,7 @@ std::string Status::message() const {
 }
 
 InvalidParams::InvalidParams(const std::string& field, double value, const std::string& bound)
-    : std::invalid_argument(field + " is " + number(value) + ", must be " + bound) {}
+    : std::invalid_argument(field + " is " + number(value) + "; it must be " + bound) {}
 
 void require_within(const char* field, double value, double low, double high) {
   if (value >= low && value <= high) return;

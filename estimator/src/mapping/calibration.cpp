@@ -34,8 +34,8 @@ double StatedCalibration::deviations(const SweepCalibration& estimated) const {
 Status StatedCalibration::verdict(const SweepCalibration& estimated) const {
   const double by = deviations(estimated);
   if (by <= kMaxDeviations) return {};
-  return {Trouble::out_of_range, "calibration of lidar and IMU, moved in deviations of what was given", by,
-          kMaxDeviations};
+  return {Trouble::out_of_range, "change of the lidar-IMU calibration in standard deviations of the stated calibration",
+          by, kMaxDeviations};
 }
 
 }  // namespace tumble

@@ -143,7 +143,7 @@ Status LidarInertialOdometry::vertical() const {
   const double variance = u::variances(impl_->boundary.state_estimate.error, u::gravity).head<2>().maxCoeff();
   const double sigma_rad = std::sqrt(variance) / std::max(impl_->params.expert.gravity_m_s2, 1e-3);
   if (!mapping::has_started(impl_->tracking) || !(sigma_rad > kMost_rad)) return {};
-  return {Trouble::out_of_range, "standard deviation of the map's vertical after a start in motion", sigma_rad,
+  return {Trouble::out_of_range, "standard deviation in rad of the map's vertical after a start in motion", sigma_rad,
           kMost_rad};
 }
 

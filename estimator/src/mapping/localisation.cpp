@@ -33,17 +33,21 @@ void Localisation::add(const SweepReport& sweep) {
 
 Status Localisation::present() const {
   if (sigma_m_ > matched_m_)
-    return {Trouble::out_of_range, "standard deviation of the position in the map", sigma_m_, matched_m_};
+    return {Trouble::out_of_range, "standard deviation in m of the position in the map", sigma_m_, matched_m_};
   if (!before_ns_ || check_follows(newest_ns_, *before_ns_, kMemory_s).trouble == Trouble::gap) return {};
-  return {Trouble::out_of_range, "innovation of two sweeps", second_innovation_, innovation_max()};
+  return {Trouble::out_of_range,
+          "second-largest innovation of a sweep (registered minus predicted pose) in standard deviations",
+          second_innovation_, innovation_max()};
 }
 
 /// Returns an error if tracking failed (R70), or if sweeps contradict their predicted poses (R71): mapping.md.
 Status Localisation::verdict() const {
   if (largest_sigma_m_ > matched_m_)
-    return {Trouble::out_of_range, "deviation of a sweep's position", largest_sigma_m_, matched_m_};
+    return {Trouble::out_of_range, "standard deviation in m of a sweep's position", largest_sigma_m_, matched_m_};
   if (second_innovation_ > innovation_max())
-    return {Trouble::out_of_range, "innovation of two sweeps", second_innovation_, innovation_max()};
+    return {Trouble::out_of_range,
+            "second-largest innovation of a sweep (registered minus predicted pose) in standard deviations",
+            second_innovation_, innovation_max()};
   return {};
 }
 

@@ -13,9 +13,9 @@ template <class Visitor>
 void visit_corners_in_order(const Eigen::AlignedBox3d& box, Visitor& visit) {
   const Eigen::AlignedBox3d none;
   if (box.min() == none.min() && box.max() == none.max()) return;
-  visit(box.sizes().x(), {"own_body_L largest x less the least", "m", 0.0, kUnbounded, ""});
-  visit(box.sizes().y(), {"own_body_L largest y less the least", "m", 0.0, kUnbounded, ""});
-  visit(box.sizes().z(), {"own_body_L largest z less the least", "m", 0.0, kUnbounded, ""});
+  visit(box.sizes().x(), {"own_body_L maximum x minus minimum x", "m", 0.0, kUnbounded, ""});
+  visit(box.sizes().y(), {"own_body_L maximum y minus minimum y", "m", 0.0, kUnbounded, ""});
+  visit(box.sizes().z(), {"own_body_L maximum z minus minimum z", "m", 0.0, kUnbounded, ""});
 }
 
 /// Checks the fields, the relations between fields, and the members that are not fields.

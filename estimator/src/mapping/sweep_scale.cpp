@@ -144,7 +144,7 @@ bool SweepScale::is_off() const {
 Status SweepScale::verdict() const {
   if (!is_off()) return {};
   const double bound = std::max(kLeast, kScaleDeviations * sigma);
-  return {Trouble::out_of_range, "scale of the lidar's ranges by what the IMU feels", scale,
+  return {Trouble::out_of_range, "scale of the lidar's ranges relative to the motion measured by the IMU", scale,
           scale > 1.0 ? 1.0 + bound : 1.0 - bound};
 }
 

@@ -86,7 +86,7 @@ Status prepare(std::span<const UnitRecording> recordings, Units& units) {
                                             samples));
     units.samples.push_back(std::move(samples));
   }
-  if (units.index.empty()) return {Trouble::empty, "samples of the IMUs", 0.0, 1.0};
+  if (units.index.empty()) return {Trouble::empty, "number of IMUs with samples", 0.0, 1.0};
   return align(units.samples);
 }
 
@@ -140,12 +140,12 @@ void report_silent(const Units& units, std::vector<UnitFault>& faults) {
 }
 
 Status frozen_in_all(const FrozenAxis& axis) {
-  constexpr const char* kFields[2][3] = {{"repeat time of gyro x in s, with no healthy IMU available",
-                                          "repeat time of gyro y in s, with no healthy IMU available",
-                                          "repeat time of gyro z in s, with no healthy IMU available"},
-                                         {"repeat time of accel x in s, with no healthy IMU available",
-                                          "repeat time of accel y in s, with no healthy IMU available",
-                                          "repeat time of accel z in s, with no healthy IMU available"}};
+  constexpr const char* kFields[2][3] = {{"time in s for which gyro x repeats one reading (no other healthy IMU)",
+                                          "time in s for which gyro y repeats one reading (no other healthy IMU)",
+                                          "time in s for which gyro z repeats one reading (no other healthy IMU)"},
+                                         {"time in s for which accel x repeats one reading (no other healthy IMU)",
+                                          "time in s for which accel y repeats one reading (no other healthy IMU)",
+                                          "time in s for which accel z repeats one reading (no other healthy IMU)"}};
   const char* field = kFields[axis.triad == Triad::gyro ? 0 : 1][axis.axis];
   return {Trouble::out_of_range, field, seconds(axis.to_ns - axis.from_ns), FrozenAxes::Params{}.frozen_s};
 }

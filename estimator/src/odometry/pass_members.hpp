@@ -29,7 +29,7 @@ void visit_estimated(Self& p, Visitor& visit) {
   visit("gyro offset", p.rate.model.nominal.gyro_bias_rad_s);
   visit("calibration", p.rate.model.calibration);
   visit("known rails", p.rate.expert.planes.known);
-  visit("known rails of the accelerometer", p.rate.expert.accel_planes.known);
+  visit("known saturation limits of the accelerometer", p.rate.expert.accel_planes.known);
 }
 
 }  // namespace odometry

@@ -48,15 +48,16 @@ void seal(SavedKind kind, std::uint64_t layout, std::vector<std::byte>& bytes) {
 Status open(SavedKind kind, std::uint64_t layout, std::span<const std::byte> bytes,
             std::span<const std::byte>& payload) {
   if (bytes.size() < kSavedHeader)
-    return {Trouble::too_few, "bytes of the state", double(bytes.size()), double(kSavedHeader)};
+    return {Trouble::too_few, "number of bytes of the saved state", double(bytes.size()), double(kSavedHeader)};
   const std::vector<std::byte> expected = header(kind, layout, bytes.size() - kSavedHeader);
   struct Part {
     const char* name;
     std::size_t at, width;
   };
-  constexpr std::array<Part, 5> kParts = {Part{"magic of the state", 0, 8}, Part{"version of the state", 8, 4},
-                                          Part{"kind of the state", 12, 4}, Part{"bytes of the state", 24, 8},
-                                          Part{"layout of the state", 16, 8}};
+  constexpr std::array<Part, 5> kParts = {
+      Part{"magic number of the saved state", 0, 8}, Part{"version of the saved state", 8, 4},
+      Part{"kind of the saved state", 12, 4}, Part{"number of bytes of the saved state", 24, 8},
+      Part{"layout of the saved state", 16, 8}};
   for (const Part& part : kParts) {
     const std::uint64_t found = number_at(bytes, part.at, part.width),
                         wanted = number_at(expected, part.at, part.width);
@@ -66,7 +67,7 @@ Status open(SavedKind kind, std::uint64_t layout, std::span<const std::byte> byt
             double(cut ? found : wanted)};
   }
   const std::uint64_t sum = checksum_of(bytes), stated = number_at(bytes, kChecksumAt, 8);
-  if (sum != stated) return {Trouble::out_of_range, "checksum of the state", double(sum), double(stated)};
+  if (sum != stated) return {Trouble::out_of_range, "checksum of the saved state", double(sum), double(stated)};
   payload = bytes.subspan(kSavedHeader);
   return {};
 }

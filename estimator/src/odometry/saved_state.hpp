@@ -79,7 +79,7 @@ Status load(SavedKind kind, std::span<const std::byte> bytes, const Params& para
   if (!given.status().ok()) return given.status();
   StateReader in(given.left());
   in("state", whole);
-  in.require("bytes after the state", in.left().empty(), double(in.left().size()), 0.0);
+  in.require("number of bytes after the saved state", in.left().empty(), double(in.left().size()), 0.0);
   return in.status();
 }
 

@@ -45,11 +45,12 @@ class AccelerometerRate {
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("rails_", p.rails);
-      visit(p.tilted_rails,
-            on_off("tilted_rails", "1: search tilted rails too; 0: treat each axis separately, as published",
-                   Rank::first));
+      visit(
+          p.tilted_rails,
+          on_off("tilted_rails", "1: also search tilted saturation limits; 0: treat each axis separately, as published",
+                 Rank::first));
       visit(p.use_gyro,
-            on_off("use_gyro", "1: also use the axes of the primary gyro that are not clipped; 0: do not use the gyro",
+            on_off("use_gyro", "1: also use the unclipped axes of the primary gyro; 0: use accelerometers only",
                    Rank::first));
       visit(p.gyro_noise_density, {"gyro_noise_density", "rad/s/sqrt(Hz)", 1e-9, 1.0, "noise density of the gyro"});
       visit(p.accel_noise_density,
@@ -62,7 +63,7 @@ class AccelerometerRate {
                          Rank::first});
       visit(p.rate_max_rad_s, {"rate_max_rad_s", "rad/s", 1.0, 1e4, "largest estimated rate"});
       visit(p.gap_max_s, {"gap_max_s", "s", 1e-6, 3600.0,
-                          "longest allowed time between two samples; a longer gap ends the run with an error"});
+                          "maximum time between two samples; a longer gap ends the run with an error"});
     }
   };
 

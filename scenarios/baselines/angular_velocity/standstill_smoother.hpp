@@ -52,31 +52,34 @@ class StandstillSmoother {
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("rails_", p.rails);
-      visit(p.tilted_rails,
-            on_off("tilted_rails", "1: search tilted rails too; 0: treat each axis separately, as published",
-                   Rank::first));
+      visit(
+          p.tilted_rails,
+          on_off("tilted_rails", "1: also search tilted saturation limits; 0: treat each axis separately, as published",
+                 Rank::first));
       visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 0.1, 100.0, "strength of gravity"});
       visit(p.gyro_noise_density, {"gyro_noise_density", "rad/s/sqrt(Hz)", 1e-9, 1.0, "noise density of the gyro"});
       visit(p.accel_noise_density,
             {"accel_noise_density", "m/s^2/sqrt(Hz)", 1e-9, 10.0, "noise density of the accelerometer"});
       visit(p.accel_error_m_s2,
             {"accel_error_m_s2", "m/s^2", 0.0, 100.0,
-             "scale and bias error of the specific force, treated as noise per sample", Rank::first});
+             "standard deviation of the scale and bias error of the specific force, treated as noise of each sample",
+             Rank::first});
       visit(p.jerk_psd, {"jerk_psd_rad2_s5", "rad^2/s^5", 1.0, 1e12, "power spectral density of the white angular jerk",
                          Rank::first});
-      visit(p.rest_rate_rad_s, {"rest_rate_rad_s", "rad/s", 1e-6, 10.0, "largest change of the rate at a standstill"});
-      visit(p.rest_force_m_s2, {"rest_force_m_s2", "m/s^2", 1e-6, 10.0, "largest change of the force at a standstill"});
-      visit(p.rest_s, {"rest_s", "s", 0.0, 60.0, "shortest duration of a standstill"});
+      visit(p.rest_rate_rad_s, {"rest_rate_rad_s", "rad/s", 1e-6, 10.0, "maximum change of the rate at a standstill"});
+      visit(p.rest_force_m_s2, {"rest_force_m_s2", "m/s^2", 1e-6, 10.0, "maximum change of the force at a standstill"});
+      visit(p.rest_s, {"rest_s", "s", 0.0, 60.0, "minimum duration of a standstill"});
       visit(p.rest_velocity_sigma_m_s,
             {"rest_velocity_sigma_m_s", "m/s", 1e-6, 10.0, "standard deviation of the velocity at a standstill"});
       visit(p.rate_sigma_rad_s, {"rate_sigma_rad_s", "rad/s", 1e-3, 1e4, "stationary standard deviation of the rate"});
       visit(p.tilt_max_rad,
-            {"tilt_max_rad", "rad", 0.0, 4.0, "largest tilt error at a standstill; above it, a rotation was lost"});
+            {"tilt_max_rad", "rad", 0.0, 4.0,
+             "maximum tilt error at a standstill; above this error, the smoother assumes that it missed a rotation"});
       visit(p.velocity_gate,
-            {"velocity_gate", "1", 0.0, 1e6, "largest velocity error at a standstill, in standard deviations"});
+            {"velocity_gate", "1", 0.0, 1e6, "maximum velocity error at a standstill, in standard deviations"});
       visit(p.rate_max_rad_s, {"rate_max_rad_s", "rad/s", 1.0, 1e4, "largest estimated rate"});
       visit(p.gap_max_s, {"gap_max_s", "s", 1e-6, 3600.0,
-                          "longest allowed time between two samples; a longer gap ends the run with an error"});
+                          "maximum time between two samples; a longer gap ends the run with an error"});
     }
   };
 

@@ -45,8 +45,8 @@ class Eskf {
       visit(p.acceleration_noise_m_s2_sqrts,
             {"acceleration_noise_m_s2_sqrts", "m/s^2 sqrt(s)", 1e-12, 100.0,
              "standard deviation of the mean acceleration of the body over 1 s (white noise)", Rank::first});
-      visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4,
-                          "longest allowed time between two samples; a longer gap ends the run with an error"});
+      visit(p.gap_max_s,
+            {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap ends the run with an error"});
     }
   };
   struct State {

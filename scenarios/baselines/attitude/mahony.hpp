@@ -27,8 +27,8 @@ class Mahony {
                                    "proportional gain kp on the tilt error (eq. 32)", Rank::first});
       visit(p.integral_rad_s2, {"integral_rad_s2", "rad/s^2", 0.0, 100.0,
                                 "integral gain ki, which estimates the gyro bias (eq. 32)", Rank::first});
-      visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4,
-                          "longest allowed time between two samples; a longer gap ends the run with an error"});
+      visit(p.gap_max_s,
+            {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap ends the run with an error"});
     }
   };
   struct State {

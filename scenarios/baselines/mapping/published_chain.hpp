@@ -41,35 +41,37 @@ class PublishedChain {
     static void fields(Self& p, Visitor& visit) {
       visit(p.skew_sigma_m_s,
             {"skew_sigma_m_s", "m/s", 0.0, 100.0,
-             "growth of a point's uncertainty over the sweep (time weighting); 0: no time weighting", Rank::first});
-      visit(p.late_velocity,
-            on_off(
-                "late_velocity",
-                "1: use the mean velocity since the last sweep as the present velocity, half a sweep late, as launched",
-                Rank::first));
+             "growth of a point's standard deviation with the time since the start of the sweep; 0: no growth",
+             Rank::first});
+      visit(p.late_velocity, on_off("late_velocity",
+                                    "1: use the mean velocity since the last sweep as the present velocity, which is "
+                                    "half a sweep late, as in the launch files",
+                                    Rank::first));
       visit(p.voxel_averages_time, on_off("voxel_averages_time",
-                                          "1: average the times of points in a voxel, also across the start of the "
-                                          "sweep, as launched; 0: average their variances",
+                                          "1: average the times of the points in a voxel, also across the start of the "
+                                          "sweep, as in the launch files; 0: average their variances",
                                           Rank::first));
-      visit(
-          p.abort_ends_mapping,
-          on_off("abort_ends_mapping",
-                 "1: a failed registration ends mapping, as launched; 0: that sweep uses odometry only", Rank::first));
+      visit(p.abort_ends_mapping,
+            on_off("abort_ends_mapping",
+                   "1: a failed registration ends mapping, as in the launch files; 0: the sweep uses odometry only",
+                   Rank::first));
       visit.group("", p.icp);
-      visit(p.own_body_L.min(), {"own_body_min_m", "m", -kUnbounded, kUnbounded,
-                                 "smallest corner of the box around the robot's own returns, lidar axes"});
-      visit(p.own_body_L.max(), {"own_body_max_m", "m", -kUnbounded, kUnbounded,
-                                 "largest corner of the box around the robot's own returns, lidar axes"});
+      visit(p.own_body_L.min(),
+            {"own_body_min_m", "m", -kUnbounded, kUnbounded,
+             "minimum corner of a box around the robot, lidar axes; returns inside the box are dropped"});
+      visit(p.own_body_L.max(),
+            {"own_body_max_m", "m", -kUnbounded, kUnbounded,
+             "maximum corner of a box around the robot, lidar axes; returns inside the box are dropped"});
       visit(p.madgwick_gain_rad_s, {"madgwick_gain_rad_s", "rad/s", 0.0, 10.0, "gain of the Madgwick attitude filter"});
-      visit(p.stamp_step_ns,
-            {"stamp_step_ns", "ns", 1, 1000000, "step to which point times are rounded down before the pose lookup"});
-      visit(p.range_min_m, {"range_min_m", "m", 0.0, 10.0, "returns nearer than this are dropped"});
-      visit(p.range_max_m, {"range_max_m", "m", 0.0, 1e4, "returns farther than this are dropped"});
-      visit(p.sweep_voxel_m,
-            {"sweep_voxel_m", "m", 0.01, 10.0, "edge of the voxel whose points are averaged before registration"});
+      visit(p.stamp_step_ns, {"stamp_step_ns", "ns", 1, 1000000,
+                              "time step to which point times are rounded down before the pose lookup"});
+      visit(p.range_min_m, {"range_min_m", "m", 0.0, 10.0, "minimum range; nearer returns are dropped"});
+      visit(p.range_max_m, {"range_max_m", "m", 0.0, 1e4, "maximum range; farther returns are dropped"});
+      visit(p.sweep_voxel_m, {"sweep_voxel_m", "m", 0.01, 10.0,
+                              "edge length of the voxels; the points in a voxel are averaged before registration"});
       visit(p.map_spacing_m,
-            {"map_spacing_m", "m", 0.0, 10.0, "least distance between a new map point and the existing map"});
-      visit(p.range_sigma_m, {"range_sigma_m", "m", 1e-6, 10.0, "least standard deviation of a range"});
+            {"map_spacing_m", "m", 0.0, 10.0, "minimum distance between a new map point and the existing map"});
+      visit(p.range_sigma_m, {"range_sigma_m", "m", 1e-6, 10.0, "minimum standard deviation of a range"});
       visit(p.range_sigma_share,
             {"range_sigma_share", "1", 0.0, 1.0, "standard deviation of a range, as a share of the range"});
     }

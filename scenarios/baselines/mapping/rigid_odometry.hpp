@@ -40,21 +40,28 @@ class RigidOdometry {
     /// Visits every parameter with its name, unit and limits.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
-      visit(p.range_min_m, {"range_min_m", "m", 0.0, 10.0, "returns nearer than this are dropped"});
-      visit(p.range_max_m, {"range_max_m", "m", 0.0, 1e4, "returns farther than this are dropped"});
-      visit(p.own_body_L.min(), {"own_body_min_m", "m", -kUnbounded, kUnbounded,
-                                 "smallest corner of the box around the robot's own returns, lidar axes"});
-      visit(p.own_body_L.max(), {"own_body_max_m", "m", -kUnbounded, kUnbounded,
-                                 "largest corner of the box around the robot's own returns, lidar axes"});
+      visit(p.range_min_m, {"range_min_m", "m", 0.0, 10.0, "minimum range; nearer returns are dropped"});
+      visit(p.range_max_m, {"range_max_m", "m", 0.0, 1e4, "maximum range; farther returns are dropped"});
+      visit(p.own_body_L.min(),
+            {"own_body_min_m", "m", -kUnbounded, kUnbounded,
+             "minimum corner of a box around the robot, lidar axes; returns inside the box are dropped"});
+      visit(p.own_body_L.max(),
+            {"own_body_max_m", "m", -kUnbounded, kUnbounded,
+             "maximum corner of a box around the robot, lidar axes; returns inside the box are dropped"});
       visit(p.sweep_voxel_m, {"sweep_voxel_m", "m", 0.01, 10.0,
-                              "edge of the voxel from which one point per sweep is registered", Rank::first});
-      visit(p.map_voxel_m, {"map_voxel_m", "m", 0.01, 100.0, "edge of a voxel of the map's hash table", Rank::first});
-      visit(p.map_spacing_m,
-            {"map_spacing_m", "m", 0.0, 100.0, "edge of the cube that stores at most one map point", Rank::first});
+                              "edge length of the voxels; one point per voxel and sweep is registered, so a larger "
+                              "value is faster and coarser",
+                              Rank::first});
+      visit(p.map_voxel_m,
+            {"map_voxel_m", "m", 0.01, 100.0, "edge length of a voxel of the map's hash table", Rank::first});
+      visit(p.map_spacing_m, {"map_spacing_m", "m", 0.0, 100.0,
+                              "edge length of the cube that stores at most one map point; a larger value makes the map "
+                              "smaller and coarser",
+                              Rank::first});
       visit(p.extend_always, on_off("extend_always", "1: extend the map with sweeps that could not be registered"));
       visit(p.degenerate_sigma_m,
             {"degenerate_sigma_m", "m", 1e-6, 1e3,
-             "standard deviation of the pose from the surfaces alone above which a sweep is degenerate"});
+             "a sweep counts as degenerate if the surfaces alone determine its pose with a larger standard deviation"});
       visit.group("", p.registration);
     }
   };

@@ -23,8 +23,8 @@ class DoubleIntegration {
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-9, 100.0, "strength of gravity"});
-      visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4,
-                          "longest allowed time between two samples; a longer gap ends the run with an error"});
+      visit(p.gap_max_s,
+            {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap ends the run with an error"});
     }
   };
   struct State {

@@ -17,8 +17,8 @@ AccelUnit take_in_g(const std::string& topic, const BagReading& reading, sim::Im
   if (reading.accel_unit || !is_in_g(imu)) return reading.accel_unit.value_or(AccelUnit::m_s2);
   for (Eigen::Vector3d& force : imu.accel_m_s2) force *= scale_of(AccelUnit::g);
   notes.push_back(
-      fmt::format("{}: caution: the message definition requires m/s^2, but the magnitude at rest is 1, so it is read "
-                  "in g (set '--accel-unit m/s^2' to use the definition)",
+      fmt::format("{}: caution: the message definition requires m/s^2, but the specific force at rest is about 1, so "
+                  "the accelerometer is read in g (set '--accel-unit m/s^2' to read m/s^2)",
                   topic));
   return AccelUnit::g;
 }

@@ -62,7 +62,7 @@ NamedPoses reference_poses(const OpenedBag& bag, const std::string& topic, Stamp
   if (type == kOdometry) return read_poses<ros::Odometry>(bag, topic, source);
   if (type == kPoseStamped) return read_poses<ros::PoseStamped>(bag, topic, source);
   if (type == kTransformStamped) return read_poses<ros::TransformStamped>(bag, topic, source);
-  throw BadInput(fmt::format("{}: topic '{}' is of type {}, must be {}, {} or {}", bag.place, topic, type, kOdometry,
+  throw BadInput(fmt::format("{}: topic '{}' is of type {}; it must be {}, {} or {}", bag.place, topic, type, kOdometry,
                              kPoseStamped, kTransformStamped));
 }
 
@@ -74,12 +74,12 @@ Eigen::Isometry3d pose_of_reference(const std::string& topic, const std::string&
   if (reading.reference_of == ReferenceOf::lidar) return lidar_of_poses(out.sensors, topic);
   if (reading.reference_of == ReferenceOf::body || frame.empty() || frame == places.body()) return body;
   const auto T_BA = places.of(frame);
-  const std::string whose = topic + ": by the messages, poses of '" + frame + "'";
+  const std::string whose = topic + ": the messages state that the poses belong to the frame '" + frame + "'";
   if (T_BA) {
-    out.notes.push_back(whose +
-                        "; converted to poses of the body (set '--reference-frame body' to use them unchanged)");
+    out.notes.push_back(
+        whose + "; they are converted to poses of the body (set '--reference-frame body' to use the poses unchanged)");
   } else if (frame != "body" && frame != "base_link") {
-    out.notes.push_back(whose + ", which has no known pose on the body; assumed to be the body");
+    out.notes.push_back(whose + ", whose pose on the body is unknown; the frame is assumed to be the body frame");
   }
   return T_BA.value_or(body);
 }

@@ -42,7 +42,7 @@ std::int64_t between(std::int64_t from_ns, std::int64_t to_ns) {
 std::string course(std::int64_t before_ns, std::int64_t now_ns) {
   if (now_ns > before_ns) return "increases by " + seconds_text(between(before_ns, now_ns));
   if (now_ns < before_ns) return "decreases by " + seconds_text(between(now_ns, before_ns));
-  return now_ns == 0 ? "is 0, like the previous one" : "does not change";
+  return now_ns == 0 ? "is 0, like the previous time stamp" : "does not change";
 }
 
 }  // namespace
@@ -54,7 +54,7 @@ std::int64_t stamp_of(const ros::Header& header) {
 std::int64_t BagStamps::chosen(std::int64_t header_ns, std::int64_t record_ns, const std::string& where) const {
   if (source_ == StampSource::header) return header_ns;
   if (record_ns < 0 || record_ns > kLast_ns)
-    throw BadInput(fmt::format("{}: the record's stamp is {} ns, must be from 0 to {}", where, record_ns, kLast_ns));
+    throw BadInput(fmt::format("{}: the record's stamp is {} ns; it must be from 0 to {}", where, record_ns, kLast_ns));
   return record_ns;
 }
 
@@ -64,7 +64,7 @@ void BagStamps::add(std::int64_t header_ns, std::int64_t record_ns) {
 }
 
 std::string BagStamps::disorder(std::size_t k) const {
-  if (k == 0) return "the time stamp is far from the others";
+  if (k == 0) return "the time stamp is far from the other time stamps";
   const std::string header = "the header's " + course(header_ns_[k - 1], header_ns_[k]),
                     record = "the record's " + course(record_ns_[k - 1], record_ns_[k]);
   const bool by_header = source_ == StampSource::header;
@@ -101,7 +101,8 @@ std::string BagStamps::remark() const {
   const bool changes = between(least_ns, most_ns) > kSteady_ns;
   const std::string taken = source_ == StampSource::header ? "headers" : "records";
   return fmt::format(
-      "{}the bag recorded its messages {} to {} after their header stamps{}; this import uses the stamps of the {}",
+      "{}the record stamps of the messages are {} to {} later than the header stamps{}; this import uses the stamps of "
+      "the {}",
       other_clock() || changes ? "caution: " : "", seconds_text(least_ns), seconds_text(most_ns),
       other_clock() ? "; the clocks may differ"
       : changes     ? "; one of the clocks may drift"

@@ -47,7 +47,7 @@ class BagReader {
 
 /// Note for the user on a bag of several files.
 inline constexpr const char* kFilesSorted =
-    "the files of the bag are not listed in the order of time; they are read in the order of time";
+    "the bag does not list its files in the order of time; the import reads the files in the order of time";
 
 std::unique_ptr<BagWriter> make_ros1_writer(const std::filesystem::path& file);
 std::unique_ptr<BagWriter> make_ros2_writer(const std::filesystem::path& folder);

@@ -44,8 +44,8 @@ void note_points_to_come(const std::string& topic, const BuiltSweeps& built, con
   const double middle_s = upper_median(std::move(ahead_s));
   if (middle_s < kAhead_s) return;
   notes.push_back(
-      fmt::format("{}: caution: the last points of a sweep, by their times after the stamp, are {} s later than the "
-                  "record stamp; the stamp may be the end of the sweep. It is read as the start (set '--stamps record' "
+      fmt::format("{}: caution: the last points of a sweep are {} s later than the record stamp, so the header stamp "
+                  "may be the end of the sweep. The import reads the header stamp as the start (set '--stamps record' "
                   "to start each sweep one period before its record stamp)",
                   topic, std::to_string(middle_s)));
 }
@@ -103,8 +103,8 @@ CloudHeaders read_headers(const OpenedBag& bag, const std::string& topic, const 
       if (start) *start -= out.period_ns;
     }
     out.remark +=
-        fmt::format("{}assumption: each sweep starts {} s before its record stamp", out.remark.empty() ? "" : "; ",
-                    std::to_string(1e-9 * static_cast<double>(out.period_ns)));
+        fmt::format("{}the import assumes that each sweep starts {} s before its record stamp",
+                    out.remark.empty() ? "" : "; ", std::to_string(1e-9 * static_cast<double>(out.period_ns)));
   }
   return out;
 }
@@ -119,7 +119,7 @@ BuiltSweeps read_lidar(const OpenedBag& bag, SensorPlaces& places, const std::st
   LeftOut counted_in_headers("clouds");
   read_clouds(bag, topic, counted_in_headers, [&]<class Message>(const Message& message, const MessageOrigin& origin) {
     if (origin.number >= headers.starts.size())
-      throw BadInput(origin.where + ": uses another frame than the previous message");
+      throw BadInput(origin.where + ": the frame differs from the frame of the previous message");
     const std::optional<std::int64_t> start_ns = headers.starts[origin.number];
     if (!start_ns) return;
     if constexpr (std::is_same_v<Message, ros::LivoxCustomMsg>) {
@@ -140,8 +140,8 @@ BuiltSweeps read_lidar(const OpenedBag& bag, SensorPlaces& places, const std::st
     note_points_to_come(topic, built, records, notes);
   if (clocks_apart_s > kClocksApart_s) {
     notes.push_back(
-        fmt::format("{}: caution: the messages' timebase and their header stamps differ by up to {} s; point times are "
-                    "counted from the header stamps",
+        fmt::format("{}: caution: the timebase and the header stamp of the messages differ by up to {} s; point times "
+                    "count from the header stamp",
                     topic, std::to_string(clocks_apart_s)));
   }
   places.place(topic, headers.frame, "--T-body-lidar", reading.lidar_placed, built.lidar.T_BL, notes);

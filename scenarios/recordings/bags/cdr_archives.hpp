@@ -81,7 +81,7 @@ class CdrReader {
       : size_(bytes.size()),
         buffer_(reinterpret_cast<char*>(bytes.data()), bytes.size()),
         cdr_(buffer_, eprosima::fastcdr::Cdr::DEFAULT_ENDIAN, eprosima::fastcdr::Cdr::DDS_CDR) {
-    if (size_ < 4) throw BadMessage("has " + std::to_string(size_) + " bytes; it needs at least 4");
+    if (size_ < 4) throw BadMessage("has " + std::to_string(size_) + " bytes; it must have at least 4");
     cdr_.read_encapsulation();
   }
   void operator()(std::uint8_t& number) { cdr_ >> number; }

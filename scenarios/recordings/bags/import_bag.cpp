@@ -23,7 +23,7 @@ constexpr const char* kImu = "sensor_msgs/Imu";
 constexpr const char* kCloud = "sensor_msgs/PointCloud2";
 constexpr const char *kTransforms = "tf2_msgs/TFMessage", *kOldTransforms = "tf/tfMessage";
 constexpr const char* kStaticTopic = "/tf_static";
-constexpr const char* kNoMessage = ": the topic is declared but has no messages; it is left out";
+constexpr const char* kNoMessage = ": the topic has no messages and is left out";
 bool is_imu_type(const std::string& type) {
   return type == kImu;
 }
@@ -48,13 +48,13 @@ void note_unread_clouds(const OpenedBag& bag, std::vector<std::string>& notes) {
   for (const BagTopic& topic : bag.topics) {
     const auto has = [&](const char* word) { return topic.type.find(word) != std::string::npos; };
     if (has("Packet") || has("packet") || has("VelodyneScan") || has("PandarScan")) {
-      notes.push_back(
-          fmt::format("{}: caution: raw packets ({}) are not read; convert them to points with the lidar's driver",
-                      topic.name, topic.type));
+      notes.push_back(fmt::format(
+          "{}: caution: the import skips raw packets ({}); convert the packets to points with the lidar's driver",
+          topic.name, topic.type));
     } else if (!is_cloud_type(topic.type) && (has("PointCloud") || has("CustomMsg"))) {
       notes.push_back(
-          fmt::format("{}: caution: clouds of type {} are not read; convert them to {}, for compressed clouds with "
-                      "'ros2 run point_cloud_transport republish'",
+          fmt::format("{}: caution: the import skips clouds of type {}; convert the clouds to {} (compressed clouds: "
+                      "'ros2 run point_cloud_transport republish')",
                       topic.name, topic.type, kCloud));
     }
   }
@@ -78,7 +78,8 @@ void require_one_clock(const sim::Sensors& sensors, bool by_headers, const std::
     for (const Span& late : spans) {
       if (late.first_ns <= early.last_ns) continue;
       throw BadInput(
-          fmt::format("{}: the time ranges of '{}' and '{}' do not overlap: one ends {} s before the other begins{}",
+          fmt::format("{}: the time ranges of '{}' and '{}' do not overlap: one range ends {} s before the other "
+                      "begins; check that both use the same clock{}",
                       path.string(), early.name, late.name,
                       std::to_string((static_cast<double>(late.first_ns) - static_cast<double>(early.last_ns)) * 1e-9),
                       by_headers ? "; set '--stamps record' to use the record stamps" : ""));
@@ -89,7 +90,7 @@ void require_one_clock(const sim::Sensors& sensors, bool by_headers, const std::
 /// Rethrows an error of an automatically chosen topic; if there are other topics, adds advice how to skip the faulty
 /// topic.
 [[noreturn]] void fail_of_several(const BadInput& error, const char* option) {
-  throw BadInput(std::string(error.what()) + " (" + option + " selects which topics are read)");
+  throw BadInput(std::string(error.what()) + " (" + option + " selects the topics to read)");
 }
 
 void add_imus(const OpenedBag& bag, SensorPlaces& places, const BagReading& reading, Imported& out) {
@@ -108,8 +109,9 @@ void add_imus(const OpenedBag& bag, SensorPlaces& places, const BagReading& read
     }
   }
   if (out.sensors.imus.size() > 1 && reading.imu_topics.empty())
-    out.notes.push_back("'" + out.sensors.imus.front().name +
-                        "' is the primary IMU because its topic comes first (set --imu-topic to choose another)");
+    out.notes.push_back(
+        "'" + out.sensors.imus.front().name +
+        "' is the primary IMU, because its topic comes first (set --imu-topic to choose another topic)");
 }
 
 void add_lidars(const OpenedBag& bag, SensorPlaces& places, const BagReading& reading, Imported& out) {
@@ -119,8 +121,8 @@ void add_lidars(const OpenedBag& bag, SensorPlaces& places, const BagReading& re
     const CloudHeaders headers = read_headers(bag, topic, reading);
     if (headers.left_out_as_map(reading)) {
       out.notes.push_back(
-          fmt::format("{}: its points are in frame '{}', which is not the frame of a sensor; they are left out", topic,
-                      headers.frame));
+          fmt::format("{}: the points are in frame '{}', which is not the frame of a sensor; this topic is left out",
+                      topic, headers.frame));
     } else if (headers.stamps.empty() && !chosen) {
       out.notes.push_back(topic + kNoMessage);
     } else {
@@ -140,12 +142,11 @@ void add_lidars(const OpenedBag& bag, SensorPlaces& places, const BagReading& re
   const auto is_timed = [](const auto& each) { return has_timed_points(each.second.lidar); };
   if (!chosen) std::stable_partition(lidars.begin(), lidars.end(), is_timed);
   if (lidars.size() > 1 && !chosen) {
-    out.notes.push_back(fmt::format(
-        "{}: this topic is the lidar for mapping, because {} (set --lidar-topic to choose "
-        "another)",
-        lidars.front().first,
-        is_timed(lidars.front()) && !is_timed(lidars.back()) ? "its points have times"
-                                                             : "it comes first among the topics of clouds"));
+    out.notes.push_back(
+        fmt::format("{}: mapping uses the lidar of this topic, because {} (set --lidar-topic to choose another topic)",
+                    lidars.front().first,
+                    is_timed(lidars.front()) && !is_timed(lidars.back()) ? "its points have time stamps"
+                                                                         : "it is the first topic with point clouds"));
   }
   for (auto& [topic, built] : lidars) add_lidar(out, std::move(built));
 }
@@ -161,7 +162,7 @@ Imported import_bag(BagReader& reader, const std::filesystem::path& path, const 
   add_lidars(bag, places, reading, out);
   note_unread_clouds(bag, out.notes);
   if (out.sensors.imus.empty() && out.sensors.lidars.empty()) {
-    throw BadInput(fmt::format("{}: has no topic of type {}, {} or CustomMsg with messages (existing topics:{})",
+    throw BadInput(fmt::format("{}: there is no topic of type {}, {} or CustomMsg with messages (existing topics:{})",
                                path.string(), kImu, kCloud, bag.topic_list()));
   }
   out.info.attribution = "imported from " + path.filename().string();

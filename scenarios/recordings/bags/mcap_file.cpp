@@ -43,7 +43,8 @@ File::File(const std::filesystem::path& path) : path_(path), stream_(open_regula
   if (segments_.empty()) scan();
   for (const auto& [id, channel] : channels_) {
     if (channel.schema_id != 0 && !schemas_.contains(channel.schema_id))
-      fail(0, fmt::format("channel {} refers to schema {}, which does not exist", id, channel.schema_id));
+      fail(0, fmt::format("channel {} refers to schema {}, which does not exist: the file is damaged", id,
+                          channel.schema_id));
   }
   std::stable_sort(segments_.begin(), segments_.end(),
                    [](const Segment& a, const Segment& b) { return a.first_ns < b.first_ns; });
@@ -72,10 +73,10 @@ Record File::record_in(std::string_view records, std::uint64_t place, std::uint6
   std::uint64_t size = 0;
   take(out.op), take(size);
   if (size > take.left.size()) {
-    fail(at + place, fmt::format("a record of {}, must be at most {}: the file is damaged or truncated", in_bytes(size),
-                                 take.left.size()));
+    fail(at + place, fmt::format("a record states {}, but at most {} follow: the file is damaged or truncated",
+                                 in_bytes(size), take.left.size()));
   }
-  if (out.op == 0) fail(at + place, "a record of kind 0: the file is damaged");
+  if (out.op == 0) fail(at + place, "a record has the kind 0, which is not allowed: the file is damaged");
   out.content = take.cut(size);
   return out;
 }
@@ -87,8 +88,8 @@ void File::open_ends() {
   if (bytes_ < 2 * kMagic.size() + kFooterBytes + kDataEndBytes ||
       text(bytes_ - kMagic.size(), kMagic.size()) != kMagic)
     fail(bytes_,
-         "does not end with the magic bytes of MCAP: the file is truncated or was never closed (repair it with 'mcap "
-         "recover')");
+         "does not end with the magic bytes of MCAP: the file is truncated or was not closed (repair the file with "
+         "'mcap recover')");
   footer_at_ = bytes_ - kMagic.size() - kFooterBytes;
   const std::string footer = text(footer_at_, kFooterBytes);
   const Record record = record_in(footer, 0, footer_at_);
@@ -98,7 +99,7 @@ void File::open_ends() {
   const std::uint64_t data_end = footer_.summary_start == 0 ? footer_at_ : footer_.summary_start;
   if (data_end > footer_at_ || data_end < kMagic.size() + kDataEndBytes)
     fail(footer_at_,
-         fmt::format("the stated start of the summary is byte {}, which is impossible: the file is damaged", data_end));
+         fmt::format("the summary starts at byte {}, which is an impossible position: the file is damaged", data_end));
   data_end_ = data_end - kDataEndBytes;
 }
 
@@ -125,7 +126,7 @@ void File::read_summary() {
   if (footer_.summary_start == 0) return;
   const std::uint64_t size = footer_at_ - footer_.summary_start;
   if (size > kBytesMax)
-    fail(footer_.summary_start, fmt::format("a summary of {}; at most 256 MiB can be read", in_bytes(size)));
+    fail(footer_.summary_start, fmt::format("the summary has {}; at most 256 MiB can be read", in_bytes(size)));
   const std::string all = text(footer_.summary_start, size + kFooterBytes);
   const std::uint32_t crc = crc32_of(std::string_view(all).substr(0, all.size() - sizeof(footer_.summary_crc)));
   if (footer_.summary_crc != 0 && crc != footer_.summary_crc) {
@@ -137,7 +138,7 @@ void File::read_summary() {
   if (footer_.summary_offset_start != 0) {
     if (footer_.summary_offset_start < footer_.summary_start || footer_.summary_offset_start > footer_at_)
       fail(footer_at_,
-           fmt::format("the stated start of the summary offsets is byte {}, which is impossible: the file is damaged",
+           fmt::format("the summary offsets start at byte {}, which is an impossible position: the file is damaged",
                        footer_.summary_offset_start));
     const std::uint64_t records = footer_.summary_offset_start - footer_.summary_start;
     check_groups(summary.substr(0, records), summary.substr(records));
@@ -159,15 +160,18 @@ void File::check_groups(std::string_view summary, std::string_view groups) const
   const std::uint64_t groups_at = footer_.summary_offset_start;
   walk(groups, groups_at, [&](const Record& record) {
     const std::uint64_t at = groups_at + record.at;
-    if (record.op != kSummaryOffset) fail(at, fmt::format("a record of kind {} is not allowed here", record.op));
+    if (record.op != kSummaryOffset)
+      fail(at, fmt::format("a record of kind {} is not allowed at this position: the file is damaged", record.op));
     const auto group = as<SummaryOffset>(record, at);
     const std::uint64_t start = group.group_start - footer_.summary_start;
     if (group.group_start < footer_.summary_start || start > summary.size() ||
         group.group_length > summary.size() - start)
-      fail(at, fmt::format("names a group at byte {}, which is outside the summary", group.group_start));
+      fail(at, fmt::format("names a group at byte {}, which is outside the summary: the file is damaged",
+                           group.group_start));
     walk(summary.substr(start, group.group_length), group.group_start, [&](const Record& each) {
       if (each.op != group.group_opcode)
-        fail(at, fmt::format("names a group of kind {}, but the group contains kind {}", group.group_opcode, each.op));
+        fail(at, fmt::format("names a group of kind {}, but the group contains records of kind {}: the file is damaged",
+                             group.group_opcode, each.op));
     });
   });
 }
@@ -186,14 +190,15 @@ void File::take_indexed(std::vector<ChunkIndex> chunks) {
     const std::uint64_t at = each.chunk_start_offset;
     if (at < free || at > data_end_ || each.chunk_length > data_end_ - at ||
         each.message_index_length > data_end_ - at - each.chunk_length) {
-      fail(footer_.summary_start, fmt::format("indexes a chunk of {} at byte {}; it must be between {} and {}",
-                                              in_bytes(each.chunk_length), at, free, data_end_));
+      fail(footer_.summary_start,
+           fmt::format("indexes a chunk of {} at byte {}; the chunk must be between bytes {} and {}",
+                       in_bytes(each.chunk_length), at, free, data_end_));
     }
     free = at + each.chunk_length + each.message_index_length;
     for (const auto& [channel, place] : each.message_index_offsets) {
       if (!channels_.contains(channel)) return segments_.clear();  // the summary does not repeat the channels: scan
       if (place < at + each.chunk_length || place >= free)
-        fail(place, fmt::format("is named as an index of the chunk at byte {}, but does not follow that chunk", at));
+        fail(place, fmt::format("must follow its chunk at byte {}, but does not: the file is damaged", at));
     }
     segments_.push_back({at, each.chunk_length, each.message_start_time, each.message_end_time, each});
   }
@@ -241,7 +246,7 @@ std::optional<MessageIndex> File::index_of(const Segment& segment, std::uint16_t
   if (record.op != kMessageIndex) fail(at, "is not a message index: the file is damaged");
   auto index = as<MessageIndex>(record, at);
   if (index.channel_id != channel) {
-    fail(at, fmt::format("is the index of channel {}, but should be that of channel {}: the file is damaged",
+    fail(at, fmt::format("is the index of channel {}, but must be the index of channel {}: the file is damaged",
                          index.channel_id, channel));
   }
   return index;
@@ -256,7 +261,8 @@ ChunkIndex File::head_of_chunk(std::uint64_t at, std::uint64_t bytes, std::uint3
   std::uint64_t content = 0;
   std::memcpy(&content, head.data() + 1, sizeof(content));
   if (content != bytes - kHeadBytes)
-    fail(at, fmt::format("a chunk of {}, but its index states {}", in_bytes(content), in_bytes(bytes - kHeadBytes)));
+    fail(at, fmt::format("a chunk has {}, but its index states {}: the file is damaged", in_bytes(content),
+                         in_bytes(bytes - kHeadBytes)));
   Take take(std::string_view(head).substr(kHeadBytes));
   Chunk chunk;
   try {
@@ -266,18 +272,19 @@ ChunkIndex File::head_of_chunk(std::uint64_t at, std::uint64_t bytes, std::uint3
   }
   const std::uint64_t taken = head.size() - take.left.size();
   if (chunk.records_size != bytes - taken)
-    fail(at, fmt::format("a chunk that states {} but holds {}", in_bytes(chunk.records_size), in_bytes(bytes - taken)));
+    fail(at, fmt::format("a chunk states {} but contains {}: the file is damaged", in_bytes(chunk.records_size),
+                         in_bytes(bytes - taken)));
   if (chunk.records_size > kBytesMax || chunk.uncompressed_size > kBytesMax) {
-    fail(at, fmt::format("a chunk of {}; at most 256 MiB can be read",
+    fail(at, fmt::format("a chunk has {}; at most 256 MiB can be read",
                          in_bytes(std::max(chunk.records_size, chunk.uncompressed_size))));
   }
   if (!chunk.compression.empty() && chunk.compression != "lz4" && chunk.compression != "zstd") {
-    fail(at, fmt::format("a chunk of compression '{}' is not supported; supported: none, lz4 and zstd",
+    fail(at, fmt::format("the compression '{}' of a chunk is not supported; supported: none, lz4 and zstd",
                          chunk.compression.substr(0, 40)));
   }
   if (chunk.compression.empty() && chunk.uncompressed_size != chunk.records_size) {
-    fail(at,
-         fmt::format("a plain chunk of {} states a size of {}", in_bytes(chunk.records_size), chunk.uncompressed_size));
+    fail(at, fmt::format("an uncompressed chunk of {} states a size of {}: the file is damaged",
+                         in_bytes(chunk.records_size), chunk.uncompressed_size));
   }
   if (crc != nullptr) *crc = chunk.uncompressed_crc;
   return {chunk.message_start_time, chunk.message_end_time, at, bytes, {}, 0, chunk.compression,
@@ -285,7 +292,7 @@ ChunkIndex File::head_of_chunk(std::uint64_t at, std::uint64_t bytes, std::uint3
 }
 
 void File::add(Schema schema, std::uint64_t at) {
-  if (schema.id == 0) fail(at, "a schema has the number 0, which is reserved for 'no schema'");
+  if (schema.id == 0) fail(at, "a schema has the number 0, which means 'no schema': the file is damaged");
   const auto [place, fresh] = schemas_.try_emplace(schema.id, schema);
   if (!fresh && place->second != schema)
     fail(at, fmt::format("schema {} is defined twice with different content", schema.id));

@@ -44,7 +44,7 @@ class TopicWalk {
     for (const std::uint16_t channel : channels_) {
       const std::optional<std::uint64_t> stated = file_.stated_messages(channel);
       if (stated && *stated != counts_[channel]) {
-        file_.fail(0, fmt::format("channel {} holds {} messages, but the summary states {}: the file is damaged",
+        file_.fail(0, fmt::format("channel {} contains {} messages, but the summary states {}: the file is damaged",
                                   channel, counts_[channel], *stated));
       }
     }
@@ -71,8 +71,10 @@ class TopicWalk {
 
   void require_time(const Segment& segment, std::uint64_t time_ns) const {
     if (time_ns >= segment.first_ns && time_ns <= segment.last_ns) return;
-    file_.fail(segment.at, fmt::format("a message at {} ns in a chunk from {} to {} ns: the file is damaged", time_ns,
-                                       segment.first_ns, segment.last_ns));
+    file_.fail(
+        segment.at,
+        fmt::format("a message has the time {} ns, but its chunk states times from {} to {} ns: the file is damaged",
+                    time_ns, segment.first_ns, segment.last_ns));
   }
 
   /// Checks that the index after the chunk lists exactly the messages of the chunk.
@@ -142,7 +144,8 @@ class McapReader : public BagReader {
         if (found == topics.end()) {
           topics.push_back(topic);
         } else if (found->type != topic.type) {
-          file->fail(0, fmt::format("topic {} has the types {} and {}", topic.name, found->type, topic.type));
+          file->fail(0, fmt::format("topic {} has two types, {} and {}; a topic must have one type", topic.name,
+                                    found->type, topic.type));
         }
       }
     }

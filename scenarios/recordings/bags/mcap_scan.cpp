@@ -41,18 +41,19 @@ void File::scan() {
     take(op), take(size);
     const std::uint64_t left = data_end_ - at - kHeadBytes;
     if (size > left) {
-      fail(at, fmt::format("a record of {} bytes, must be at most {}: the file is damaged or truncated", size, left));
+      fail(at, fmt::format("a record states {} bytes, but at most {} follow: the file is damaged or truncated", size,
+                           left));
     }
     if (first && op != kHeader) fail(at, "the first record is not a header: the file is damaged");
     if (op == 0 || op == kFooter || op == kDataEnd || (op == kHeader && !first))
-      fail(at, fmt::format("a record of kind {} is not allowed here: the file is damaged", op));
+      fail(at, fmt::format("a record of kind {} is not allowed at this position: the file is damaged", op));
     first = false;
     const std::uint64_t bytes = kHeadBytes + size;
     if (op == kChunk) {
       close();
       scan_chunk(head_of_chunk(at, bytes, nullptr));
     } else if (op == kSchema || op == kChannel || op == kMessage) {
-      if (bytes > kRecordMax) fail(at, fmt::format("a record of {} bytes; at most 256 MiB can be read", bytes));
+      if (bytes > kRecordMax) fail(at, fmt::format("a record has {} bytes; at most 256 MiB can be read", bytes));
       const std::string whole = text(at, bytes);
       const Record record = record_in(whole, 0, at);
       if (op == kSchema) add(as<Schema>(record, at), at);

@@ -54,7 +54,7 @@ struct OpenedBag {
     std::vector<std::string> out = names;
     for (const std::string& name : names) {
       if (!fits(topic(name).type))
-        throw BadInput(place + ": topic '" + name + "' is of type " + topic(name).type + ", must be " + wanted);
+        throw BadInput(place + ": topic '" + name + "' is of type " + topic(name).type + "; it must be " + wanted);
     }
     for (const BagTopic& each : topics) {
       if (names.empty() && fits(each.type)) out.push_back(each.name);

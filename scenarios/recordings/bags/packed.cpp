@@ -33,7 +33,7 @@ class Room {
   void take(std::size_t bytes) { given_ += bytes; }
   std::string whole(const char* what) {
     if (given_ != promised_) {
-      throw BadInput(fmt::format("its {} frame holds {} bytes, but the chunk states {}", what, given_, promised_));
+      throw BadInput(fmt::format("its {} frame contains {} bytes, but the chunk states {}", what, given_, promised_));
     }
     return std::move(out_);
   }

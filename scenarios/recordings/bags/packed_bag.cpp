@@ -56,8 +56,8 @@ void unpack(const path& file, const path& to) {
       bytes += out.pos;
       if (bytes > most)
         fail(
-            fmt::format("the unpacked bag has more than {} bytes; {} lacks the space, or the file is not a packed bag; "
-                        "set TMPDIR to another folder",
+            fmt::format("the unpacked bag has more than {} bytes, and {} has too little space; set TMPDIR to another "
+                        "folder, or check that the file is a compressed bag",
                         most, to.parent_path().string()));
       unpacked.write(given.data(), static_cast<std::streamsize>(out.pos));
       full = out.pos == out.size;
@@ -110,7 +110,8 @@ class UnpackedMessages : public BagReader {
     const unsigned long long size = ZSTD_getFrameContentSize(bytes.data(), bytes.size());
     if (size == ZSTD_CONTENTSIZE_ERROR || size == ZSTD_CONTENTSIZE_UNKNOWN || size > most_of(bytes.size()))
       throw BadInput(where +
-                     "is not a Zstandard frame with a stated size of at most 64 MiB and 200 times its packed size");
+                     "is not a valid Zstandard frame; its stated size must be at most 64 MiB and at most 200 times its "
+                     "compressed size");
     try {
       const std::string plain = unpacked_zstd({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, size);
       return {plain.begin(), plain.end()};

@@ -224,7 +224,7 @@ class Ros1BagReader : public BagReader {
     }
     if (files.size() < 2) return;
     require_one_recording();
-    notes.push_back("these bags are read together as parts of one recording:" + names);
+    notes.push_back("the import reads these bags as parts of one recording:" + names);
   }
 
   std::vector<BagTopic> topics() override {

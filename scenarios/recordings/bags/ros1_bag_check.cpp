@@ -43,7 +43,7 @@ class Walk {
     const CheckedRecord file = record(at, bytes_);
     if (op(file) != ros1::kFile) fail(at, "the first record is not a bag header");
     if (number<std::uint64_t>(file, "index_pos") == 0)
-      fail(at, "the bag was not closed: it has no index (create one with 'rosbag reindex')");
+      fail(at, "the bag was not closed and has no index (create the index with 'rosbag reindex')");
     const std::uint64_t index_at = number<std::uint64_t>(file, "index_pos");
     if (index_at >= bytes_) fail(at, "the index is beyond the end of the file; the bag may be truncated");
     bool indexed = false;
@@ -56,7 +56,7 @@ class Walk {
     if (!indexed) fail(index_at, "there is no record at the stated start of the index");
     for (const auto& [info_at, chunk_at] : infos_) {
       if (!chunks_.contains(chunk_at))
-        fail(info_at, fmt::format("refers to a chunk at byte {}, which does not exist", chunk_at));
+        fail(info_at, fmt::format("refers to a chunk at byte {}, which does not exist: the file is damaged", chunk_at));
     }
   }
 
@@ -81,7 +81,7 @@ class Walk {
     std::memcpy(&value, text(at, sizeof(value)).data(), sizeof(value));
     const std::uint64_t left = end - at - sizeof(value);
     if (value > left || value > most) {
-      fail(at, fmt::format("{} has {} bytes, must be at most {}: the file is damaged or truncated", what, value,
+      fail(at, fmt::format("{} has {} bytes; it must have at most {}: the file is damaged or truncated", what, value,
                            std::min<std::uint64_t>(left, most)));
     }
     return value;
@@ -144,14 +144,16 @@ class Walk {
         entries(record, 8);
         break;
       default:
-        fail(record.at, fmt::format("a record of kind {} is not allowed here", op(record)));
+        fail(record.at,
+             fmt::format("a record of kind {} is not allowed at this position: the file is damaged", op(record)));
     }
   }
 
   void connection(const CheckedRecord& record) {
     connections_.insert(number<std::uint32_t>(record, "conn"));
     if (!record.fields.contains("topic")) fail(record.at, "a connection has no topic");
-    if (record.data_bytes > kRecordHeaderMax) fail(record.at, "a connection record is larger than 1 MiB");
+    if (record.data_bytes > kRecordHeaderMax)
+      fail(record.at, "a connection record is larger than 1 MiB, which is the maximum");
     fields(record.at, text(record.data_at, record.data_bytes));  // type information is also a header
   }
 
@@ -162,13 +164,14 @@ class Walk {
     chunks_.insert(record.at);
     messages_.reset();
     chunk_bytes_ = size;
-    if (size > kChunkMax) fail(record.at, fmt::format("a chunk of {} bytes; at most 1 GiB can be read", size));
+    if (size > kChunkMax) fail(record.at, fmt::format("a chunk has {} bytes; at most 1 GiB can be read", size));
     if (compression == "bz2" || compression == "lz4") return;
     if (compression != "none")
       fail(record.at,
-           fmt::format("a chunk of compression '{}' is not supported; supported: none, bz2 and lz4", compression));
+           fmt::format("the compression '{}' of a chunk is not supported; supported: none, bz2 and lz4", compression));
     if (size != record.data_bytes) {
-      fail(record.at, fmt::format("a plain chunk of {} bytes states a size of {}", record.data_bytes, size));
+      fail(record.at, fmt::format("an uncompressed chunk of {} bytes states a size of {}: the file is damaged",
+                                  record.data_bytes, size));
     }
     messages_.emplace();
     for (std::uint64_t at = record.data_at; at < record.end();) {
@@ -185,7 +188,7 @@ class Walk {
 
   void message(const CheckedRecord& record, std::uint64_t offset) {
     if (!connections_.contains(number<std::uint32_t>(record, "conn")))
-      fail(record.at, "a message belongs to no connection");
+      fail(record.at, "a message has no connection: the file is damaged");
     number<std::uint64_t>(record, "time");
     messages_->insert(offset);
   }
@@ -202,7 +205,7 @@ class Walk {
   /// Checks the message offsets of the preceding chunk.
   void index(const CheckedRecord& record) {
     constexpr std::uint32_t kEntry = 12, kPlace = 8;
-    if (chunks_.empty()) fail(record.at, "an index comes before any chunk");
+    if (chunks_.empty()) fail(record.at, "an index precedes the first chunk: the file is damaged");
     const std::uint32_t count = entries(record, kEntry);
     const std::string bytes = text(record.data_at, record.data_bytes);
     for (std::uint32_t i = 0; i < count; ++i) {

@@ -167,7 +167,7 @@ std::string packed_by(const YAML::Node& root, const path& metadata) {
   if (format.empty() || mode == "none") return "";
   if (format != "zstd" || (mode != "file" && mode != "message"))
     fail_at(metadata, fmt::format("the bag has the compression format '{}' and mode '{}'; supported: zstd with mode "
-                                  "file or message (convert it with 'ros2 bag convert')",
+                                  "file or message (convert the bag with 'ros2 bag convert')",
                                   format, mode));
   return mode;
 }
@@ -184,7 +184,7 @@ void add_unlisted(const path& folder, StoredBag& bag) {
       found.insert(file);
   }
   if (found.empty()) return;
-  bag.note = "caution: metadata.yaml does not list these files, which are read as parts of the bag:";
+  bag.note = "caution: metadata.yaml does not list these files; the import reads them as parts of the bag:";
   for (const path& file : found) bag.note += " " + file.filename().string();
   bag.files.insert(bag.files.end(), found.begin(), found.end());
 }
@@ -203,7 +203,7 @@ StoredBag storage_of(const path& bag) {
     const YAML::Node root = YAML::LoadFile(metadata.string())["rosbag2_bagfile_information"];
     out.kind = root["storage_identifier"].as<std::string>();
     if (out.kind != "sqlite3" && out.kind != "mcap")
-      fail_at(metadata, fmt::format("the storage is '{}', must be sqlite3 or mcap", out.kind));
+      fail_at(metadata, fmt::format("the storage is '{}'; it must be sqlite3 or mcap", out.kind));
     out.packed = packed_by(root, metadata);
     for (const YAML::Node& each : root["relative_file_paths"]) {
       const path name = path(each.as<std::string>()).filename();  // only files within the folder
@@ -212,7 +212,7 @@ StoredBag storage_of(const path& bag) {
   } catch (const YAML::Exception& error) {
     std::string what = error.what();
     std::replace(what.begin(), what.end(), '\n', ' ');
-    fail_at(metadata, "not the metadata of a ROS 2 bag: " + what);
+    fail_at(metadata, "this file is not the metadata of a ROS 2 bag: " + what);
   }
   if (out.files.empty()) fail_at(metadata, "relative_file_paths lists no file");
   add_unlisted(bag, out);
@@ -234,7 +234,7 @@ class Ros2BagReader : public BagReader {
         const std::string format = query.getColumn(2).getString();
         const BagTopic topic = {query.getColumn(0).getString(), ros1_type(query.getColumn(1).getString())};
         if (format != "cdr")
-          fail_at(file, fmt::format("topic {} has the serialization format '{}', must be cdr", topic.name, format));
+          fail_at(file, fmt::format("topic {} has the serialization format '{}'; it must be cdr", topic.name, format));
         const auto same = [&](const BagTopic& each) { return each.name == topic.name; };
         if (std::none_of(topics.begin(), topics.end(), same)) topics.push_back(topic);
       }

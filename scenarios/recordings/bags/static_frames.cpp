@@ -28,20 +28,20 @@ void StaticFrames::add(const ros::TransformStamped& transform, const std::string
   q.coeffs() = Eigen::Vector4d::Map(transform.rotation_xyzw.data());
   Hung hung{parent, Eigen::Isometry3d::Identity(), ""};
   if (!(p.cwiseAbs().maxCoeff() <= kFrameFar_m) || !p.allFinite()) {
-    hung.problem = what + ": its translation must be at most 1 km";
+    hung.problem = what + ": the translation must be finite and at most 1 km";
   } else if (!(std::abs(q.norm() - 1.0) <= kFrameNormTolerance)) {
-    hung.problem = fmt::format("{}: its quaternion has norm {}, must be 1", what, std::to_string(q.norm()));
+    hung.problem = fmt::format("{}: its quaternion has norm {}; the norm must be 1", what, std::to_string(q.norm()));
   } else if (parent == child) {
     hung.problem = what + ": the frame is its own parent";
   } else {
     hung.T_parent.linear() = q.normalized().toRotationMatrix();
     hung.T_parent.translation() = p;
   }
-  if (!hung.problem.empty()) remarks_.push_back(fmt::format("caution: {}; it is ignored", hung.problem));
+  if (!hung.problem.empty()) remarks_.push_back(fmt::format("caution: {}; this transform is ignored", hung.problem));
   if (const auto before = frames_.find(child); before != frames_.end() && before->second.parent != parent) {
     remarks_.push_back(
-        fmt::format("caution: '{}' has the parent '{}' and later the parent '{}'; a frame may have only one parent, so "
-                    "the later one is used ({})",
+        fmt::format("caution: frame '{}' has the parent '{}' and later the parent '{}'; a frame may have only one "
+                    "parent, so the later parent is used ({})",
                     child, before->second.parent, parent, where));
   }
   frames_.insert_or_assign(child, std::move(hung));

@@ -127,8 +127,9 @@ ros::LivoxCustomMsg livox_of(const sim::LidarRecord& lidar, const std::vector<st
                              std::int64_t start_ns, const ros::Header& header) {
   constexpr double kFull = 255.0;
   if (!has_timed_points(lidar)) {
-    throw BadInput(
-        fmt::format("the points of '{}' have no time stamps; a CustomMsg needs measured time stamps", lidar.name));
+    throw BadInput(fmt::format(
+        "the points of '{}' have no time stamps, but a CustomMsg needs measured time stamps; choose another format",
+        lidar.name));
   }
   ros::LivoxCustomMsg out;
   out.header = header;

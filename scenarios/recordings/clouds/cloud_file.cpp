@@ -113,8 +113,8 @@ void require_numbers(const std::filesystem::path& path, const CloudHeader& heade
     }
     if (words == 0) continue;
     if (words != header.numbers) {
-      throw BadInput(path.string() + ":" + std::to_string(number) + ": " + std::to_string(words) +
-                     " numbers, must be " + std::to_string(header.numbers));
+      throw BadInput(path.string() + ":" + std::to_string(number) + ": the line has " + std::to_string(words) +
+                     " numbers; it must have " + std::to_string(header.numbers));
     }
     ++points;
   }
@@ -154,7 +154,7 @@ void add_bin_column(const std::string& text, pcl::PCLPointCloud2& cloud) {
   const std::string type = colon == std::string::npos ? "f4" : text.substr(colon + 1);
   const auto known = std::ranges::find_if(kBinTypes, [&](const auto& each) { return type == each.first; });
   if (known == kBinTypes.end())
-    throw BadInput("columns of a .bin file: type '" + type + "', must be f4, f8, u1, u2, u4, u8, i1, i2, i4 or i8");
+    throw BadInput("columns of a .bin file: type '" + type + "'; it must be f4, f8, u1, u2, u4, u8, i1, i2, i4 or i8");
   pcl::PCLPointField field;
   field.name = text.substr(0, colon);
   field.offset = cloud.point_step;
@@ -200,9 +200,9 @@ Cloud read_bin(const std::filesystem::path& path, const std::string& columns) {
     if (!contradiction.empty()) throw BadInput(path.string() + ": " + contradiction + kColumnsHint);
   }
   if (bytes % cloud.point_step != 0) {
-    throw BadInput(path.string() + ": has " + std::to_string(bytes) + " bytes, must be a multiple of " +
+    throw BadInput(path.string() + ": has " + std::to_string(bytes) + " bytes; the number must be a multiple of " +
                    std::to_string(cloud.point_step) + " (" + columns +
-                   "): the file may be truncated or have other columns");
+                   "); the file may be truncated or have other columns");
   }
   return to_columns(cloud, bytes / cloud.point_step);
 }

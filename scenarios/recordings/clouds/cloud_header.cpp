@@ -149,7 +149,7 @@ std::map<std::string, Words> pcd_lines(HeaderLines& lines) {
   while (!found.contains("DATA")) {
     const Words words = lines.next();
     if (words.empty() && !lines.line_is_empty())
-      lines.fail("the line has only blanks; it must be empty or contain a word");
+      lines.fail("the line contains only blanks; it must be empty or contain a word");
     if (words.empty() || words.front().starts_with("#")) continue;
     const auto at = std::find(order.begin(), order.end(), words.front());
     if (at == order.end()) lines.fail("does not begin with a keyword of a PCD header");
@@ -166,24 +166,24 @@ std::map<std::string, Words> pcd_lines(HeaderLines& lines) {
 }
 
 std::uint64_t single(const HeaderLines& lines, const std::string& name, const Words& words) {
-  if (words.size() != 1) lines.fail(fmt::format("{} has {} numbers, must have 1", name, words.size()));
+  if (words.size() != 1) lines.fail(fmt::format("{} has {} numbers; it must have 1", name, words.size()));
   const std::uint64_t value = lines.whole(name, words.front());
   if (value > kCloudPointsMax) {
-    lines.fail(fmt::format("{} is {}, must be at most {}", name, value, kCloudPointsMax));
+    lines.fail(fmt::format("{} is {}; it must be at most {}", name, value, kCloudPointsMax));
   }
   return value;
 }
 
 /// Returns the line VIEWPOINT x y z qw qx qy qz as written; "" if the viewpoint is the identity.
 std::string viewpoint_of(const HeaderLines& lines, const Words& words) {
-  if (words.size() != 7) lines.fail(fmt::format("VIEWPOINT has {} numbers, must have 7", words.size()));
+  if (words.size() != 7) lines.fail(fmt::format("VIEWPOINT has {} numbers; it must have 7", words.size()));
   constexpr std::array<double, 7> kOwn = {0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0};
   std::string written;
   bool own = true;
   for (std::size_t i = 0; i < kOwn.size(); ++i) {
     double value = 0.0;
     if (!read_number(words[i], value) || !std::isfinite(value))
-      lines.fail(fmt::format("VIEWPOINT's number {} is '{}', must be finite", i + 1, words[i]));
+      lines.fail(fmt::format("VIEWPOINT's number {} is '{}'; it must be finite", i + 1, words[i]));
     own = own && value == kOwn[i];
     written += (i > 0 ? " " : "") + words[i];
   }
@@ -238,7 +238,7 @@ CloudHeader read_pcd_header(const std::filesystem::path& path) {
   for (std::size_t i = 0; i < header.fields; ++i) {
     const std::uint64_t size = lines.whole("SIZE", found["SIZE"][i]), count = lines.whole("COUNT", found["COUNT"][i]);
     if (size == 0 || size > 8 || count == 0 || count > 4096) {
-      lines.fail(fmt::format("field {} has {} numbers of {} bytes; supported are 1 to 4096 numbers of 1 to 8 bytes",
+      lines.fail(fmt::format("field {} has {} numbers of {} bytes; supported: 1 to 4096 numbers of 1 to 8 bytes",
                              found["FIELDS"][i], count, size));
     }
     const std::string& type = found["TYPE"][i];
@@ -253,7 +253,8 @@ CloudHeader read_pcd_header(const std::filesystem::path& path) {
   const std::uint64_t width = single(lines, "WIDTH", found["WIDTH"]), height = single(lines, "HEIGHT", found["HEIGHT"]);
   header.points = width * height;
   if (found.contains("POINTS") && single(lines, "POINTS", found["POINTS"]) != header.points) {
-    lines.fail(fmt::format("POINTS is {}, but WIDTH times HEIGHT is {}", found["POINTS"].front(), header.points));
+    lines.fail(fmt::format("POINTS is {}, but WIDTH times HEIGHT is {}; they must be equal", found["POINTS"].front(),
+                           header.points));
   }
   if (found.contains("VIEWPOINT")) header.viewpoint = viewpoint_of(lines, found["VIEWPOINT"]);
   const std::string encoding = found["DATA"].empty() ? "" : found["DATA"].front();
@@ -262,7 +263,7 @@ CloudHeader read_pcd_header(const std::filesystem::path& path) {
     header.point_bytes = 0;
     header.ascii = true;
   } else if (encoding != "binary" && encoding != "binary_compressed") {
-    lines.fail(fmt::format("DATA is '{}', must be ascii, binary or binary_compressed", encoding));
+    lines.fail(fmt::format("DATA is '{}'; it must be ascii, binary or binary_compressed", encoding));
   }
   lines.require_room(header, encoding == "binary_compressed" ? kLzfMost : 1);
   if (encoding == "binary_compressed" && header.points > 0) lines.require_sizes(header);

@@ -13,7 +13,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "both formats are written in the byte order of memory");
+static_assert(std::endian::native == std::endian::little, "PLY and PCD files are written in the byte order of memory");
 
 std::string ply_header(std::size_t points, bool timed) {
   return "ply\nformat binary_little_endian 1.0\ncomment one lidar sweep, lidar axes, metres, not deskewed\nelement "
@@ -49,7 +49,7 @@ void append_points(std::string& out, const sim::LidarRecord& lidar, std::size_t 
 
 void export_sweeps(const sim::Sensors& sensors, const std::filesystem::path& folder, std::int64_t origin_ns,
                    const char* extension, std::string (*header)(std::size_t, bool)) {
-  if (sensors.lidars.empty()) throw BadInput("the recording has no lidar, so there is no sweep to export");
+  if (sensors.lidars.empty()) throw BadInput("the recording has no lidar, so there are no sweeps to export");
   const std::vector<std::string> stems = export_names(sensors).lidars.names;
   OutputFolder output(folder);
   for (std::size_t k = 0; k < sensors.lidars.size(); ++k) {

@@ -36,8 +36,8 @@ std::vector<std::int64_t> stamps_of(const SweepSource& source, const std::vector
   if (file.empty()) return stamps_in_names(files);
   std::vector<std::int64_t> stamps = read_stamps(file, &disorder);
   if (stamps.size() != files.size()) {
-    throw BadInput(fmt::format("{}: holds {} time stamps, but there are {} sweeps in {}; must be equal", file.string(),
-                               stamps.size(), files.size(), source.folder.string()));
+    throw BadInput(fmt::format("{}: contains {} time stamps, but there are {} sweeps in {}; the numbers must be equal",
+                               file.string(), stamps.size(), files.size(), source.folder.string()));
   }
   return stamps;
 }
@@ -59,7 +59,7 @@ Imported import_sweeps(const SweepSource& source) {
   if (stamps.empty() && source.steady_ns > 0) {
     stamps = steady_stamps(files.size(), source.steady_ns);
     reading.assumed = true;
-    out.notes.push_back("the sweeps have no time stamps; their times follow from the given period only");
+    out.notes.push_back("the sweeps have no time stamps; the import computes the times from the stated period");
   }
   const std::vector<bool> in_order = stamps_in_order(stamps);
   std::vector<std::int64_t> kept = stamps;

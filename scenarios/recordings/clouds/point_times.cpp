@@ -35,7 +35,7 @@ constexpr double kEpochMin_s = 1e8;
 /// of the period and do not contradict a stated unit.
 constexpr double kPointsThatSpan = 100.0;
 
-/// Of this many clouds with absolute times, at least two start more than two periods after the clock's zero.
+/// Among this many clouds with absolute times, at least two clouds start more than two periods after time zero.
 constexpr std::size_t kCloudsToCompare = 5;
 
 std::string lower(std::string text) {
@@ -119,11 +119,11 @@ void require_no_other_unit(const TimeUnit& stated, double span, double period_ns
   const auto* read =
       std::find_if(kUnits.begin(), kUnits.end(), [&](const TimeUnit& each) { return fits(span, each, period_ns); });
   if (read == kUnits.end()) return;
-  std::string line =
-      fmt::format("{}: the field '{}' has the stated unit {} and a range of ", where, field, stated.name);
+  std::string line = fmt::format("{}: the point times in field '{}' have the stated unit {} and a range of ", where,
+                                 field, stated.name);
   append_number(line, span);
-  throw BadInput(fmt::format("{} in a sweep: {}, {}; check which unit is right", line,
-                             share_of(span, stated, period_ns), share_of(span, *read, period_ns)));
+  throw BadInput(fmt::format("{} in a sweep: {}, {}; check the unit", line, share_of(span, stated, period_ns),
+                             share_of(span, *read, period_ns)));
 }
 
 /// Determines the unit from the size of the numbers.
@@ -134,13 +134,13 @@ double unit_by_size(double span, double largest, double period_ns, const std::st
     if (!(period_ns > 0.0) && largest >= kEpochMin_s * 1e9 / unit.ns && largest < kEpochMin_s * 1e12 / unit.ns)
       return unit.ns;
   }
-  std::string line = fmt::format("{}: the field '{}' has a range of ", where, field);
+  std::string line = fmt::format("{}: the point times in field '{}' have a range of ", where, field);
   append_number(line, span);
   line += " in a sweep";
   if (!(period_ns > 0.0)) {
     throw BadInput(
-        fmt::format("{}, which does not match time stamps since 1970: give the times of the sweeps, or the duration of "
-                    "one sweep (--sweep-period)",
+        fmt::format("{}, but these are not time stamps since 1970; give the times of the sweeps (--times), or the "
+                    "duration of one sweep (--sweep-period)",
                     line));
   }
   line += ": in none of s, ms, us and ns is this 0.15 to 150 % of the sweep period of ";
@@ -177,7 +177,7 @@ PointTimeRule find_point_times(const std::vector<Cloud>& first, std::int64_t per
       std::find_if(kUnits.begin(), kUnits.end(), [&](const TimeUnit& each) { return unit == each.name; });
   const double span = upper_median(spans), period = static_cast<double>(period_ns);
   if (!unit.empty() && named == kUnits.end())
-    throw BadInput(fmt::format("the unit of point times is '{}', must be s, ms, us or ns", unit));
+    throw BadInput(fmt::format("the unit of point times is '{}'; it must be s, ms, us or ns", unit));
   if (unit.empty()) named = unit_of_name(lower(rule.field));
   if (named != nullptr && named != kUnits.end() && upper_median(points) >= kPointsThatSpan)
     require_no_other_unit(*named, span, period, rule.field, where);

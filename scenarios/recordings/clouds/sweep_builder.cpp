@@ -88,7 +88,8 @@ std::vector<std::uint16_t> rings_of(const Cloud& cloud, const std::vector<std::s
   for (const std::size_t i : kept) {
     const double ring = column != nullptr ? (*column)[i] : 0.0;
     if (!(ring >= 0.0 && ring <= 65535.0 && ring == std::floor(ring)))
-      throw BadInput(fmt::format("{}: point {}: ring is {}, must be a whole number from 0 to 65535", where, i, ring));
+      throw BadInput(
+          fmt::format("{}: point {}: ring is {}; it must be a whole number from 0 to 65535", where, i, ring));
     rings.push_back(static_cast<std::uint16_t>(ring));
   }
   return rings;
@@ -185,7 +186,8 @@ std::vector<std::int64_t> SweepBuilder::point_times(const Waiting& sweep, std::v
   }
   const std::vector<double>* numbers = sweep.cloud.find(rule_->field);
   if (numbers == nullptr)
-    throw BadInput(fmt::format("{}: there is no field '{}', which other sweeps have", sweep.where, rule_->field));
+    throw BadInput(
+        fmt::format("{}: there is no field '{}', but other sweeps have this field", sweep.where, rule_->field));
   if (!rule_->absolute && !sweep.stamp_ns)
     throw BadInput(sweep.where + ": its point times are relative, but the sweep has no time stamp");
   constexpr double kBound = 4.6e18;  // differences fit in int64
@@ -206,11 +208,12 @@ std::vector<std::int64_t> SweepBuilder::point_times(const Waiting& sweep, std::v
       timed.push_back(kept[k]);
       out.push_back(*times_ns[k]);
     } else if (first_mistimed.empty()) {
-      first_mistimed = times_ns[k]
-                           ? fmt::format("{}: point {} is {} after the middle of the sweep; this must be within {}",
-                                         sweep.where, kept[k], in_ns(*times_ns[k] - middle_ns), in_ns(bound_ns))
-                           : fmt::format("{}: point {}: the time is {}, must be finite and within 146 years",
-                                         sweep.where, kept[k], std::to_string((*numbers)[kept[k]]));
+      first_mistimed =
+          times_ns[k]
+              ? fmt::format("{}: point {} is {} after the middle of the sweep; this difference must be within {}",
+                            sweep.where, kept[k], in_ns(*times_ns[k] - middle_ns), in_ns(bound_ns))
+              : fmt::format("{}: point {}: the time is {}; it must be finite and within 146 years", sweep.where,
+                            kept[k], std::to_string((*numbers)[kept[k]]));
     }
   }
   const std::size_t mistimed = kept.size() - timed.size();
@@ -243,7 +246,7 @@ std::int64_t SweepBuilder::start_of(const Waiting& sweep, std::vector<std::int64
   }
   const std::int64_t last = *std::max_element(times_ns.begin(), times_ns.end());
   if (last - start > bound || last - start > std::numeric_limits<std::uint32_t>::max()) {
-    throw BadInput(fmt::format("{}: its last point is {} after the start of the sweep; this must be at most {}",
+    throw BadInput(fmt::format("{}: its last point is {} after the start of the sweep; this time must be at most {}",
                                sweep.where, in_ns(last - start), in_ns(bound)));
   }
   return start;
@@ -259,7 +262,7 @@ bool SweepBuilder::is_far(const Waiting& sweep, const std::vector<std::size_t>& 
   beyond_ += beyond;
   if (2 * beyond <= kept.size()) return false;
   far_ += kept.size();
-  left_out_.add_unlimited("most points beyond twice the lidar's range", sweep.where);
+  left_out_.add_unlimited("most points farther than twice the lidar's range", sweep.where);
   return true;
 }
 
@@ -293,7 +296,7 @@ void SweepBuilder::scale_intensity(std::vector<std::string>& notes) {
   const auto scale = [&](float& each) { each = static_cast<float>(each / full); };
   if (store_) store_->intensity.change(scale);
   std::for_each(record_.intensity.begin(), record_.intensity.end(), scale);
-  notes.push_back("intensities exceed 1; they are divided by " + std::to_string(full));
+  notes.push_back("the intensities exceed 1 and are divided by " + std::to_string(full));
 }
 
 double SweepBuilder::range_max_m() const {
@@ -304,10 +307,11 @@ double SweepBuilder::range_max_m() const {
 void SweepBuilder::require_range(const std::string& where) const {
   const std::size_t all = points() + far_;
   if (2 * beyond_ <= all) return;
-  throw BadInput(fmt::format(
-      "{}: {} of {} points are farther than {:g} m, twice {}; at most half may be. Check that x, y and z are in metres",
-      where, beyond_, all, kBeyond * range_max_m(),
-      reading_.range_max_m > 0.0 ? "the range of the data sheet" : "the range of any robot lidar"));
+  throw BadInput(
+      fmt::format("{}: {} of {} points are farther than {:g} m, which is twice {}; at most half of the points may be "
+                  "that far. Check that x, y and z are in metres",
+                  where, beyond_, all, kBeyond * range_max_m(),
+                  reading_.range_max_m > 0.0 ? "the range in the data sheet" : "the range of any robot lidar"));
 }
 
 void SweepBuilder::note_what_was_left(std::vector<std::string>& notes) const {
@@ -315,37 +319,38 @@ void SweepBuilder::note_what_was_left(std::vector<std::string>& notes) const {
   for (const auto& [name, sweeps] : ignored_) names += " " + name;
   if (left_out_.count() > 0) notes.push_back(left_out_.note(record_.sweep_start_ns.size() + skipped_));
   if (mistimed_ > 0)
-    notes.push_back(fmt::format("caution: {} points with times outside their sweep are left out (first: {})", mistimed_,
-                                first_mistimed_));
+    notes.push_back(
+        fmt::format("caution: {} points are left out, because their times are outside their sweep (first: {})",
+                    mistimed_, first_mistimed_));
   if (other_clock_)
     notes.push_back(
-        "caution: the point times belong to another clock than the time stamps of the sweeps. They count from the "
-        "first point of each sweep, which is assumed to be measured at the sweep's time stamp");
+        "caution: the point times and the time stamps of the sweeps come from different clocks. The import assumes "
+        "that the first point of each sweep was measured at the sweep's time stamp");
   if (falls_ > kBackwards * (rises_ + 1))
     notes.push_back(
-        "caution: the point times run backwards: points that are stored later have earlier times. Unless the driver "
-        "stores the last point first, the times are wrong and deskewing doubles the distortion");
+        "caution: points that are stored later have earlier times. If the driver stores the points in the order of "
+        "measurement, the times are wrong and deskewing doubles the distortion");
   if (rule_ && rule_->constant)
     notes.push_back(
-        "caution: all points of a sweep have the same time, so the sweeps are read as not skewed; if the lidar turns "
-        "during a sweep, set its driver to provide point times");
+        "caution: all points of a sweep have the same time, so the sweeps are treated as not skewed. If the lidar "
+        "rotates during a sweep, configure its driver to provide point times");
   if (rule_ && rule_->short_span)
     notes.push_back(
-        "caution: the point times span less than 2 % of the sweep period; check the unit (set '--time-unit'), or set "
+        "caution: the point times span less than 2 % of the sweep period. Check the unit (set '--time-unit'), or set "
         "'--not-skewed' if the times count from the start of each packet");
   if (misses_ > 0)
     notes.push_back(std::to_string(misses_) +
-                    " points are missing returns (not finite, beyond 1000 km, or at the origin)");
+                    " points are treated as missing returns (not finite, farther than 1000 km, or at the origin)");
   if (skipped_ > 0) notes.push_back(std::to_string(skipped_) + " sweeps without points and time stamp are left out");
-  if (dark_ > 0) notes.push_back(std::to_string(dark_) + " points have no intensity; 0 is stored");
+  if (dark_ > 0) notes.push_back(std::to_string(dark_) + " points have no intensity; the import stores 0");
   if (viewpoints_ > 0)
     notes.push_back(
-        fmt::format("{} sweeps have a VIEWPOINT, which is not applied; points are read as coordinates in the lidar's "
-                    "axes (first VIEWPOINT: {})",
+        fmt::format("{} sweeps have a VIEWPOINT, which the import ignores: it reads the points as coordinates in the "
+                    "lidar's axes (first VIEWPOINT: {})",
                     viewpoints_, first_viewpoint_));
   if (record_.point_times == sim::PointTimes::unknown)
     notes.push_back("the points have no time stamps, so sweeps cannot be deskewed" +
-                    (names.empty() ? "" : "; if one of these fields has the times, set '--time-field':" + names));
+                    (names.empty() ? "" : "; if one of these fields contains the times, set '--time-field':" + names));
   if (!names.empty()) notes.push_back("ignored fields:" + names);
 }
 
@@ -353,24 +358,26 @@ BuiltSweeps SweepBuilder::finish(const std::string& where, std::vector<std::stri
   if (!rule_ && !waiting_.empty()) find_rule();
   left_out_.require_few(record_.sweep_start_ns.size() + skipped_);
   require_range(where);
-  if (points() == 0) throw BadInput(where + ": no sweep has a point");
+  if (points() == 0) throw BadInput(where + ": all sweeps are empty; at least one sweep must have points");
   record_.sweep_first.push_back(points());
   record_.name = reading_.device.name;
   record_.device = reading_.device.device;
   record_.T_BL = reading_.device.T_BL;
   const std::int64_t stated_ns = reading_.device.sweep_period_ns, step_ns = median_step_ns(record_.sweep_start_ns);
   record_.sweep_period_ns = stated_ns > 0 ? stated_ns : step_ns;
-  if (record_.sweep_period_ns <= 0) throw BadInput(where + ": a single sweep needs its period (--sweep-period)");
+  if (record_.sweep_period_ns <= 0)
+    throw BadInput(where + ": there is only one sweep, so its period is unknown; state the period (--sweep-period)");
   if (rule_ && !rule_->field.empty()) notes.push_back(said(*rule_));
   const bool overlaps = step_ns > 0 && static_cast<double>(stated_ns) > kOverlapMost * static_cast<double>(step_ns);
   if (stated_ns > 0 && (overlaps || stated_ns < longest_ns_)) {
     notes.push_back(fmt::format(
-        "the stated period of a sweep is {} and is used, but sweeps are {} apart and their points span up to {}",
+        "the import uses the stated sweep period of {}, but the sweeps are {} apart and their points span up to {}",
         in_ns(stated_ns), in_ns(step_ns), in_ns(longest_ns_)));
   }
   if (stated_ns <= 0 && longest_ns_ > record_.sweep_period_ns) {
-    notes.push_back(fmt::format("sweeps are {} apart and last up to {}; the latter is used as their period",
-                                in_ns(record_.sweep_period_ns), in_ns(longest_ns_)));
+    notes.push_back(fmt::format(
+        "the sweeps are {} apart, but their points span up to {}; the import uses the span as the sweep period",
+        in_ns(record_.sweep_period_ns), in_ns(longest_ns_)));
     record_.sweep_period_ns = longest_ns_;
   }
   note_what_was_left(notes);

@@ -100,7 +100,7 @@ std::vector<std::filesystem::path> sweep_files(const std::filesystem::path& fold
   std::sort(files.begin(), files.end(), natural_less);
   if (stem_of(files.front()) != stem_of(files.back())) {
     throw BadInput(
-        fmt::format("{}: contains files of several lidars, '{}' and '{}'; select one by its file name prefix",
+        fmt::format("{}: contains files of several lidars, '{}' and '{}'; select one lidar by its file name prefix",
                     folder.string(), stem_of(files.front()), stem_of(files.back())));
   }
   return files;

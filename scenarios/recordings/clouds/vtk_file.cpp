@@ -87,8 +87,8 @@ void require_room(const VtkWords& words, std::uint64_t count, std::uint64_t each
     words.fail(fmt::format("states {} points; at most {} can be read from a file", count, kCloudPointsMax));
   }
   if (count * each * 2 > words.left() + 1) {
-    words.fail(fmt::format("states {} times {} numbers, but {} bytes follow; the file may be truncated", count, each,
-                           words.left()));
+    words.fail(fmt::format("states {} times {} numbers, but only {} bytes follow; the file may be truncated", count,
+                           each, words.left()));
   }
 }
 
@@ -123,14 +123,15 @@ void read_scalars(VtkWords& words, Cloud& cloud) {
   std::string_view word = words.need("LOOKUP_TABLE");
   if (word != "LOOKUP_TABLE") {
     if (!read_number(word, each) || each < 1 || each > 4)
-      words.fail(fmt::format("scalars '{}' of '{}' numbers per point; there must be 1 to 4", shortened(name),
+      words.fail(fmt::format("scalars '{}' have '{}' numbers per point; they must have 1 to 4", shortened(name),
                              shortened(word)));
     word = words.need("LOOKUP_TABLE");
   }
   if (word != "LOOKUP_TABLE") words.fail("'" + shortened(word) + "' instead of LOOKUP_TABLE");
   words.need("the name of the lookup table");
   if (each != 1) return pass_over(words, cloud.points, each);
-  if (cloud.find(name) != nullptr) words.fail(fmt::format("scalars '{}' occur twice", shortened(name)));
+  if (cloud.find(name) != nullptr)
+    words.fail(fmt::format("scalars '{}' occur twice; each name may occur once", shortened(name)));
   require_room(words, cloud.points, 1);
   std::vector<double> column(cloud.points);
   for (double& value : column) value = words.number();
@@ -143,7 +144,7 @@ void pass_data(VtkWords& words, const Cloud& cloud, std::string_view section) {
   words.need("a name");
   if (section == "COLOR_SCALARS") {
     const std::uint64_t each = words.whole("the numbers of a colour");
-    if (each < 1 || each > 4) words.fail(fmt::format("colours of {} numbers, must be 1 to 4", each));
+    if (each < 1 || each > 4) words.fail(fmt::format("colours have {} numbers; they must have 1 to 4", each));
     return pass_over(words, cloud.points, each);
   }
   words.need("a type");
@@ -151,7 +152,8 @@ void pass_data(VtkWords& words, const Cloud& cloud, std::string_view section) {
 }
 
 void read_header(VtkWords& words) {
-  if (!words.line().starts_with("# vtk DataFile Version")) words.fail("does not begin as a VTK file");
+  if (!words.line().starts_with("# vtk DataFile Version"))
+    words.fail("does not begin with '# vtk DataFile Version', so the file is not a VTK file");
   words.line();  // title
   const std::string_view encoding = words.need("ASCII");
   if (encoding == "BINARY") words.fail("is a binary file; only text (ASCII) VTK files are supported");

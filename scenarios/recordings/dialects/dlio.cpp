@@ -116,7 +116,7 @@ Dialect dlio_dialect() {
   out.sweeps = ouster_layout;
   out.configuration = dlio_configuration;
   out.run = "roslaunch direct_lidar_inertial_odometry dlio.launch; rosbag play recording.bag";
-  out.notes = {"DLIO averages the IMU at rest at the start; a recording without rest cannot be levelled"};
+  out.notes = {"DLIO needs a rest at the start, because it levels the attitude with averaged IMU readings"};
   out.sources = {{repository, "include/dlio/dlio.h", "07bf91ed0e1adb726765cb82a466dca0dccb1e18"},
                  {repository, "src/dlio/odom.cc", "1637f88cf078775d2a92608297555bba7f22e683"},
                  {repository, "cfg/dlio.yaml", "044f8440818ab1dc2b161220ec5b29236f95a748"},

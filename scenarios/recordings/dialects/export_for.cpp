@@ -72,7 +72,7 @@ std::vector<std::string> leave_out_empty_sweeps(Dialect& dialect, LidarFacts& li
   const std::size_t empty = lidar.empty_sweeps;
   if (dialect.takes_empty || empty == 0) return {};
   lidar.sweeps -= empty;
-  const std::string note = fmt::format("{}{} without points are left out: {} cannot read an empty cloud", empty,
+  const std::string note = fmt::format("{}{} without points are left out, because {} cannot read an empty cloud", empty,
                                        empty == 1 ? " sweep" : " sweeps", dialect.name);
   dialect.notes.push_back(note);
   return {note};

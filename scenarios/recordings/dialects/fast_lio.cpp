@@ -65,7 +65,7 @@ Dialect fast_lio_dialect() {
   out.sweeps = fast_lio_layout;
   out.configuration = fast_lio_configuration;
   out.run = "roslaunch fast_lio mapping_velodyne.launch (mapping_avia.launch of a Livox); rosbag play recording.bag";
-  out.notes = {"FAST-LIO has no saturation model and uses clipped gyro readings as valid"};
+  out.notes = {"FAST-LIO has no saturation model and treats clipped gyro readings as valid"};
   out.sources = {{"hku-mars/FAST_LIO", "src/preprocess.h", "19f2212d16c4ec77e160fe81c3af0d3ea931196a"},
                  {"hku-mars/FAST_LIO", "src/preprocess.cpp", "0a3abe53558847d3981270a24c48677b231fa4cd"},
                  {"hku-mars/FAST_LIO", "src/laserMapping.cpp", "34b50d95da57b240d53e100298a6386aadad81ba"},

@@ -38,8 +38,8 @@ Dialect kiss_icp_dialect() {
   out.notes = {
       "pip install kiss-icp pyyaml rosbags: PyYAML reads its configuration and rosbags reads bags, but kiss-icp does "
       "not install them",
-      "KISS-ICP uses point times as a share of the sweep; its poses are those of the last point of a sweep",
-      "max_range is the authors' 100 m; the voxel size is a hundredth of it"};
+      "KISS-ICP converts point times to a share of the sweep; its poses are the poses at the last point of a sweep",
+      "max_range is 100 m, as in the authors' configuration; the voxel size is a hundredth of max_range"};
   out.sources = {
       {"PRBonn/kiss-icp", "python/kiss_icp/tools/point_cloud2.py", "f396813d0806980a08b701f6fab73bb63a8d65ce"},
       {"PRBonn/kiss-icp", "python/kiss_icp/datasets/rosbag.py", "02c2fce874aa90ff59a3d2a8f5162557912fac88"},

@@ -101,8 +101,8 @@ Dialect lio_sam_dialect() {
   out.configuration = lio_sam_configuration;
   out.run = "roslaunch lio_sam run.launch; rosbag play recording.bag";
   out.notes = {
-      "LIO-SAM needs an IMU with attitude, but these readings have none (identity, covariance -1): it starts as if the "
-      "IMU were level, and imuRPYWeight is 0"};
+      "LIO-SAM needs an IMU with attitude, but these readings have no attitude (identity, covariance -1). LIO-SAM "
+      "therefore assumes that the IMU is level at the start, and imuRPYWeight is 0"};
   out.sources = {{"TixiaoShan/LIO-SAM", "src/imageProjection.cpp", "bfb271dcd13b708620269d06e5962a2e3e9a070f"},
                  {"TixiaoShan/LIO-SAM", "src/imuPreintegration.cpp", "041f4e63d5bee3a54bb646b0cfb704cdb1bd7147"},
                  {"TixiaoShan/LIO-SAM", "include/utility.h", "0d9d8f82c5297d36354255303cd9ea717e3eddeb"},

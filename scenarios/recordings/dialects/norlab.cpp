@@ -107,10 +107,10 @@ Dialect norlab_dialect() {
   out.configuration = norlab_configuration;
   out.run = "ros2 run norlab_icp_mapper_ros mapper_node --ros-args --params-file mapper_node.yaml; ros2 bag play bag";
   out.notes = {
-      "the mapper needs the lidar in odom at each cloud: base_link is fixed there in /tf_static, so the prior is the "
-      "last pose; replace it by an odometry on /tf if available",
-      "the mapper does not deskew: t is exported as a descriptor under a name that its converter does not read as a "
-      "time"};
+      "the mapper needs the pose of the lidar in odom for each cloud. The bag's /tf_static keeps base_link fixed in "
+      "odom, so the prior is the previous pose; replace this transform by an odometry on /tf if available",
+      "the mapper does not deskew; the point time t is exported as a descriptor that the mapper's converter does not "
+      "read as a time"};
   out.sources = {
       {repository, "src/mapper_node.cpp", "00cedbe643e593a0f151909728953f715100e568"},
       {repository, "launch/mapper.launch.py", "0597a99fe485f93dc6684fa267c68c53fa1a966d"},

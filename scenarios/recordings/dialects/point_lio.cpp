@@ -97,7 +97,7 @@ Dialect point_lio_dialect() {
   out.sweeps = fast_lio_layout;
   out.configuration = point_lio_configuration;
   out.run = "roslaunch point_lio mapping_velody16.launch (mapping_avia.launch of a Livox); rosbag play recording.bag";
-  out.notes = {"check_satu is on by default: the update leaves out an axis at or above 0.99 of satu_gyro or satu_acc"};
+  out.notes = {"check_satu is on by default: the update ignores an axis at or above 0.99 of satu_gyro or satu_acc"};
   out.sources = {{"hku-mars/Point-LIO", "src/preprocess.h", commit},
                  {"hku-mars/Point-LIO", "src/preprocess.cpp", commit},
                  {"hku-mars/Point-LIO", "src/parameters.cpp", commit},

@@ -22,7 +22,7 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-/// Returns the first line that is neither empty nor a comment; the first line if there is none.
+/// Returns the first line that is neither empty nor a comment. If no such line exists, returns the first line.
 std::string_view first_row(std::string_view text) {
   for (std::string_view rest = text; !rest.empty();) {
     const std::string_view line = trimmed(rest.substr(0, rest.find('\n')));
@@ -49,10 +49,10 @@ void require_lines(const std::string& name, std::string_view text) {
   if (const std::size_t zero = text.find('\0'); zero != std::string_view::npos) {
     const auto line = std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(zero), '\n') + 1;
     throw BadInput(name + ":" + std::to_string(line) +
-                   ": contains a zero byte; the file is damaged or not a text file");
+                   ": contains a zero byte; the file is damaged or is not a text file");
   }
   if (text.find('\n') == std::string_view::npos && text.find('\r') != std::string_view::npos)
-    throw BadInput(name + ": its lines end in a carriage return only; they must end in a line feed");
+    throw BadInput(name + ": the lines end in a carriage return; they must end in a line feed");
 }
 
 }  // namespace

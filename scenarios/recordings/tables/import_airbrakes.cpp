@@ -45,13 +45,13 @@ Eigen::Vector3d vector(const CsvLine& line, const Columns3& columns, const char*
 
 std::int64_t stamp_ns(const CsvLine& line, std::size_t column, std::size_t columns) {
   if (line.fields.size() != columns) {
-    throw BadInput(fmt::format("{}: has {} columns, but the header has {}; must be equal", line.where,
+    throw BadInput(fmt::format("{}: has {} columns, but the header has {}; the numbers must be equal", line.where,
                                line.fields.size(), columns));
   }
   const double time_s = csv_number(line, column, "timestamp_seconds");
   if (!(time_s >= 0.0 && time_s <= kAirbrakesStampMax_s)) {
-    throw BadInput(
-        fmt::format("{}: timestamp_seconds is {}, must be within 0 and {}", line.where, time_s, kAirbrakesStampMax_s));
+    throw BadInput(fmt::format("{}: timestamp_seconds is {}; it must be within 0 and {}", line.where, time_s,
+                               kAirbrakesStampMax_s));
   }
   return std::llround(time_s * 1e9);
 }
@@ -74,8 +74,9 @@ void keep_longest_segment(sim::ImuRecord& imu, std::vector<std::string>& notes) 
     begin = k;
   }
   if (gaps == 0) return;
-  notes.push_back(fmt::format("{} gaps of more than 1 s; the longest segment is kept: samples {} to {} of {}", gaps,
-                              first, end - 1, count));
+  notes.push_back(fmt::format(
+      "the recording has {} gaps of more than 1 s; the import keeps the longest segment: samples {} to {} of {}", gaps,
+      first, end - 1, count));
   keep(imu.time_ns, first, end);
   keep(imu.gyro_rad_s, first, end);
   keep(imu.accel_m_s2, first, end);
@@ -133,7 +134,7 @@ Imported import_airbrakes(const std::filesystem::path& path) {
   finish_readings(path.string(), AccelUnit::g, imu);
   const std::int64_t first_ns = imu.time_ns.front();
   for (std::int64_t& time : imu.time_ns) time -= first_ns;
-  if (doubled > 0) out.notes.push_back(fmt::format("{} rows repeat a time stamp; they are left out", doubled));
+  if (doubled > 0) out.notes.push_back(fmt::format("{} rows repeat a time stamp and are left out", doubled));
   for (const std::string& note :
        {require_plausible_rates(path.string(), imu, GyroUnit::deg_s), accel_rail_text(imu.accel_m_s2)}) {
     if (!note.empty()) out.notes.push_back(note);

@@ -82,7 +82,8 @@ std::optional<sim::Truth> read_reference(const hdf5::Group& root, const sim::Imu
   for (const auto& [name, rows] :
        {std::pair{"opt_quat", truth.q_WB.size()}, std::pair{"opt_pos", truth.p_WB_m.size()}}) {
     if (rows != imu.time_ns.size()) {
-      root.fail(name, fmt::format("has {} rows, but imu_gyr has {}", rows, imu.time_ns.size()));
+      root.fail(name,
+                fmt::format("has {} rows, but imu_gyr has {}; the numbers must be equal", rows, imu.time_ns.size()));
     }
   }
   differentiate(truth, kSlopeReach);
@@ -99,7 +100,7 @@ Imported import_broad(const std::filesystem::path& path) {
   const hdf5::InputFile file(path);
   const hdf5::Group& root = file.root();
   if (root.has_attribute("format") && root.text_attribute("format") == kRecordingFormat)
-    throw BadInput(path.string() + ": this file is a recording already; it can be used directly and needs no import");
+    throw BadInput(path.string() + ": this file is already a recording; use the file directly, without import");
   const double rate_hz = root.double_attribute("sampling_rate");
   if (!(rate_hz >= 1.0 && rate_hz <= 1e5)) root.fail("sampling_rate", "must be within 1 and 100000 Hz");
   Imported out;

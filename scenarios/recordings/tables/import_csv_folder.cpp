@@ -43,7 +43,7 @@ Imported import_csv_folder(const std::filesystem::path& folder, const sim::ImuRe
   for (const std::filesystem::path& file : tables_in(folder)) {
     if (is_pose_table(file)) continue;  // a reference
     if (const std::string problem = imu_problem(file); !problem.empty()) {
-      left_out.push_back("left out, because it is no table of IMU readings: " + problem);
+      left_out.push_back("left out, because the file is not a table of IMU readings: " + problem);
       continue;
     }
     Imported imu = import_imu_csv(file, device, unit, gyro_unit);
@@ -57,11 +57,10 @@ Imported import_csv_folder(const std::filesystem::path& folder, const sim::ImuRe
     throw BadInput(folder.string() + ": contains no table of IMU readings" +
                    (left_out.empty() ? "" : "; " + left_out.front()));
   if (out.sensors.imus.size() > 1)
-    out.notes.push_back(
-        fmt::format("'{}' is the primary IMU, because its file comes first; tables do not state where "
-                    "the IMUs are on the body, so all are assumed at the same place and along the same "
-                    "axes. To use one IMU, import its file",
-                    out.sensors.imus.front().name));
+    out.notes.push_back(fmt::format(
+        "'{}' is the primary IMU, because its file comes first. Tables do not state the poses of the IMUs on the body, "
+        "so all IMUs are assumed at the same position with the same axes. To use one IMU, import its file",
+        out.sensors.imus.front().name));
   out.notes.insert(out.notes.end(), left_out.begin(), left_out.end());
   return out;
 }

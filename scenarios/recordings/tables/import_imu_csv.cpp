@@ -23,7 +23,8 @@ template <class Unit>
 Unit chosen(std::optional<Unit> stated, Unit asked, Unit usual, const CsvLine& header) {
   if (!stated || *stated == asked) return asked;
   if (asked == usual) return *stated;
-  throw BadInput(header.where + ": the column names state rad/s and m/s^2, but another unit was given");
+  throw BadInput(header.where +
+                 ": the column names state rad/s and m/s^2, but an option states another unit; remove the option");
 }
 
 Eigen::Vector3d vector(const CsvLine& line, const std::array<std::size_t, 3>& columns) {
@@ -40,9 +41,9 @@ void say_columns(const ImuColumns& columns, bool stated, std::vector<std::string
   if (columns.stamp_form != StampForm::decimal) return;
   if (!stated)
     notes.push_back(
-        fmt::format("times are read in {}, from the size of their steps", unit_of_stamps(*columns.stamp_decimals)));
-  if (columns.gyro_unit == GyroUnit::deg_s) notes.push_back("rates are read in deg/s, from the column names");
-  if (columns.accel_unit == AccelUnit::g) notes.push_back("specific force is read in g, from the column names");
+        fmt::format("times are read in {}, which follows from the time step", unit_of_stamps(*columns.stamp_decimals)));
+  if (columns.gyro_unit == GyroUnit::deg_s) notes.push_back("rates are read in deg/s, as the column names state");
+  if (columns.accel_unit == AccelUnit::g) notes.push_back("specific force is read in g, as the column names state");
   std::string others;
   for (const std::string& name : columns.left_out) others += (others.empty() ? "" : ", ") + name;
   if (!others.empty()) notes.push_back("ignored columns: " + others);
@@ -66,8 +67,9 @@ std::string keep_one_imu(LoggedTable& table, std::size_t id) {
   for (const auto& [number, count] : rows)
     if (number != first) others += fmt::format("{}{} ({} rows)", others.empty() ? "" : ", ", number, count);
   table.keep(id, first);
-  return fmt::format("column '{}' numbers several IMUs; the rows of {} are read, these are left out: {}", name, first,
-                     others);
+  return fmt::format(
+      "column '{}' contains the numbers of several IMUs; the import reads the rows of IMU {} and leaves out: {}", name,
+      first, others);
 }
 
 /// Reads the samples of the columns and their places in the file. Faulty rows are counted in `left_out`.

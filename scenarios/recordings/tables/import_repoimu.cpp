@@ -57,7 +57,7 @@ struct Log {
 /// Returns names such as "Vicon Orientation/W"; the name of a group is above the group's first column.
 std::vector<std::string> column_names(const CsvLine& groups, const CsvLine& names) {
   if (groups.fields.size() != names.fields.size()) {
-    fail(names, fmt::format("has {} columns, but the line above has {}; must be equal", names.fields.size(),
+    fail(names, fmt::format("has {} columns, but the line above has {}; the numbers must be equal", names.fields.size(),
                             groups.fields.size()));
   }
   std::vector<std::string> full;
@@ -150,15 +150,15 @@ void add_row(const CsvLine& line, const RepoimuColumns& columns, Log& log, std::
   const std::size_t found = line.fields.size();
   const bool trailing = columns.open_ended && found == columns.count && line.fields.back().empty();
   if (found != columns.count - (columns.open_ended ? 1 : 0) && !trailing) {
-    fail(line, fmt::format("has {} columns, must have {}", found, columns.count - (columns.open_ended ? 1 : 0)));
+    fail(line, fmt::format("has {} columns; it must have {}", found, columns.count - (columns.open_ended ? 1 : 0)));
   }
   DecimalNumbers numbers(line, log.decimal_commas);
   const double time_s = numbers.at(columns.time, "Time");
   if (!(time_s >= 0.0 && time_s <= kRepoimuStampMax_s))
-    fail(line, fmt::format("Time is {} s, must be within 0 and {}", time_s, kRepoimuStampMax_s));
+    fail(line, fmt::format("Time is {} s; it must be within 0 and {}", time_s, kRepoimuStampMax_s));
   const std::int64_t time_ns = std::llround(time_s * 1e9);
   if (!log.readings.time_ns.empty() && time_ns < log.readings.time_ns.back()) {
-    fail(line, fmt::format("Time decreases: {:.9g} s after {:.9g} s", time_s,
+    fail(line, fmt::format("Time decreases: {:.9g} s follows {:.9g} s; Time must increase", time_s,
                            1e-9 * static_cast<double>(log.readings.time_ns.back())));
   }
   const auto& a = columns.attitude;
@@ -206,16 +206,16 @@ void steady(Log& log, std::vector<std::string>& notes) {
     // precise stamps do not repeat because of rounding
     const bool coarse = 2 * (log.rounding[k].before_ns + log.rounding[k].after_ns) >= mean_step;
     if (time_ns <= log.readings.time_ns[k - 1] || (same && !coarse)) {
-      throw BadInput(fmt::format("{}: Time does not increase: {:.9g} s occurs twice, beyond its rounding", log.where[k],
-                                 1e-9 * static_cast<double>(printed[k])));
+      throw BadInput(fmt::format("{}: Time must increase, but {:.9g} s occurs more often than its rounding explains",
+                                 log.where[k], 1e-9 * static_cast<double>(printed[k])));
     }
   }
   for (std::size_t k = 0; k < printed.size(); ++k) log.poses[k].time_ns = log.readings.time_ns[k];
   const auto span = static_cast<double>(printed.back() - printed.front());
   if (static_cast<double>(most_ns) > kCoarse * span / static_cast<double>(printed.size() - 1)) {
     notes.push_back(fmt::format(
-        "time stamps are rounded to {} ms; they are replaced by equally spaced times within their rounding, shifted by "
-        "up to {:.1f} ms ({} were equal to the previous one)",
+        "the time stamps are rounded to {} ms; the import replaces them by equally spaced times, with shifts of up to "
+        "{:.1f} ms ({} time stamps were equal to their predecessor)",
         2e-6 * static_cast<double>(log.rounding.back().before_ns), 1e-6 * static_cast<double>(most_ns), equal));
   }
 }
@@ -228,8 +228,8 @@ void require_attitudes(const std::filesystem::path& path, const Log& log) {
   }
   if (static_cast<double>(bad) <= kBadNormShareMax * static_cast<double>(log.poses.size())) return;
   throw BadInput(
-      fmt::format("{}: the quaternion's norm is {:.4f}; it must be 1 within 1 %. This is so for {} of {} in {}; at "
-                  "most a fifth is allowed",
+      fmt::format("{}: the quaternion's norm is {:.4f}; it must be 1 within 1 %. This error affects {} of {} in {}; at "
+                  "most a fifth may have the error",
                   log.where[first], log.poses[first].q_WA.norm(), bad, log.poses.size(), path.filename().string()));
 }
 
@@ -246,8 +246,8 @@ std::string rate_error_text(const sim::ImuRecord& imu, const std::vector<Eigen::
   if (errors.empty()) return "";
   std::sort(errors.begin(), errors.end());
   return fmt::format(
-      "reference: rates from attitudes over +-{} ms differ from the unclipped gyro in motion by {:.3f} rad/s (median) "
-      "and {:.3f} rad/s (90th percentile), {} samples",
+      "reference: in motion, the rates of the reference (from attitudes over +-{} ms) differ from the unclipped gyro "
+      "by {:.3f} rad/s (median) and {:.3f} rad/s (90th percentile), over {} samples",
       kRateWindow_ns / 1'000'000, errors[errors.size() / 2], errors[errors.size() * 9 / 10], errors.size());
 }
 
@@ -258,15 +258,16 @@ void add_reference(const std::filesystem::path& path, Log& log, bool align, Impo
   const GlitchReport glitches = leave_out_glitches(log.poses);
   out.notes.push_back(glitches.text(samples));
   if (log.poses.size() < 2) {
-    out.notes.push_back("the reference has no valid samples; it is left out");
+    out.notes.push_back("the reference has no valid samples and is left out");
     return;
   }
   const ReferenceAlignment alignment = align_reference(log.poses, imu);
   if (alignment.known && align) apply(alignment, log.poses);
   if (!alignment.known && align) throw BadInput(path.string() + ": --align-reference: " + alignment.text());
-  out.notes.push_back(alignment.text() + (align             ? ": removed"
-                                          : alignment.known ? ": not removed; set --align-reference to remove it"
-                                                            : ""));
+  out.notes.push_back(alignment.text() +
+                      (align             ? "; the import removes this misalignment"
+                       : alignment.known ? "; the import keeps this misalignment (set --align-reference to remove it)"
+                                         : ""));
   out.notes.push_back(check_reference(log.poses, Eigen::Isometry3d::Identity(), out.sensors, path.string()));
   try {
     out.reference = reference_truth(log.poses, imu.time_ns.back());
@@ -315,8 +316,9 @@ Imported import_repoimu(const std::filesystem::path& path, bool align) {
     if (!note.empty()) out.notes.push_back(note);
   }
   if (log.decimal_commas > 0)
-    out.notes.push_back(fmt::format("{} numbers have a decimal comma; they are read as decimals", log.decimal_commas));
-  out.notes.push_back("the magnetometer's columns have no unit; they are left out");
+    out.notes.push_back(
+        fmt::format("{} numbers have a decimal comma, which is read as a decimal point", log.decimal_commas));
+  out.notes.push_back("the columns of the magnetometer have no unit and are left out");
   out.info.attribution = kRepoimuAttribution + path.filename().string();
   out.sensors.imus.push_back(std::move(imu));
   add_reference(path, log, align, out);

@@ -181,8 +181,8 @@ ImuColumns imu_columns(const LoggedTable& table) {
   const CsvLine& first = table.header();
   if (!table.has_header()) {
     if (first.fields.size() < kColumnsByPlace) {
-      fail(first, fmt::format("has {} columns and no header; it needs {}. Name the columns by their positions from 0: "
-                              "--columns time=0,gyro=1,2,3,accel=4,5,6",
+      fail(first, fmt::format("has {} columns and no header; a file without header must have {}. Name the columns by "
+                              "their positions, counted from 0: --columns time=0,gyro=1,2,3,accel=4,5,6",
                               first.fields.size(), kColumnsByPlace));
     }
     return {};

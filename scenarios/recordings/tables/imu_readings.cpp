@@ -42,10 +42,11 @@ void require_plausible_force(const std::string& where, const sim::ImuRecord& imu
   const char* read_as = unit == AccelUnit::g ? "g" : "m/s^2";
   const std::string likely = likely_force_unit(middle, unit);
   const bool known = likely == "g" || likely == "m/s^2";
-  throw BadInput(fmt::format(
-      "{}: read in {}, the median specific force is {} m/s^2; it must be within 3 and 30. The file may be in {}{}{}",
-      where, read_as, std::to_string(middle), likely, known ? " (set '--accel-unit " + likely + "')" : "",
-      middle < kLeastMedian_m_s2 ? ". Or gravity may have been removed" : ""));
+  throw BadInput(
+      fmt::format("{}: if the file is read in {}, the median specific force is {} m/s^2; it must be within 3 and 30 "
+                  "m/s^2. The file may be in {}{}{}",
+                  where, read_as, std::to_string(middle), likely, known ? " (set '--accel-unit " + likely + "')" : "",
+                  middle < kLeastMedian_m_s2 ? ". Another possible cause: the device removed gravity" : ""));
 }
 
 constexpr const char *kTakenInDegrees = " (set '--gyro-unit deg/s')", *kTakenInRadians = " (set '--gyro-unit rad/s')";
@@ -65,7 +66,7 @@ void require_plausible_period(const std::string& where, const sim::ImuRecord& im
   const double period_s = static_cast<double>(imu.period_ns) * 1e-9;
   if (period_s >= kLeastPeriod_s && period_s <= kLargestPeriod_s) return;
   throw BadInput(fmt::format(
-      "{}: the median time step is {} s, must be within {} and {}. The time stamps may be in another unit{}", where,
+      "{}: the median time step is {} s; it must be within {} and {}. The time stamps may be in another unit{}", where,
       rounded(period_s), rounded(kLeastPeriod_s), rounded(kLargestPeriod_s),
       period_s > kLargestPeriod_s ? ", ms or us" : " than s or ns"));
 }
@@ -91,11 +92,12 @@ void require_rates_in_range(const std::string& where, const sim::ImuRecord& imu,
   if (share <= kBeyondShare) return;
   const bool as_rad = unit == GyroUnit::rad_s;
   const bool degrees = as_rad && beyond_share(imu, bound, 1.0 / kDegreesPerRadian) <= kBeyondShare;
-  throw BadInput(fmt::format(
-      "{}: read in {}{} % of the rates are beyond {} rad/s, {}; this must be at most 1 %. The rates may be in {}{}",
-      where, as_rad ? "rad/s " : "deg/s ", rounded(100.0 * share), rounded(bound),
-      stated ? "twice the stated range of the device" : "more than any robot rotates",
-      degrees ? "deg/s" : "raw counts of the sensor", degrees ? kTakenInDegrees : ""));
+  throw BadInput(
+      fmt::format("{}: if the rates are read in {}{} % of them exceed {} rad/s, which is {}; at most 1 % may exceed "
+                  "this limit. The rates may be in {}{}",
+                  where, as_rad ? "rad/s, " : "deg/s, ", rounded(100.0 * share), rounded(bound),
+                  stated ? "twice the stated range of the device" : "more than any robot rotates",
+                  degrees ? "deg/s" : "raw counts of the sensor", degrees ? kTakenInDegrees : ""));
 }
 
 constexpr double kRotationWindow_s = 0.2, kNearGravity = 0.1;
@@ -114,8 +116,10 @@ constexpr std::int64_t kBurstsApart_ns = 1'000'000'000;
 std::string disorder_text(const std::vector<std::int64_t>& times_ns, std::size_t reading) {
   if (reading == 0 || times_ns[reading] > times_ns[reading - 1])
     return fmt::format("the time stamp {} ns is out of order", times_ns[reading]);
-  return fmt::format("the time stamp does not increase: {} ns after the first; the previous one is at {}",
-                     times_ns[reading] - times_ns.front(), times_ns[reading - 1] - times_ns.front());
+  return fmt::format(
+      "the time stamp does not increase: it is {} ns after the first time stamp, but the previous time stamp is {} ns "
+      "after the first",
+      times_ns[reading] - times_ns.front(), times_ns[reading - 1] - times_ns.front());
 }
 
 /// Distributes the readings of each burst evenly over the time since the previous burst, whose last reading was just
@@ -149,8 +153,8 @@ std::string even_out_bursts(sim::ImuRecord& imu) {
     before = last;
   }
   return fmt::format(
-      "caution: the readings arrive in {} bursts of about {} with nearly equal time stamps; they are distributed over "
-      "the time between the bursts",
+      "caution: the readings have nearly equal time stamps in {} bursts of about {} readings; the import distributes "
+      "the readings over the time between the bursts",
       ends.size(), times.size() / ends.size());
 }
 
@@ -167,8 +171,8 @@ std::string gaps_text(const sim::ImuRecord& imu) {
   }
   if (gaps == 0) return "";
   return fmt::format(
-      "caution: {}{} of more than 1 s; the longest lasts {} s before reading {}. No data exist in these gaps", gaps,
-      gaps == 1 ? " gap" : " gaps", rounded(1e-9 * static_cast<double>(step_ns(longest))), longest);
+      "caution: the recording has {}{} of more than 1 s without data; the longest gap lasts {} s before reading {}",
+      gaps, gaps == 1 ? " gap" : " gaps", rounded(1e-9 * static_cast<double>(step_ns(longest))), longest);
 }
 
 GravityRotation gravity_rotation(const sim::ImuRecord& imu, RotationWindows windows) {
@@ -231,10 +235,11 @@ GravityRotation sufficient_rotation(const sim::ImuRecord& imu) {
 
 /// Explains why the motion does not suffice.
 std::string undetermined_text(const GravityRotation& turn) {
-  if (turn.windows < kLeastWindows) return "gravity's rotation in the accelerometer is too small to check them";
+  if (turn.windows < kLeastWindows)
+    return "unit and axes are not checked, because gravity rotates too little in the accelerometer axes";
   return fmt::format(
-      "the force rotates in the accelerometer, but agrees too little with the gyro to check them ({} windows, "
-      "correlation {})",
+      "unit and axes are not checked, because the rotation of the specific force agrees too little with the gyro ({} "
+      "windows, correlation {})",
       turn.windows, rounded(turn.correlation));
 }
 
@@ -246,22 +251,25 @@ std::string require_plausible_rates(const std::string& where, const sim::ImuReco
   const bool dead =
       std::all_of(imu.gyro_rad_s.begin(), imu.gyro_rad_s.end(), [](const auto& w) { return w.isZero(0.0); });
   if (dead) {
-    return fmt::format("caution: the gyro reads 0 on all axes in all {} samples; it may be defective or not recorded",
-                       imu.gyro_rad_s.size());
+    return fmt::format(
+        "caution: the gyro reads 0 on all axes in all {} samples; the gyro may be defective or was not recorded",
+        imu.gyro_rad_s.size());
   }
   if (!has_sufficient_rotation(turn)) return "";
   const std::string seen = fmt::format(
-      "gravity's rotation in the accelerometer is {} times the gyro's rotation ({} windows, correlation {})",
+      "gravity rotates {} times as far in the accelerometer axes as the gyro measures ({} windows, correlation {})",
       rounded(turn.ratio), turn.windows, rounded(turn.correlation));
   const bool as_deg = unit == GyroUnit::deg_s;
   if (!as_deg && near_factor(turn.ratio, 1.0 / kDegreesPerRadian))
-    throw BadInput(fmt::format("{}: read in rad/s, {}; the ratio must be within 0.5 and 2. The rates may be in deg/s{}",
-                               where, seen, kTakenInDegrees));
+    throw BadInput(fmt::format(
+        "{}: if the rates are read in rad/s, {}; this ratio must be within 0.5 and 2. The rates may be in deg/s{}",
+        where, seen, kTakenInDegrees));
   if (as_deg && near_factor(turn.ratio, kDegreesPerRadian))
-    throw BadInput(fmt::format("{}: read in deg/s, {}; the ratio must be within 0.5 and 2. The rates may be in rad/s{}",
-                               where, seen, kTakenInRadians));
+    throw BadInput(fmt::format(
+        "{}: if the rates are read in deg/s, {}; this ratio must be within 0.5 and 2. The rates may be in rad/s{}",
+        where, seen, kTakenInRadians));
   if (near_factor(turn.ratio, 1.0)) return seen + ": units and axes agree";
-  return fmt::format("caution: {}; the ratio should be 1. Check the unit, the signs and the order of the axes", seen);
+  return fmt::format("caution: {}; this ratio should be 1. Check the unit, the signs and the order of the axes", seen);
 }
 
 std::string rates_text(const std::string& where, const sim::ImuRecord& imu, GyroUnit unit) {
@@ -284,9 +292,9 @@ void add_reading(const std::string& where, std::int64_t stamp_ns, const Eigen::V
   for (const double value : {largest_of_triad(rate_rad_s), largest_of_triad(force_m_s2)}) {
     if (!std::isfinite(value)) throw BadInput(where + ": a reading is not finite");
     if (value > kSensorReadingMax)
-      throw BadInput(
-          fmt::format("{}: a reading has the magnitude {} rad/s or m/s^2, must be at most {}, the limit of any sensor",
-                      where, rounded(value), rounded(kSensorReadingMax)));
+      throw BadInput(fmt::format(
+          "{}: a reading has the magnitude {} rad/s or m/s^2; it must be at most {}, the limit of any sensor", where,
+          rounded(value), rounded(kSensorReadingMax)));
   }
   imu.time_ns.push_back(stamp_ns);
   imu.gyro_rad_s.push_back(rate_rad_s);
@@ -314,7 +322,8 @@ std::string leave_out_faulty(const ReadingText& where, const ReadingText& disord
     kept[k] = false;
     ++lost;
   }
-  if (lost > 0 && lost == in_order.size()) throw BadInput(where(0) + ": all values of all readings are exactly 0");
+  if (lost > 0 && lost == in_order.size())
+    throw BadInput(where(0) + ": all values of all readings are exactly 0, so the file contains no data");
   keep_rows(kept, imu.time_ns), keep_rows(kept, imu.gyro_rad_s), keep_rows(kept, imu.accel_m_s2);
   keep_rows(kept, imu.clip_flags), keep_rows(kept, imu.magnetic_field_t);
   return bursts;
@@ -343,8 +352,8 @@ std::string even_out_stamps(sim::ImuRecord& imu) {
   imu.time_ns = evened(imu.time_ns);
   imu.period_ns = mean_step_ns(imu.time_ns);
   return fmt::format(
-      "time stamps are in whole milliseconds, but the IMU samples every {} ms; they are replaced by equally spaced "
-      "times, shifted by at most 1 ms",
+      "the time stamps are whole milliseconds, but the IMU samples every {} ms; the import replaces them by equally "
+      "spaced times, with shifts of at most 1 ms",
       rounded(1e-6 * static_cast<double>(imu.period_ns)));
 }
 

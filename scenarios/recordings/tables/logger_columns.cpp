@@ -155,7 +155,9 @@ class HeaderReader {
       if (!is_time(name.quantity)) continue;
       const bool weak = header_.fields[i] == "T" || is_one_of(kSecondTimes, name.quantity);
       std::optional<std::size_t>& place = weak ? second : found;
-      if (place && !weak) fail(fmt::format("two columns are time stamps: '{}' and '{}'", text(*place), text(i)));
+      if (place && !weak)
+        fail(fmt::format("two columns are time stamps, '{}' and '{}'; name one of them with --columns", text(*place),
+                         text(i)));
       place = i;
     }
     if (!found) found = second;
@@ -181,8 +183,8 @@ class HeaderReader {
       if (!number_) number_ = named->number;
       if (*number_ != named->number) fail_of_several(called, named->number);
       if (found[axis])
-        fail(fmt::format("two columns are the {}'s {}: '{}' and '{}'", called, "xyz"[axis], text(*found[axis]),
-                         text(i)));
+        fail(fmt::format("two columns belong to the {}'s axis {}: '{}' and '{}'; name the columns with --columns",
+                         called, "xyz"[axis], text(*found[axis]), text(i)));
       stated[axis] = unit_of(units, name, i);
       found[axis] = i;
     }
@@ -191,7 +193,7 @@ class HeaderReader {
       if (!found[axis]) missing_ += std::string(" ") + called + "_" + "xyz"[axis];
     }
     if (stated[0] != stated[1] || stated[0] != stated[2])
-      fail(fmt::format("the axes of the {} have different units", called));
+      fail(fmt::format("the axes of the {} have different units; they must have the same unit", called));
     return stated[0];
   }
 
@@ -199,7 +201,8 @@ class HeaderReader {
   bool complete(std::size_t readings) const {
     if (readings == 0) return false;
     if (!missing_.empty())
-      fail("missing columns:" + missing_ + "; if other columns have these values, name them: --columns " + kExample);
+      fail("missing columns:" + missing_ + "; if other columns contain these values, name these columns: --columns " +
+           kExample);
     return true;
   }
   /// Finds a column that numbers the IMUs.
@@ -232,7 +235,10 @@ class HeaderReader {
   std::optional<Unit> unit_of(const UnitNames<Unit>& units, const Name& name, std::size_t i) const {
     if (name.unit.empty()) return std::nullopt;
     std::optional<Unit> unit = value_of(units, name.unit);
-    if (!unit) fail(fmt::format("column '{}' has an unknown unit", text(i)));
+    if (!unit)
+      fail(fmt::format(
+          "column '{}' has an unknown unit; name the columns with --columns and state the unit with an option",
+          text(i)));
     return unit;
   }
 
@@ -255,8 +261,7 @@ std::vector<std::string> names_of(const std::string& choice, const std::string& 
       word.remove_prefix(key.size());
       break;
     }
-    if (current.empty())
-      throw BadInput(fmt::format("--columns: '{}' does not begin with time=, gyro= or accel=", word));
+    if (current.empty()) throw BadInput(fmt::format("--columns: '{}' must begin with time=, gyro= or accel=", word));
     if (current == quantity) names.emplace_back(word);
   }
   return names;
@@ -270,15 +275,15 @@ std::size_t column_of(const LoggedTable& table, const std::string& name) {
   std::size_t position = 0;
   if (count == 0 && read_number(name, position) && position < fields.size()) return position;
   throw BadInput(fmt::format("{}: --columns: {} column '{}'; the table has {} columns{}{}", table.header().where,
-                             count == 0 ? "there is no" : "there are several with the name of", name, fields.size(),
-                             table.has_header() ? ": " : " without names",
+                             count == 0 ? "there is no" : "there are several columns with the name of", name,
+                             fields.size(), table.has_header() ? ": " : " without names",
                              table.has_header() ? fmt::format("{}", fmt::join(fields, " ")) : ""));
 }
 
 void require_count(const std::string& quantity, std::size_t count, std::size_t least, std::size_t most) {
   if (count >= least && count <= most) return;
   throw BadInput(
-      fmt::format("--columns: {} has {} columns, must have {}; for example "
+      fmt::format("--columns: {} has {} columns; it must have {}; for example "
                   "time=t,gyro=gx,gy,gz,accel=ax,ay,az",
                   quantity, count, most == 3 ? "3" : "1, or 2 for seconds and nanoseconds"));
 }

@@ -66,8 +66,8 @@ class PoseHeader {
     const auto again = std::find_if(found + 1, names_.end(), fits);
     const auto at = static_cast<std::size_t>(found - names_.begin());
     if (again != names_.end())
-      fail(header_, fmt::format("two columns have the same meaning: '{}' and '{}'", header_.fields[at],
-                                header_.fields[static_cast<std::size_t>(again - names_.begin())]));
+      fail(header_, fmt::format("two columns have the same meaning, '{}' and '{}'; remove one of them",
+                                header_.fields[at], header_.fields[static_cast<std::size_t>(again - names_.begin())]));
     return at;
   }
 

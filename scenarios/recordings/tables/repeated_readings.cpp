@@ -96,8 +96,9 @@ HoldReport undo_hold(const LoggedReadings& log, sim::ImuRecord& imu) {
 std::string HoldReport::text() const {
   if (!gyro_repeats && !accel_repeats) return "";
   std::string out = fmt::format(
-      "sample and hold: {:.1f} % of the gyro's and {:.1f} % of the accelerometer's rows repeat the previous row: {} "
-      "readings of the gyro and {} of the accelerometer in {} rows",
+      "the device repeats readings (sample and hold): {:.1f} % of the gyro's rows and {:.1f} % of the accelerometer's "
+      "rows equal the previous row. There are {} different gyro readings and {} different accelerometer readings in {} "
+      "rows",
       100.0 * gyro_repeated, 100.0 * accel_repeated, gyro_repeats ? readings : rows, accel_readings, rows);
   if (gyro_repeats) out += "; repeated rows are left out, and the remaining readings get the sample times of the gyro";
   if (accel_repeats) out += "; the accelerometer is interpolated between its distinct readings";
@@ -123,7 +124,9 @@ std::string accel_rail_text(const std::vector<Eigen::Vector3d>& logged) {
                          "xyz"[axis], sign * extreme, top);
     }
   }
-  return out.empty() ? "" : "accelerometer: many readings are at the largest value, as if saturated: " + out;
+  return out.empty()
+             ? ""
+             : "the accelerometer seems to be saturated, because many readings are near the largest value: " + out;
 }
 
 }  // namespace tumble::scenarios

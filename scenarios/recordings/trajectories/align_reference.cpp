@@ -241,13 +241,15 @@ void apply(const ReferenceAlignment& alignment, std::vector<ReferencePose>& pose
 }
 
 std::string ReferenceAlignment::text() const {
-  if (!known) return "reference: cannot align it with the IMU: too little rotation, or too few reference poses";
+  if (!known)
+    return "the reference cannot be aligned with the IMU, because the motion has too little rotation, or the reference "
+           "has too few poses";
   const Eigen::AngleAxisd turn(q_IV);
   const Eigen::Vector3d rotation_deg = turn.axis() * degrees(turn.angle());
   const Eigen::Vector3d sigma_deg = q_IV_sigma_rad * (180.0 / M_PI);
   return fmt::format(
-      "reference: {:.1f} +- {:.1f} ms later than the IMU's time stamps, frame rotated by ({:.2f}, {:.2f}, {:.2f}) +- "
-      "({:.2f}, {:.2f}, {:.2f}) deg, vertical off by {:.2f} deg ({} samples)",
+      "the reference is {:.1f} +- {:.1f} ms later than the IMU; its frame is rotated by ({:.2f}, {:.2f}, {:.2f}) +- "
+      "({:.2f}, {:.2f}, {:.2f}) deg, and its vertical differs by {:.2f} deg ({} samples)",
       1e3 * delay_s, 1e3 * delay_sigma_s, rotation_deg.x(), rotation_deg.y(), rotation_deg.z(), sigma_deg.x(),
       sigma_deg.y(), sigma_deg.z(), degrees(Eigen::AngleAxisd(q_WV).angle()), samples);
 }

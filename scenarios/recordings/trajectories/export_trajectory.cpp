@@ -102,7 +102,9 @@ void export_kitti(const sim::Truth& truth, const std::filesystem::path& file, co
   std::string text;
   for (std::size_t i = 0; i < truth.p_WB_m.size(); ++i) {
     if (!known(truth, i))
-      throw BadInput("the reference has gaps; KITTI's format has no times to represent them, so use tum");
+      throw BadInput(
+          "the reference has gaps, which the KITTI format cannot represent because it has no times; use the format "
+          "tum");
     const Pose each = pose(truth, i, T_BA);
     const Eigen::Matrix3d R_WA = each.q_WA.toRotationMatrix();
     for (int row = 0; row < 3; ++row) {

@@ -16,8 +16,9 @@ namespace {
 std::vector<std::int64_t> own_times(const ReferenceSource& source) {
   if (!source.times.empty()) return read_stamps(source.times);
   if (source.steady_ns <= 0) {
-    throw BadInput(source.file.string() +
-                   ": KITTI's format has no times; give a file of time stamps (--times) or a period (--sweep-period)");
+    throw BadInput(
+        source.file.string() +
+        ": the KITTI format has no times; give a file of time stamps (--times) or a period (--sweep-period)");
   }
   const std::size_t poses = count_kitti_poses(source.file);
   std::vector<std::int64_t> times;
@@ -65,7 +66,7 @@ Imported import_trajectory(const ReferenceSource& source) {
 }
 
 const Eigen::Isometry3d& lidar_of_poses(const sim::Sensors& sensors, const std::string& where) {
-  if (sensors.lidars.empty()) throw BadInput(where + ": the poses are those of a lidar, but the recording has none");
+  if (sensors.lidars.empty()) throw BadInput(where + ": the poses belong to a lidar, but the recording has no lidar");
   return sensors.lidars.front().T_BL;
 }
 

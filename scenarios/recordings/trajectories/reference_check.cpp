@@ -41,38 +41,42 @@ std::string share_text(double share) {
 std::string remedy(Written written, double delay_s) {
   std::string out;
   if (written == Written::w_first || written == Written::w_first_inverse)
-    out += "; its quaternions have w first, must be qx qy qz qw: move the column";
+    out += ". The quaternions of the reference have w first, but the order must be qx qy qz qw; move the column of w";
   if (written == Written::inverse || written == Written::w_first_inverse)
-    out += "; its poses are of the world in the sensor, must be of the sensor in the world: invert them";
+    out +=
+        ". The poses of the reference describe the world in sensor axes, but must describe the sensor in world axes; "
+        "invert the poses";
   return is_delayed(delay_s) ? out + "; its " + delay_remedy(delay_s) : out;
 }
 
 std::string disagreement(const TurningCheck& check, const std::string& imu) {
   return fmt::format(
-      "the rotations of the reference differ from those of the gyro of '{}' by {} (median of {} pairs of poses)", imu,
-      share_text(check.stated.difference), check.pairs);
+      "the rotations of the reference differ from the rotations of the gyro of '{}' by {} (median of {} pairs of "
+      "poses)",
+      imu, share_text(check.stated.difference), check.pairs);
 }
 
 /// Describes a contradiction whose cause may be the IMU, a mounting or the reference.
 std::string caution(const TurningCheck& check, const std::string& frame, const std::string& imu) {
   const std::string text =
-      "caution: " + disagreement(check, imu) + fmt::format(", at most {} is expected; ", share_text(kContradicts));
+      "caution: " + disagreement(check, imu) + fmt::format(", but at most {} is expected; ", share_text(kContradicts));
   const TurningFit& reading = check.reading.undelayed;
   if (reading.difference < kReferenceAgrees && reading.written == Written::as_stated) {
-    return text + fmt::format("by {} if the poses are of the {}{}", share_text(reading.difference), frame,
+    return text + fmt::format("the difference would be {} if the poses belonged to the {}{}",
+                              share_text(reading.difference), frame,
                               frame == "IMU" ? "" : ": give --reference-frame " + frame);
   }
   const MountingFit& mounting = check.mounting.undelayed;
   if (mounting.difference < kReferenceAgrees) {
     const Eigen::Quaterniond& q = mounting.q_AI;
     return text + fmt::format(
-                      "by {} if the IMU is turned in the frame of the poses by the quaternion x y z w {:.4f} {:.4f} "
-                      "{:.4f} {:.4f}; a mounting may be wrong",
+                      "the difference would be {} if the IMU were rotated in the frame of the poses by the quaternion "
+                      "x y z w {:.4f} {:.4f} {:.4f} {:.4f}; check the mounting",
                       share_text(mounting.difference), q.x(), q.y(), q.z(), q.w());
   }
   return text + fmt::format(
-                    "no other order or direction of its quaternions, no frame and no delay within {:.0f} s explains "
-                    "this; the reference may belong to another recording",
+                    "no other order or direction of the quaternions, no other frame and no delay within {:.0f} s "
+                    "explains this difference; the reference may belong to another recording",
                     kDelaySearched_s);
 }
 
@@ -83,9 +87,14 @@ std::string agreement(const TurningCheck& check, const std::string& imu) {
       fmt::format("the reference agrees with the gyro of '{}': rotations differ by {} (median of {} pairs of poses)",
                   imu, share_text(fit.difference), check.pairs);
   if (std::abs(fit.delay_s) >= kDelayNoted_s)
-    return "caution: " + text + " once its stamps, which are " + delay_text(fit.delay_s) + ", are corrected";
-  return text + (check.clock_known ? "" : "; its clock is not checked: the motion would not show a delay") +
-         (check.order_known ? "" : "; the order of its quaternions is not checked: the motion would not show w first");
+    return "caution: " + text + " after correction of its stamps, which are " + delay_text(fit.delay_s);
+  return text +
+         (check.clock_known
+              ? ""
+              : "; the clock of the reference is not checked, because this motion would not reveal a delay") +
+         (check.order_known ? ""
+                            : "; the order of the quaternions is not checked, because this motion would not reveal w "
+                              "in first position");
 }
 
 /// Returns true if the reference differs from the gyro only by a delay, which may be accepted.
@@ -97,7 +106,7 @@ bool fits_as_stated(const TurningCheck& check) {
 [[noreturn]] void refuse(const TurningCheck& check, const std::string& imu, const std::string& where, double corrected,
                          const std::string& remedies) {
   throw BadInput(where + ": " + disagreement(check, imu) +
-                 fmt::format(", by {} once corrected", share_text(corrected)) + remedies);
+                 fmt::format(", but only by {} after a correction", share_text(corrected)) + remedies);
 }
 
 /// Throws BadInput if the gyro contradicts the order or direction of the quaternions, or their clock.
@@ -129,14 +138,14 @@ std::string check_reference(const std::vector<ReferencePose>& poses, const Eigen
   const std::vector<CandidateFrame> frames = candidate_frames(T_BA, sensors);
   const TurningCheck check = check_turning(attitudes, frames, imu, kDelaySearched_s);
   if (check.pairs == 0)
-    return unchecked + "too few of its poses, 0.05 to 1 s apart, turn by 0.02 rad and more while '" + imu.name +
+    return unchecked + "too few pairs of its poses (0.05 to 1 s apart) rotate by at least 0.02 rad while '" + imu.name +
            "' has readings below its range";
   if (check.upright) {
-    throw BadInput(
-        where + ": the force that '" + imu.name +
-        "' measures should point up on average, but is more than 60 degrees off the vertical of the reference; "
-        "its rotations agree, but they agree equally well in another order" +
-        remedy(check.upright->written, 0.0));
+    throw BadInput(where + ": the force that '" + imu.name +
+                   "' measures should point up on average, but differs from the vertical of the reference by more than "
+                   "60 degrees. The rotations of the reference agree with the gyro, but they agree equally well with "
+                   "another order or direction of the quaternions" +
+                   remedy(check.upright->written, 0.0));
   }
   require_reading_as_stated(check, imu.name, where);
   if (check.stated.difference > kContradicts && check.reading.likely().difference >= kReferenceAgrees)

@@ -138,14 +138,16 @@ GlitchReport leave_out_glitches(std::vector<ReferencePose>& poses) {
 
 std::string GlitchReport::text(std::size_t samples) const {
   const std::size_t left_out = unknown + bad_norm + frozen + leapt;
-  std::string out = fmt::format("reference: {} of {} samples left out", left_out, samples);
+  std::string out = fmt::format("reference: {} of {} samples are left out", left_out, samples);
   if (leaps > 0)
-    out += fmt::format(", {} within or between {} jumps of up to {:.0f} rad/s that cannot be motion", leapt, leaps,
-                       fastest_leap_rad_s);
-  if (bad_norm > 0) out += fmt::format(", {} with a quaternion norm off by more than 1 %", bad_norm);
-  if (frozen > 0) out += fmt::format(", {} frozen while the body moved", frozen);
+    out += fmt::format(
+        ", {} because they are within or between {} jumps of up to {:.0f} rad/s, which cannot be real motion", leapt,
+        leaps, fastest_leap_rad_s);
+  if (bad_norm > 0)
+    out += fmt::format(", {} because the norm of the quaternion differs from 1 by more than 1 %", bad_norm);
+  if (frozen > 0) out += fmt::format(", {} because the reference was frozen while the body moved", frozen);
   if (unknown > 0) out += fmt::format(", {} unknown", unknown);
-  if (gaps > 0) out += fmt::format("; {} gaps without data", gaps);
+  if (gaps > 0) out += fmt::format("; the reference has {} gaps without data", gaps);
   return out;
 }
 

@@ -47,8 +47,9 @@ Eigen::Matrix<double, 3, 4> kitti_matrix(const Table& table, const Table::Row& r
   const double departure = (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   if (!(departure <= kRotationTolerance) || R.determinant() < 0.0) {
     fail(table, row,
-         fmt::format("the first three columns differ from a rotation by {}; this must be at most {}",
-                     std::to_string(departure), kRotationTolerance));
+         fmt::format(
+             "the first three columns of the matrix differ from a rotation by {}; the difference must be at most {}",
+             std::to_string(departure), kRotationTolerance));
   }
   return T;
 }
@@ -67,8 +68,9 @@ std::string problem_of(ReferencePose& pose, const ReferencePose* before) {
   if (std::abs(norm - 1.0) > 1e-12) pose.q_WA.normalize();
   if (before == nullptr || pose.time_ns > before->time_ns) return "";
   return fmt::format(
-      "the time stamp {} ns does not increase; the previous one is {} ns. Sort the file of poses by time", pose.time_ns,
-      before->time_ns);
+      "the time stamp {} ns does not increase, because the previous time stamp is {} ns. Sort the file of poses by "
+      "time",
+      pose.time_ns, before->time_ns);
 }
 
 void finish_poses(const std::filesystem::path& file, bool sorted, std::vector<ReferencePose>& poses) {

@@ -266,8 +266,8 @@ void search_delay(TurningComparison& comparison, double delay_max_s, std::size_t
   search(best.delay_s, kCoarse_s, kFine_s);
 }
 
-constexpr double kUpMin_m_s2 = 5.0;              ///< of a mean force whose direction shows which way is up
-constexpr double kUpright = 0.9, kTilted = 0.5;  ///< cosines of its tilt
+constexpr double kUpMin_m_s2 = 5.0;              ///< minimum mean force that determines the upward direction
+constexpr double kUpright = 0.9, kTilted = 0.5;  ///< cosines of the tilt of the mean force
 
 /// Returns the cosine of the angle between the mean specific force and the vertical; 0 if the force is too small.
 double uprightness(const TurningComparison& comparison, const sim::ImuRecord& imu, const TurningFit& fit) {
@@ -313,7 +313,7 @@ std::string delay_text(double delay_s) {
 
 std::string delay_remedy(double delay_s) {
   const bool late = delay_s > 0.0;
-  return fmt::format("stamps are {}, at most {:.2f} s is accepted: {} {:.3f} s {} them", delay_text(delay_s),
+  return fmt::format("stamps are {}, but at most {:.2f} s is accepted; {} {:.3f} s {} the stamps", delay_text(delay_s),
                      kDelayMax_s, late ? "subtract" : "add", std::abs(delay_s), late ? "from" : "to");
 }
 

@@ -29,7 +29,8 @@ Eigen::Vector2d draw_position(Stream& stream, const Rectangle& area, const char*
     const Eigen::Vector2d at(x_m, stream.uniform(area.low_y_m, area.high_y_m));
     if (fits(at)) return at;
   }
-  throw InvalidSituation(std::string("world: no room for another ") + what);
+  throw InvalidSituation(std::string("world: the area has no space left; reduce the number of objects of the kind ") +
+                         what);
 }
 
 }  // namespace tumble::sim

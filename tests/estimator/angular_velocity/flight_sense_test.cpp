@@ -83,23 +83,23 @@ std::string sense_told(std::vector<ImuSample> samples, FlightSense::Body body, d
     sense.step(sample, state);
   }
   const Status status = sense.verdict(state);
-  return status.ok() ? "" : std::string(status.field).substr(std::string("seconds of flight").size());
+  return status.ok() ? "" : std::string(status.field).substr(std::string("flight time in s").size());
 }
 
 const std::vector<std::pair<std::string, std::function<void(ImuSample&)>>>& other_senses() {
   static const std::vector<std::pair<std::string, std::function<void(ImuSample&)>>> all = {
-      {" as a flipped accelerometer reads it", [](ImuSample& s) { s.specific_force_m_s2 *= -1.0; }},
-      {" as an accelerometer with x flipped reads it", [](ImuSample& s) { s.specific_force_m_s2.x() *= -1.0; }},
-      {" as an accelerometer with z flipped reads it", [](ImuSample& s) { s.specific_force_m_s2.z() *= -1.0; }},
-      {" as an accelerometer with x and y swapped reads it",
+      {" that a sign error of the accelerometer explains", [](ImuSample& s) { s.specific_force_m_s2 *= -1.0; }},
+      {" that a sign error of accelerometer axis x explains", [](ImuSample& s) { s.specific_force_m_s2.x() *= -1.0; }},
+      {" that a sign error of accelerometer axis z explains", [](ImuSample& s) { s.specific_force_m_s2.z() *= -1.0; }},
+      {" that exchanged accelerometer axes x and y explain",
        [](ImuSample& s) { std::swap(s.specific_force_m_s2.x(), s.specific_force_m_s2.y()); }},
-      {" as an accelerometer with z and x swapped reads it",
+      {" that exchanged accelerometer axes z and x explain",
        [](ImuSample& s) { std::swap(s.specific_force_m_s2.z(), s.specific_force_m_s2.x()); }},
-      {" as a gyro with y flipped reads it", [](ImuSample& s) { s.angular_velocity_rad_s.y() *= -1.0; }},
-      {" as a gyro with y and z swapped reads it",
+      {" that a sign error of gyro axis y explains", [](ImuSample& s) { s.angular_velocity_rad_s.y() *= -1.0; }},
+      {" that exchanged gyro axes y and z explain",
        [](ImuSample& s) { std::swap(s.angular_velocity_rad_s.y(), s.angular_velocity_rad_s.z()); }},
-      {" as a gyro reads it that reads half the rate", [](ImuSample& s) { s.angular_velocity_rad_s *= 0.5; }},
-      {" as a gyro reads it that reads twice the rate", [](ImuSample& s) { s.angular_velocity_rad_s *= 2.0; }}};
+      {" that a gyro with half the true scale explains", [](ImuSample& s) { s.angular_velocity_rad_s *= 0.5; }},
+      {" that a gyro with twice the true scale explains", [](ImuSample& s) { s.angular_velocity_rad_s *= 2.0; }}};
   return all;
 }
 

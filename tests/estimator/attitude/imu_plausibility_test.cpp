@@ -49,12 +49,11 @@ TEST(ImuPlausibility, ARollOfASphereIsPlausibleAtEveryRate) {
 
 TEST(ImuPlausibility, WrongUnitsAndAxesAreNot) {
   const auto says = [](const std::function<void(ImuSample&)>& harm) { return std::string(verdict_of(harm).field); };
-  const std::string size = "steady specific force as a share of gravity",
-                    turning = "turning of gravity over that of the gyro",
-                    still = "turning of a steady force as a share of the gyro's",
+  const std::string size = "mean specific force in steady windows (share of gravity)",
+                    turning = "ratio of gravity's rotation (accelerometer) to the rotation measured by the gyro",
+                    still = "rotation of a steady force (share of the rotation measured by the gyro)",
                     naming =
-                        "turning that the gyro leaves unexplained with axes or signs named otherwise, as a share of "
-                        "that with these";
+                        "rotation left unexplained by other gyro axes or signs (share of that for the stated axes)";
   EXPECT_EQ(says([](ImuSample& sample) { sample.specific_force_m_s2 /= 9.80665; }), size);
   EXPECT_EQ(says([](ImuSample& sample) { sample.specific_force_m_s2 *= 9.80665; }), size);
   EXPECT_EQ(says([](ImuSample& sample) { sample.angular_velocity_rad_s *= 57.29578; }), turning);
@@ -285,7 +284,7 @@ TEST(ImuPlausibility, AForceIsNotTakenForGravityWhileTheGyroIsAtItsRail) {
     return plausibility.verdict(state);
   };
   EXPECT_TRUE(verdict(7.8).ok()) << verdict(7.8).message();
-  EXPECT_STREQ(verdict(12.0).field, "steady specific force as a share of gravity");
+  EXPECT_STREQ(verdict(12.0).field, "mean specific force in steady windows (share of gravity)");
 }
 
 // Standing, with noise; from `from_s` on a triad repeats its reading for `for_s`.
@@ -341,12 +340,13 @@ TEST(ImuPlausibility, ATriadThatNeverMovedIsDeadWhereTheOtherTellsATurn) {
   const ImuPlausibility plausibility({});
   for (const double dead : {0.0, 0.01}) {
     const ImuPlausibility::State gyro = with_a_dead(true, true, dead);
-    EXPECT_STREQ(plausibility.verdict(gyro).field, "seconds for which a triad repeats one reading") << dead;
+    EXPECT_STREQ(plausibility.verdict(gyro).field, "time in s for which gyro or accelerometer repeats one reading")
+        << dead;
     EXPECT_NEAR(plausibility.frozen_s(gyro), 8.0, 0.05) << dead;
     EXPECT_TRUE(plausibility.verdict(with_a_dead(true, false, dead)).ok()) << "a coarse gyro at rest";
   }
   EXPECT_STREQ(plausibility.verdict(with_a_dead(false, true, 0.0)).field,
-               "seconds for which a triad repeats one reading");
+               "time in s for which gyro or accelerometer repeats one reading");
 }
 
 TEST(ImuPlausibility, AGyroThatNeverMovedIsDeadWhereTheBodyIsPushed) {

@@ -15,8 +15,8 @@
 namespace tumble {
 namespace {
 
-const std::string kEvidence = "evidence, of turning about a point, for a gyro named or scaled otherwise";
-const std::string kScale = "scale by which rates explain a turning about a point";
+const std::string kEvidence = "evidence from rotation about a pivot for other axes, signs or scale of the gyro";
+const std::string kScale = "scale of the gyro estimated from rotation about a pivot";
 
 struct PivotMotion {
   Eigen::Vector3d arm_m = {0.05, -0.1, 0.08};  // from the pivot to the sensor

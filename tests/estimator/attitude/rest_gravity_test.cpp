@@ -86,7 +86,7 @@ TEST(RestGravity, OfALongSpanNothingIsSaid) {
 
 TEST(RestGravity, AGyroOfAnotherSenseNamingOrScaleMisses) {
   const RestGravity gravity({});
-  const std::string miss = "angle by which the rates miss gravity's direction from one rest to the next";
+  const std::string miss = "error in rad of gravity's direction after gyro integration from one rest to the next";
   const auto says = [&](const Harm& harm) { return std::string(gravity.verdict(after({}, harm)).field); };
   EXPECT_EQ(says([](ImuSample& s) { s.angular_velocity_rad_s *= -1.0; }), miss);
   EXPECT_EQ(says([](ImuSample& s) { s.angular_velocity_rad_s.x() *= -1.0; }), miss);
@@ -100,8 +100,8 @@ TEST(RestGravity, AnAccelerometerOfAnotherUnitShowsInTheSize) {
   for (const double scale : {0.5, 2.0, 1.0 / 9.80665}) {
     const RestGravity::State wrong = after({}, [=](ImuSample& s) { s.specific_force_m_s2 *= scale; });
     EXPECT_STREQ(gravity.verdict(wrong).field, scale > 1.0 / 3.0
-                                                   ? "specific force at rest as a share of gravity"
-                                                   : "accelerometer unit: specific force at rest as a share of gravity")
+                                                   ? "specific force at rest (share of gravity)"
+                                                   : "accelerometer unit: specific force at rest (share of gravity)")
         << scale;
     EXPECT_NEAR(gravity.verdict(wrong).value, scale, 0.01);
   }
@@ -117,7 +117,7 @@ TEST(RestGravity, AnAccelerometerWithoutGravityReadsNothingAtRest) {
   const RestGravity::State none = after({}, taken_out);
   EXPECT_EQ(none.rest_s, 0.0);
   EXPECT_GT(none.weightless_s, 2.0);
-  EXPECT_STREQ(gravity.verdict(none).field, "specific force at rest as a share of gravity");
+  EXPECT_STREQ(gravity.verdict(none).field, "specific force at rest (share of gravity)");
   EXPECT_EQ(gravity.verdict(none).value, 0.0);
   const RestGravity::State falls = after({}, [&](ImuSample& s) {
     if (s.time_ns > 5'000'000'000) taken_out(s);
@@ -167,7 +167,7 @@ TEST(RestGravity, RatesThatMeetGravityByChanceLeaveAVelocity) {
     EXPECT_LT(wrong.miss_rad, 0.1) << "by chance";
     EXPECT_NEAR(wrong.velocity_share, 2.0 * across * 3.0 / 3.4, 0.05) << scale;
     EXPECT_STREQ(gravity.verdict(wrong).field,
-                 "velocity that the rates leave from one rest to the next as a share of gravity's");
+                 "velocity error after integration from one rest to the next (share of gravity times elapsed time)");
   }
 }
 

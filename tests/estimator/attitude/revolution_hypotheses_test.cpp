@@ -142,7 +142,7 @@ TEST(RevolutionHypotheses, WhereTheWholeCannotBeSolvedAgainTheAnswerBeforeStands
   const CarriedSmoother::Report report = solved.report;
   const auto fails = [](carried::Problem& problem, CarriedSmoother::Report& changed) {
     EXPECT_TRUE(problem.solve(changed).ok());
-    return Status{Trouble::diverged, "iteration of the carried body", 1.0, 0.0};
+    return Status{Trouble::diverged, "iteration of the smoother for hand-held motion", 1.0, 0.0};
   };
   carried::test_revolutions(solved.problem, solved.report, fails);
   EXPECT_EQ(solved.report.revolutions_asked, 1);

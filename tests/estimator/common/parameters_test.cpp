@@ -70,7 +70,7 @@ TEST(Fields, AreWithinTheirBoundsBothIncluded) {
 TEST(Fields, OutOfBoundsAreNamedWithTheirGroup) {
   Outer params;
   params.right.share = 1.5;
-  EXPECT_EQ(complaint(params), "right_share is 1.5, must be within [0, 1]");
+  EXPECT_EQ(complaint(params), "right_share is 1.5; it must be within [0, 1]");
   const Status status = check_fields(params);
   EXPECT_EQ(status.trouble, Trouble::out_of_range);
   EXPECT_STREQ(status.field, "share");
@@ -82,9 +82,9 @@ TEST(Fields, TheFirstOfSeveralIsTold) {
   Outer params;
   params.left.count = 0;
   params.right.share = 1.5;
-  EXPECT_EQ(complaint(params), "left_count is 0, must be within [1, 4]");
+  EXPECT_EQ(complaint(params), "left_count is 0; it must be within [1, 4]");
   params.tau_s = 0.0;
-  EXPECT_EQ(complaint(params), "tau_s is 0, must be within [0.001, 10]");
+  EXPECT_EQ(complaint(params), "tau_s is 0; it must be within [0.001, 10]");
   EXPECT_EQ(check_fields(params).bound, 1e-3);
 }
 
@@ -94,7 +94,7 @@ TEST(Fields, EachTypeIsLookedAt) {
   EXPECT_NE(complaint(params), "");
   params = {};
   params.kind = static_cast<Outer::Kind>(2);
-  EXPECT_EQ(complaint(params), "kind is 2, must be within [0, 1]");
+  EXPECT_EQ(complaint(params), "kind is 2; it must be within [0, 1]");
   params = {};
   params.least = 2'000'000'000;
   EXPECT_NE(complaint(params), "");

@@ -49,7 +49,7 @@ TEST(RequireWithin, AcceptsTheBoundsAndNamesWhatIsOutside) {
     require_within("gain", 1.5, 0.0, 1.0);
     FAIL() << "1.5 was accepted";
   } catch (const InvalidParams& error) {
-    EXPECT_STREQ(error.what(), "gain is 1.5, must be within [0, 1]");
+    EXPECT_STREQ(error.what(), "gain is 1.5; it must be within [0, 1]");
   }
 }
 

@@ -181,7 +181,7 @@ TEST(LidarInertialOdometry, BadParamsAreToldAsAValueToo) {
   EXPECT_EQ(told([](Odometry::Params& p) {
               p.own_body_L = {Eigen::Vector3d::Ones(), -Eigen::Vector3d::Ones()};
             }),
-            "own_body_L largest x less the least");
+            "own_body_L maximum x minus minimum x");
 }
 
 }  // namespace

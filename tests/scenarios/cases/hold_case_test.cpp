@@ -56,9 +56,10 @@ TEST(HoldCase, WhatFailsIsHeldOnBothSides) {
   EXPECT_THAT(fault(fails, slam_outcome(OutcomeStatus::ok, 2.0, true)), IsEmpty());
   EXPECT_THAT(fault(fails, slam_outcome(OutcomeStatus::ok, 3.9, true)), IsEmpty());
   EXPECT_THAT(fault(fails, slam_outcome(OutcomeStatus::ok, 1.1, true)), IsEmpty());
-  EXPECT_THAT(fault(fails, slam_outcome(OutcomeStatus::ok, 4.1, true)), HasSubstr("is 4.1; the accepted value was 2"));
+  EXPECT_THAT(fault(fails, slam_outcome(OutcomeStatus::ok, 4.1, true)),
+              HasSubstr("is 4.1, but the accepted value is 2"));
   EXPECT_THAT(fault(fails, slam_outcome(OutcomeStatus::diverged, 2.0, true)),
-              HasSubstr("fails with status diverged; the accepted status was ok"));
+              HasSubstr("fails with status 'diverged', but the accepted result has the status 'ok'"));
   const CaseResult better = hold_case("name", fails, slam_outcome(OutcomeStatus::ok, 0.9, true));
   EXPECT_TRUE(better.better);
   EXPECT_THAT(better.fault, HasSubstr("better"));
@@ -66,7 +67,8 @@ TEST(HoldCase, WhatFailsIsHeldOnBothSides) {
   EXPECT_TRUE(cured.better);
   EXPECT_THAT(cured.fault, HasSubstr("cured"));
   const double infinite = std::numeric_limits<double>::infinity();
-  EXPECT_THAT(fault(fails, slam_outcome(OutcomeStatus::ok, infinite, true)), HasSubstr("no longer has a value"));
+  EXPECT_THAT(fault(fails, slam_outcome(OutcomeStatus::ok, infinite, true)),
+              HasSubstr("has no value, but the accepted result has one"));
 }
 
 TEST(HoldCase, WhatIsAcceptedIsHeldAsItWas) {
@@ -97,8 +99,9 @@ TEST(HoldCase, AShrunkDrawBecomesACaseThatStillFails) {
   ASSERT_TRUE(named.named_case.has_value());
   EXPECT_EQ(named.named_case->scenario, "cliff");
   EXPECT_EQ(named.named_case->seed, 77u);
-  EXPECT_THAT(named.doc, HasSubstr("map_failed, on draw 77 of cliff in simplified form; it still needs world: bumps; 1 "
-                                   "more parts were not tried."));
+  EXPECT_THAT(named.doc,
+              HasSubstr("fails (map_failed) on a simplified form of draw 77 of scenario cliff. The failure still "
+                        "needs: world: bumps; 1 other parts were not tried."));
   const Expectation& expected = named.named_case->expected.front();
   EXPECT_EQ(expected.drawn, 2.5);
   EXPECT_EQ(expected.value, 1.5);

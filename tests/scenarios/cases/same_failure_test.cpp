@@ -57,7 +57,7 @@ TEST(SameFailure, WhatDoesNotFailIsRefused) {
     return std::string();
   };
   EXPECT_THAT(complaint({"ate_m", 1.0}, outcome(OutcomeStatus::ok, {{"ate_m", 0.5}})),
-              testing::HasSubstr("ate_m is 0.5; it is not worse than 1"));
+              testing::HasSubstr("ate_m is 0.5, which is not worse than the limit 1"));
   EXPECT_THAT(complaint({"ate_m", 1.0}, outcome(OutcomeStatus::ok)), testing::HasSubstr("ate_m is missing"));
   EXPECT_THAT(complaint({}, outcome(OutcomeStatus::ok, {{"map_failed", 0.0}})), testing::HasSubstr("does not fail"));
   EXPECT_THAT(complaint({}, outcome(OutcomeStatus::killed)), testing::HasSubstr("the machine"));

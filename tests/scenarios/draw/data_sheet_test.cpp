@@ -51,7 +51,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"gyro_range_rad_s", "gyro_rang_rad_s",
               "mti30.yaml:5: values.gyro_rang_rad_s: ", "did you mean 'gyro_range_rad_s'?"},
         Wrong{"unit: rad/s", "unit: deg/s",
-              "mti30.yaml:5: values.gyro_range_rad_s.unit: ", "is 'deg/s', must be 'rad/s'"},
+              "mti30.yaml:5: values.gyro_range_rad_s.unit: ", "is 'deg/s'; it must be 'rad/s'"},
         Wrong{", source: \"450 deg/s, MTi user manual\"", "",
               "mti30.yaml:5: values.gyro_range_rad_s: ", "key 'source' is missing"},
         Wrong{"\"450 deg/s, MTi user manual\"", "\"\"",

@@ -74,7 +74,7 @@ std::string complaint_after(const std::string& from, const std::string& to) {
 TEST(NamedCase, WhatIsWrongIsNamedWithItsPlace) {
   EXPECT_EQ(complaint_after("cliff", "cliff"), "");
   EXPECT_THAT(complaint_after("run: fails", "run: perhaps"), HasSubstr("a.yaml:10: "));
-  EXPECT_THAT(complaint_after("run: fails", "run: perhaps"), HasSubstr("'perhaps', must be 'fails' or 'holds'"));
+  EXPECT_THAT(complaint_after("run: fails", "run: perhaps"), HasSubstr("'perhaps'; it must be 'fails' or 'holds'"));
   EXPECT_THAT(complaint_after("method: \"rate/tumble\"", "method: \"slam/tumble\""), HasSubstr("occurs twice"));
   EXPECT_THAT(complaint_after("worse_than: 0.5", "worse_then: 0.5"), HasSubstr("worse_than"));
   EXPECT_THAT(complaint_after("worse_than: 0.5", "worse_than: .nan"), HasSubstr("worse_than"));

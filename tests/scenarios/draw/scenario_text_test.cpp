@@ -66,10 +66,10 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"450.5", ".inf", "hill.yaml:8: motion.force_n: ", "must be a number"},
         Wrong{"450.5", "1e999", "hill.yaml:8: motion.force_n: ", "too large"},
         Wrong{"450.5", "", "hill.yaml:8: motion.force_n: ", "must be a number or one of"},
-        Wrong{"450.5", "6000", "hill.yaml:8: motion.force_n: ", "is 6000 N, must be within [0, 5000]"},
+        Wrong{"450.5", "6000", "hill.yaml:8: motion.force_n: ", "is 6000 N; it must be within [0, 5000]"},
         Wrong{"[0.5, 0.7]", "[0.7, 0.5]", "hill.yaml:4: world.slope_rad: ", "low 0.7 is above high 0.5"},
         Wrong{"[0.5, 0.7]", "[0.5, 1.3]",
-              "hill.yaml:4: world.slope_rad: ", "can reach 1.3 rad, must be within [0, 1.2]"},
+              "hill.yaml:4: world.slope_rad: ", "can reach 1.3 rad; it must be within [0, 1.2]"},
         Wrong{"[0.5, 0.7]", "[0.5]", "hill.yaml:4: world.slope_rad: ", "uniform needs [low, high]"},
         Wrong{"[0.5, 0.7]", "[0.5, nan]", "hill.yaml:4: world.slope_rad.uniform[1]: ", "must be finite"},
         Wrong{"[0.5, 0.7]", "0.5", "hill.yaml:4: world.slope_rad.uniform: ", "must be a list"},
@@ -77,13 +77,13 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"{uniform: [0.5, 0.7]}", "{uniform: [0.5, 0.7], choice: [1]}",
               "hill.yaml:4: world.slope_rad: ", "exactly one"},
         Wrong{"{uniform: [0.5, 0.7]}", "{choice: []}",
-              "hill.yaml:4: world.slope_rad: ", "choice needs at least one value"},
+              "hill.yaml:4: world.slope_rad: ", "choice must list at least one value"},
         Wrong{"{uniform: [0.5, 0.7]}", "{log_uniform: [0, 0.7]}", "hill.yaml:4: world.slope_rad: ", "greater than 0"},
         Wrong{"{uniform: [0.5, 0.7]}", "[0.5, 0.7]", "hill.yaml:4: world.slope_rad: ", "must be a number or one of"},
         Wrong{"[8, 0.5, 6, 10]", "[8, -0.5]", "hill.yaml:5: robot.mass_kg: ", "sigma -0.5 is below 0"},
         Wrong{"[8, 0.5, 6, 10]", "[8, 0.5, 10, 6]", "hill.yaml:5: robot.mass_kg: ", "low 10 is above high 6"},
-        Wrong{"[8, 0.5, 6, 10]", "[8, 0.5, 10, 12]", "hill.yaml:5: robot.mass_kg: ", "keeps less than 1 %"},
-        Wrong{"[8, 0.5, 6, 10]", "[8, 0, 9, 10]", "hill.yaml:5: robot.mass_kg: ", "keeps less than 1 %"},
+        Wrong{"[8, 0.5, 6, 10]", "[8, 0.5, 10, 12]", "hill.yaml:5: robot.mass_kg: ", "contains less than 1 %"},
+        Wrong{"[8, 0.5, 6, 10]", "[8, 0, 9, 10]", "hill.yaml:5: robot.mass_kg: ", "contains less than 1 %"},
         Wrong{"[8, 0.5, 6, 10]", "[8, 0.5, 6]", "hill.yaml:5: robot.mass_kg: ", "normal needs"},
         Wrong{"[8, 0.5, 6, 10]", "[25, 0.5]", "hill.yaml:5: robot.mass_kg: ", "can reach 25 kg"},
         Wrong{"site: vn100", "sight: vn100", "hill.yaml:11: sensors[1]: ", "key 'site' is missing"},
@@ -104,8 +104,9 @@ TEST(ScenarioText, RefusesWhatIsNotOneMap) {
   EXPECT_EQ(complaint_of("# only a comment\n"), "hill.yaml: is empty");
   EXPECT_THAT(complaint_of("- 1\n- 2\n"), HasSubstr("must be a map"));
   const std::string long_name = "name: " + std::string(5000, 'a');
-  EXPECT_THAT(complaint_of(with(kScenario, "name: hill", long_name.c_str())),
-              testing::AllOf(StartsWith("hill.yaml:1: name: "), HasSubstr("has 5000 characters, must be at most 100")));
+  EXPECT_THAT(
+      complaint_of(with(kScenario, "name: hill", long_name.c_str())),
+      testing::AllOf(StartsWith("hill.yaml:1: name: "), HasSubstr("has 5000 characters; it must have at most 100")));
   EXPECT_THAT(complaint_of(kScenario + "---\nname: b\n"), HasSubstr("more than one document"));
   EXPECT_THAT(complaint_of("? [a, b]\n: 1\n"), HasSubstr("must be text; it is a list"));
   EXPECT_THAT(complaint_of(with(kScenario, "sensors:", "sensors: []\nx:")), HasSubstr("unknown key 'x'"));

@@ -120,15 +120,16 @@ TEST_F(EstimateFile, ReadsATumFileOfSomebodyElse) {
 
 TEST_F(EstimateFile, ComplaintsNameFileAndLine) {
   EXPECT_NE(complaint(folder_ / "absent.tum").find("absent.tum: no such file"), std::string::npos);
-  EXPECT_NE(complaint(write("a.tum", "0 1 2 3 0 0 0 1\n0.1 1 2 3 0 0 0\n")).find("a.tum:2: 7 columns, must be 8"),
+  EXPECT_NE(complaint(write("a.tum", "0 1 2 3 0 0 0 1\n0.1 1 2 3 0 0 0\n"))
+                .find("a.tum:2: the row has 7 columns; it must have 8"),
             std::string::npos);
   EXPECT_NE(complaint(write("b.tum", "0 1 2 x 0 0 0 1\n")).find("b.tum:1: 'x' is not a number"), std::string::npos);
   EXPECT_NE(
       complaint(write("nan.tum", "0 1 2 3 0 0 0 1\n1 nan 2 3 0 0 0 1\n")).find("nan.tum:2: the pose is not finite"),
       std::string::npos);
-  EXPECT_NE(complaint(write("d.tum", "0 1 2 3 0 0 0 1e200\n")).find("d.tum:1: quaternion of norm 1e+200"),
+  EXPECT_NE(complaint(write("d.tum", "0 1 2 3 0 0 0 1e200\n")).find("d.tum:1: the quaternion has norm 1e+200"),
             std::string::npos);
-  EXPECT_NE(complaint(write("c.tum", "0 1 2 3 0 0 0 0\n")).find("c.tum:1: quaternion of norm"), std::string::npos);
+  EXPECT_NE(complaint(write("c.tum", "0 1 2 3 0 0 0 0\n")).find("c.tum:1: the quaternion has norm"), std::string::npos);
   EXPECT_NE(complaint(write("d.tum", "1 1 2 3 0 0 0 1\n1 1 2 3 0 0 0 1\n")).find("d.tum:2: time stamps must increase"),
             std::string::npos);
   EXPECT_NE(complaint(write("f.tum", "0 1 2 3 0 0 0 1\n1.-5 1 2 3 0 0 0 1\n")).find("f.tum:2: '1.-5' is not"),
@@ -137,13 +138,13 @@ TEST_F(EstimateFile, ComplaintsNameFileAndLine) {
   EXPECT_NE(complaint(folder_).find("estimate.json"), std::string::npos);
   for (const auto& [text, says] : std::vector<std::pair<std::string, std::string>>{
            {"null", "not a JSON object"},
-           {R"({"format": "1"})", R"('format' is "1", must be 1)"},
+           {R"({"format": "1"})", R"('format' is "1"; it must be 1)"},
            {R"({"format": 1})", "'method' is missing"},
-           {R"({"format": 1, "method": 5})", "'method' is 5, must be text"},
+           {R"({"format": 1, "method": 5})", "'method' is 5; it must be text"},
            {R"({"format": 1, "method": "a", "kind": "slan"})",
-            R"('kind' is "slan", must be one of rate, attitude, position, slam)"},
+            R"('kind' is "slan"; it must be one of rate, attitude, position, slam)"},
            {R"({"format": 1, "method": "a", "kind": "rate", "frame": "imu", "status": null})",
-            "'status' is null, must be an object"},
+            "'status' is null; it must be an object"},
            {R"({"format": 1, "method": "a", "kind": "rate", "frame": "imu", "status": {}})", "'trouble' is missing"}}) {
     write("estimate.json", text);
     EXPECT_NE(complaint(folder_).find("estimate.json: " + says), std::string::npos) << complaint(folder_);
@@ -155,7 +156,8 @@ TEST_F(EstimateFile, ComplaintsNameFileAndLine) {
 // a device that gives zeros for ever would be read into memory
 TEST_F(EstimateFile, ALineWithoutEndIsRefused) {
   const std::string said = complaint(write("z.tum", "0 1 2 3 0 0 0 1\n" + std::string((1 << 20) + 1, '\0')));
-  EXPECT_NE(said.find("z.tum:2: the line has more than 1048576 bytes; it is not a line of a table"), std::string::npos)
+  EXPECT_NE(said.find("z.tum:2: the line has more than 1048576 bytes, so this is not a line of a table"),
+            std::string::npos)
       << said;
   EXPECT_NE(complaint("/dev/zero").find("/dev/zero:1: the line has more than"), std::string::npos);
 }
@@ -215,7 +217,7 @@ TEST_F(EstimateFile, UncertainEventsComeBackWithTheirContacts) {
   EXPECT_EQ(second, "5000000,2,1");
 
   write("contacts.csv", "time_ns,label,uncertain\n0,1,0\n5000000,2,2\n10000000,2,1\n");
-  EXPECT_NE(complaint(folder_).find("contacts.csv:3: uncertain is 2, must be 0 or 1"), std::string::npos);
+  EXPECT_NE(complaint(folder_).find("contacts.csv:3: uncertain is 2; it must be 0 or 1"), std::string::npos);
   estimate.uncertain.pop_back();
   EXPECT_THROW(write_estimate(folder_, "tumble", Kind::position, estimate), std::invalid_argument);
 }

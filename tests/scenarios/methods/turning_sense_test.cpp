@@ -66,7 +66,8 @@ TEST_P(TurningSense, WhatIsAsStatedIsNotComplainedOf) {
 }
 
 TEST_P(TurningSense, WFirstAndInverseAreNamed) {
-  EXPECT_THAT(complaint(with_w_first), HasSubstr("if the quaternions had w first (expected order: x y z w)"));
+  EXPECT_THAT(complaint(with_w_first),
+              HasSubstr("if the quaternions were stored with w first (expected order: x y z w)"));
   EXPECT_THAT(complaint(inverse), HasSubstr("if the quaternions described the world in sensor axes"));
 }
 
@@ -89,7 +90,8 @@ TEST_P(TurningSense, AConstantDelayIsNamed) {
     for (AttitudeState& each : late.attitudes) each.time_ns += std::llround(1e9 * late_s);
     return clock_complaint(late, sensors_);
   };
-  EXPECT_THAT(delayed_by(0.4), HasSubstr("their stamps are 0.400 s too late, at most 0.15 s is accepted: subtract"));
+  EXPECT_THAT(delayed_by(0.4),
+              HasSubstr("their stamps are 0.400 s too late, but at most 0.15 s is accepted; subtract"));
   EXPECT_THAT(delayed_by(-0.4), HasSubstr("their stamps are 0.400 s too early"));
   EXPECT_EQ(delayed_by(0.1), "") << "stamps at the end of a sweep";
   EXPECT_EQ(delayed_by(0.0), "");
@@ -98,7 +100,7 @@ TEST_P(TurningSense, AConstantDelayIsNamed) {
 TEST(TurningSense, AnotherFrameIsNamed) {
   const sim::Sensors rig = sensors();
   const Estimate lidar = attitudes(rig.lidars.front().T_BL.linear(), Frame::imu, as_is);
-  EXPECT_THAT(turning_complaint(lidar, rig), HasSubstr("in frame imu do not rotate as the gyro does"));
+  EXPECT_THAT(turning_complaint(lidar, rig), HasSubstr("in frame imu rotate differently from the gyro"));
   EXPECT_THAT(turning_complaint(lidar, rig), HasSubstr("if the poses belonged to the frame lidar"));
 }
 

@@ -42,8 +42,11 @@ TEST_F(Airbrakes, ReadsDegreesAndG) {
   EXPECT_EQ(imu.accel_m_s2[0], Eigen::Vector3d(0.0, 0.0, 9.80665));
   EXPECT_NEAR(imu.magnetic_field_t.at(2).z(), -40e-6, 1e-15);
   EXPECT_FALSE(imported.reference);
-  EXPECT_THAT(imported.notes, ElementsAre("1 gaps of more than 1 s; the longest segment is kept: samples 1 to 3 of 4",
-                                          "1 rows repeat a time stamp; they are left out"));
+  EXPECT_THAT(
+      imported.notes,
+      ElementsAre(
+          "the recording has 1 gaps of more than 1 s; the import keeps the longest segment: samples 1 to 3 of 4",
+          "1 rows repeat a time stamp and are left out"));
   EXPECT_THAT(imported.info.attribution, HasSubstr("MIT"));
   EXPECT_TRUE(is_airbrakes(folder_ / "flight.csv"));
   write_recording(folder_ / "a.h5", imported.info, imported.sensors, nullptr);
@@ -56,7 +59,7 @@ TEST_F(Airbrakes, BadInputHasFileLineValueAndBound) {
   EXPECT_THAT(complaint_of(good + row("1.5")), HasSubstr("csv:4: the time stamp does not increase"));
   EXPECT_THAT(complaint_of(good + row("3", "nan")), HasSubstr("csv:4: column raw_angular_rate is not finite"));
   EXPECT_THAT(complaint_of(good + row("3", "x")), HasSubstr("csv:4: column raw_angular_rate must be a number"));
-  EXPECT_THAT(complaint_of(good + row("-3")), HasSubstr("csv:4: timestamp_seconds is -3, must be within 0"));
+  EXPECT_THAT(complaint_of(good + row("-3")), HasSubstr("csv:4: timestamp_seconds is -3; it must be within 0"));
   EXPECT_THAT(complaint_of(good + "S,3\n"), HasSubstr("csv:4: has 2 columns, but the header has 11"));
   std::string missing = good;
   missing.replace(missing.find("raw_angular_rate_y"), 18, "raw_angular_rate_q");
@@ -77,9 +80,11 @@ TEST_F(Airbrakes, ReadsTheStandIn) {
       import_airbrakes(test::written(test::data_folders("airbrakes").front()) / test::kStandInFlight);
   EXPECT_EQ(flight.sensors.imus[0].time_ns.size(), 2000u) << "ten rows repeat a stamp, seven come long before";
   EXPECT_NEAR(peak_rad_s(flight), 38.9, 0.1);
-  EXPECT_THAT(flight.notes,
-              ElementsAre("1 gaps of more than 1 s; the longest segment is kept: samples 7 to 2006 of 2007",
-                          "10 rows repeat a time stamp; they are left out"));
+  EXPECT_THAT(
+      flight.notes,
+      ElementsAre(
+          "the recording has 1 gaps of more than 1 s; the import keeps the longest segment: samples 7 to 2006 of 2007",
+          "10 rows repeat a time stamp and are left out"));
 }
 
 /// The published flights, where they are at hand; the suite is there with them alone.

@@ -66,8 +66,9 @@ TEST_P(Stamps, HeadersCountAndTheirDistanceToTheRecordsIsSaid) {
   const Imported read = written(same, sweep_before);
   EXPECT_EQ(read.sensors.imus[0].time_ns.front() + read.info.origin_ns, kOrigin_ns + 5 * kMs_ns);
   EXPECT_EQ(read.sensors.lidars[0].sweep_start_ns.front() + read.info.origin_ns, kOrigin_ns);
-  EXPECT_THAT(read.notes, Contains(AllOf(HasSubstr("/points: the bag recorded its messages 0.1 s to 0.1 s after"),
-                                         HasSubstr("this import uses the stamps of the headers"))));
+  EXPECT_THAT(read.notes,
+              Contains(AllOf(HasSubstr("/points: the record stamps of the messages are 0.1 s to 0.1 s later than"),
+                             HasSubstr("this import uses the stamps of the headers"))));
   EXPECT_THAT(read.notes, Not(Contains(HasSubstr("/imu: the bag recorded")))) << "nothing is said of what agrees";
 }
 
@@ -76,7 +77,7 @@ TEST_P(Stamps, AnotherClockIsACaution) {
               Contains(AllOf(HasSubstr("/imu: caution: the bag recorded"), HasSubstr("the clocks may differ"))));
   const auto ahead = [](std::int64_t record_ns) { return record_ns + 20 * kMs_ns; };
   EXPECT_THAT(written(ahead, sweep_before).notes,
-              Contains(HasSubstr("/imu: caution: the bag recorded its messages -0.02 s")));
+              Contains(HasSubstr("/imu: caution: the record stamps of the messages are -0.02 s")));
   const auto drifting = [](std::int64_t record_ns) {
     return kOrigin_ns - 700 * kMs_ns + 10 * (record_ns - kOrigin_ns) / 3;
   };
@@ -109,7 +110,8 @@ TEST_P(Stamps, APlaceThatNobodyStatesIsSaid) {
 TEST_P(Stamps, BrokenHeadersAreRefusedWithTheWayOut) {
   EXPECT_THAT(
       complaint_of(zero, sweep_before),
-      AllOf(HasSubstr("message 1 of /imu: the time stamp does not increase: the header's is 0, like the previous one"),
+      AllOf(HasSubstr(
+                "message 1 of /imu: the time stamp does not increase: the header's is 0, like the previous time stamp"),
             HasSubstr("the record's increases by 0.005 s; set '--stamps record' to use the record stamps")));
   EXPECT_THAT(complaint_of(constant, sweep_before), HasSubstr("the header's does not change"));
   EXPECT_THAT(complaint_of(back, sweep_before), HasSubstr("the header's decreases by 0.005 s"));
@@ -125,9 +127,10 @@ TEST_P(Stamps, RecordsAreTakenInstead) {
     ASSERT_EQ(read.sensors.lidars[0].sweep_start_ns.size(), 3u);
     EXPECT_EQ(read.sensors.lidars[0].sweep_start_ns.back() + read.info.origin_ns, kOrigin_ns + 200 * kMs_ns)
         << "recorded when it was over";
-    EXPECT_THAT(read.notes,
-                Contains(AllOf(HasSubstr("/points: "), HasSubstr("this import uses the stamps of the records"),
-                               HasSubstr("assumption: each sweep starts 0.100000 s before its record stamp"))));
+    EXPECT_THAT(
+        read.notes,
+        Contains(AllOf(HasSubstr("/points: "), HasSubstr("this import uses the stamps of the records"),
+                       HasSubstr("the import assumes that each sweep starts 0.100000 s before its record stamp"))));
   }
 }
 

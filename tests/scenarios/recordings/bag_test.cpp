@@ -93,7 +93,7 @@ TEST_P(Bag, TheTruthIsLeftOutUnlessAskedFor) {
     EXPECT_EQ(imported.reference->q_WB[k].coeffs(), recording_.truth.q_WB[5 * k].coeffs());
   }
   reading_.reference_topic = "/imu";
-  EXPECT_THAT(complaint_of(), HasSubstr("topic '/imu' is of type sensor_msgs/Imu, must be nav_msgs/Odometry"));
+  EXPECT_THAT(complaint_of(), HasSubstr("topic '/imu' is of type sensor_msgs/Imu; it must be nav_msgs/Odometry"));
 }
 
 TEST_P(Bag, TopicsAreChosenByName) {
@@ -104,13 +104,13 @@ TEST_P(Bag, TopicsAreChosenByName) {
   reading_.imu_topics = {"/imu_referense"};
   EXPECT_THAT(complaint_of(), HasSubstr("did you mean '/imu_reference'?"));
   reading_.imu_topics = {"/lidar/points"};
-  EXPECT_THAT(complaint_of(), HasSubstr("of type sensor_msgs/PointCloud2, must be sensor_msgs/Imu"));
+  EXPECT_THAT(complaint_of(), HasSubstr("of type sensor_msgs/PointCloud2; it must be sensor_msgs/Imu"));
 }
 
 TEST_P(Bag, AnotherUnitIsSaid) {
   for (Eigen::Vector3d& force : recording_.sensors.imus[0].accel_m_s2) force /= 9.80665;
   write();
-  EXPECT_THAT(complaint_of(), HasSubstr("topic /imu: read in m/s^2, the median specific force is"));
+  EXPECT_THAT(complaint_of(), HasSubstr("topic /imu: if the file is read in m/s^2, the median specific force is"));
 }
 
 // some drivers do not keep to sensor_msgs/Imu
@@ -204,7 +204,7 @@ TEST_P(Bag, RatesInDegreesAreNoticedByGravity) {
   EXPECT_THAT(in_degrees.notes, testing::Contains(HasSubstr("units and axes agree")));
   EXPECT_TRUE(in_degrees.sensors.imus[0].gyro_rad_s[0].isApprox(Eigen::Vector3d(1.0, 0.0, 0.0), 1e-7));
   turning(1.0, 1.0);
-  EXPECT_THAT(complaint_of(), HasSubstr("read in deg/s, gravity's rotation in the accelerometer is"));
+  EXPECT_THAT(complaint_of(), HasSubstr("if the rates are read in deg/s, gravity rotates"));
   EXPECT_THAT(complaint_of(), HasSubstr("The rates may be in rad/s"));
   reading_.gyro_unit = GyroUnit::rad_s;
   turning(1.0, -1.0);

@@ -84,7 +84,7 @@ TEST_F(DamagedFile, ADamagedReadingIsNamedAsSuch) {
   spoiled[at - 8] = static_cast<char>(spoiled[at - 8] ^ 1);  // lowest bit of a double
   fixture::put(path_, spoiled);
   EXPECT_THAT(fixture::complaint([&] { read_sensors(path_); }),
-              HasSubstr("damaged or changed: the digest of its data is"));
+              HasSubstr("damaged or was changed: the digest of its data is"));
 }
 
 }  // namespace

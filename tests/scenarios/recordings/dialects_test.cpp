@@ -223,7 +223,7 @@ TEST_P(Dialects, AnEmptySweepIsThereOnlyForThosePeersThatTakeIt) {
   EXPECT_EQ(manifest()["lidar"]["sweeps"], clouds.size());
   EXPECT_EQ(std::count_if(clouds.begin(), clouds.end(), [](const auto& cloud) { return cloud.width == 0; }),
             takes ? 2 : 0);
-  const std::string note = "2 sweeps without points are left out: " + peer + " cannot read an empty cloud";
+  const std::string note = "2 sweeps without points are left out, because " + peer + " cannot read an empty cloud";
   EXPECT_THAT(notes, testing::Conditional(takes, testing::IsEmpty(), testing::ElementsAre(note)));
   EXPECT_EQ(fixture::bytes_of(out() / "manifest.json").find(note) != std::string::npos, !takes);
 }

@@ -167,7 +167,7 @@ TEST_F(InBag, WhatCannotBePlacedIsRefused) {
   EXPECT_THAT(complaint(), HasSubstr("contains no poses"));
   estimate_ = good;
   for (PoseState& pose : estimate_.poses) pose.time_ns += 1'000'000'000'000;
-  EXPECT_THAT(complaint(), HasSubstr("check that both use the same clock"));
+  EXPECT_THAT(complaint(), HasSubstr("check that truth and estimate use the same clock"));
 }
 
 TEST_F(InBag, FilesAreNamedAfterTheirMethods) {

@@ -142,7 +142,8 @@ TEST_F(Export, NoFileOfASensorIsWrittenOverAnother) {
   write_recording(folder_ / "a.h5", fixture::info(), recording_.sensors, &recording_.truth);
   EXPECT_THAT(
       export_recording(folder_ / "a.h5", "csv", folder_ / "csv"),
-      ElementsAre("'truth' is a topic or frame that does not belong to a sensor: IMU 0 is written as 'truth_2'"));
+      ElementsAre(
+          "'truth' is the name of a topic or frame that does not belong to a sensor: IMU 0 is written as 'truth_2'"));
   const auto lines = [&](const char* file) {
     const std::string text = fixture::bytes_of(folder_ / "csv" / file);
     return std::count(text.begin(), text.end(), '\n');

@@ -117,14 +117,14 @@ TEST_P(Frames, TheClockTicks) {
 TEST_P(Frames, AStatedPlaceHoldsAndAContradictionShowsBoth) {
   GetParam().write(recording_.sensors, {}, path_);
   const Imported found = GetParam().read(path_, {});
-  EXPECT_THAT(found.notes, Contains(HasSubstr("/lidar/points: placed in 'body' by /tf_static")));
+  EXPECT_THAT(found.notes, Contains(HasSubstr("/lidar/points: /tf_static gives its pose in 'body'")));
   EXPECT_TRUE(found.sensors.lidars[0].T_BL.isApprox(recording_.sensors.lidars[0].T_BL, 1e-12));
   BagReading stated;
   stated.sweeps.device.T_BL.translation() = Eigen::Vector3d(0.5, 0.25, 0.125);
   const Imported held = GetParam().read(path_, stated);
   EXPECT_EQ(held.sensors.lidars[0].T_BL.translation(), Eigen::Vector3d(0.5, 0.25, 0.125));
   EXPECT_THAT(held.notes,
-              Contains(testing::AllOf(HasSubstr("/lidar/points: caution: /tf_static places it in 'body' at"),
+              Contains(testing::AllOf(HasSubstr("/lidar/points: caution: /tf_static gives its pose in 'body' as"),
                                       HasSubstr("but the given pose is (0.5 "))));
   // the same place said twice is no contradiction
   stated.sweeps.device.T_BL = recording_.sensors.lidars[0].T_BL;
@@ -148,7 +148,7 @@ TEST_P(Frames, CloudsInTheWorldAreNoSensors) {
   EXPECT_THAT(numbers, testing::ElementsAre(1, 2, 3, 0.5f, 4, 5, 6, 0.25f));
   const Imported imported = GetParam().read(path_, {});
   EXPECT_EQ(imported.sensors.lidars.size(), 1u);
-  EXPECT_THAT(imported.notes, Contains(HasSubstr("/mine/points: its points are in frame 'world'")));
+  EXPECT_THAT(imported.notes, Contains(HasSubstr("/mine/points: the points are in frame 'world'")));
 }
 
 ros::TransformStamped hung(const std::string& child, const std::string& parent, const Eigen::Vector3d& p,
@@ -184,7 +184,7 @@ TEST_P(Frames, AreFollowedThroughOthers) {
   const Eigen::Isometry3d T_BI = found.sensors.imus.at(0).T_BI;
   EXPECT_TRUE(T_BI.translation().isApprox(Eigen::Vector3d(0, 0.5, 1))) << T_BI.translation();
   EXPECT_TRUE(T_BI.linear().isApprox(turn.toRotationMatrix()));
-  EXPECT_THAT(found.notes, Contains(HasSubstr("/imu: placed in 'base_link' by /tf_static")));
+  EXPECT_THAT(found.notes, Contains(HasSubstr("/imu: /tf_static gives its pose in 'base_link'")));
 }
 
 TEST_P(Frames, ThatNobodyTiesToTheBodyPlaceNothing) {
@@ -206,9 +206,9 @@ TEST_P(Frames, SensorsWithoutABodyStandBesideEachOther) {
   EXPECT_TRUE(imus[0].T_BI.isApprox(Eigen::Isometry3d::Identity()));
   EXPECT_LT((imus[1].T_BI.translation() - Eigen::Vector3d(0, -0.5, 0)).norm(), 1e-12);
   EXPECT_TRUE(imus[1].T_BI.linear().isApprox(turn.toRotationMatrix().transpose(), 1e-12));
-  EXPECT_THAT(found.notes, Contains(HasSubstr("/right: placed next to /left by /tf_static")));
+  EXPECT_THAT(found.notes, Contains(HasSubstr("/right: /tf_static gives its pose relative to /left")));
   EXPECT_THAT(found.notes, Contains(HasSubstr("/elsewhere: neither /tf_static nor --lever-arm")));
-  EXPECT_THAT(found.notes, Contains(HasSubstr("'left' is the primary IMU because its topic comes first")));
+  EXPECT_THAT(found.notes, Contains(HasSubstr("'left' is the primary IMU, because its topic comes first")));
   // where the first is given, the second stands beside it
   BagReading given;
   given.imu_topics = {"/left", "/right"};
@@ -234,16 +234,18 @@ TEST_P(Frames, APoseOfAnotherFrameIsMovedToTheBody) {
     reading.reference_topic = "/of_" + child;
     reading.reference_of = whose;
     const Imported found = GetParam().read(path_, reading);
-    EXPECT_THAT(found.notes, said[0] == 0 ? testing::Not(Contains(HasSubstr("by the messages")))
-                                          : testing::Matcher<std::vector<std::string>>(Contains(HasSubstr(said))));
+    EXPECT_THAT(found.notes, said[0] == 0
+                                 ? testing::Not(Contains(HasSubstr("the messages state that the poses belong to")))
+                                 : testing::Matcher<std::vector<std::string>>(Contains(HasSubstr(said))));
     return found.reference->p_WB_m.at(0);
   };
-  EXPECT_EQ(
-      start("mast", ReferenceOf::named, "/of_mast: by the messages, poses of 'mast'; converted to poses of the body"),
-      Eigen::Vector3d(7, 7.5, 7));
+  EXPECT_EQ(start("mast", ReferenceOf::named,
+                  "/of_mast: the messages state that the poses belong to the frame 'mast'; they are converted to poses "
+                  "of the body"),
+            Eigen::Vector3d(7, 7.5, 7));
   EXPECT_EQ(start("mast", ReferenceOf::body, ""), Eigen::Vector3d(7, 8, 9));
   EXPECT_EQ(start("base_link", ReferenceOf::named, ""), Eigen::Vector3d(7, 8, 9));
-  EXPECT_EQ(start("unknown", ReferenceOf::named, "which has no known pose on the body"), Eigen::Vector3d(7, 8, 9));
+  EXPECT_EQ(start("unknown", ReferenceOf::named, "whose pose on the body is unknown"), Eigen::Vector3d(7, 8, 9));
 }
 
 // as a motion capture system sends it
@@ -262,7 +264,10 @@ TEST_P(Frames, ATransformIsAReference) {
   ASSERT_TRUE(found.reference.has_value());
   EXPECT_EQ(found.reference->p_WB_m.at(0), Eigen::Vector3d(7, 8, 9));
   EXPECT_TRUE(found.reference->q_WB.at(0).isApprox(Eigen::Quaterniond(0.6, 0.8, 0, 0), 1e-12));
-  EXPECT_THAT(found.notes, Contains(HasSubstr("/vicon: by the messages, poses of 'rig', which has no known pose")));
+  EXPECT_THAT(
+      found.notes,
+      Contains(HasSubstr(
+          "/vicon: the messages state that the poses belong to the frame 'rig', whose pose on the body is unknown")));
 }
 
 TEST_P(Frames, AStatedZeroIsAMounting) {
@@ -311,8 +316,9 @@ TEST_P(Frames, WhatNoSensorAsksForMayMakeNoSense) {
   const Imported found = GetParam().read(path_, {});
   EXPECT_EQ(found.sensors.imus.at(0).T_BI.translation(), Eigen::Vector3d(0.5, 0, 0));
   for (const char* said :
-       {"the transform of 'map' in 'utm': its translation must be at most 1 km; it is ignored",
-        "'camera': the frame is its own parent; it is ignored", "'lamp' in 'body': its quaternion has norm"})
+       {"the transform of 'map' in 'utm': the translation must be finite and at most 1 km; this transform is ignored",
+        "'camera': the frame is its own parent; this transform is ignored",
+        "'lamp' in 'body': its quaternion has norm"})
     EXPECT_THAT(found.notes, Contains(HasSubstr(said)));
 }
 
@@ -332,9 +338,11 @@ TEST_P(Frames, ThatMakeNoSenseAreRefused) {
        "and its parent frames form a loop"},
       {{hung("imu", "mast", {0, 0, 0}), hung("mast", "imu", {0, 0, 0})},
        "and its parent frames form a loop"},  // no body
-      {{hung("imu", "body", {kNan, 0, 0})}, "the transform of 'imu' in 'body': its translation must be at most 1 km"},
-      {{hung("imu", "body", {0, 2000, 0})}, "its translation must be at most 1 km"},
-      {{hung("imu", "body", {0, 0, 0}, Eigen::Quaterniond(0, 0, 0, 0))}, "its quaternion has norm 0.000000, must be 1"},
+      {{hung("imu", "body", {kNan, 0, 0})},
+       "the transform of 'imu' in 'body': the translation must be finite and at most 1 km"},
+      {{hung("imu", "body", {0, 2000, 0})}, "the translation must be finite and at most 1 km"},
+      {{hung("imu", "body", {0, 0, 0}, Eigen::Quaterniond(0, 0, 0, 0))},
+       "its quaternion has norm 0.000000; the norm must be 1"},
       {{hung("imu", "body", {0, 0, 0}, Eigen::Quaterniond(kNan, 0, 0, 0))}, "its quaternion has norm nan"}};
   for (const auto& [frames, complaint] : cases) {
     std::filesystem::remove_all(path_);

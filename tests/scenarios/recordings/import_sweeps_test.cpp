@@ -89,7 +89,8 @@ TEST_F(ImportSweeps, PointsFarBeyondTheSheetAreRefused) {
   put("2.ply", sweep());
   source_.steady_ns = 100000000;
   source_.reading.range_max_m = 1.0;  // of points 3.7 m away
-  EXPECT_THAT(complaint_of(), HasSubstr("6 of 6 points are farther than 2 m, twice the range of the data sheet"));
+  EXPECT_THAT(complaint_of(),
+              HasSubstr("6 of 6 points are farther than 2 m, which is twice the range in the data sheet"));
   source_.reading.range_max_m = 2.0;
   EXPECT_EQ(import().position_L_m.size(), 6u);
 }
@@ -205,7 +206,7 @@ TEST_F(ImportSweeps, MissesAreLeftOutAndIntensityIsScaled) {
   EXPECT_THAT(lidar.range_m, ElementsAre(3.0f, 5.0f, testing::_, testing::_, testing::_));
   EXPECT_THAT(lidar.intensity, ElementsAre(0.2f, 1.0f, 0.0f, 0.0f, 0.0f));
   EXPECT_THAT(lidar.ring, ElementsAre(3, 15, 0, 0, 0));
-  EXPECT_THAT(imported_.notes, testing::Contains(HasSubstr("2 points are missing returns")));
+  EXPECT_THAT(imported_.notes, testing::Contains(HasSubstr("2 points are treated as missing returns")));
   EXPECT_THAT(imported_.notes, testing::Contains(HasSubstr("3 points have no intensity")));
   EXPECT_THAT(imported_.notes, testing::Contains("ignored fields: normal_x"));
 }
@@ -216,10 +217,10 @@ TEST_F(ImportSweeps, HostileInputIsOneClearLine) {
   put("2.ply", sweep());
   EXPECT_THAT(complaint_of(), HasSubstr("1.ply: neither the sweep nor its points have a time stamp"));
   put("times.txt", "1.0\n");
-  EXPECT_THAT(complaint_of(), HasSubstr("times.txt: holds 1 time stamps, but there are 2 sweeps"));
+  EXPECT_THAT(complaint_of(), HasSubstr("times.txt: contains 1 time stamps, but there are 2 sweeps"));
   put("times.txt", "# s\n1.1\n1.0\n");
-  EXPECT_THAT(complaint_of(),
-              HasSubstr("times.txt:3: the time stamp 1000000000 ns does not increase; the previous one is 1100000000"));
+  EXPECT_THAT(complaint_of(), HasSubstr("times.txt:3: the time stamp 1000000000 ns does not increase, because the "
+                                        "previous time stamp is 1100000000"));
   put("times.txt", "1.0\n1.1x\n");
   EXPECT_THAT(complaint_of(), HasSubstr("times.txt:2: '1.1x' is not a time"));
   put("times.txt", "1.0\n1.1\n");
@@ -229,10 +230,11 @@ TEST_F(ImportSweeps, HostileInputIsOneClearLine) {
   EXPECT_THAT(complaint_of(), HasSubstr("2.ply: point 1: the time is nan"));
   put("2.ply", sweep("float time", {"0.01", "0.05", "0.5"}));
   source_.reading.time_unit = "s";
-  EXPECT_THAT(complaint_of(),
-              HasSubstr("2.ply: point 2 is 449999999 ns after the middle of the sweep; this must be within"));
+  EXPECT_THAT(
+      complaint_of(),
+      HasSubstr("2.ply: point 2 is 449999999 ns after the middle of the sweep; this difference must be within"));
   put("2.ply", sweep());
-  EXPECT_THAT(complaint_of(), HasSubstr("2.ply: there is no field 'time', which other sweeps have"));
+  EXPECT_THAT(complaint_of(), HasSubstr("2.ply: there is no field 'time', but other sweeps have this field"));
   put("2.ply", sweep("float ring", {"1", "2.5", "3"}));
   put("1.ply", sweep());
   EXPECT_THAT(complaint_of(), HasSubstr("2.ply: point 1: ring is 2.5"));
@@ -246,12 +248,12 @@ TEST_F(ImportSweeps, HostileInputIsOneClearLine) {
 TEST_F(ImportSweeps, AUnitThatCannotBeToldIsAskedFor) {
   put("times.txt", "1.0\n1.1\n");
   for (const char* name : {"1.ply", "2.ply"}) put(name, sweep("float time", {"0.00001", "0.00002", "0.00005"}));
-  EXPECT_THAT(complaint_of(), HasSubstr("1.ply: the field 'time' has a range of"));
+  EXPECT_THAT(complaint_of(), HasSubstr("1.ply: the point times in field 'time' have a range of"));
   EXPECT_THAT(complaint_of(), HasSubstr("0.15 to 150 % of the sweep period of 100 ms; give the unit (--time-unit)"));
   source_.reading.time_unit = "s";
   EXPECT_EQ(complaint_of(), "");
   source_.reading.time_unit = "minutes";
-  EXPECT_THAT(complaint_of(), HasSubstr("the unit of point times is 'minutes', must be s, ms, us or ns"));
+  EXPECT_THAT(complaint_of(), HasSubstr("the unit of point times is 'minutes'; it must be s, ms, us or ns"));
   source_.reading = {};
   source_.reading.time_field = "tiem";
   EXPECT_THAT(complaint_of(), HasSubstr("no field 'tiem'; did you mean 'time'?"));
@@ -275,7 +277,7 @@ TEST_F(ImportSweeps, UnknownFieldsAreNamedWithTheOption) {
   import();
   EXPECT_THAT(imported_.notes,
               testing::Contains("the points have no time stamps, so sweeps cannot be deskewed; if one of "
-                                "these fields has the times, set '--time-field': firing"));
+                                "these fields contains the times, set '--time-field': firing"));
 }
 
 TEST_F(ImportSweeps, AUnitThatTheNumbersContradictIsRefusedWithBoth) {
@@ -286,13 +288,15 @@ TEST_F(ImportSweeps, AUnitThatTheNumbersContradictIsRefusedWithBoth) {
   import();
   EXPECT_THAT(imported_.notes, testing::Contains("point times: field 'time', in us after the sweep's time stamp"));
   source_.reading.time_unit = "ns";
-  EXPECT_THAT(complaint_of(),
-              HasSubstr("1.ply: the field 'time' has the stated unit ns and a range of 59500 in a sweep: in ns "
-                        "this is 0.0595 % of the sweep period, in us this is 59.5 % of the sweep period"));
+  EXPECT_THAT(
+      complaint_of(),
+      HasSubstr("1.ply: the point times in field 'time' have the stated unit ns and a range of 59500 in a sweep: in ns "
+                "this is 0.0595 % of the sweep period, in us this is 59.5 % of the sweep period"));
   // the field's name states it too
   source_.reading.time_unit = "";
   for (const char* name : {"1.ply", "2.ply"}) put(name, sweep("float t_ms", us));
-  EXPECT_THAT(complaint_of(), HasSubstr("the field 't_ms' has the stated unit ms and a range of 59500"));
+  EXPECT_THAT(complaint_of(),
+              HasSubstr("the point times in field 't_ms' have the stated unit ms and a range of 59500"));
   // a few points may lie close together in any unit
   us.resize(90);
   for (const char* name : {"1.ply", "2.ply"}) put(name, sweep("float t_ns", us));
@@ -302,7 +306,7 @@ TEST_F(ImportSweeps, AUnitThatTheNumbersContradictIsRefusedWithBoth) {
 TEST_F(ImportSweeps, NoPointAtAllIsRefused) {
   for (const char* name : {"1.ply", "2.ply"}) put(name, sweep("", {}));
   source_.steady_ns = 100000000;
-  EXPECT_THAT(complaint_of(), HasSubstr("no sweep has a point"));
+  EXPECT_THAT(complaint_of(), HasSubstr("all sweeps are empty; at least one sweep must have points"));
 }
 
 TEST_F(ImportSweeps, AnImuInTheSameClockJoinsAndInAnotherDoesNot) {

@@ -255,7 +255,8 @@ TEST_F(ImportCsv, AGapDoesNotChangeThePeriod) {
   EXPECT_THAT(import(text).notes, testing::Not(testing::Contains(HasSubstr("gap"))));
   const Imported silent = import(text + line("5,0") + line("86405,0"));
   EXPECT_THAT(silent.notes,
-              testing::Contains(HasSubstr("2 gaps of more than 1 s; the longest lasts 8.64e+04 s before reading 6")));
+              testing::Contains(HasSubstr(
+                  "2 gaps of more than 1 s without data; the longest gap lasts 8.64e+04 s before reading 6")));
 }
 
 TEST_F(ImportCsv, WindowsLineEndsAreRead) {
@@ -281,18 +282,18 @@ TEST_F(ImportCsv, BadInputHasFileAndLine) {
   EXPECT_THAT(complaint_of(good + line("1,1000000000")),
               HasSubstr("csv:4: column 1 must be a whole number from 0 to 999999999; it is '1000000000'"));
   EXPECT_THAT(complaint_of(good + line("1,20000000", "1e7")),
-              HasSubstr("csv:4: a reading has the magnitude 1e+07 rad/s or m/s^2, must be at most 1e+06"));
+              HasSubstr("csv:4: a reading has the magnitude 1e+07 rad/s or m/s^2; it must be at most 1e+06"));
   EXPECT_THAT(complaint_of(good + line("1e30,0")), HasSubstr("csv:4: column 0 must be a whole number"));
   EXPECT_EQ(complaint_of(good + "\n \r\n"), "") << "nothing follows";
   EXPECT_THAT(complaint_of(good + "\n" + line("1,20000000")), HasSubstr("csv:4: has 1 columns"));
   EXPECT_THAT(complaint_of(good + line("1,20000000").substr(0, 60) + "\n"), HasSubstr("csv:4: has"));
   EXPECT_THAT(complaint_of("a,b\n1,2\n"), HasSubstr("csv:1: contains no known column name"));
-  EXPECT_THAT(complaint_of("1,2\n"), HasSubstr("csv:1: has 2 columns and no header; it needs 15"));
+  EXPECT_THAT(complaint_of("1,2\n"), HasSubstr("csv:1: has 2 columns and no header; a file without header"));
   EXPECT_THAT(complaint_of(good.substr(0, good.size() - 1)), HasSubstr("csv:3: the last line has no line end"))
       << "a last number may be cut in its middle";
   EXPECT_THAT(fixture::complaint([&] { import_imu_csv(folder_ / "none.csv", {}); }),
               HasSubstr("none.csv: no such file"));
-  EXPECT_THAT(fixture::complaint([&] { import_imu_csv(folder_, {}); }), HasSubstr("is a folder, must be a file"));
+  EXPECT_THAT(fixture::complaint([&] { import_imu_csv(folder_, {}); }), HasSubstr("is a folder; it must be a file"));
 }
 
 TEST_F(ImportCsv, BytesThatAreNoLinesOfTextAreCalledSo) {
@@ -312,7 +313,7 @@ TEST_F(ImportCsv, BytesThatAreNoLinesOfTextAreCalledSo) {
 TEST_F(ImportCsv, APipeIsRefusedAndNotWaitedFor) {
   ASSERT_EQ(mkfifo((folder_ / "pipe.csv").c_str(), 0600), 0);
   EXPECT_THAT(fixture::complaint([&] { import_imu_csv(folder_ / "pipe.csv", {}); }),
-              HasSubstr("pipe.csv: is a pipe, must be a regular file"));
+              HasSubstr("pipe.csv: is a pipe; it must be a regular file"));
 }
 
 class ImportBroad : public fixture::Folder, public ::testing::WithParamInterface<test::DataFolder> {
@@ -385,7 +386,7 @@ using ImportBroadFiles = fixture::Folder;
 TEST_F(ImportBroadFiles, OthersAreRefused) {
   const sim::Recording recording = fixture::recording();
   write_recording(folder_ / "a.h5", {}, recording.sensors, nullptr);
-  EXPECT_THAT(fixture::complaint([&] { import_broad(folder_ / "a.h5"); }), HasSubstr("is a recording already"));
+  EXPECT_THAT(fixture::complaint([&] { import_broad(folder_ / "a.h5"); }), HasSubstr("is already a recording"));
   hdf5::MemoryFile of_somebody_else("c.h5");
   const std::span<const std::byte> bytes = of_somebody_else.close();
   fixture::put(folder_ / "c.h5", {reinterpret_cast<const char*>(bytes.data()), bytes.size()});

@@ -51,7 +51,7 @@ TEST(ImuNotes, WhatFrozeIsSaid) {
                 for (std::size_t k = 600; k < 2000; ++k)
                   imu.gyro_rad_s[k] = imu.gyro_rad_s[600], imu.accel_m_s2[k] = imu.accel_m_s2[600];
               }),
-              HasSubstr("caution: gyro or accelerometer repeats exactly the same reading for 14 s"));
+              HasSubstr("caution: the gyro or the accelerometer repeats exactly the same reading for 14 s"));
 }
 
 TEST(ImuNotes, AxesThatGravityContradictsAreNamed) {

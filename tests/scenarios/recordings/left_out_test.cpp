@@ -51,7 +51,7 @@ TEST(LeftOut, FewFaultsAreNotedAndManyAreRefused) {
             "with faulty data (first: a.csv:9: is not finite)");
   EXPECT_NO_THROW(left_out.require_few(38));
   EXPECT_EQ(fixture::complaint([&] { left_out.require_few(37); }),
-            "a.csv:3: does not increase (2 of 39 readings are faulty; at most 5 % may be left out)");
+            "a.csv:3: does not increase (2 of 39 readings have errors; at most 5 % may be left out)");
   LeftOut one("clouds");
   one.add("faulty data", "cut");
   EXPECT_NO_THROW(one.require_few(4));
@@ -146,7 +146,7 @@ TEST_P(OddBag, OneWrongStampCostsOneReading) {
   change_imu_ = [](int k, ros::Imu& imu) {
     if (k == 0) imu.header = header_of(0, "imu");
   };
-  expect_one_left_out(149, 15, "message 0 of /imu: the time stamp is far from the others");
+  expect_one_left_out(149, 15, "message 0 of /imu: the time stamp is far from the other time stamps");
 }
 
 TEST_P(OddBag, OneUnusableReadingCostsOneReading) {
@@ -163,7 +163,7 @@ TEST_P(OddBag, ManyFaultyReadingsAreRefused) {
     if (k % 10 == 5) imu.angular_velocity[1] = std::nan("");
   };
   EXPECT_THAT(complaint(),
-              HasSubstr("message 5 of /imu: a reading is not finite (15 of 150 readings are faulty; at most "
+              HasSubstr("message 5 of /imu: a reading is not finite (15 of 150 readings have errors; at most "
                         "5 % may be left out)"));
 }
 
@@ -193,7 +193,9 @@ TEST_P(OddBag, ReadingsInBurstsAreDistributedOverTime) {
       EXPECT_NEAR(static_cast<double>(imu.time_ns[k] + imported.info.origin_ns - kFirstStamp_ns),
                   1e7 * static_cast<double>(k), 1e3);
     }
-    EXPECT_THAT(imported.notes, Contains(HasSubstr("/imu: caution: the readings arrive in 15 bursts of about 10")));
+    EXPECT_THAT(
+        imported.notes,
+        Contains(HasSubstr("/imu: caution: the readings have nearly equal time stamps in 15 bursts of about 10")));
   }
 }
 
@@ -215,7 +217,7 @@ TEST_P(OddBag, OneFaultyCloudCostsOneCloud) {
   expect_one_left_out(150, 14, note + "faulty data (first: ");
   change_cloud_ = nullptr;
   for (std::size_t p = 5 * kPoints; p < 6 * kPoints; ++p) recording_.sensors.lidars[0].position_L_m[p] *= 1e4f;
-  expect_one_left_out(150, 14, note + "most points beyond twice the lidar's range (first: ");
+  expect_one_left_out(150, 14, note + "most points farther than twice the lidar's range (first: ");
 }
 
 TEST_P(OddBag, ManyFaultyCloudsAreRefused) {
@@ -231,9 +233,10 @@ TEST_P(OddBag, OneWildPointTimeCostsOnePoint) {
   const Imported imported = read();
   EXPECT_EQ(imported.sensors.lidars.at(0).sweep_start_ns.size(), 15u);
   EXPECT_EQ(imported.sensors.lidars.at(0).offset_ns.size(), static_cast<std::size_t>(15 * kPoints - 1));
-  EXPECT_THAT(imported.notes,
-              Contains(AllOf(HasSubstr("/points: caution: 1 points with times outside their sweep are left out"),
-                             HasSubstr("message 5 of /points: point 3 is"))));
+  EXPECT_THAT(
+      imported.notes,
+      Contains(AllOf(HasSubstr("/points: caution: 1 points are left out, because their times are outside their sweep"),
+                     HasSubstr("message 5 of /points: point 3 is"))));
   for (std::size_t p = 5 * kPoints; p < 5 * kPoints + 20; ++p) offsets[p] = 4'200'000'000u;
   expect_one_left_out(150, 14, "1 with faulty data (first: ");
 }
@@ -247,7 +250,7 @@ TEST_P(OddBag, EqualPointTimesMeanSweepsThatAreNotSkewed) {
 }
 
 TEST_P(OddBag, PointTimesThatRunBackwardsAreACaution) {
-  EXPECT_THAT(read().notes, Not(Contains(HasSubstr("run backwards"))));
+  EXPECT_THAT(read().notes, Not(Contains(HasSubstr("points that are stored later have earlier times"))));
   for (std::uint32_t& offset : recording_.sensors.lidars[0].offset_ns) offset = 780'000u * (kPoints - 1) - offset;
   EXPECT_THAT(read().notes, Contains(HasSubstr("/points: caution: the point times run backwards")));
 }
@@ -272,8 +275,9 @@ TEST_P(OddBag, CloudsWithPointTimesAreThePrimaryLidar) {
   ASSERT_EQ(imported.sensors.lidars.size(), 2u);
   EXPECT_EQ(imported.sensors.lidars[0].name, "points");
   EXPECT_EQ(imported.sensors.lidars[1].name, "camera");
-  EXPECT_THAT(imported.notes, Contains("/points: this topic is the lidar for mapping, because its points have times "
-                                       "(set --lidar-topic to choose another)"));
+  EXPECT_THAT(imported.notes,
+              Contains("/points: mapping uses the lidar of this topic, because its points have time stamps "
+                       "(set --lidar-topic to choose another topic)"));
   BagReading chosen;
   chosen.lidar_topics = {"/camera", "/points"};
   EXPECT_EQ(read(chosen).sensors.lidars.at(0).name, "camera");
@@ -298,7 +302,7 @@ TEST_P(OddBag, PartsAreReadTogetherByTime) {
                                              HasSubstr("metadata.yaml does not list these files"))));
   if (std::string(GetParam().name) == "Ros2") {
     EXPECT_THAT(imported.notes, Contains(HasSubstr("parts_1.db3")));
-    EXPECT_THAT(imported.notes, Contains(HasSubstr("they are read in the order of time")));
+    EXPECT_THAT(imported.notes, Contains(HasSubstr("the import reads the files in the order of time")));
   }
 }
 

@@ -125,11 +125,11 @@ TEST(LidarRotation, DegreesAreRefusedWithTheOptionThatTakesThem) {
     with_gyro(-degrees);
     FAIL() << "degrees per second were taken for radians";
   } catch (const BadInput& error) {
-    EXPECT_THAT(error.what(), AllOf(HasSubstr("bag: 'imu'"), HasSubstr("0.0175 times the gyro's rotation"),
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("bag: 'imu'"), HasSubstr("0.0175 times as far as the gyro"),
                                     HasSubstr("set '--gyro-unit deg/s'")));
   }
   EXPECT_THROW(with_gyro(Eigen::Matrix3d::Identity() / kDegrees, GyroUnit::deg_s), BadInput);
-  EXPECT_THAT(with_gyro(degrees, GyroUnit::deg_s), HasSubstr("caution: with rates in deg/s"));
+  EXPECT_THAT(with_gyro(degrees, GyroUnit::deg_s), HasSubstr("caution: if the rates are in deg/s"));
 }
 
 TEST(LidarRotation, FlippedAndPermutedAxesAreNamed) {
@@ -189,7 +189,7 @@ TEST(LidarRotation, SweepsOfARoomTellTheGyro) {
   recording.sensors.lidars.push_back(lidar_in_room(36));
   EXPECT_GE(seen_rotations(recording.sensors.lidars.front(), nullptr).size(), 20U);
   EXPECT_THAT(lidar_rotation_notes("bag", recording, GyroUnit::rad_s),
-              ElementsAre(AllOf(HasSubstr("imu: the lidar's rotation equals the gyro's"), HasSubstr("axes agree"))));
+              ElementsAre(AllOf(HasSubstr("imu: the rotations of lidar and gyro agree"), HasSubstr("axes agree"))));
   for (Eigen::Vector3d& rate : recording.sensors.imus.front().gyro_rad_s) rate.z() = -rate.z();
   EXPECT_THAT(lidar_rotation_notes("bag", recording, GyroUnit::rad_s), ElementsAre(HasSubstr("(x, y, -z)")));
   recording.sensors.imus.clear();

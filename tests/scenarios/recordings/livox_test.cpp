@@ -94,7 +94,7 @@ TEST_P(Livox, TwoClocksAreSaid) {
   first.timebase = 12'000000000;
   second.timebase = 12'100000000;
   EXPECT_THAT(written({first, second}).notes,
-              testing::Contains(HasSubstr("timebase and their header stamps differ by up to 1689999988")));
+              testing::Contains(HasSubstr("timebase and the header stamp of the messages differ by up to 1689999988")));
 }
 
 TEST_P(Livox, ACountThatIsNoneIsRefused) {
@@ -160,7 +160,7 @@ TEST(LivoxMessage, PointsWithoutTimesAreRefused) {
     writing.sweeps = livox_sweep_layout();
     const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "tumble_livox_times.bag";
     EXPECT_THAT(fixture::complaint([&] { export_ros1_bag(recording.sensors, writing, path); }),
-                HasSubstr("the points of 'lidar' have no time stamps; a CustomMsg needs measured time stamps"));
+                HasSubstr("the points of 'lidar' have no time stamps, but a CustomMsg needs measured time stamps"));
     EXPECT_FALSE(std::filesystem::exists(path));
   }
 }

@@ -87,7 +87,7 @@ TEST_F(LoggerTable, SemicolonsTabulatorsAndOtherColumnsAreRead) {
     const Imported imported = import(separated(by));
     expect_the_readings(imported);
     EXPECT_THAT(imported.notes, Contains("ignored columns: mag_x, temp"));
-    EXPECT_THAT(imported.notes, Not(Contains(HasSubstr("from the size of their steps"))));
+    EXPECT_THAT(imported.notes, Not(Contains(HasSubstr("which follows from the time step"))));
   }
 }
 
@@ -97,7 +97,7 @@ TEST_F(LoggerTable, TheUnitOfTimesIsTakenFromTheirSteps) {
     expect_the_readings(imported);
     return imported.notes;
   };
-  EXPECT_THAT(notes_of(kSeconds), Contains("times are read in s, from the size of their steps"));
+  EXPECT_THAT(notes_of(kSeconds), Contains("times are read in s, which follows from the time step"));
   EXPECT_THAT(notes_of({"1700000000000", "1700000000005", "1700000000010"}),
               Contains(HasSubstr("times are read in ms,")));
   EXPECT_THAT(notes_of({"0", "5000", "10000"}), Contains(HasSubstr("times are read in us,")));
@@ -135,7 +135,7 @@ TEST_F(LoggerTable, StatedUnitsAreBelieved) {
 TEST_F(LoggerTable, LinesOfAnotherWidthAreSaidBeforeTheirTimes) {
   EXPECT_THAT(complaint_of(table("time,gyro_x,gyro_y,gyro_z,acc_x,acc_y,acc_z", {"12,5", "12,505", "12,51"},
                                  ",0,1,0,2,0,3,-0,5,0,0,9,8")),
-              HasSubstr("csv:2: has 14 columns, but the first line has 7; must be equal"));
+              HasSubstr("csv:2: has 14 columns, but the first line has 7; the numbers must be equal"));
 }
 
 TEST_F(LoggerTable, WhatIsMissingOrThereTwiceIsSaid) {
@@ -143,9 +143,9 @@ TEST_F(LoggerTable, WhatIsMissingOrThereTwiceIsSaid) {
               HasSubstr("log.csv:1: missing columns: accel_z"));
   EXPECT_THAT(complaint_of(table("n,gx,gy,gz,ax,ay,az", kSeconds, kRow)), HasSubstr("missing columns: time"));
   EXPECT_THAT(complaint_of(table("t,gx,gy,gz,ax,ay,az,acc_x", kSeconds, kRow + ",1")),
-              HasSubstr("two columns are the accel's x: 'ax' and 'acc_x'"));
+              HasSubstr("two columns belong to the accel's axis x: 'ax' and 'acc_x'"));
   EXPECT_THAT(complaint_of(table("t,time,gx,gy,gz,ax,ay,az", {"1,1", "2,2"}, kRow)),
-              HasSubstr("two columns are time stamps: 't' and 'time'"));
+              HasSubstr("two columns are time stamps, 't' and 'time'"));
   EXPECT_THAT(complaint_of(table("t,a,b", kSeconds, ",1,2")), HasSubstr("contains no known column name"));
 }
 
@@ -210,8 +210,9 @@ TEST_F(LoggerTable, RowsOfSeveralImusAreOfTheFirst) {
       text += std::string(time) + "," + id + (*id == '0' ? kRow : ",1,1,1,0,0,9.8") + "\n";
   const Imported imported = import(text);
   expect_the_readings(imported);
-  EXPECT_THAT(imported.notes, Contains("column 'I' numbers several IMUs; the rows of 0 are read, these are left out: 1 "
-                                       "(3 rows)"));
+  EXPECT_THAT(imported.notes,
+              Contains("column 'I' contains the numbers of several IMUs; the import reads the rows of IMU 0 and leaves "
+                       "out: 1 (3 rows)"));
   // a counter of rows is no number of an IMU
   std::string counted = "id,time,gx,gy,gz,ax,ay,az\n";
   for (int k = 0; k < 12; ++k) counted += std::to_string(k) + "," + std::to_string(0.005 * k) + kRow + "\n";
@@ -237,9 +238,9 @@ TEST_F(LoggerTable, TheUserNamesColumns) {
   EXPECT_EQ(seconds.info.origin_ns, 12'500'000'000);
   const auto refused = [&](const char* choice) { return fixture::complaint([&] { import_columns(split, choice); }); };
   EXPECT_THAT(refused("time=a,b,gyro=c,d,e,accel=f,g,z"), HasSubstr("log.csv:1: --columns: there is no column 'z'"));
-  EXPECT_THAT(refused("time=a,b,gyro=c,d,accel=f,g,h"), HasSubstr("--columns: gyro has 2 columns, must have 3"));
+  EXPECT_THAT(refused("time=a,b,gyro=c,d,accel=f,g,h"), HasSubstr("--columns: gyro has 2 columns; it must have 3"));
   EXPECT_THAT(refused("gyro=c,d,e,accel=f,g,h"), HasSubstr("--columns: time has 0 columns"));
-  EXPECT_THAT(refused("a,b"), HasSubstr("--columns: 'a' does not begin with time=, gyro= or accel="));
+  EXPECT_THAT(refused("a,b"), HasSubstr("--columns: 'a' must begin with time=, gyro= or accel="));
 }
 
 // of a bag by bagpy and by `rostopic echo -p`: the record's time comes first

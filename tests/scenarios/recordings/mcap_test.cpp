@@ -91,7 +91,7 @@ TEST_F(Mcap, OtherEncodingsAreNamed) {
   BagReading reading;
   reading.imu_topics = {"/imu"};
   EXPECT_THAT(fixture::complaint([&] { import_mcap(file(), reading); }),
-              HasSubstr("is of type sensor_msgs/msg/Imu as json (ros2msg), must be sensor_msgs/Imu"));
+              HasSubstr("is of type sensor_msgs/msg/Imu as json (ros2msg); it must be sensor_msgs/Imu"));
 }
 
 TEST_F(Mcap, AFolderOfRos2MayHoldIt) {
@@ -141,19 +141,19 @@ const Lie kLies[] = {
     {"ChecksumOfTheSummary", [](McapShape& s) { s.footer = [](mcap::Footer& f) { ++f.summary_crc; }; },
      "the checksum of the summary is "},
     {"PlaceOfTheSummary", [](McapShape& s) { s.footer = [](mcap::Footer& f) { f.summary_start = 1ull << 60; }; },
-     "the stated start of the summary is byte 1152921504606846976"},
+     "the summary starts at byte 1152921504606846976"},
     {"PlaceOfTheOffsets",
      [](McapShape& s) {
        s.crcs = false;
        s.footer = [](mcap::Footer& f) { f.summary_offset_start = 9; };
      },
-     "the stated start of the summary offsets is byte 9"},
+     "the summary offsets start at byte 9"},
     {"GroupOfTheSummary",
      [](McapShape& s) {
        s.crcs = false;
        s.footer = [](mcap::Footer& f) { f.summary_offset_start = f.summary_start; };
      },
-     "is not allowed here"},
+     "is not allowed at this position"},
     {"PlaceOfAMessage", [](McapShape& s) { s.index = [](mcap::MessageIndex& i) { i.entries[3].second += 1; }; },
      "the chunk index names 20 messages of channel 1, but the chunk has 20: the file is damaged"},
     {"TimeOfAMessage", [](McapShape& s) { s.index = [](mcap::MessageIndex& i) { i.entries[3].first += 1; }; },
@@ -161,7 +161,7 @@ const Lie kLies[] = {
     {"MessageLeftOutOfTheIndex", [](McapShape& s) { s.index = [](mcap::MessageIndex& i) { i.entries.pop_back(); }; },
      "the chunk index names 19 messages of channel 1, but the chunk has 20"},
     {"ChannelOfAnIndex", [](McapShape& s) { s.index = [](mcap::MessageIndex& i) { i.channel_id = 9; }; },
-     "is the index of channel 9, but should be that of channel 1"},
+     "is the index of channel 9, but must be the index of channel 1"},
     {"ChunkLeftOutOfTheIndex", [](McapShape& s) { s.chunk_index = [](auto& all) { all.pop_back(); }; },
      "states 2 chunks but indexes 1"},
     {"ChunkTwiceInTheIndex", [](McapShape& s) { s.chunk_index = [](auto& all) { all[1] = all[0]; }; },
@@ -177,17 +177,17 @@ const Lie kLies[] = {
     {"TimesOfAChunk", [](McapShape& s) { s.chunk_index = [](auto& all) { --all[0].message_end_time; }; },
      "the chunk differs from its index"},
     {"PlaceOfAnIndex", [](McapShape& s) { s.chunk_index = [](auto& all) { all[0].message_index_offsets[1] = 8; }; },
-     "but does not follow that chunk"},
+     "must follow its chunk at byte "},
     {"PlaceWithinAnIndex",
      [](McapShape& s) { s.chunk_index = [](auto& all) { all[0].message_index_offsets[1] += 1; }; }, "damaged"},
     {"MessageOutsideOfItsChunk", [](McapShape& s) { s.chunk = [](mcap::Chunk& c) { ++c.message_start_time; }; },
-     "a message at 1000000000 ns in a chunk from 1000000001"},
+     "a message has the time 1000000000 ns, but its chunk states times from 1000000001"},
     {"NumberOfMessages", [](McapShape& s) { s.counts = [](mcap::Statistics& c) { ++c.channel_message_counts[1]; }; },
-     "channel 1 holds 50 messages, but the summary states 51"},
+     "channel 1 contains 50 messages, but the summary states 51"},
     {"NameOfAPacking", [](McapShape& s) { s.compression = "brotli"; },
-     "a chunk of compression 'brotli' is not supported; supported: none, lz4 and zstd"},
+     "the compression 'brotli' of a chunk is not supported; supported: none, lz4 and zstd"},
     {"SizeOfAPlainChunk", [](McapShape& s) { s.chunk = [](mcap::Chunk& c) { ++c.uncompressed_size; }; },
-     "a plain chunk of "},
+     "an uncompressed chunk of "},
     {"SizeOfAnLz4Chunk",
      [](McapShape& s) {
        s.compression = "lz4";
@@ -208,13 +208,13 @@ const Lie kLies[] = {
      },
      "is longer than the 1000 bytes that the chunk states"},
     {"ChunkBeyondTheBound", [](McapShape& s) { s.chunk = [](mcap::Chunk& c) { c.uncompressed_size = 1ull << 40; }; },
-     "a chunk of 1099511627776 bytes; at most 256 MiB can be read"},
+     "a chunk has 1099511627776 bytes; at most 256 MiB can be read"},
     {"LengthOfTheRecords", [](McapShape& s) { s.chunk = [](mcap::Chunk& c) { c.records_size = ~0ull; }; },
-     "a chunk that states 18446744073709551615 bytes"},
+     "a chunk states 18446744073709551615 bytes"},
     {"LengthOfARecord", [](McapShape& s) { s.chunk_records = [](std::string& records) { records[8] = '\x7f'; }; },
      "damaged or truncated"},
     {"KindZero", [](McapShape& s) { s.chunk_records = [](std::string& r) { r += std::string(20, '\0'); }; },
-     "a record of kind 0"},
+     "a record has the kind 0"},
     {"SchemaOfAChannel", [](McapShape& s) { s.channel.schema_id = 7; },
      "channel 1 refers to schema 7, which does not exist"},
     {"NumberOfASchema", [](McapShape& s) { s.schema.id = 0; }, "a schema has the number 0"},
@@ -277,7 +277,7 @@ TEST_F(Mcap, AnyCutOfOursIsRefused) {
   const std::string whole = fixture::bytes_of(file());
   for (std::size_t size = 0; size < whole.size(); size += size < 100 || size + 100 > whole.size() ? 1 : 97)
     ASSERT_THAT(complaint_of(whole.substr(0, size)), HasSubstr("a.mcap: at byte ")) << size;
-  EXPECT_THAT(complaint_of(whole.substr(0, whole.size() / 2)), HasSubstr("repair it with 'mcap recover'"));
+  EXPECT_THAT(complaint_of(whole.substr(0, whole.size() / 2)), HasSubstr("repair the file with 'mcap recover'"));
   EXPECT_THAT(complaint_of("hello"), HasSubstr("does not begin with the magic bytes of MCAP 0: not an MCAP file"));
   EXPECT_THAT(fixture::complaint([&] { import_mcap(folder_ / "none.mcap", {}); }), HasSubstr("no such file"));
 }

@@ -105,7 +105,7 @@ TEST_F(Reference, KittiWrittenByExportComesBack) {
   EXPECT_THAT(fixture::complaint([&] {
                 import_trajectory({folder_ / "truth.txt", "kitti", true, false, {}, 0});
               }),
-              HasSubstr("KITTI's format has no times; give a file of time stamps (--times)"));
+              HasSubstr("the KITTI format has no times; give a file of time stamps (--times)"));
 }
 
 TEST_F(Reference, BadLinesAreNamed) {
@@ -123,7 +123,7 @@ TEST_F(Reference, BadLinesAreNamed) {
   EXPECT_THAT(complaint(good + "1.6 0 -1e308 0 0 0 0 1\n"),
               HasSubstr("a.txt:4: the position is 1e+308 m from the origin; it must be within 1e+09 m"));
   EXPECT_THAT(complaint(good + "1.6 0 0 0 0 0 0 2\n"), HasSubstr("a.txt:4: the quaternion's norm is 2.0"));
-  EXPECT_THAT(complaint(good + "1.6 0 0 0 0 0 0\n"), HasSubstr("a.txt:4: 7 columns, must be 8"));
+  EXPECT_THAT(complaint(good + "1.6 0 0 0 0 0 0\n"), HasSubstr("a.txt:4: the row has 7 columns; it must have 8"));
   EXPECT_THAT(complaint("1.0 0 0 0 0 0 0 1\n"), HasSubstr("has 1 poses; it needs at least 2"));
   fixture::put(folder_ / "a.txt", good + "1.2 5 0 0 0 0 0 1\n1.5 9 0 0 0 0 0 1\n");
   const auto sorted = read_tum_poses(folder_ / "a.txt", true);
@@ -134,7 +134,7 @@ TEST_F(Reference, BadLinesAreNamed) {
   EXPECT_THAT(fixture::complaint([&] {
                 read_kitti_poses(folder_ / "k.txt", {0, 1});
               }),
-              HasSubstr("k.txt:2: the first three columns differ from a rotation by 3.0"));
+              HasSubstr("k.txt:2: the first three columns of the matrix differ from a rotation by 3.0"));
   EXPECT_THAT(fixture::complaint([&] {
                 read_kitti_poses(folder_ / "k.txt", {0, 1, 2});
               }),

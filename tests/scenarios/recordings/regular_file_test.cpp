@@ -52,11 +52,11 @@ TEST_F(RegularFile, AnythingElseIsCalledWhatItIs) {
   fixture::put(folder_ / "file", "text");
   EXPECT_EQ(refused("file/below"), at + "file/below: no such file");
   std::filesystem::create_directory(folder_ / "folder");
-  EXPECT_EQ(refused("folder"), at + "folder: is a folder, must be a file");
+  EXPECT_EQ(refused("folder"), at + "folder: is a folder; it must be a file");
   ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
-  EXPECT_EQ(refused("pipe"), at + "pipe: is a pipe, must be a regular file");
+  EXPECT_EQ(refused("pipe"), at + "pipe: is a pipe; it must be a regular file");
   std::filesystem::create_symlink("/dev/zero", folder_ / "device");
-  EXPECT_EQ(refused("device"), at + "device: is a device, must be a regular file");
+  EXPECT_EQ(refused("device"), at + "device: is a device; it must be a regular file");
   std::filesystem::create_symlink("ring", folder_ / "ring");
   EXPECT_THAT(refused("ring"), HasSubstr("ring: cannot be read: Too many levels of symbolic links"));
   EXPECT_THAT(refused(std::string(300, 'x')), HasSubstr("cannot be read: File name too long"));
@@ -69,20 +69,20 @@ TEST_F(RegularFile, AnythingElseIsCalledWhatItIs) {
   const int made = socket(AF_UNIX, SOCK_STREAM, 0);
   ASSERT_EQ(bind(made, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
   close(made);
-  EXPECT_EQ(refused("socket"), socket_at + ": is a socket, must be a regular file");
+  EXPECT_EQ(refused("socket"), socket_at + ": is a socket; it must be a regular file");
 }
 
 TEST_F(RegularFile, WhatIsReadOnceMayBeAPipe) {
   ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
   EXPECT_EQ(complaint([&] { require_file(folder_ / "pipe"); }), "");
-  EXPECT_THAT(complaint([&] { require_file(folder_); }), HasSubstr("is a folder, must be a file"));
+  EXPECT_THAT(complaint([&] { require_file(folder_); }), HasSubstr("is a folder; it must be a file"));
 }
 
 // to open it for reading waits for who writes to it
 TEST_F(RegularFile, ReadersRefuseAPipeAndDoNotWaitForIt) {
   const std::filesystem::path pipe = folder_ / "pipe";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-  const std::string said = pipe.string() + ": is a pipe, must be a regular file";
+  const std::string said = pipe.string() + ": is a pipe; it must be a regular file";
   EXPECT_EQ(complaint([&] { import_imu_csv(pipe, {}); }), said);
   EXPECT_EQ(complaint([&] { import_broad(pipe); }), said);
   EXPECT_EQ(complaint([&] { import_repoimu(pipe, false); }), said);

@@ -98,9 +98,9 @@ TEST_F(ReplaceFile, ReadOnlyFolderIsRefused) {
 TEST_F(ReplaceFile, ADeviceAPipeAndASocketStay) {
   const std::filesystem::path pipe = folder_ / "pipe";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-  EXPECT_THAT(fixture::complaint([&] { replace_file(pipe, "x"); }), HasSubstr("not a regular file"));
+  EXPECT_THAT(fixture::complaint([&] { replace_file(pipe, "x"); }), HasSubstr("it must be a regular file"));
   EXPECT_TRUE(std::filesystem::is_fifo(pipe));
-  EXPECT_THAT(fixture::complaint([&] { replace_file("/dev/null", "x"); }), HasSubstr("not a regular file"));
+  EXPECT_THAT(fixture::complaint([&] { replace_file("/dev/null", "x"); }), HasSubstr("it must be a regular file"));
   EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
   EXPECT_EQ(files(), 1u);
 }
@@ -183,7 +183,7 @@ TEST_F(ReplaceFile, AFolderIsFreshOrRefusedAndGoesWithoutBeingKept) {
     output.keep();
   }
   EXPECT_EQ(bytes_of(made / "whole"), "x");
-  EXPECT_THAT(fixture::complaint([&] { OutputFolder again(made); }), HasSubstr("contains files already"));
+  EXPECT_THAT(fixture::complaint([&] { OutputFolder again(made); }), HasSubstr("the folder contains files"));
   EXPECT_EQ(bytes_of(made / "whole"), "x");
   EXPECT_THAT(fixture::complaint([&] { OutputFolder file(made / "whole"); }), HasSubstr("cannot be written"));
   std::filesystem::create_directory(folder_ / "empty");

@@ -115,7 +115,7 @@ TEST_F(Repoimu, SampleAndHoldIsRecognisedAndUndone) {
   const sim::ImuRecord& imu = imported.sensors.imus.at(0);
   EXPECT_NEAR(static_cast<double>(imu.time_ns.size()), 2000.0, 3.0);
   EXPECT_THAT(all_notes(imported),
-              HasSubstr("sample and hold: 44.5 % of the gyro's and 72.2 % of the accelerometer's"));
+              HasSubstr("(sample and hold): 44.5 % of the gyro's rows and 72.2 % of the accelerometer's"));
   EXPECT_NEAR(static_cast<double>(imu.period_ns), 20e6, 0.5e6) << "get the sample times of the gyro";
   // the beat is the sensor's, although readings come up to a step of the log late
   double error = 0.0, held_error = 0.0;
@@ -154,7 +154,7 @@ TEST_F(Repoimu, GlitchesOfTheReferenceAreLeftOutWithACount) {
   // control: the same without flips loses the two ends alone
   wand.flips_s = {};
   const Imported clean = import(repoimu_text(wand));
-  EXPECT_THAT(all_notes(clean), HasSubstr("reference: 0 of 4000 samples left out"));
+  EXPECT_THAT(all_notes(clean), HasSubstr("reference: 0 of 4000 samples are left out"));
 }
 
 TEST(ReferenceGlitches, ATwirlIsNoLeap) {
@@ -188,7 +188,8 @@ TEST_F(Repoimu, WhatPublishedFilesHoldIsRead) {
   std::string average = text;
   const std::size_t w = average.find("\n5.0000;") + 8;
   average.replace(w, average.find(';', w) - w, "0.2");
-  EXPECT_THAT(all_notes(import(average)), HasSubstr("1 with a quaternion norm off by more than 1 %"));
+  EXPECT_THAT(all_notes(import(average)),
+              HasSubstr("1 because the norm of the quaternion differs from 1 by more than 1 %"));
   std::string pendulum = text;
   pendulum.replace(0, std::string(fixture::kRepoimuHeader).size(),
                    "Time;Vicon Orientation;;;;IMU Acceleration;;;IMU Gyroscope;;;IMU Magnetometer;;\n"
@@ -226,16 +227,16 @@ TEST_F(Repoimu, BadInputHasFileLineValueAndBound) {
   EXPECT_THAT(complaint_of(""), HasSubstr("is empty"));
   EXPECT_THAT(complaint_of(header), HasSubstr("has 0 samples"));
   EXPECT_THAT(complaint_of(good.substr(0, good.size() - 1)), HasSubstr("csv:5: the last line has no line end"));
-  EXPECT_THAT(complaint_of(good + "0.04;1;0;0\n"), HasSubstr("csv:6: has 4 columns, must have 14"));
+  EXPECT_THAT(complaint_of(good + "0.04;1;0;0\n"), HasSubstr("csv:6: has 4 columns; it must have 14"));
   EXPECT_THAT(complaint_of(good + row("0.04", "1", "nan")), HasSubstr("csv:6: column IMU Gyroscope is not finite"));
   EXPECT_THAT(complaint_of(good + row("0.04", "1", "")),
               HasSubstr("csv:6: column IMU Gyroscope must be a number; it is ''"));
   EXPECT_THAT(complaint_of(good + row("0.04", "1", "1.000,5")), HasSubstr("must be a number; it is '1.000,5'"));
   EXPECT_THAT(complaint_of(good + row("0.02")), HasSubstr("csv:6: Time decreases: 0.02 s after 0.03 s"));
-  EXPECT_THAT(complaint_of(good + row("0.0405") + row("0.0405")), HasSubstr("Time does not increase"));
-  EXPECT_THAT(complaint_of(good + row("-1")), HasSubstr("csv:6: Time is -1 s, must be within 0 and"));
+  EXPECT_THAT(complaint_of(good + row("0.0405") + row("0.0405")), HasSubstr("Time must increase"));
+  EXPECT_THAT(complaint_of(good + row("-1")), HasSubstr("csv:6: Time is -1 s; it must be within 0 and"));
   EXPECT_THAT(complaint_of(header + row("0.01", "0.7") + row("0.02", "0.7")),
-              HasSubstr("csv:3: the quaternion's norm is 0.7000; it must be 1 within 1 %. This is so for 2 of 2"));
+              HasSubstr("csv:3: the quaternion's norm is 0.7000; it must be 1 within 1 %. This error affects 2 of 2"));
   std::string missing = good;
   missing.replace(missing.find("IMU Gyroscope"), 13, "IMU Compasses");
   EXPECT_THAT(complaint_of(missing), HasSubstr("csv:2: missing columns: 'IMU Gyroscope/X' 'IMU Gyroscope/Y'"));
@@ -296,7 +297,7 @@ TEST_P(RepoimuPublished, AreRead) {
   const Imported pendulum = import_repoimu(folder / "Pendulum_Test02a_Trial1_Segment_3.csv", true);
   EXPECT_NEAR(static_cast<double>(pendulum.sensors.imus[0].time_ns.size()), 8681.0, 5.0) << "of 15630 rows";
   EXPECT_THAT(all_notes(pendulum),
-              HasSubstr("sample and hold: 44.5 % of the gyro's and 71.8 % of the accelerometer's"));
+              HasSubstr("(sample and hold): 44.5 % of the gyro's rows and 71.8 % of the accelerometer's"));
   EXPECT_THAT(all_notes(pendulum), HasSubstr("+x within 2 % of 19.52 m/s^2")) << "2 g";
   EXPECT_THAT(all_notes(pendulum), HasSubstr("jumps of up to"));
   EXPECT_THAT(all_notes(pendulum), HasSubstr("1 numbers have a decimal comma"));

@@ -188,7 +188,8 @@ TEST_F(RoundTrip, ARealRecordingHasNoTruth) {
   EXPECT_FALSE(read_info(path).has_truth);
   EXPECT_EQ(read_info(path).digest, digest(read_sensors(path), nullptr));
   EXPECT_EQ(fixture::complaint([&] { read_truth(path); }),
-            path.string() + ": has no truth; it may be a real recording");
+            path.string() +
+                ": the recording has no truth; only simulated recordings and recordings with a reference have truth");
 }
 
 TEST_F(RoundTrip, EmptyAndOddContentIsKept) {

@@ -80,7 +80,7 @@ TEST_F(StoredPoints, AreReadFromARecordingAndGiveTheSameBag) {
   bytes[at] = static_cast<char>(bytes[at] ^ 1);
   fixture::put(folder_ / "a.h5", bytes);
   EXPECT_THAT(fixture::complaint([&] { read_sensors(folder_ / "a.h5", folder_, points); }),
-              HasSubstr("damaged or changed"));
+              HasSubstr("damaged or was changed"));
 }
 
 TEST_F(StoredPoints, AreHeldAgainstTheirSweeps) {

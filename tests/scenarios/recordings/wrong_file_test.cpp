@@ -78,7 +78,7 @@ TEST_F(WrongFile, AbsentForeignOrFolder) {
     return fixture::complaint([&] { read_sensors(path); });
   };
   EXPECT_EQ(complaint_of(folder_ / "none.h5"), (folder_ / "none.h5").string() + ": no such file");
-  EXPECT_THAT(complaint_of(folder_), HasSubstr(": is a folder, must be a recording (FILE.h5); 'tumble import "));
+  EXPECT_THAT(complaint_of(folder_), HasSubstr(": is a folder; it must be a recording (FILE.h5); 'tumble import "));
   fixture::put(folder_ / "text.h5", "scenario: hill\n");
   EXPECT_THAT(complaint_of(folder_ / "text.h5"), HasSubstr("text.h5: truncated, damaged or not an HDF5 file"));
   const hid_t foreign = H5Fcreate((folder_ / "foreign.h5").c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
@@ -91,7 +91,7 @@ TEST_F(WrongFile, WhatImportConvertsIsNamed) {
     fixture::put(folder_ / name, bytes);
     return fixture::complaint([&] { read_sensors(folder_ / name); });
   };
-  const std::string way = ", must be a recording (FILE.h5); 'tumble import " + (folder_ / "a").string();
+  const std::string way = "; it must be a recording (FILE.h5); 'tumble import " + (folder_ / "a").string();
   EXPECT_THAT(complaint_of("a.bag", "#ROSBAG V2.0\n"), HasSubstr("is a ROS 1 bag" + way + ".bag -o FILE.h5'"));
   EXPECT_THAT(complaint_of("a.mcap", "\x89MCAP0\r\n"), HasSubstr("is an MCAP file" + way));
   EXPECT_THAT(complaint_of("a.h5", "#ROSBAG V2.0\n"), HasSubstr("is a ROS 1 bag")) << "whatever its name";
@@ -178,7 +178,7 @@ TEST_F(WrongFile, ContactsOfDifferentLength) {
 
 TEST_F(WrongFile, ChangedReadingsDoNotFitTheDigest) {
   put_attribute("sensors", "gravity_m_s2", H5T_NATIVE_DOUBLE, 9.0);
-  EXPECT_THAT(sensors_complaint(), HasSubstr("damaged or changed"));
+  EXPECT_THAT(sensors_complaint(), HasSubstr("damaged or was changed"));
 }
 
 TEST_F(WrongFile, OthersNeedNotWriteADigest) {
@@ -190,12 +190,12 @@ TEST_F(WrongFile, OthersNeedNotWriteADigest) {
 
 TEST_F(WrongFile, AttributesOfTheWrongKind) {
   put_attribute("sensors/imus/0", "period_ns", H5T_NATIVE_DOUBLE, 2.5e6);
-  EXPECT_THAT(sensors_complaint(), HasSubstr("/sensors/imus/0/period_ns: attribute must be an integer"));
+  EXPECT_THAT(sensors_complaint(), HasSubstr("/sensors/imus/0/period_ns: the attribute must be an integer"));
 }
 
 TEST_F(WrongFile, NegativeSeed) {
   put_attribute("/", "seed", H5T_NATIVE_INT64, std::int64_t{-1});
-  EXPECT_THAT(info_complaint(), HasSubstr("/seed: attribute must not be negative"));
+  EXPECT_THAT(info_complaint(), HasSubstr("/seed: the attribute must be at least 0"));
 }
 
 TEST_F(WrongFile, TextOfVariableLengthIsRead) {

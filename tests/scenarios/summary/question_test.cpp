@@ -122,7 +122,7 @@ TEST_F(QuestionTest, FailuresRankAsTheWorst) {
   EXPECT_EQ(answer.better, static_cast<std::int64_t>(answer.seeds) / 2);
 }
 
-// each of two scenarios has half of the risk; one without an answer keeps the sweep going
+// each of two scenarios has half of the risk; one ended before the function returned a result keeps the sweep going
 TEST_F(QuestionTest, EveryScenarioIsAsked) {
   add(
       "hill", 1, 100, [](auto) { return 1.0; }, [](auto) { return 2.0; });
@@ -158,7 +158,7 @@ TEST_F(QuestionTest, IsClaimedBeforeTheDraws) {
   };
   refused(question_of(200), "stores the question");
   results.set_note(kQuestionNote, "");
-  refused(question_of(100), "before the question was set");
+  refused(question_of(100), "from a run without this question");
 }
 
 TEST_F(QuestionTest, OfNothingIsOpen) {
@@ -180,16 +180,16 @@ TEST(Question, RefusesWhatCannotBeAsked) {
     }
   };
   EXPECT_NO_THROW(require_sound(question_of(1)));
-  refused([](Question& q) { q.method = "tumble"; }, "needs its kind");
+  refused([](Question& q) { q.method = "tumble"; }, "must be written with its kind");
   refused([](Question& q) { q.against = "slam/icp"; }, "have different kinds");
   refused([](Question& q) { q.against = q.method; }, "is compared with itself");
   refused([](Question& q) { q.metric = "rate_error"; }, "is unknown");
-  refused([](Question& q) { q.metric = "estimate_cpu_s"; }, "has no better direction");
+  refused([](Question& q) { q.metric = "estimate_cpu_s"; }, "cannot rank methods");
   refused([](Question& q) { q.metric = "translation_error_end_m"; }, "is of kind");
   refused([](Question& q) { q.margin.value = -0.1; }, "margin is -0.1");
   refused([](Question& q) { q.margin.value = std::numeric_limits<double>::quiet_NaN(); }, "margin is nan");
   refused([](Question& q) { q.risk = 1.0; }, "risk is 1");
-  refused([](Question& q) { q.looks = 0; }, "looks are 0");
+  refused([](Question& q) { q.looks = 0; }, "the number of looks is 0");
 }
 
 }  // namespace

@@ -44,7 +44,7 @@ TEST(Applicable, NoMapIsAskedForWhereThereIsNoLidar) {
 
 TEST(Applicable, WhatDoesNotApplySaysWhy) {
   EXPECT_THAT(complaint("slam/tumble", "twirl"), HasSubstr("needs a lidar, but the recording has none"));
-  EXPECT_THAT(complaint("position/rolling", "hill"), HasSubstr("does not apply to the robot 'rig'"));
+  EXPECT_THAT(complaint("position/rolling", "hill"), HasSubstr("does not support the robot 'rig'"));
   EXPECT_EQ(complaint("slam/tumble", "hill"), "");
   EXPECT_EQ(complaint("rate/tumble", "twirl"), "");
 }

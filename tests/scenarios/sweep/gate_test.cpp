@@ -171,9 +171,9 @@ TEST(Gate, AMetricThatAnOkOutcomeHadMayNotGo) {
   const Change drop = [](Outcome& outcome) {
     if (outcome.seed == 3) std::erase_if(outcome.scores, [](const Score& score) { return score.metric == kNees; });
   };
-  EXPECT_EQ(fault_after(kNees, drop), "no longer has a value at seed 3");
+  EXPECT_EQ(fault_after(kNees, drop), "has no value, in contrast to the accepted run, at seed 3");
   EXPECT_EQ(fault_after(kNees, [](Outcome& o) { score_of(o, kNees) = std::nan(""); }).substr(0, 29),
-            "no longer has a value at seed");
+            "has no value, in contrast to the accepted run, at seed");
 }
 
 TEST(Gate, AFailureThatWasAcceptedMayStayOrGo) {
@@ -247,7 +247,7 @@ TEST_F(GateFiles, SayWhatIsWrongAndWhere) {
   EXPECT_THAT(complaint(kPolicy, head + "hill,slam,tumbel,status,ok,ok\n"), HasSubstr("tumble"));
   EXPECT_THAT(complaint(kPolicy, head + "hill,slam,tumble,status,ok,fine\n"), HasSubstr("'fine'"));
   EXPECT_THAT(complaint(kPolicy, good + "hill,slam,tumble,map_overlp,1,1\n"), HasSubstr("'map_overlap'"));
-  EXPECT_THAT(complaint(kPolicy, good + "hill,slam,tumble,map_overlap,1\n"), HasSubstr("5 columns, must be 6"));
+  EXPECT_THAT(complaint(kPolicy, good + "hill,slam,tumble,map_overlap,1\n"), HasSubstr("5 columns; it must have 6"));
   EXPECT_THAT(complaint(kPolicy, good + "hill,slam,tumble,map_overlap,1,nan\n"), HasSubstr("not a finite number"));
   EXPECT_THAT(complaint(kPolicy, head + "hill,slam,tumble,map_overlap,1,1\n"), HasSubstr("must follow"));
   EXPECT_THAT(complaint(kPolicy, good + "hill,slam,tumble,status,ok,ok\n"), HasSubstr("twice"));

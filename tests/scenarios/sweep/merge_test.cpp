@@ -111,8 +111,9 @@ TEST_F(MergeTest, SaysOfAllInputsHowTheyWereAskedFor) {
 TEST_F(MergeTest, TwoAnswersOfOneBuildAreRefusedAndNothingIsLeft) {
   const auto a = make("a.db", {row(1, OutcomeStatus::ok, "one")});
   const auto b = make("b.db", {row(1, OutcomeStatus::ok, "two")});
-  EXPECT_THAT(complaint({a, b}),
-              HasSubstr("b.db: hill, seed 1, slam/icp: status is ok with digest 'two', but elsewhere ok"));
+  EXPECT_THAT(
+      complaint({a, b}),
+      HasSubstr("b.db: hill, seed 1, slam/icp: the status is ok with digest 'two', but another database has ok"));
   EXPECT_FALSE(std::filesystem::exists(out_));
   EXPECT_EQ(files(), 2u);
   const auto c = make("c.db", {row(1, OutcomeStatus::diverged, "one")});
@@ -138,11 +139,12 @@ TEST_F(MergeTest, OneEstimateHasOneScore) {
   const auto a = make("a.db", {row(0, OutcomeStatus::ok), scored({{"ate_m", 0.5}, {"estimate_cpu_s", 1.0}})});
   const auto same = make("same.db", {scored({{"ate_m", 0.5}, {"estimate_cpu_s", 2.0}}), row(2, OutcomeStatus::ok)});
   EXPECT_EQ(complaint({a, same}), "");
-  for (const auto& [values, says] : {std::pair{std::vector<Score>{{"ate_m", 0.25}}, "ate_m is 0.25, but elsewhere 0.5"},
-                                     {{{"ate_m", nan}}, "ate_m is nan, but elsewhere 0.5"},
-                                     {{{"ate_m", inf}}, "ate_m is inf, but elsewhere 0.5"},
-                                     {{}, "ate_m is none, but elsewhere 0.5"},
-                                     {{{"ate_m", 0.5}, {"rpe_1m_m", 1.0}}, "rpe_1m_m is 1, but elsewhere none"}}) {
+  for (const auto& [values, says] :
+       {std::pair{std::vector<Score>{{"ate_m", 0.25}}, "ate_m is 0.25, but 0.5 in another database"},
+        {{{"ate_m", nan}}, "ate_m is nan, but 0.5 in another database"},
+        {{{"ate_m", inf}}, "ate_m is inf, but 0.5 in another database"},
+        {{}, "ate_m is none, but 0.5 in another database"},
+        {{{"ate_m", 0.5}, {"rpe_1m_m", 1.0}}, "rpe_1m_m is 1, but none in another database"}}) {
     std::filesystem::remove(folder_ / "b.db");
     std::filesystem::remove(out_);
     const auto b = make("b.db", {scored(values), row(2, OutcomeStatus::ok)});
@@ -159,7 +161,7 @@ TEST_F(MergeTest, OneEstimateHasOneScore) {
 TEST_F(MergeTest, AScoreThatIsNoNumberIsNoZero) {
   const auto a = make("a.db", {row(1, OutcomeStatus::ok)});
   SQLite::Database(a.string(), SQLite::OPEN_READWRITE).exec("UPDATE score_values SET value = 'good'");
-  EXPECT_THAT(complaint({a}), HasSubstr("a.db: hill, seed 1, slam/icp, ate_m: is text, must be a number or null"));
+  EXPECT_THAT(complaint({a}), HasSubstr("a.db: hill, seed 1, slam/icp, ate_m: is text; it must be a number or null"));
   EXPECT_FALSE(std::filesystem::exists(out_));
 }
 

@@ -109,7 +109,7 @@ TEST_F(RecordedSweep, ARecordingThatHasChangedIsRefused) {
   std::filesystem::copy(folder_ / "data/wands/wand_a.h5", folder_ / "data/other/wand_a.h5");
   Suite twice = suite();
   twice.recordings = {"wands/*.h5", "other/*.h5"};
-  EXPECT_THAT(complaint(twice, folder_ / "e.db"), HasSubstr("there is another recording with this name"));
+  EXPECT_THAT(complaint(twice, folder_ / "e.db"), HasSubstr("has the same name"));
   twice.recordings = {"wands/*.h5", "wands/wand_a.h5"};
   EXPECT_EQ(find_recordings(twice.recordings, twice.recordings_folder).size(), 2u) << "each file once";
 }
@@ -126,7 +126,7 @@ TEST_F(RecordedSweep, SuitesOfRecordingsHaveNoScenarios) {
   };
   EXPECT_EQ(refusal("recordings: [a.h5]\n"), "");
   EXPECT_THAT(refusal("recordings: [a.h5]\nseeds: {first: 1, last: 2}\n"),
-              HasSubstr("is not allowed in a suite of recordings"));
+              HasSubstr("is not allowed in a suite of recordings; remove this key"));
   EXPECT_THAT(refusal("recordings: []\n"), HasSubstr("needs at least one recording"));
   EXPECT_THAT(refusal("seeds: {first: 1, last: 2}\n"), HasSubstr("scenarios"));
 }

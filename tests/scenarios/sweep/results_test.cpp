@@ -188,15 +188,15 @@ TEST_F(ResultsTest, AValueThatIsNoNumberIsNamed) {
   const std::string at = path().string() + ": hill, seed 1, slam/icp, ate_m: ";
   for (const auto& [value, is] : {std::pair{"'good'", "is text"}, {"x'00ff'", "is a blob"}, {"''", "is text"}}) {
     const std::string change = std::string("UPDATE score_values SET value = ") + value + " WHERE metric = 'ate_m'";
-    EXPECT_EQ(reading(change.c_str(), scores), at + is + ", must be a number or null");
-    EXPECT_EQ(reading(change.c_str(), each), at + is + ", must be a number or null");
+    EXPECT_EQ(reading(change.c_str(), scores), at + is + "; it must be a number or null");
+    EXPECT_EQ(reading(change.c_str(), each), at + is + "; it must be a number or null");
   }
   EXPECT_EQ(reading("UPDATE score_values SET value = '3'", each), "") << "SQLite makes a number of it";
   EXPECT_EQ(reading("UPDATE score_values SET value = NULL", each), "");
   EXPECT_EQ(reading("UPDATE draw_values SET value = 'far'", draws),
-            path().string() + ": hill, seed 1, motion_path_m: is text, must be a number or null");
+            path().string() + ": hill, seed 1, motion_path_m: is text; it must be a number or null");
   EXPECT_EQ(reading("UPDATE certificates SET high = 'high'", certificates),
-            path().string() + ": certificate, drop: is text, must be a number or null");
+            path().string() + ": certificate, drop: is text; it must be a number or null");
 }
 
 TEST_F(ResultsTest, WhatTheSchemaHasIsThereOrNamed) {
@@ -212,7 +212,8 @@ TEST_F(ResultsTest, WhatTheSchemaHasIsThereOrNamed) {
     write("results.db", whole);
     SQLite::Database(path().string(), SQLite::OPEN_READWRITE)
         .exec(std::string("PRAGMA legacy_alter_table = ON;") + change);
-    const std::string says = path().string() + ": not a usable results database: it lacks " + missing;
+    const std::string says =
+        path().string() + ": the file is not a usable results database, because it lacks " + missing;
     EXPECT_EQ(complaint(Results::Mode::read_only), says);
     EXPECT_EQ(complaint(Results::Mode::create_or_append), says);
   }
@@ -268,7 +269,7 @@ TEST_F(ResultsTest, APipeAndAFolderAreRefused) {
     std::filesystem::remove(path());
     ASSERT_EQ(pipe ? mkfifo(path().c_str(), 0600) : mkdir(path().c_str(), 0700), 0);
     for (const Results::Mode mode : {Results::Mode::read_only, Results::Mode::create_or_append})
-      EXPECT_NE(complaint(mode).find(pipe ? "is a pipe, must be a regular file" : "is a folder, must be a file"),
+      EXPECT_NE(complaint(mode).find(pipe ? "is a pipe; it must be a regular file" : "is a folder; it must be a file"),
                 std::string::npos)
           << complaint(mode);
   }

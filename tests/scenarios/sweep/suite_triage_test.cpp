@@ -76,7 +76,7 @@ TEST_F(SuiteTriage, ADrawThatCannotBeSimulatedSaysWhy) {
   const std::vector<DrawTriage> all = triage_draws(tree_data(), draws, *find_methods("position/rolling").front(), {});
   ASSERT_EQ(all.size(), 1u);
   EXPECT_TRUE(all[0].rows.empty());
-  EXPECT_THAT(all[0].trouble, ::testing::HasSubstr("does not apply to the robot"));
+  EXPECT_THAT(all[0].trouble, ::testing::HasSubstr("does not support the robot"));
   EXPECT_THROW(triage_draws(tree_data(), std::vector<DrawName>{{"hil", 1}}, *find_methods("rate/raw").front(), {}),
                BadInput);
 }
@@ -113,7 +113,7 @@ TEST_F(SuiteTriage, AProcessThatHangsIsLate) {
   const std::vector<DrawTriage> all =
       triage_draws(tree_data(), std::vector<DrawName>{{clipping_tumble(folder_), 1}}, hangs, options);
   ASSERT_EQ(all.size(), 1u);
-  EXPECT_EQ(all[0].trouble, "the draw did not finish within its time limit");
+  EXPECT_EQ(all[0].trouble, "the draw did not end within its time limit");
 }
 
 TEST_F(SuiteTriage, MemoryIsLimited) {

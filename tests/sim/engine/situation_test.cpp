@@ -78,16 +78,16 @@ TEST(Resolve, SaysWhatIsWrongAndWhere) {
               AllOf(HasSubstr("robot"), HasSubstr("'sphere'")));
   EXPECT_THAT(complaint([](Situation& s) { s.motion.type = "pus"; }), AllOf(HasSubstr("motion"), HasSubstr("'push'")));
   EXPECT_THAT(complaint([](Situation& s) { s.world.values.set("rock_count", 4.5); }),
-              HasSubstr("rock_count is 4.5, must be a whole number"));
+              HasSubstr("rock_count is 4.5; it must be a whole number"));
   EXPECT_EQ(complaint([](Situation& s) { s.world.values.set("rock_count", 4.0); }), "accepted");
   const auto shape = [](double value) {
     return [value](Situation& s) { s.motion = {"hand_path", {}}, s.motion.values.set("shape", value); };
   };
-  EXPECT_THAT(complaint(shape(1.5)), HasSubstr("motion.hand_path.shape is 1.5, must be a whole number"));
+  EXPECT_THAT(complaint(shape(1.5)), HasSubstr("motion.hand_path.shape is 1.5; it must be a whole number"));
   EXPECT_EQ(complaint(shape(2.0)), "accepted");
   for (const std::string name : {"gyro_update_hz", "accel_update_hz"}) {
     EXPECT_THAT(complaint([&](Situation& s) { s.sensors[0].values.set(name, 1e-6); }),
-                HasSubstr(name + " is 1e-06 Hz, must be 0 (off) or at least 0.1"));
+                HasSubstr(name + " is 1e-06 Hz; it must be 0 (off) or at least 0.1"));
     EXPECT_EQ(complaint([&](Situation& s) { s.sensors[0].values.set(name, 0.1); }), "accepted");
   }
   EXPECT_THAT(complaint([](Situation& s) { s.world.values.set("slope_rd", 0.5); }),
@@ -101,7 +101,8 @@ TEST(Resolve, SaysWhatIsWrongAndWhere) {
               AllOf(HasSubstr("sensors.imu"), HasSubstr("'gyro_rail_rad_s'")));
   EXPECT_THAT(complaint([](Situation& s) { s.sensors[0].mount_error.set("x", 0); }),
               HasSubstr("sensors.imu.mount_error"));
-  EXPECT_THAT(complaint([](Situation& s) { s.sensors.push_back(s.sensors[0]); }), HasSubstr("two are named 'imu'"));
+  EXPECT_THAT(complaint([](Situation& s) { s.sensors.push_back(s.sensors[0]); }),
+              HasSubstr("two sensors have the same name 'imu'"));
   EXPECT_THAT(complaint([](Situation& s) { s.sensors[0].site = ""; }), HasSubstr("no site"));
   EXPECT_THAT(complaint([](Situation& s) { s.duration_s = 0; }), HasSubstr("duration_s is 0"));
   EXPECT_THAT(complaint([](Situation& s) { s.duration_s = std::numeric_limits<double>::infinity(); }),

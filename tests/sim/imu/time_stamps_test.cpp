@@ -68,7 +68,7 @@ TEST(TimeStamps, RefusesAJitterThatTurnsTimeBack) {
     stamps({{"time_jitter_s", 0.002}});
     FAIL() << "2 ms of jitter at 10 ms were accepted";
   } catch (const InvalidSituation& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("sensors.imu.time_jitter_s is 0.002 s, must be below a sixth"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("sensors.imu.time_jitter_s is 0.002 s; it must be below a sixth"));
   }
 }
 

@@ -76,8 +76,9 @@ class ClippingFinder {
       visit.group("accel_planes_", p.accel_planes);
       visit(
           p.tilted,
-          on_off("tilted",
-                 "0: search upright rails and device flags only, for methods that were published without other rails"));
+          on_off(
+              "tilted",
+              "1: also search tilted saturation limits; 0: search only upright ones and use the device's clip flags"));
     }
   };
   struct Found {

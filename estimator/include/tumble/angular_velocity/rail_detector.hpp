@@ -37,16 +37,17 @@ struct RailPlateauParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.samples, {"plateau_samples", "1", 2, 1000, "number of equal readings in a row that form a plateau"});
-    visit(p.spread_share,
-          {"plateau_spread_share", "1", 0.0, 0.01, "largest spread of a plateau, as a share of its level"});
+    visit(p.spread_share, {"plateau_spread_share", "1", 0.0, 0.01,
+                           "maximum spread of the readings of a plateau, as a share of the plateau's level"});
     visit(p.gyro_low_rad_s, {"plateau_gyro_low_rad_s", "rad/s", 1e-6, 1000.0,
                              "a gyro plateau below this rate needs twice as many readings and a jump"});
-    visit(p.gyro_min_rad_s,
-          {"plateau_gyro_min_rad_s", "rad/s", 1e-6, 1000.0, "a gyro plateau below this rate is not a rail"});
-    visit(p.accel_min_m_s2, {"plateau_accel_min_m_s2", "m/s^2", 1e-6, 1000.0,
-                             "an accelerometer plateau below this force is not a rail; above gravity"});
-    visit(p.jump_digits,
-          {"plateau_jump_digits", "1", 1.0, 1000.0, "least jump at the start or end of a low plateau, in digits"});
+    visit(p.gyro_min_rad_s, {"plateau_gyro_min_rad_s", "rad/s", 1e-6, 1000.0,
+                             "a gyro plateau below this rate does not count as a saturation limit"});
+    visit(p.accel_min_m_s2,
+          {"plateau_accel_min_m_s2", "m/s^2", 1e-6, 1000.0,
+           "an accelerometer plateau below this force does not count as a saturation limit; must be above gravity"});
+    visit(p.jump_digits, {"plateau_jump_digits", "1", 1.0, 1000.0,
+                          "minimum jump at the start or end of a low plateau, in steps of the reading's resolution"});
   }
 };
 
@@ -75,13 +76,15 @@ struct RailDetectorParams {
   /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.enter_share, {"enter_share", "1", 0.0, 0.1,
-                          "distance from the rail, as a share of it, within which a reading starts clipping"});
-    visit(p.leave_share,
-          {"leave_share", "1", 0.0, 0.5,
-           "distance from the rail, as a share of it, within which a neighbour of a clipped reading is clipped too"});
-    visit(p.disagreement_share, {"disagreement_share", "1", 1e-6, 1.0,
-                                 "largest accepted difference between stated and measured rail, as a share"});
+    visit(p.enter_share,
+          {"enter_share", "1", 0.0, 0.1,
+           "a reading within this distance of the saturation limit counts as clipped, as a share of the limit"});
+    visit(p.leave_share, {"leave_share", "1", 0.0, 0.5,
+                          "a neighbour of a clipped reading within this distance of the saturation limit also counts "
+                          "as clipped, as a share of the limit"});
+    visit(p.disagreement_share,
+          {"disagreement_share", "1", 1e-6, 1.0,
+           "maximum accepted difference between stated and measured saturation limit, as a share of the stated limit"});
     visit.group("", p.expert);
   }
 };

@@ -62,20 +62,22 @@ class RailPlaneFinder {
     /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
-      visit(p.slope_sigma,
-            {"slope_sigma", "1", 1e-4, 0.2,
-             "prior standard deviation of each slope: cross-axis sensitivity of the elements before compensation"});
+      visit(p.slope_sigma, {"slope_sigma", "1", 1e-4, 0.2,
+                            "prior standard deviation of each slope of a saturation plane: cross-axis sensitivity of "
+                            "the elements before compensation"});
       visit(p.slope_max, {"slope_max", "1", 0.0, 0.3, "steepest slope searched"});
-      visit(p.distance_min_rad_s,
-            {"distance_min_rad_s", "rad/s", 0.01, 1000.0, "lowest rail searched; m/s^2 for an accelerometer"});
-      visit(p.offset_share,
-            {"offset_share", "1", 1e-4, 0.2,
-             "prior standard deviation of the rail's offset and of the spread of elements, as a share of the range"});
-      visit(p.samples_min, {"samples_min", "1", 2, 1000, "least number of samples at a rail, per sign"});
-      visit(p.log_odds_before,
-            {"log_odds_before", "1", -100.0, 100.0, "prior log odds of a tilted rail, per element and sign"});
-      visit(p.log_odds_min, {"log_odds_min", "1", -100.0, 100.0, "log odds from which a tilted rail is accepted"});
-      visit(p.log_odds_keep, {"log_odds_keep", "1", -100.0, 100.0, "log odds above which an accepted rail is kept"});
+      visit(p.distance_min_rad_s, {"distance_min_rad_s", "rad/s", 0.01, 1000.0,
+                                   "lower end of the search for saturation limits; in m/s^2 for an accelerometer"});
+      visit(p.offset_share, {"offset_share", "1", 1e-4, 0.2,
+                             "prior standard deviation of the offset of a saturation limit and of the differences "
+                             "between elements, as a share of the range"});
+      visit(p.samples_min, {"samples_min", "1", 2, 1000, "minimum number of samples at a saturation limit, per sign"});
+      visit(p.log_odds_before, {"log_odds_before", "1", -100.0, 100.0,
+                                "prior log odds of a tilted saturation limit, per element and sign"});
+      visit(p.log_odds_min,
+            {"log_odds_min", "1", -100.0, 100.0, "a tilted saturation limit is accepted from these log odds on"});
+      visit(p.log_odds_keep, {"log_odds_keep", "1", -100.0, 100.0,
+                              "an accepted tilted saturation limit is kept while its log odds exceed this"});
     }
   };
 

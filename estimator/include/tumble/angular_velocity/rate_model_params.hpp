@@ -61,20 +61,26 @@ struct RateModelParams {
           {"gyro_bias_sigma_rad_s", "rad/s", 1e-9, 10.0, "prior standard deviation of the gyro bias", Rank::first});
     visit(p.accel_bias_sigma_m_s2, {"accel_bias_sigma_m_s2", "m/s^2", 1e-9, 10.0,
                                     "prior standard deviation of the accelerometer bias", Rank::first});
-    visit(p.inertia_sigma, {"inertia_sigma", "1", 1e-9, 10.0,
-                            "prior standard deviation of the inertia ratios about equal moments", Rank::first});
-    visit(
-        p.element_sigma,
-        {"element_sigma", "1", 1e-9, 0.2,
-         "prior standard deviation of each slope of a gyro element's rail: cross-axis sensitivity before compensation",
-         Rank::first});
+    visit(p.inertia_sigma,
+          {"inertia_sigma", "1", 1e-9, 10.0,
+           "prior standard deviation of the ratios of the moments of inertia, with equal moments as the mean",
+           Rank::first});
+    visit(p.element_sigma, {"element_sigma", "1", 1e-9, 0.2,
+                            "prior standard deviation of each slope of a gyro element's saturation plane: cross-axis "
+                            "sensitivity before compensation",
+                            Rank::first});
     visit(p.gyro_noise_density,
-          {"gyro_noise_density", "rad/s/sqrt(Hz)", 1e-9, 1.0, "noise density of the gyro (0.03 deg/s/sqrt(Hz))"});
-    visit(p.accel_noise_density,
-          {"accel_noise_density", "m/s^2/sqrt(Hz)", 1e-9, 10.0, "noise density of the accelerometer (60 ug/sqrt(Hz))"});
-    visit(p.rate_max_rad_s, {"rate_max_rad_s", "rad/s", 1.0, 1e4, "largest possible rate of a body of this kind"});
-    visit(p.acceleration_max_rad_s2, {"acceleration_max_rad_s2", "rad/s^2", 1.0, 1e7,
-                                      "largest possible angular acceleration of a body of this kind"});
+          {"gyro_noise_density", "rad/s/sqrt(Hz)", 1e-9, 1.0,
+           "noise density of the gyro; a larger value gives gyro readings less weight; default: 0.03 deg/s/sqrt(Hz)"});
+    visit(p.accel_noise_density, {"accel_noise_density", "m/s^2/sqrt(Hz)", 1e-9, 10.0,
+                                  "noise density of the accelerometer; a larger value gives accelerometer readings "
+                                  "less weight; default: 60 ug/sqrt(Hz)"});
+    visit(p.rate_max_rad_s,
+          {"rate_max_rad_s", "rad/s", 1.0, 1e4,
+           "maximum angular rate that this kind of body reaches; limits the estimates of clipped axes"});
+    visit(p.acceleration_max_rad_s2,
+          {"acceleration_max_rad_s2", "rad/s^2", 1.0, 1e7,
+           "maximum angular acceleration that this kind of body reaches; limits the estimates of clipped axes"});
     visit.group("", p.expert);
   }
 };

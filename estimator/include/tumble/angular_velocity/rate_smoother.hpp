@@ -42,15 +42,16 @@ struct RateSmootherParams {
   static void fields(Self& p, Visitor& visit) {
     visit.group("", p.model);
     visit.group("rails_", p.rails);
-    visit(
-        p.recovered_sigma_rad_s,
-        {"recovered_sigma_rad_s", "rad/s", 0.0, 1e4,
-         "largest standard deviation for a clipped axis to be reported as recovered instead of bounded", Rank::first});
-    visit(p.calibration_mahalanobis_max,
-          {"calibration_mahalanobis_max", "1", 0.1, 1e6,
-           "largest Mahalanobis distance of the rig constants from their prior", Rank::first});
+    visit(p.recovered_sigma_rad_s,
+          {"recovered_sigma_rad_s", "rad/s", 0.0, 1e4,
+           "a clipped axis with a smaller standard deviation is reported as recovered, otherwise as bounded",
+           Rank::first});
+    visit(p.calibration_mahalanobis_max, {"calibration_mahalanobis_max", "1", 0.1, 1e6,
+                                          "maximum Mahalanobis distance between the estimated rig constants and their "
+                                          "prior; a larger distance is reported as an error",
+                                          Rank::first});
     visit(p.gap_max_s, {"gap_max_s", "s", 1e-6, 3600.0,
-                        "longest allowed time between two samples; a longer gap ends the run with an error"});
+                        "maximum time between two samples; a longer gap ends the run with an error"});
     visit.group("", p.expert);
   }
 };

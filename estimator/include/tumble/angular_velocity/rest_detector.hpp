@@ -36,18 +36,20 @@ class RestDetector {
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.rate_max_rad_s,
-            {"rate_max_rad_s", "rad/s", 1e-6, 10.0, "largest mean rate at rest, as caused by a gyro bias"});
-      visit(p.rate_spread_rad_s, {"rate_spread_rad_s", "rad/s", 1e-6, 10.0,
-                                  "largest distance of a reading from the mean rate of the rest, per axis"});
-      visit(p.force_min_m_s2, {"force_min_m_s2", "m/s^2", 0.0, 100.0, "least force at rest; excludes free flight"});
+            {"rate_max_rad_s", "rad/s", 1e-6, 10.0, "maximum mean rate at rest; must exceed the gyro bias"});
+      visit(p.rate_spread_rad_s,
+            {"rate_spread_rad_s", "rad/s", 1e-6, 10.0,
+             "maximum difference between a rate reading and the mean rate during the rest, per axis"});
+      visit(p.force_min_m_s2, {"force_min_m_s2", "m/s^2", 0.0, 100.0, "minimum force at rest; excludes free flight"});
       visit(p.force_max_m_s2,
-            {"force_max_m_s2", "m/s^2", 0.0, 1e6, "largest force at rest; excludes forces beyond gravity"});
-      visit(p.force_spread_m_s2, {"force_spread_m_s2", "m/s^2", 1e-6, 100.0,
-                                  "largest distance of a force from the mean force of the rest, per axis"});
-      visit(p.rest_s, {"rest_s", "s", 0.0, 1e4, "shortest duration of a rest"});
-      visit(p.reading_s,
-            {"reading_s", "s", 0.0, 1.0, "duration over which readings are averaged; 0: each sample is one reading"});
-      visit(p.memory_s, {"memory_s", "s", 1e-3, 1e6, "time constant of the mean over a rest"});
+            {"force_max_m_s2", "m/s^2", 0.0, 1e6, "maximum force at rest; excludes accelerated motion"});
+      visit(p.force_spread_m_s2,
+            {"force_spread_m_s2", "m/s^2", 1e-6, 100.0,
+             "maximum difference between a force reading and the mean force during the rest, per axis"});
+      visit(p.rest_s, {"rest_s", "s", 0.0, 1e4, "minimum duration of a rest"});
+      visit(p.reading_s, {"reading_s", "s", 0.0, 1.0, "duration over which readings are averaged; 0: no averaging"});
+      visit(p.memory_s,
+            {"memory_s", "s", 1e-3, 1e6, "time constant of the exponential mean of the readings during a rest"});
     }
   };
   struct State {

@@ -58,7 +58,8 @@ class Saave {
                             "lever arm from the centre of mass to the IMU, IMU axes; needs an accuracy of about 1 mm"});
       visit(p.saturation_point_rad_s,
             {"saturation_point_rad_s", "rad/s", 0.01, 1000.0,
-             "readings beyond this count as clipped; choose it slightly below the gyro's plateau", Rank::first});
+             "readings beyond this value count as clipped; choose a value slightly below the gyro's saturation limit",
+             Rank::first});
       visit(p.variance_measured_rad2_s2,
             {"variance_measured_rad2_s2", "rad^2/s^2", 1e-12, 1e12, "variance of an unclipped reading"});
       visit(
@@ -71,7 +72,7 @@ class Saave {
             {"jerk_psd_rad2_s5", "rad^2/s^5", 1e-12, 1e12,
              "power spectral density of the smoother's white angular jerk (paper, sec. IV)", Rank::first});
       visit(p.gap_max_s, {"gap_max_s", "s", 1e-6, 3600.0,
-                          "longest allowed time between two samples; a longer gap ends the run with an error"});
+                          "maximum time between two samples; a longer gap ends the run with an error"});
     }
   };
 

@@ -22,15 +22,16 @@ struct CarriedHandParams {
           {"hand_tau_s", "s", 1e-3, 10.0, "correlation time of the hand-held point's acceleration", Rank::first});
     visit(p.velocity_tau_s, {"velocity_tau_s", "s", 1e-3, 1e3, "correlation time of the hand-held point's velocity"});
     visit(p.position_tau_s, {"position_tau_s", "s", 1e-3, 1e3, "correlation time of the hand-held point's position"});
-    visit(p.position_leak_s,
-          {"position_leak_s", "s", 0.1, 1e4, "time constant with which the position decays to zero"});
-    visit(p.hand_noise_adaptation,
-          {"hand_noise_adaptation", "1", 0.0, 1.0,
-           "share by which the assumed acceleration follows the measured power of the motion; 0: not at all",
-           Rank::first});
+    visit(p.position_leak_s, {"position_leak_s", "s", 0.1, 1e4,
+                              "time constant with which the estimated position of the hand-held point decays to zero"});
+    visit(p.hand_noise_adaptation, {"hand_noise_adaptation", "1", 0.0, 1.0,
+                                    "share by which the assumed acceleration follows the measured power of the motion; "
+                                    "0: constant assumed acceleration",
+                                    Rank::first});
     visit(p.hand_window_s,
           {"hand_window_s", "s", 0.01, 1e3, "time window over which the power of the motion is measured"});
-    visit(p.hand_floor, {"hand_floor", "1", 1e-3, 1e3, "least ratio of the adapted acceleration to the assumed one"});
+    visit(p.hand_floor,
+          {"hand_floor", "1", 1e-3, 1e3, "minimum ratio of the adapted acceleration to the assumed acceleration"});
   }
 };
 
@@ -46,19 +47,24 @@ struct CarriedReadingParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.tilt_share, {"tilt_share", "1", 0.0, 1.0,
-                         "error of an unclipped element per saturation deficit of a clipped element", Rank::first});
-    visit(p.rail_sigma_rad_s, {"rail_sigma_rad_s", "rad/s", 1e-4, 1.0, "standard deviation of the rail"});
-    visit(p.accel_error_share, {"accel_error_share", "1", 0.0, 1.0,
-                                "additional noise of the specific force, per m/s^2 of distance from gravity"});
+    visit(p.tilt_share,
+          {"tilt_share", "1", 0.0, 1.0,
+           "error that the saturation deficit of one clipped element causes on an unclipped element, per deficit",
+           Rank::first});
+    visit(p.rail_sigma_rad_s, {"rail_sigma_rad_s", "rad/s", 1e-4, 1.0, "standard deviation of the saturation limit"});
+    visit(p.accel_error_share,
+          {"accel_error_share", "1", 0.0, 1.0,
+           "additional noise of the specific force, per m/s^2 of difference between the force and gravity"});
     visit(p.rotation_error_sqrts, {"rotation_error_sqrts", "sqrt(s)", 0.0, 1.0,
-                                   "angle random walk per rad/s of rate, from scale errors", Rank::first});
+                                   "angle random walk per rad/s of rate, caused by scale errors", Rank::first});
     visit(p.recovered_sigma_rad_s,
           {"recovered_sigma_rad_s", "rad/s", 0.0, 1e4,
-           "largest standard deviation for a clipped rate to count as recovered instead of bounded", Rank::first});
+           "a clipped rate with a smaller standard deviation is reported as recovered, otherwise as bounded",
+           Rank::first});
     visit(p.recovered_tau_s, {"recovered_tau_s", "s", 1e-4, 1e4, "correlation time of the error of a recovered rate"});
-    visit(p.recovered_scale_share, {"recovered_scale_share", "1", 0.0, 1.0,
-                                    "scale error of the gyro next to recovered rates, as a share of the rate"});
+    visit(p.recovered_scale_share,
+          {"recovered_scale_share", "1", 0.0, 1.0,
+           "standard deviation of the gyro's scale error in samples next to recovered rates, as a share of the rate"});
   }
 };
 
@@ -95,12 +101,13 @@ struct CarriedExpertParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.node_s, {"node_s", "s", 1e-3, 0.1, "time between two nodes of the smoother", Rank::first});
-    visit(p.iterations_max, {"iterations_max", "1", 1, 1000, "largest number of Gauss-Newton steps", Rank::first});
-    visit(p.gap_max_s, {"gap_max_s", "s", 1e-300, 1e4,
-                        "longest allowed time between two samples; a longer gap ends the run with an error"});
+    visit(p.iterations_max, {"iterations_max", "1", 1, 1000, "maximum number of Gauss-Newton steps", Rank::first});
+    visit(p.gap_max_s,
+          {"gap_max_s", "s", 1e-300, 1e4, "maximum time between two samples; a longer gap ends the run with an error"});
     visit(p.jerk_inflation,
           {"jerk_inflation", "1", 1.0, 100.0,
-           "covariances are computed for an angular-jerk root density larger by this factor", Rank::first});
+           "the covariances are computed with the root density of the angular jerk multiplied by this factor",
+           Rank::first});
     visit.group("rest_", p.rest);
     visit.group("", p.hand);
     visit.group("", p.readings);

@@ -45,8 +45,11 @@ class CarriedStream {
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.body);
       visit(p.period_s, {"period_s", "s", 1e-5, 1.0, "nominal time between samples"});
-      visit(p.lag_s, {"lag_s", "s", 2e-5, 10.0, "age of a sample when its estimate is reported"});
-      visit(p.window_s, {"window_s", "s", 1e-3, 20.0, "length of the sliding window"});
+      visit(p.lag_s, {"lag_s", "s", 2e-5, 10.0,
+                      "age of a sample when its estimate is reported; a larger value adds delay and makes the estimate "
+                      "more accurate"});
+      visit(p.window_s,
+            {"window_s", "s", 1e-3, 20.0, "length of the sliding window; a longer window costs more computing time"});
     }
   };
 

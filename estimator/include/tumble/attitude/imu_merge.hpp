@@ -45,11 +45,11 @@ struct ImuMergeParams {
     visit(p.offset_sigma_s,
           {"offset_sigma_s", "s", 0.0, 0.1, "prior standard deviation of an IMU's time offset; 0: no offset"});
     visit(p.gyro_range_rad_s,
-          {"gyro_range_rad_s", "rad/s", 1e-12, 1e3, "gyro readings from this value on are at the rail"});
+          {"gyro_range_rad_s", "rad/s", 1e-12, 1e3, "gyro readings from this value on count as saturated"});
     visit(p.accel_range_m_s2,
-          {"accel_range_m_s2", "m/s^2", 1e-12, 1e5, "accelerometer readings from this value on are at the rail"});
-    visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4,
-                        "longest allowed time between two samples; a longer gap ends the run with an error"});
+          {"accel_range_m_s2", "m/s^2", 1e-12, 1e5, "accelerometer readings from this value on count as saturated"});
+    visit(p.gap_max_s,
+          {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap ends the run with an error"});
     visit.group("", p.expert);
   }
 };

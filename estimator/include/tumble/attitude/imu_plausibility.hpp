@@ -34,13 +34,14 @@ struct ImuPlausibilityParams {
     visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-12, 100.0, "strength of gravity"});
     visit(p.window_s, {"window_s", "s", 0.02, 10.0, "length of the windows in which force and rotation are compared"});
     visit(p.reading_s, {"reading_s", "s", 1e-3, 1.0, "duration over which readings are averaged"});
-    visit(p.steady_share, {"steady_share", "1", 1e-12, 1.0,
-                           "largest change of the force's magnitude within a steady window, as a share"});
+    visit(p.steady_share,
+          {"steady_share", "1", 1e-12, 1.0,
+           "maximum change of the force's magnitude within a window with steady force, as a share of the force"});
     visit(p.near_share, {"near_share", "1", 1e-12, 1e6,
-                         "largest difference between force and gravity for a comparison of rotations, as a share"});
-    visit(p.gyro_range_rad_s,
-          {"gyro_range_rad_s", "rad/s", 1e-3, 1e6, "rate of an axis above which a window is not compared"});
-    visit(p.gap_max_s, {"gap_max_s", "s", 1e-12, 1e4, "longest gap between samples within a window"});
+                         "rotations are compared only if force and gravity differ by less than this share of gravity"});
+    visit(p.gyro_range_rad_s, {"gyro_range_rad_s", "rad/s", 1e-3, 1e6,
+                               "windows are compared only if the rate of each axis is below this value"});
+    visit(p.gap_max_s, {"gap_max_s", "s", 1e-12, 1e4, "a longer gap between two samples ends the window"});
     visit.group("", p.expert);
   }
 };

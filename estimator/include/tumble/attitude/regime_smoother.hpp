@@ -37,8 +37,10 @@ class RegimeSmoother {
       visit.group("evidence_", p.evidence);
       visit.group("carried_", p.carried);
       visit(p.carried_min,
-            {"carried_min", "1", 0.0, 1.0, "least probability of hand-held motion for which its smoother runs"});
-      visit(p.near_s, {"near_s", "s", 0.0, 10.0, "clipped samples within this time belong to one segment"});
+            {"carried_min", "1", 0.0, 1.0,
+             "the smoother for hand-held motion runs if the probability of hand-held motion exceeds this value"});
+      visit(p.near_s,
+            {"near_s", "s", 0.0, 10.0, "clipped samples that are less than this time apart belong to one segment"});
     }
   };
   struct Report {

@@ -50,19 +50,26 @@ class RegimeEvidence {
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-300, 100.0, "strength of gravity"});
-      visit(p.flight_m_s2, {"flight_m_s2", "m/s^2", 1e-3, 10.0,
-                            "standard deviation of the residual force in flight: drag, bandwidth"});
-      visit(p.flight_share,
-            {"flight_share", "1", 0.0, 1.0,
-             "standard deviation of the residual force in flight, as a share of the lever arm's force"});
+      visit(
+          p.flight_m_s2,
+          {"flight_m_s2", "m/s^2", 1e-3, 10.0,
+           "standard deviation of the force in flight that the model does not explain, caused by drag and bandwidth"});
+      visit(p.flight_share, {"flight_share", "1", 0.0, 1.0,
+                             "additional standard deviation of this force, as a share of the force that the rotation "
+                             "causes at the lever arm"});
       visit(p.hand_m_s2, {"hand_m_s2", "m/s^2", 0.1, 100.0, "standard deviation of a hand's acceleration"});
       visit(p.grip_m, {"grip_m", "m", 0.0, 1.0, "standard deviation of the distance between hand and IMU"});
-      visit(p.contact_max_m_s2, {"contact_max_m_s2", "m/s^2", 10.0, 1e6,
-                                 "largest contact force; contact forces are between 1 m/s^2 and this"});
-      visit(p.memory_s, {"memory_s", "s", 1e-3, 10.0, "readings within this time count as one observation"});
-      visit(p.rest_rate_rad_s, {"rest_rate_rad_s", "rad/s", 0.0, 100.0, "least rate at which the regime is estimated"});
-      visit(p.contacts_hz, {"contacts_hz", "Hz", 1e-3, 100.0, "rate of changes between flight and contact"});
-      visit(p.throws_hz, {"throws_hz", "Hz", 1e-9, 10.0, "rate of changes between hand-held and free motion"});
+      visit(p.contact_max_m_s2,
+            {"contact_max_m_s2", "m/s^2", 10.0, 1e6,
+             "maximum contact force; the model assumes contact forces between 1 m/s^2 and this value"});
+      visit(p.memory_s,
+            {"memory_s", "s", 1e-3, 10.0, "readings within this time count as one independent observation"});
+      visit(p.rest_rate_rad_s, {"rest_rate_rad_s", "rad/s", 0.0, 100.0,
+                                "minimum rate for an estimate of the regime (flight, contact or hand-held)"});
+      visit(p.contacts_hz,
+            {"contacts_hz", "Hz", 1e-3, 100.0, "assumed frequency of changes between flight and contact"});
+      visit(p.throws_hz,
+            {"throws_hz", "Hz", 1e-9, 10.0, "assumed frequency of changes between hand-held and free motion"});
     }
   };
 

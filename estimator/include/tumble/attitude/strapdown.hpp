@@ -21,8 +21,8 @@ class Strapdown {
     /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
-      visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4,
-                          "longest allowed time between two samples; a longer gap ends the run with an error"});
+      visit(p.gap_max_s,
+            {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap ends the run with an error"});
     }
   };
   struct State {

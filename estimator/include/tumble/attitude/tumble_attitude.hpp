@@ -32,21 +32,24 @@ struct TumbleAttitudeParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-12, 100.0, "strength of gravity"});
-    visit(p.gyro_noise_rad_sqrts, {"gyro_noise_rad_sqrts", "rad/sqrt(s)", 1e-12, 1.0,
-                                   "angle random walk, including unmodelled errors", Rank::first});
+    visit(p.gyro_noise_rad_sqrts,
+          {"gyro_noise_rad_sqrts", "rad/sqrt(s)", 1e-12, 1.0,
+           "angle random walk of the gyro, including unmodelled errors; a larger value gives gyro readings less weight",
+           Rank::first});
     visit(p.rate_error_sqrts, {"rate_error_sqrts", "sqrt(s)", 0.0, 1.0,
-                               "angle random walk per rad/s of rate, from scale and timing errors", Rank::first});
+                               "angle random walk per rad/s of rate, caused by scale and timing errors", Rank::first});
     visit(p.bias_sigma_start_rad_s,
           {"bias_sigma_start_rad_s", "rad/s", 0.0, 1.0, "prior standard deviation of the gyro bias", Rank::first});
     visit(p.velocity_m_sqrts, {"velocity_m_sqrts", "m/sqrt(s)", 1e-12, 1e3,
                                "standard deviation of the mean velocity over 1 s of motion", Rank::first});
     visit(p.displacement_m_sqrts, {"displacement_m_sqrts", "m sqrt(s)", 1e-12, 1e3,
                                    "standard deviation of the mean displacement over 1 s", Rank::first});
-    visit(p.displacement_tau_s, {"displacement_tau_s", "s", 0.1, 1e4,
-                                 "time constant with which the displacement decays to zero", Rank::first});
+    visit(p.displacement_tau_s,
+          {"displacement_tau_s", "s", 0.1, 1e4,
+           "time constant with which the modelled displacement of the body decays to zero", Rank::first});
     visit(p.motion_tau_s,
           {"motion_tau_s", "s", 1e-3, 1e4,
-           "correlation time of the body's velocity and displacement, and averaging time of their magnitude",
+           "correlation time of the body's velocity and displacement; also the averaging time of their magnitudes",
            Rank::first});
     visit(p.radius_m, {"radius_m", "m", 0.0, 10.0, "radius of the sphere"});
     visit(p.lever_arm_m, {"lever_arm_m", "m", -10.0, 10.0, "lever arm from the centre to the IMU, sensor axes"});

@@ -20,12 +20,14 @@ struct VqfExpertParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.bias_sigma_motion_rad_s, {"bias_sigma_motion_rad_s", "rad/s", 1e-9, 1.0,
-                                      "standard deviation to which the bias converges in motion (0.1 deg/s)"});
-    visit(p.bias_sigma_rest_rad_s, {"bias_sigma_rest_rad_s", "rad/s", 1e-9, 1.0,
-                                    "standard deviation to which the bias converges at rest (0.03 deg/s)"});
+    visit(p.bias_sigma_motion_rad_s,
+          {"bias_sigma_motion_rad_s", "rad/s", 1e-9, 1.0,
+           "standard deviation to which the bias estimate converges in motion; default: 0.1 deg/s"});
+    visit(p.bias_sigma_rest_rad_s,
+          {"bias_sigma_rest_rad_s", "rad/s", 1e-9, 1.0,
+           "standard deviation to which the bias estimate converges at rest; default: 0.03 deg/s"});
     visit(p.vertical_forgetting,
-          {"vertical_forgetting", "1", 1e-9, 1.0, "decay of the unobservable vertical bias to zero"});
+          {"vertical_forgetting", "1", 1e-9, 1.0, "weight with which the unobservable vertical bias decays to zero"});
     visit(p.rest_tau_s, {"rest_tau_s", "s", 1e-3, 1e4, "time constant of the rest detector's low-pass filter"});
   }
 };
@@ -53,19 +55,22 @@ struct VqfParams {
                     "time constant of the low-pass filter on the specific force in the inertial frame", Rank::first});
     visit(p.rest_bias_estimation, on_off("rest_bias_estimation", "1: estimate the gyro bias at rest", Rank::first));
     visit(p.motion_bias_estimation,
-          on_off("motion_bias_estimation", "1: estimate the gyro bias in motion too", Rank::first));
+          on_off("motion_bias_estimation", "1: also estimate the gyro bias in motion", Rank::first));
     visit(p.bias_sigma_start_rad_s,
           {"bias_sigma_start_rad_s", "rad/s", 1e-9, 1.0, "prior standard deviation of the gyro bias", Rank::first});
     visit(p.bias_forgetting_s,
           {"bias_forgetting_s", "s", 1e-9, 1e6, "time in which the bias variance grows to (0.1 deg/s)^2", Rank::first});
     visit(p.bias_clip_rad_s, {"bias_clip_rad_s", "rad/s", 1e-9, 1.0, "largest estimated bias", Rank::first});
-    visit(p.rest_time_s, {"rest_time_s", "s", 0.0, 1e4, "duration of quiet readings that counts as rest", Rank::first});
+    visit(p.rest_time_s, {"rest_time_s", "s", 0.0, 1e4,
+                          "the sensor counts as stationary after quiet readings of this duration", Rank::first});
     visit(p.rest_rate_rad_s,
-          {"rest_rate_rad_s", "rad/s", 1e-9, 1.0, "largest difference from the low-passed gyro at rest", Rank::first});
-    visit(p.rest_force_m_s2, {"rest_force_m_s2", "m/s^2", 1e-9, 100.0,
-                              "largest difference from the low-passed force at rest", Rank::first});
-    visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4,
-                        "longest allowed time between two samples; a longer gap ends the run with an error"});
+          {"rest_rate_rad_s", "rad/s", 1e-9, 1.0,
+           "maximum difference between gyro readings and their low-passed value at rest", Rank::first});
+    visit(p.rest_force_m_s2,
+          {"rest_force_m_s2", "m/s^2", 1e-9, 100.0,
+           "maximum difference between force readings and their low-passed value at rest", Rank::first});
+    visit(p.gap_max_s,
+          {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap ends the run with an error"});
     visit.group("", p.expert);
   }
 };

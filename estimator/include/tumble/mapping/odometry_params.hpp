@@ -46,9 +46,10 @@ struct OdometryExpertParams {
     visit.group("", p.matching);
     visit.group("", p.prior);
     visit.group("", p.rails);
-    visit(p.window_sweeps,
-          {"window_sweeps", "1", 1, 8,
-           "number of sweeps refined together; a sweep is refined by this many minus one later sweeps", Rank::first});
+    visit(p.window_sweeps, {"window_sweeps", "1", 1, 8,
+                            "number of sweeps that are refined together; the estimate of a sweep uses this number "
+                            "minus one of later sweeps",
+                            Rank::first});
     visit.group("", p.flight);
     visit.group("", p.tracking);
     visit.group("start_", p.start);
@@ -81,18 +82,23 @@ struct OdometryParams {
   /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.time_offset_s, {"time_offset_s", "s", -1.0, 1.0, "clock of the IMU minus clock of the lidar"});
+    visit(p.time_offset_s,
+          {"time_offset_s", "s", -1.0, 1.0, "time of the IMU's clock minus time of the lidar's clock"});
     visit(p.mount_sigma_rad, calibration_fields::kMountSigma_rad);
     visit(p.mount_sigma_m, calibration_fields::kMountSigma_m);
     visit(p.time_offset_sigma_s, calibration_fields::kTimeOffsetSigma_s);
-    visit(p.range_min_m, {"range_min_m", "m", 0.0, 10.0, "returns nearer than this are dropped"});
-    visit(p.range_max_m, {"range_max_m", "m", 0.0, 1e4, "returns farther than this are dropped"});
-    visit(p.own_body_L.min(), {"own_body_min_m", "m", -kUnbounded, kUnbounded,
-                               "smallest corner of the box around the robot's own returns, lidar axes"});
-    visit(p.own_body_L.max(), {"own_body_max_m", "m", -kUnbounded, kUnbounded,
-                               "largest corner of the box around the robot's own returns, lidar axes"});
+    visit(p.range_min_m, {"range_min_m", "m", 0.0, 10.0, "minimum range; nearer returns are dropped"});
+    visit(p.range_max_m, {"range_max_m", "m", 0.0, 1e4, "maximum range; farther returns are dropped"});
+    visit(p.own_body_L.min(),
+          {"own_body_min_m", "m", -kUnbounded, kUnbounded,
+           "minimum corner of a box around the robot, lidar axes; returns inside the box are dropped"});
+    visit(p.own_body_L.max(),
+          {"own_body_max_m", "m", -kUnbounded, kUnbounded,
+           "maximum corner of a box around the robot, lidar axes; returns inside the box are dropped"});
     visit(p.sweep_voxel_m, {"sweep_voxel_m", "m", 0.01, 10.0,
-                            "edge of the voxel from which one point per sweep is registered", Rank::first});
+                            "edge length of the voxels; one point per voxel and sweep is registered, so a larger value "
+                            "is faster and coarser",
+                            Rank::first});
     visit.group("", p.expert);
   }
 };

@@ -37,13 +37,15 @@ struct PlaneBounds {
   /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.neighbours_min, {"neighbours_min", "1", 3, 32, "least number of map points for a plane"});
-    visit(p.collinear_share, {"collinear_share", "1", 0.0, 1.0,
-                              "least ratio of middle to largest eigenvalue; below, the neighbours form a line"});
+    visit(p.neighbours_min, {"neighbours_min", "1", 3, 32, "minimum number of map points for a plane"});
+    visit(p.collinear_share,
+          {"collinear_share", "1", 0.0, 1.0,
+           "minimum ratio of the middle to the largest eigenvalue; below this ratio, the neighbours form a line"});
     visit(p.rough_share,
-          {"rough_share", "1", 0.0, 1.0, "largest ratio of smallest to middle eigenvalue; above, there is no plane"});
+          {"rough_share", "1", 0.0, 1.0,
+           "maximum ratio of the smallest to the middle eigenvalue; above this ratio, the neighbours form no plane"});
     visit(p.off_line_min,
-          {"off_line_min", "1", 0, 32, "least number of neighbours outside the most frequent scan line"});
+          {"off_line_min", "1", 0, 32, "minimum number of neighbours that are not on the most frequent scan line"});
   }
 };
 

@@ -36,17 +36,19 @@ struct RegistrationExpertParams {
     visit(p.step_m, {"step_m", "m", 1e-12, 1.0, "position step below which the registration has converged"});
     visit(p.step_rad, {"step_rad", "rad", 1e-12, 1.0, "rotation step below which the registration has converged"});
     visit(p.step_s, {"step_s", "s", 1e-12, 1.0, "time-offset step below which the registration has converged"});
-    visit(p.rematch_m, {"rematch_m", "m", 0.0, 10.0, "motion of a point after which its plane is searched again"});
-    visit(p.kernel_min_m, {"kernel_min_m", "m", 1e-6, 1e3, "least width of the robust kernel (Geman-McClure)"});
-    visit(p.correlation_discount, {"correlation_discount", "1", 1e-6, 1.0,
-                                   "weight of a point's information, because neighbouring returns are correlated"});
-    visit(p.cluster_m, {"cluster_m", "m", 0.01, 100.0, "edge of the cube whose points count as correlated"});
+    visit(p.rematch_m,
+          {"rematch_m", "m", 0.0, 10.0, "the plane of a point is searched again after the point has moved this far"});
+    visit(p.kernel_min_m, {"kernel_min_m", "m", 1e-6, 1e3, "minimum width of the robust kernel (Geman-McClure)"});
+    visit(p.correlation_discount,
+          {"correlation_discount", "1", 1e-6, 1.0,
+           "weight of the information of one point; below 1, because neighbouring returns are correlated"});
+    visit(p.cluster_m, {"cluster_m", "m", 0.01, 100.0, "edge length of the cube whose points count as correlated"});
     visit(p.matched_share_min,
-          {"matched_share_min", "1", 0.0, 1.0, "least share of matched points in an accepted result"});
+          {"matched_share_min", "1", 0.0, 1.0, "minimum share of matched points in an accepted result"});
     visit(p.agreeing_min,
-          {"agreeing_min", "1", 1, 1e9, "number of matches that suffices if the result agrees with the prior"});
+          {"agreeing_min", "1", 1, 1e9, "minimum number of matches for a result that agrees with the prior"});
     visit(p.fitting_share_min, {"fitting_share_min", "1", 0.0, 1.0,
-                                "least share of matches within three standard deviations in an accepted result"});
+                                "minimum share of matches within three standard deviations in an accepted result"});
     visit.group("plane_", p.plane);
   }
 };
@@ -71,18 +73,21 @@ struct RegistrationParams {
   /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.neighbours, {"neighbours", "1", 3, 32, "number of map points per plane fit", Rank::first});
+    visit(p.neighbours, {"neighbours", "1", 3, 32, "number of map points used for each plane fit", Rank::first});
     visit(p.match_distance_m, {"match_distance_m", "m", 1e-3, kMatchDistanceMax_m,
-                               "largest distance between a point and its matches in the map", Rank::first});
-    visit(p.iterations_max, {"iterations_max", "1", 1, 200, "largest number of iterations"});
-    visit(p.range_sigma_m, {"range_sigma_m", "m", 1e-6, 10.0, "least standard deviation of a range"});
+                               "maximum distance between a point and its matches in the map", Rank::first});
+    visit(p.iterations_max, {"iterations_max", "1", 1, 200, "maximum number of iterations"});
+    visit(p.range_sigma_m, {"range_sigma_m", "m", 1e-6, 10.0, "minimum standard deviation of a range"});
     visit(p.range_sigma_share,
           {"range_sigma_share", "1", 0.0, 1.0, "standard deviation of a range, as a share of the range"});
-    visit(p.skew_sigma_m_s, {"skew_sigma_m_s", "m/s", 0.0, 1e3,
-                             "growth of a point's uncertainty over the sweep (time weighting); 0: no time weighting"});
-    visit(p.matches_min, {"matches_min", "1", 0, 1e9, "least number of matches in an accepted result"});
-    visit(p.correction_max_m, {"correction_max_m", "m", 0.0, 1e6, "largest accepted correction of the prior"});
-    visit(p.correction_max_rad, {"correction_max_rad", "rad", 0.0, 3.15, "largest accepted correction of the prior"});
+    visit(p.skew_sigma_m_s,
+          {"skew_sigma_m_s", "m/s", 0.0, 1e3,
+           "growth of a point's standard deviation with the time since the start of the sweep; 0: no growth"});
+    visit(p.matches_min, {"matches_min", "1", 0, 1e9, "minimum number of matches in an accepted result"});
+    visit(p.correction_max_m, {"correction_max_m", "m", 0.0, 1e6,
+                               "maximum accepted correction of the prior pose; a larger correction is rejected"});
+    visit(p.correction_max_rad, {"correction_max_rad", "rad", 0.0, 3.15,
+                                 "maximum accepted correction of the prior pose; a larger correction is rejected"});
     visit.group("", p.expert);
   }
 };

@@ -44,9 +44,10 @@ class VoxelMap {
     /// Calls the visitor with the value, name, unit, bounds and meaning of every parameter (common/parameters.hpp).
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
-      visit(p.voxel_m, {"voxel_m", "m", 0.01, 100.0, "edge of a cell; search is fastest at a few times the spacing"});
-      visit(p.spacing_m,
-            {"spacing_m", "m", 0.0, 100.0, "edge of the cube that stores at most one point; 0: store all"});
+      visit(p.voxel_m, {"voxel_m", "m", 0.01, 100.0,
+                        "edge length of a cell; the search is fastest at a few times the spacing of the points"});
+      visit(p.spacing_m, {"spacing_m", "m", 0.0, 100.0,
+                          "edge length of the cube that stores at most one point; 0: store all points"});
     }
   };
 

@@ -75,12 +75,15 @@ class RollingOdometry {
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.radius_m, {"radius_m", "m", 1e-3, 100.0, "radius of the sphere", Rank::first});
-      visit(p.centre_sigma_m,
-            {"centre_sigma_m", "m", 0.0, 10.0,
-             "standard deviation of the stated centre: reference point of the IMU positions", Rank::first});
+      visit(
+          p.centre_sigma_m,
+          {"centre_sigma_m", "m", 0.0, 10.0,
+           "standard deviation of the position of the stated centre, which is the reference point of the IMU positions",
+           Rank::first});
       visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 0.1, 100.0, "strength of gravity", Rank::first});
       visit(p.lag_s, {"lag_s", "s", 0.0, kWholeRecording,
-                      "time that a pose waits for later data before it is smoothed; 0: live; 1e9: the whole recording",
+                      "delay after which a smoothed pose is reported; a longer delay makes poses more accurate; 0: "
+                      "live; 1e9: the whole recording",
                       Rank::first});
       visit.group("merge_", p.expert.merge);
       visit.group("rolling_", p.expert.rolling);

@@ -42,7 +42,7 @@ struct TumblingExpertParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 0.0, 100.0, "strength of gravity", Rank::first});
-    visit(p.sweeps_max, {"sweeps_max", "1", 1, 1e6, "largest number of sweeps waiting for IMU data"});
+    visit(p.sweeps_max, {"sweeps_max", "1", 1, 1e6, "maximum number of sweeps that wait for IMU data"});
     visit.group("rate_", p.rate);
     visit.group("mapping_", p.mapping);
     visit.group("stamps_", p.stamps);
@@ -92,7 +92,11 @@ struct TumblingParams {
     visit(p.mount_sigma_m, calibration_fields::kMountSigma_m);
     visit(p.time_offset_sigma_s, calibration_fields::kTimeOffsetSigma_s);
     visit.group("", p.lidar);
-    visit(p.lag_s, {"lag_s", "s", 0.0, 10.0, "longest time that a sweep waits for later data", Rank::first});
+    visit(
+        p.lag_s,
+        {"lag_s", "s", 0.0, 10.0,
+         "maximum time for which a sweep waits for later data; a longer time adds delay and makes poses more accurate",
+         Rank::first});
     visit.group("", p.expert);
   }
 };

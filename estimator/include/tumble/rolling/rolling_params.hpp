@@ -71,9 +71,11 @@ struct RollingParams {
     visit(p.lever_arm_sigma_m,
           {"lever_arm_sigma_m", "m", 0.0, 1e3, "prior standard deviation of the lever arm", Rank::first});
     visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-12, 100.0, "strength of gravity"});
-    visit(p.gyro_range_rad_s, {"gyro_range_rad_s", "rad/s", 1e-12, 1e3, "rates from this value on are at the rail"});
-    visit(p.accel_range_m_s2, {"accel_range_m_s2", "m/s^2", 1e-12, 1e5, "forces from this value on are at the rail"});
-    visit(p.speed_max_m_s, {"speed_max_m_s", "m/s", 1e-12, 1e3, "largest rolling speed; grip is rejected above it"});
+    visit(p.gyro_range_rad_s, {"gyro_range_rad_s", "rad/s", 1e-12, 1e3, "rates from this value on count as saturated"});
+    visit(p.accel_range_m_s2,
+          {"accel_range_m_s2", "m/s^2", 1e-12, 1e5, "forces from this value on count as saturated"});
+    visit(p.speed_max_m_s, {"speed_max_m_s", "m/s", 1e-12, 1e3,
+                            "maximum rolling speed; the filter rejects the hypothesis of grip above this speed"});
     visit.group("", p.expert);
   }
 };

@@ -50,14 +50,19 @@ class RollingSmoother {
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.filter);
-      visit(p.path_noise, {"path_noise", "1", 1e-6, 1.0, "process noise of the last pass, as a share of the filter's"});
-      visit(p.lag_s, {"lag_s", "s", 1e-3, 1e9,
-                      "longest time that a pose waits for later data; 1e9: until the end of the run", Rank::first});
+      visit(p.path_noise,
+            {"path_noise", "1", 1e-6, 1.0, "process noise of the last pass, as a share of the filter's process noise"});
+      visit(p.lag_s,
+            {"lag_s", "s", 1e-3, 1e9,
+             "maximum delay of a pose; a longer delay makes poses more accurate; 1e9: until the end of the run",
+             Rank::first});
       visit(p.block_s, {"block_s", "s", 1e-3, 1e3, "length of the blocks in which estimates are reported"});
-      visit(p.rate_max_hz, {"rate_max_hz", "Hz", 1e-3, 1e5, "largest sample rate, which sets the storage for the lag"});
+      visit(p.rate_max_hz,
+            {"rate_max_hz", "Hz", 1e-3, 1e5, "maximum sample rate; determines the memory for the delay"});
       visit(p.known_distance_m,
             {"known_distance_m", "m", 0.0, 1e6,
-             "known horizontal distance from start to end, which determines the radius; 0: not known", Rank::first});
+             "known horizontal distance from start to end, from which the radius is estimated; 0: not known",
+             Rank::first});
       visit(p.known_distance_sigma_m,
             {"known_distance_sigma_m", "m", 1e-12, 1e3, "standard deviation of the known distance", Rank::first});
     }

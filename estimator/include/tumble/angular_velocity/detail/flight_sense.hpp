@@ -60,22 +60,25 @@ class FlightSense {
       visit(p.gyro_range_rad_s,
             {"gyro_range_rad_s", "rad/s", 0.0, kUnbounded, "range stated by the device; 0: not stated"});
       visit(p.reading_s, {"reading_s", "s", 1e-3, 1.0, "duration over which readings are averaged"});
-      visit(p.force_min_m_s2, {"force_min_m_s2", "m/s^2", 1e-3, 1e6,
-                               "least force caused by the rotation at the lever arm, for a reading to count"});
+      visit(p.force_min_m_s2,
+            {"force_min_m_s2", "m/s^2", 1e-3, 1e6,
+             "minimum force that the rotation causes at the lever arm; readings with a smaller force are ignored"});
       visit(p.share, {"share", "1", 1e-3, 0.9,
-                      "largest difference between reading and predicted flight force, as a share of that force"});
-      visit(p.run_s, {"run_s", "s", 0.0, 10.0, "shortest flight that counts"});
+                      "maximum difference between the measured force and the force predicted for flight, as a share of "
+                      "the predicted force"});
+      visit(p.run_s, {"run_s", "s", 0.0, 10.0, "minimum duration of a flight; shorter flights are ignored"});
       visit(p.alternative_flight_s,
             {"alternative_flight_s", "s", 0.0, 1e3,
-             "flight time explained by another sensor orientation, from which a fault is reported"});
-      visit(p.half_scale_flight_s, {"half_scale_flight_s", "s", 0.0, 1e3,
-                                    "flight time explained by twice the rate, from which a fault is reported"});
-      visit(p.alternative_evidence_ratio,
-            {"alternative_evidence_ratio", "1", 0.0, 1e6,
-             "least ratio of flight time explained by the other orientation to that of the stated one"});
+             "a fault is reported if another sensor orientation explains at least this much flight time"});
+      visit(p.half_scale_flight_s,
+            {"half_scale_flight_s", "s", 0.0, 1e3,
+             "a fault is reported if twice the measured rate explains at least this much flight time"});
+      visit(p.alternative_evidence_ratio, {"alternative_evidence_ratio", "1", 0.0, 1e6,
+                                           "minimum ratio for a fault: flight time explained by the other orientation "
+                                           "over that explained by the stated one"});
       visit(p.thrown_evidence_ratio,
-            {"thrown_evidence_ratio", "1", 0.0, 1e6, "least ratio of these flight times if the body is not hand-held"});
-      visit(p.gap_max_s, {"gap_max_s", "s", 1e-3, 1e3, "longest gap between samples within a flight"});
+            {"thrown_evidence_ratio", "1", 0.0, 1e6, "minimum ratio for a fault if the body is not hand-held"});
+      visit(p.gap_max_s, {"gap_max_s", "s", 1e-3, 1e3, "a longer gap between two samples ends the flight"});
     }
   };
   /// Reading is one averaged IMU reading.

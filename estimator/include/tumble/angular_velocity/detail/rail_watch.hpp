@@ -32,7 +32,7 @@ class RailWatch {
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.clipping);
-      visit(p.readings_max, {"readings_max", "1", 64, 65536, "largest number of distinct readings stored per triad"});
+      visit(p.readings_max, {"readings_max", "1", 64, 65536, "maximum number of distinct readings stored per triad"});
     }
   };
   /// Stored readings of one sensor (gyro or accelerometer), rad/s or m/s^2.

@@ -21,10 +21,11 @@ struct RateReadingParams {
   static void fields(Self& p, Visitor& visit) {
     visit(p.accel_scale_error, {"accel_scale_error", "1", 0.0, 1.0,
                                 "scale and misalignment error of the accelerometer, as a share of the force"});
-    visit(p.gyro_time_sigma_s, {"gyro_time_sigma_s", "s", 0.0, 0.1,
-                                "standard deviation of the time of a gyro reading, from bandwidth and clock"});
-    visit(p.rail_sigma_rad_s,
-          {"rail_sigma_rad_s", "rad/s", 1e-6, 10.0, "standard deviation of the bound given by a clipped reading"});
+    visit(p.gyro_time_sigma_s,
+          {"gyro_time_sigma_s", "s", 0.0, 0.1,
+           "standard deviation of the time stamp of a gyro reading, caused by bandwidth and clock"});
+    visit(p.rail_sigma_rad_s, {"rail_sigma_rad_s", "rad/s", 1e-6, 10.0,
+                               "standard deviation of the bound that a clipped reading sets on the rate"});
   }
 };
 
@@ -39,8 +40,10 @@ struct RateFlightParams {
   static void fields(Self& p, Visitor& visit) {
     visit(p.sigma_m_s2, {"flight_sigma_m_s2", "m/s^2", 1e-6, 100.0,
                          "standard deviation of the force error of the flight model", Rank::first});
-    visit(p.euler_sigma_rad_s2, {"euler_sigma_rad_s2", "rad/s^2", 1e-6, 1e6,
-                                 "standard deviation of the error of Euler's equation without torque", Rank::first});
+    visit(p.euler_sigma_rad_s2,
+          {"euler_sigma_rad_s2", "rad/s^2", 1e-6, 1e6,
+           "standard deviation of the angular acceleration that Euler's equation without torque does not explain",
+           Rank::first});
     visit(p.jerk_psd_rad2_s5, {"jerk_psd_flight_rad2_s5", "rad^2/s^5", 1.0, 1e12,
                                "power spectral density of the angular jerk in flight", Rank::first});
     visit(p.threshold,
@@ -70,10 +73,10 @@ struct RateContactParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.gain_rad_m,
-          {"contact_gain_rad_m", "rad/m", 0.0, 1e3, "angular acceleration per contact force", Rank::first});
+    visit(p.gain_rad_m, {"contact_gain_rad_m", "rad/m", 0.0, 1e3,
+                         "standard deviation of the angular acceleration per contact force", Rank::first});
     visit(p.sigma_factor, {"contact_sigma_factor", "1", 1.0, 10.0,
-                           "factor that widens the standard deviations of rates fitted through an impact"});
+                           "the standard deviations of rates fitted through an impact are multiplied by this factor"});
     visit(p.lever_rad_m, {"contact_lever_rad_m", "rad/m", 0.0, 1e3,
                           "largest angular acceleration perpendicular to a contact force, per force"});
     visit(p.twist_share, {"contact_twist_share", "1", 0.0, 1.0,
@@ -103,7 +106,7 @@ struct RateModelExpertParams {
     visit.group("", p.flight);
     visit.group("", p.contact);
     visit(p.model_error_s,
-          {"model_error_s", "s", 1e-6, 1.0, "correlation time of model errors of force, torque and rate"});
+          {"model_error_s", "s", 1e-6, 1.0, "correlation time of the model errors of force, torque and rate"});
     visit.group("", p.readings);
     visit.group("error_sizes_", p.error_sizes);
     visit(p.rest_sigma_rad_s, {"rest_sigma_rad_s", "rad/s", 1e-9, 10.0, "standard deviation of the rate at rest"});

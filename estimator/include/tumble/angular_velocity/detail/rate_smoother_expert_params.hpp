@@ -21,17 +21,19 @@ struct RateDescentParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.iterations_max, {"iterations_max", "1", 1, 1000, "largest number of iterations of a descent"});
+    visit(p.iterations_max, {"iterations_max", "1", 1, 1000, "maximum number of iterations of one optimisation"});
     visit(p.tolerance_rad_s,
-          {"tolerance_rad_s", "rad/s", 1e-12, 1.0, "the descent stops when no rate changes by more than this"});
-    visit(p.step_max_rad_s, {"step_max_rad_s", "rad/s", 1e-3, 1e4, "largest change of a rate in one iteration"});
-    visit(p.widen_first, {"widen_first", "1", 1.0, 1000.0,
-                          "factor on the contact threshold in the first iteration; halved in each later iteration"});
-    visit(p.bound_iterations,
-          {"bound_iterations", "1", 0, 1000,
-           "iterations after convergence in which contact bounds are truncated distributions, not hard bounds"});
+          {"tolerance_rad_s", "rad/s", 1e-12, 1.0, "the optimisation stops when no rate changes by more than this"});
+    visit(p.step_max_rad_s, {"step_max_rad_s", "rad/s", 1e-3, 1e4, "maximum change of a rate in one iteration"});
+    visit(p.widen_first,
+          {"widen_first", "1", 1.0, 1000.0,
+           "factor on the contact threshold in the first iteration; each later iteration halves the factor"});
+    visit(
+        p.bound_iterations,
+        {"bound_iterations", "1", 0, 1000,
+         "number of iterations after convergence that treat the bounds in contact as truncated normal distributions"});
     visit(p.bound_damping,
-          {"bound_damping", "1", 0.01, 1.0, "share of a new bound that each of these iterations adopts"});
+          {"bound_damping", "1", 0.01, 1.0, "share of the change of a bound that each of these iterations applies"});
   }
 };
 
@@ -54,7 +56,8 @@ struct RateSmootherExpertParams {
     visit.group("rests_", p.rests);
     visit.group("", p.descent);
     visit(p.error_rounds_max, {"error_rounds_max", "1", 1, 10,
-                               "largest number of descents with corrected sensor errors; 1: no correction"});
+                               "maximum number of optimisations, each with the sensor errors estimated by the previous "
+                               "one; 1: no correction of sensor errors"});
   }
 };
 

@@ -26,15 +26,16 @@ struct RigInflationParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.covariance, {"rig_inflation", "1", 0.0, 1e3,
-                         "covariance of an uncalibrated rig is multiplied by 1 + this / (1 + n / "
-                         "rig_inflation_samples), for n flight samples of model_error_s each"});
-    visit(p.samples, {"rig_inflation_samples", "1", 1.0, 1e6, "number of flight samples that halves rig_inflation"});
+                         "the covariance of an uncalibrated rig is multiplied by 1 + rig_inflation / (1 + n / "
+                         "rig_inflation_samples), with n flight samples of model_error_s each"});
+    visit(p.samples,
+          {"rig_inflation_samples", "1", 1.0, 1e6, "number of flight samples that halves the effect of rig_inflation"});
     visit(p.contact, {"contact_inflation", "1", 0.0, 10.0,
-                      "uncalibrated rig: standard deviation of a rate in contact, as a share of the rate beyond the "
-                      "rail, divided by 1 + n / rig_inflation_samples"});
+                      "uncalibrated rig: standard deviation of a clipped rate in contact, as a share of the saturation "
+                      "deficit, divided by 1 + n / rig_inflation_samples"});
     visit(p.slopes, {"contact_slopes", "1", 0.0, 10.0,
-                     "standard deviation of a clipped rate in contact, as a share of the excess predicted by the "
-                     "slopes at both ends of the clipped run"});
+                     "standard deviation of a clipped rate in contact, as a share of the saturation deficit predicted "
+                     "by the slopes at both ends of the clipped run"});
   }
 };
 
@@ -60,15 +61,17 @@ struct RateStreamExpertParams {
     visit.group("accel_planes_", p.accel_planes);
     visit.group("rests_", p.rests);
     visit(p.widen_first, {"widen_first", "1", 1.0, 1000.0,
-                          "factor on the contact threshold of a new clipped sample; halved in each step"});
+                          "factor on the contact threshold of a new clipped sample; each step halves the factor"});
     visit(p.step_max_rad_s,
-          {"step_max_rad_s", "rad/s", 1e-3, 1e4, "largest change of a rate at one sample in one step"});
-    visit(p.bound_age, {"bound_age", "1", 0, 4096, "steps after which the bounds of a contact sample are softened"});
+          {"step_max_rad_s", "rad/s", 1e-3, 1e4, "maximum change of the rate of one sample in one step"});
+    visit(p.bound_age,
+          {"bound_age", "1", 0, 4096,
+           "number of steps after which the bounds of a contact sample become truncated normal distributions"});
     visit(p.flight_run_min,
-          {"flight_run_min", "1", 0, 4096, "least flight samples in a row that may calibrate the rig"});
+          {"flight_run_min", "1", 0, 4096, "minimum number of consecutive flight samples that calibrate the rig"});
     visit.group("", p.inflation);
     visit(p.uncalibrated, {"uncalibrated", "1", 0.0, 0.99, "prior probability that a device is not calibrated"});
-    visit(p.bound_damping, {"bound_damping", "1", 0.01, 1.0, "share of a new bound that each step adopts"});
+    visit(p.bound_damping, {"bound_damping", "1", 0.01, 1.0, "share of the change of a bound that each step applies"});
   }
 };
 

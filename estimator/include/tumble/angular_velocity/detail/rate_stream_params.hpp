@@ -44,17 +44,23 @@ struct RateStreamParams {
     visit.group("", p.model);
     visit.group("rails_", p.rails);
     visit(p.period_s, {"period_s", "s", 1e-5, 1.0, "nominal time between samples"});
-    visit(p.lag_s, {"lag_s", "s", 2e-5, 10.0, "age of a sample when its estimate is reported", Rank::first});
-    visit(
-        p.recovered_sigma_rad_s,
-        {"recovered_sigma_rad_s", "rad/s", 0.0, 1e4,
-         "largest standard deviation for a clipped axis to be reported as recovered instead of bounded", Rank::first});
-    visit(p.calibration_mahalanobis_max,
-          {"calibration_mahalanobis_max", "1", 0.1, 1e6,
-           "largest Mahalanobis distance of the rig constants from their prior", Rank::first});
+    visit(p.lag_s, {"lag_s", "s", 2e-5, 10.0,
+                    "age of a sample when its estimate is reported; a larger value adds delay and makes the estimate "
+                    "more accurate",
+                    Rank::first});
+    visit(p.recovered_sigma_rad_s,
+          {"recovered_sigma_rad_s", "rad/s", 0.0, 1e4,
+           "a clipped axis with a smaller standard deviation is reported as recovered, otherwise as bounded",
+           Rank::first});
+    visit(p.calibration_mahalanobis_max, {"calibration_mahalanobis_max", "1", 0.1, 1e6,
+                                          "maximum Mahalanobis distance between the estimated rig constants and their "
+                                          "prior; a larger distance is reported as an error",
+                                          Rank::first});
     visit(p.gap_max_s, {"gap_max_s", "s", 1e-6, 3600.0,
-                        "longest allowed time between two samples; a longer gap ends the run with an error"});
-    visit(p.step_s, {"step_s", "s", 0.0, 0.1, "least time between Gauss-Newton steps; 0: one step per sample"});
+                        "maximum time between two samples; a longer gap ends the run with an error"});
+    visit(p.step_s, {"step_s", "s", 0.0, 0.1,
+                     "minimum time between two Gauss-Newton steps; a larger value costs less computing time; 0: one "
+                     "step per sample"});
     visit.group("", p.expert);
   }
 };

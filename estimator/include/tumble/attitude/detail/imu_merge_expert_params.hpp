@@ -19,16 +19,18 @@ struct ImuOutlierParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.rate_rad_s, {"rate_tolerance_rad_s", "rad/s", 1e-12, 1e3,
-                         "largest accepted distance of a rate from the median of the IMUs"});
+                         "maximum accepted difference between an IMU's rate and the median of all IMUs"});
     visit(p.rate_share,
-          {"rate_tolerance_share", "1", 0.0, 1.0, "additional accepted distance, as a share of the rate"});
+          {"rate_tolerance_share", "1", 0.0, 1.0,
+           "additional accepted difference between an IMU's rate and the median, as a share of the rate"});
     visit(p.force_m_s2, {"force_tolerance_m_s2", "m/s^2", 1e-12, 1e4,
-                         "largest accepted distance of a force from the median of the IMUs"});
+                         "maximum accepted difference between an IMU's force and the median of all IMUs"});
     visit(p.subsample_saturation_share,
           {"subsample_saturation_share", "1", 1e-12, 1.0,
-           "share of the range above which a reading may hide saturation within its sample"});
-    visit(p.hidden_force_m_s2, {"hidden_force_m_s2", "m/s^2", 1e-12, 1e4,
-                                "largest accepted difference between a possibly saturated force and the other IMUs"});
+           "above this share of the range, a reading may contain saturation within its sample period"});
+    visit(p.hidden_force_m_s2,
+          {"hidden_force_m_s2", "m/s^2", 1e-12, 1e4,
+           "maximum accepted difference between a possibly saturated force and the forces of the other IMUs"});
   }
 };
 
@@ -46,13 +48,13 @@ struct FrozenImuParams {
     visit(p.after_s, {"frozen_after_s", "s", 1e-12, 1e3,
                       "an IMU is frozen if its reading repeats for this long while the others move"});
     visit(p.rate_rad_s,
-          {"frozen_rate_rad_s", "rad/s", 1e-12, 1e3, "least motion of the other IMUs' rates in that time"});
+          {"frozen_rate_rad_s", "rad/s", 1e-12, 1e3, "minimum change of the other IMUs' rates during this time"});
     visit(p.force_m_s2,
-          {"frozen_force_m_s2", "m/s^2", 1e-12, 1e4, "least motion of the other IMUs' forces in that time"});
+          {"frozen_force_m_s2", "m/s^2", 1e-12, 1e4, "minimum change of the other IMUs' forces during this time"});
     visit(p.turned_rad, {"frozen_turned_rad", "rad", 1e-12, 1e3,
                          "an accelerometer is frozen if its reading repeats while the IMUs rotate by this angle"});
-    visit(p.thawed_after_s,
-          {"thawed_after_s", "s", 1e-12, 1e3, "duration of changing readings after which a frozen IMU is used again"});
+    visit(p.thawed_after_s, {"thawed_after_s", "s", 1e-12, 1e3,
+                             "a frozen IMU is used again after its readings have changed for this long"});
   }
 };
 
@@ -68,11 +70,12 @@ struct DisagreeingImuParams {
   static void fields(Self& p, Visitor& visit) {
     visit(p.rate_rad_s, {"disagree_rate_rad_s", "rad/s", 1e-12, 1e3,
                          "an IMU disagrees if its mean rate over 0.5 s is this far from the median"});
-    visit(p.rate_share, {"disagree_rate_share", "1", 0.0, 1.0,
-                         "additional accepted distance of the mean rate, as a share of the rate"});
+    visit(p.rate_share,
+          {"disagree_rate_share", "1", 0.0, 1.0,
+           "additional accepted difference between an IMU's mean rate and the median, as a share of the rate"});
     visit(p.force_m_s2, {"disagree_force_m_s2", "m/s^2", 1e-12, 1e4,
                          "an IMU disagrees if its mean force over 0.5 s is this far from the median"});
-    visit(p.after_s, {"disagrees_after_s", "s", 1e-12, 1e3, "duration of disagreement after which an IMU is excluded"});
+    visit(p.after_s, {"disagrees_after_s", "s", 1e-12, 1e3, "an IMU is excluded after it has disagreed for this long"});
   }
 };
 

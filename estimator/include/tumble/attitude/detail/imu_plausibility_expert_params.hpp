@@ -13,11 +13,12 @@ struct SteadyForceParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.share_min, {"force_share_min", "1", 0.0, 1.0, "least mean force of steady windows, as a share of gravity"});
+    visit(p.share_min,
+          {"force_share_min", "1", 0.0, 1.0, "minimum mean force of windows with steady force, as a share of gravity"});
     visit(p.share_max,
-          {"force_share_max", "1", 1.0, 1e6, "largest mean force of steady windows, as a share of gravity"});
-    visit(p.windows_min,
-          {"windows_min", "1", 1, 1e6, "least number of steady windows for a check of the force's magnitude"});
+          {"force_share_max", "1", 1.0, 1e6, "maximum mean force of windows with steady force, as a share of gravity"});
+    visit(p.windows_min, {"windows_min", "1", 1, 1e6,
+                          "minimum number of windows with steady force for a check of the force's magnitude"});
   }
 };
 
@@ -38,21 +39,21 @@ struct GravityRotationParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.slope_min,
-          {"rotation_slope_min", "1", 0.0, 1.0, "least slope of gravity's rotation over the gyro's rotation"});
-    visit(p.slope_max,
-          {"rotation_slope_max", "1", 1.0, 1e6, "largest slope of gravity's rotation over the gyro's rotation"});
+    visit(p.slope_min, {"rotation_slope_min", "1", 0.0, 1.0,
+                        "minimum ratio of gravity's rotation (accelerometer) to the rotation measured by the gyro"});
+    visit(p.slope_max, {"rotation_slope_max", "1", 1.0, 1e6,
+                        "maximum ratio of gravity's rotation (accelerometer) to the rotation measured by the gyro"});
     visit(p.rotation_min_rad2,
-          {"rotation_min_rad2", "rad^2", 1e-12, 1e6, "least sum of squared rotations for a check of the slope"});
-    visit(p.rotation_least_rad, {"rotation_least_rad", "rad", 1e-12, 3.0, "least rotation of a window to be compared"});
+          {"rotation_min_rad2", "rad^2", 1e-12, 1e6, "minimum sum of squared rotations for a check of this ratio"});
+    visit(p.rotation_least_rad, {"rotation_least_rad", "rad", 1e-12, 3.0, "minimum rotation of a compared window"});
     visit(p.rotated_windows_min, {"rotated_windows_min", "1", 1.0, 1e6,
-                                  "least number of windows with a rotating force for a check of the rotation"});
-    visit(p.unexplained_share_max,
-          {"rotation_unexplained_share_max", "1", 0.0, 1.0,
-           "largest unexplained share of a gyro with another scale or sign, relative to the stated gyro"});
+                                  "minimum number of windows with a rotating force for a check of the rotation"});
+    visit(p.unexplained_share_max, {"rotation_unexplained_share_max", "1", 0.0, 1.0,
+                                    "a gyro with another scale or sign is reported if it leaves less than this share "
+                                    "of the rotation that the stated gyro leaves unexplained"});
     visit(p.still_share,
           {"still_share", "1", 0.0, 1.0,
-           "rotation of the force, as a share of the gyro's rotation, below which the force does not rotate"});
+           "the force counts as not rotating if it rotates by less than this share of the gyro's rotation"});
   }
 };
 
@@ -64,9 +65,12 @@ struct AxisNamingParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.unexplained_share_max, {"relabelled_share_max", "1", 0.0, 1.0,
-                                    "largest unexplained share of exchanged axes, relative to the stated axes"});
-    visit(p.unexplained_least,
-          {"relabelled_least", "1", 0.0, 1.0, "unexplained share above which exchanged axes are tested"});
+                                    "exchanged axes are reported if they leave less than this share of the rotation "
+                                    "that the stated axes leave unexplained"});
+    visit(
+        p.unexplained_least,
+        {"relabelled_least", "1", 0.0, 1.0,
+         "exchanged axes are tested if the stated axes leave more than this share of gravity's rotation unexplained"});
   }
 };
 
@@ -79,12 +83,12 @@ struct FrozenTriadParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.repeats_s, {"frozen_s", "s", 1e-12, 1e4,
-                        "a reading that repeats for this long, after equally long motion, may be frozen"});
-    visit(p.longest_share,
-          {"frozen_share", "1", 1.0, 1e6, "least ratio of a frozen run to the longest earlier run of equal readings"});
+                        "an axis may be frozen if its reading repeats for this long after an equally long motion"});
+    visit(p.longest_share, {"frozen_share", "1", 1.0, 1e6,
+                            "minimum length of a frozen run of equal readings, relative to the longest earlier run"});
     visit(p.unexplained_least,
           {"frozen_unexplained_least", "1", 0.0, 1.0,
-           "least unexplained share of gravity's rotation for a gyro that never moved to be frozen"});
+           "a gyro that never moved is frozen if more than this share of gravity's rotation is unexplained"});
   }
 };
 

@@ -40,28 +40,31 @@ struct PivotCheckParams {
     visit(p.accel_range_m_s2,
           {"accel_range_m_s2", "m/s^2", 0.0, kUnbounded, "range stated by the device; 0: not stated"});
     visit(p.reading_s, {"reading_s", "s", 1e-3, 1.0, "duration over which readings are averaged"});
-    visit(p.segment_s, {"segment_s", "s", 0.1, 100.0, "length of motion that one segment explains"});
-    visit(p.rotation_least_rad, {"rotation_least_rad", "rad", 0.0, 1e3, "least rotation within a segment"});
-    visit(p.explains_m_s, {"explains_m_s", "m/s", 1e-3, 1e3, "rms velocity below which a segment is explained"});
+    visit(p.segment_s, {"segment_s", "s", 0.1, 100.0, "duration of one segment of motion"});
+    visit(p.rotation_least_rad, {"rotation_least_rad", "rad", 0.0, 1e3, "minimum rotation within a segment"});
+    visit(p.explains_m_s, {"explains_m_s", "m/s", 1e-3, 1e3,
+                           "a segment counts as explained if the rms velocity of its pivot is below this"});
     visit(p.noise_m_s, {"noise_m_s", "m/s", 1e-6, 1e3, "noise floor of the rms velocity"});
-    visit(p.evidence_least, {"evidence_least", "1", 0.0, 1e6,
-                             "least evidence for another orientation or scale of the gyro, summed over all segments"});
+    visit(p.evidence_least,
+          {"evidence_least", "1", 0.0, 1e6,
+           "minimum evidence for another orientation or scale of the gyro, summed over all segments"});
     visit(p.evidence_of_each, {"evidence_of_each", "1", 0.0, 1e3,
-                               "least evidence for another orientation or scale of the gyro, mean per segment"});
+                               "minimum evidence for another orientation or scale of the gyro, mean per segment"});
     visit(p.segments_least,
-          {"segments_least", "1", 1.0, 1e6, "least number of segments that the other orientation explains better"});
+          {"segments_least", "1", 1.0, 1e6, "minimum number of segments that the other orientation explains better"});
     visit(p.better_over_worse,
-          {"better_over_worse", "1", 0.0, 1e6, "least ratio of segments explained better to segments explained worse"});
-    visit(p.arm_most_m,
-          {"arm_most_m", "m", 1e-3, 1e3, "largest distance from sensor to pivot for a segment to measure the scale"});
+          {"better_over_worse", "1", 0.0, 1e6,
+           "minimum ratio of segments that the other orientation explains better to segments that it explains worse"});
+    visit(p.arm_most_m, {"arm_most_m", "m", 1e-3, 1e3,
+                         "maximum distance between sensor and pivot in a segment that measures the gyro's scale"});
     visit(p.scale_off, {"scale_off", "1", 1e-4, 1.0, "largest accepted difference of the gyro's scale from 1"});
     visit(p.scale_deviations, {"scale_deviations", "1", 0.1, 1e6,
-                               "least difference of the scale from 1 for a fault, in standard deviations"});
+                               "minimum difference of the gyro's scale from 1 for a fault, in standard deviations"});
     visit(p.scale_segments_least,
-          {"scale_segments_least", "1", 2.0, 1e6, "least number of segments for a measurement of the scale"});
-    visit(p.scale_share_least,
-          {"scale_share_least", "1", 0.0, 1.0, "least share of explained segments that measure the scale"});
-    visit(p.gap_max_s, {"gap_max_s", "s", 1e-3, 1e3, "longest gap between samples within a segment"});
+          {"scale_segments_least", "1", 2.0, 1e6, "minimum number of segments for a measurement of the gyro's scale"});
+    visit(p.scale_share_least, {"scale_share_least", "1", 0.0, 1.0,
+                                "minimum share of the explained segments that measure the gyro's scale"});
+    visit(p.gap_max_s, {"gap_max_s", "s", 1e-3, 1e3, "a longer gap between two samples ends the segment"});
   }
 };
 

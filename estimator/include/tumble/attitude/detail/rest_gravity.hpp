@@ -51,18 +51,21 @@ class RestGravity {
     static void fields(Self& p, Visitor& visit) {
       visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-12, 100.0, "strength of gravity"});
       visit.group("rests_", p.rests);
-      visit(p.size_share_max, {"size_share_max", "1", 1e-3, 1.0,
-                               "largest accepted difference between force at rest and gravity, as a share"});
+      visit(p.size_share_max,
+            {"size_share_max", "1", 1e-3, 1.0,
+             "maximum accepted difference between the force at rest and gravity, as a share of gravity"});
       visit(p.miss_deviations, {"miss_deviations", "1", 0.1, 1e6,
-                                "largest accepted error of gravity's direction at the next rest, in standard "
+                                "maximum accepted error of gravity's direction at the next rest, in standard "
                                 "deviations of the integrated rates"});
-      visit(p.miss_least_rad, {"miss_least_rad", "rad", 1e-3, 2.0, "lower limit of this accepted error"});
-      visit(p.miss_most_rad, {"miss_most_rad", "rad", 1e-3, 2.0, "upper limit of this accepted error"});
+      visit(p.miss_least_rad,
+            {"miss_least_rad", "rad", 1e-3, 2.0, "minimum of the accepted error of gravity's direction"});
+      visit(p.miss_most_rad,
+            {"miss_most_rad", "rad", 1e-3, 2.0, "maximum of the accepted error of gravity's direction"});
       visit(p.correlation_s, {"correlation_s", "s", 1e-4, 1e3, "correlation time of rate errors"});
       visit(p.rotation_least_rad,
-            {"rotation_least_rad", "rad", 0.0, 1e3, "least rotation between two rests for a comparison"});
-      visit(p.span_most_s, {"span_most_s", "s", 0.1, 1e6, "longest time between two rests for a comparison"});
-      visit(p.gap_max_s, {"gap_max_s", "s", 1e-6, 3600.0, "a longer time between two samples separates the rests"});
+            {"rotation_least_rad", "rad", 0.0, 1e3, "minimum rotation between two compared rests"});
+      visit(p.span_most_s, {"span_most_s", "s", 0.1, 1e6, "maximum time between two compared rests"});
+      visit(p.gap_max_s, {"gap_max_s", "s", 1e-6, 3600.0, "a longer time between two samples ends the rest"});
       visit(p.accel_range_m_s2,
             {"accel_range_m_s2", "m/s^2", 0.0, kUnbounded, "range stated by the device; 0: not stated"});
     }

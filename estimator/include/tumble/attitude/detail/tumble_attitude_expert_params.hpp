@@ -23,7 +23,7 @@ struct AttitudeRestParams {
     visit(p.rate_sigma_rad_sqrts, {"rest_rate_sigma_rad_sqrts", "rad/sqrt(s)", 1e-12, 1.0,
                                    "standard deviation of the rate measured at rest, mean over 1 s"});
     visit(p.rate_sigmas, {"rest_rate_sigmas", "1", 1.0, 1e6,
-                          "largest difference between mean rate and bias at rest, in standard deviations"});
+                          "maximum difference between mean rate and bias at rest, in standard deviations"});
   }
 };
 
@@ -38,11 +38,13 @@ struct AttitudeRollingParams {
   static void fields(Self& p, Visitor& visit) {
     visit(p.velocity_sigma_m_s, {"rolling_velocity_sigma_m_s", "m/s", 1e-12, 10.0,
                                  "standard deviation of the rolling velocity while gripping, per node"});
-    visit(p.slip_velocity_m_s, {"slip_velocity_m_s", "m/s", 1e-12, 10.0,
-                                "velocity residual at which a slip starts; a slip ends below half of it"});
-    visit(p.slip_quiet_s, {"slip_quiet_s", "s", 0.0, 10.0, "time below this residual after which a slip ends"});
-    visit(p.slip_timeout_s,
-          {"slip_timeout_s", "s", 1e-12, 1e3, "longest slip; then the rolling velocity is used again"});
+    visit(p.slip_velocity_m_s,
+          {"slip_velocity_m_s", "m/s", 1e-12, 10.0,
+           "a slip starts when the velocity residual exceeds this value, and ends below half of this value"});
+    visit(p.slip_quiet_s,
+          {"slip_quiet_s", "s", 0.0, 10.0, "a slip ends after the velocity residual has been small for this long"});
+    visit(p.slip_timeout_s, {"slip_timeout_s", "s", 1e-12, 1e3,
+                             "maximum duration of a slip; the rolling velocity is used again after this time"});
   }
 };
 
@@ -58,15 +60,16 @@ struct AttitudeGapParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.least_s, {"gap_least_s", "s", 1e-6, 1e4, "a longer time between two samples is a gap of the IMU"});
+    visit(p.least_s,
+          {"gap_least_s", "s", 1e-6, 1e4, "a longer time between two samples counts as a gap of the IMU data"});
     visit(p.rate_walk_rad_s_sqrts,
           {"gap_rate_walk_rad_s_sqrts", "rad/s/sqrt(s)", 0.0, 1e4, "random walk of the rate during a gap"});
     visit(p.velocity_walk_m_s_sqrts,
           {"gap_velocity_walk_m_s_sqrts", "m/s/sqrt(s)", 0.0, 1e4, "random walk of the velocity during a gap"});
     visit(p.lost_tilt_rad, {"gap_lost_tilt_rad", "rad", 1e-3, 1e4,
-                            "standard deviation of the tilt after a gap from which the tilt is initialised again"});
+                            "the tilt is initialised again if its standard deviation after a gap exceeds this value"});
     visit(p.aligned_tilt_rad, {"gap_aligned_tilt_rad", "rad", 1e-3, 1e4,
-                               "standard deviation of the tilt at which this initialisation ends"});
+                               "the initialisation ends when the standard deviation of the tilt is below this value"});
   }
 };
 
@@ -103,8 +106,8 @@ struct TumbleAttitudeExpertParams {
     visit(p.recovered_tau_s, {"recovered_tau_s", "s", 1e-4, 1e4, "correlation time of the error of a recovered rate"});
     visit(p.node_s, {"node_s", "s", 1e-4, 1.0, "time between two filter corrections"});
     visit(p.reading_s, {"reading_s", "s", 0.0, 0.1, "duration over which readings are averaged; 0: no averaging"});
-    visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4,
-                        "longest allowed time between two samples; a longer gap ends the run with an error"});
+    visit(p.gap_max_s,
+          {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap ends the run with an error"});
     visit.group("rest_", p.rest);
     visit.group("", p.at_rest);
     visit.group("", p.rolling);

@@ -7,17 +7,25 @@
 namespace tumble::calibration_fields {
 
 inline constexpr Field kMountSigma_rad{
-    "mount_sigma_rad", "rad", 0.0, 1.0, "prior standard deviation of the lidar's orientation on the IMU; 0: exact",
+    "mount_sigma_rad",
+    "rad",
+    0.0,
+    1.0,
+    "prior standard deviation of the lidar's orientation relative to the IMU; 0: exact, no estimate",
     Rank::first};
 inline constexpr Field kMountSigma_m{
-    "mount_sigma_m", "m", 0.0, 1.0, "prior standard deviation of the lidar's position on the IMU; 0: exact",
+    "mount_sigma_m",
+    "m",
+    0.0,
+    1.0,
+    "prior standard deviation of the lidar's position relative to the IMU; 0: exact, no estimate",
     Rank::first};
 inline constexpr Field kTimeOffsetSigma_s{
     "time_offset_sigma_s",
     "s",
     0.0,
     0.02,
-    "prior standard deviation of the time offset between lidar and IMU; 0: no offset",
+    "prior standard deviation of the time offset between lidar and IMU; 0: no offset, no estimate",
     Rank::first};
 
 }  // namespace tumble::calibration_fields

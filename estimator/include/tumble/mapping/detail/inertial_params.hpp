@@ -31,20 +31,23 @@ struct InertialNoiseParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.sigma_m, {"prior_sigma_m", "m", 1e-9, 1e3,
-                      "standard deviation of the inertial prediction over 0.1 s: position", Rank::first});
+                      "standard deviation of the position after 0.1 s of inertial prediction", Rank::first});
     visit(p.sigma_rad, {"prior_sigma_rad", "rad", 1e-9, 1e3,
-                        "standard deviation of the inertial prediction over 0.1 s: attitude", Rank::first});
+                        "standard deviation of the attitude after 0.1 s of inertial prediction", Rank::first});
     visit(p.sigma_m_s, {"prior_sigma_m_s", "m/s", 1e-9, 1e3,
-                        "standard deviation of the inertial prediction over 0.1 s: velocity", Rank::first});
-    visit(p.rotation_share, {"rotation_sigma_share", "1", 0.0, 1.0,
-                             "standard deviation of the inertial prediction, as a share of the rotation", Rank::first});
+                        "standard deviation of the velocity after 0.1 s of inertial prediction", Rank::first});
+    visit(p.rotation_share,
+          {"rotation_sigma_share", "1", 0.0, 1.0,
+           "standard deviation of the attitude after inertial prediction, as a share of the rotation", Rank::first});
     visit(p.force_share,
           {"force_sigma_share", "1", 0.0, 1.0,
-           "standard deviation of the inertial prediction, as a share of the integrated force", Rank::first});
+           "standard deviation of the velocity after inertial prediction, as a share of the integrated force",
+           Rank::first});
     visit(p.gap_velocity_walk_m_s_sqrt_s,
           {"gap_velocity_walk_m_s_sqrt_s", "m/s/sqrt(s)", 0.0, 1e3, "random walk of the velocity during an IMU gap"});
-    visit(p.gap_rate_walk_rad_s_sqrt_s, {"gap_rate_walk_rad_s_sqrt_s", "rad/s/sqrt(s)", 0.0, 1e3,
-                                         "random walk of the rate during an IMU gap, between the rates at both ends"});
+    visit(p.gap_rate_walk_rad_s_sqrt_s,
+          {"gap_rate_walk_rad_s_sqrt_s", "rad/s/sqrt(s)", 0.0, 1e3,
+           "random walk of the rate during an IMU gap, about the line between the rates at both ends"});
     visit(p.rate_sigma_max_rad_s, {"rate_sigma_max_rad_s", "rad/s", 0.0, 100.0,
                                    "upper limit of the standard deviations reported in RateState"});
   }
@@ -71,9 +74,8 @@ struct RailedImuParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.accel_m_s2,
-          {"accel_rail_m_s2", "m/s^2", 1e-9, 1e5, "accelerometer readings from this value on are at the rail"});
-    visit(p.force_sigma_m_s2,
-          {"railed_force_m_s2", "m/s^2", 0.0, 1e4, "standard deviation of the force at the accelerometer rail"});
+          {"accel_rail_m_s2", "m/s^2", 1e-9, 1e5, "accelerometer readings from this value on count as saturated"});
+    visit(p.force_sigma_m_s2, {"railed_force_m_s2", "m/s^2", 0.0, 1e4, "standard deviation of a saturated force"});
     visit(p.rate_sigma_rad_s,
           {"clipped_sigma_rad_s", "rad/s", 0.0, 100.0,
            "assumed standard deviation of a clipped axis that the rate method did not recover", Rank::first});
@@ -81,14 +83,14 @@ struct RailedImuParams {
                                      "1: estimate the saturation deficit of clipped axes in the registration"));
     visit(p.deficit_sigma_min_rad_s,
           {"deficit_sigma_min_rad_s", "rad/s", 1e-9, 100.0,
-           "least prior standard deviation of the saturation deficit of a clipped axis", Rank::first});
+           "minimum prior standard deviation of the saturation deficit of a clipped axis", Rank::first});
     visit(p.deficit_time_s,
           {"deficit_time_s", "s", 1e-3, 1e3, "correlation time of the saturation deficit", Rank::first});
     visit(p.deficit_carry_max, {"deficit_carry_max", "1", 0.0, 1e3,
-                                "largest growth factor of the saturation deficit from one sweep to the next"});
+                                "maximum growth factor of the saturation deficit from one sweep to the next"});
     visit(p.deficit_knot_share, {"deficit_knot_share", "1", 1e-6, 1.0,
-                                 "standard deviation between neighbouring knots of the deficit, as a share of the "
-                                 "deficit's standard deviation"});
+                                 "standard deviation of the difference between neighbouring knots of the saturation "
+                                 "deficit, as a share of the deficit's standard deviation"});
   }
 };
 
@@ -101,8 +103,9 @@ struct FlightParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.force_m_s2, {"flight_force_m_s2", "m/s^2", 0.0, 100.0,
-                         "with flight_arc: force at the centre of mass below which the body is in flight"});
+    visit(p.force_m_s2,
+          {"flight_force_m_s2", "m/s^2", 0.0, 100.0,
+           "with flight_arc: the body is in flight if the force at the centre of mass is below this value"});
   }
 };
 

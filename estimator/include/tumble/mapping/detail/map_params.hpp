@@ -16,13 +16,16 @@ struct LocalMapParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.voxel_m, {"map_voxel_m", "m", 0.01, 10.0, "edge of a voxel of the map's hash table", Rank::first});
-    visit(p.spacing_m,
-          {"map_spacing_m", "m", 0.0, 10.0, "edge of the cube that stores at most one map point", Rank::first});
-    visit(p.radius_m,
-          {"map_radius_m", "m", 0.0, 1e5, "radius around the sensor within which the map is kept, to 10 %"});
+    visit(p.voxel_m, {"map_voxel_m", "m", 0.01, 10.0, "edge length of a voxel of the map's hash table", Rank::first});
+    visit(
+        p.spacing_m,
+        {"map_spacing_m", "m", 0.0, 10.0,
+         "edge length of the cube that stores at most one map point; a larger value makes the map smaller and coarser",
+         Rank::first});
+    visit(p.radius_m, {"map_radius_m", "m", 0.0, 1e5,
+                       "radius around the sensor within which map points are kept, accurate to 10 %"});
     visit(p.sigma_max_m, {"map_sigma_max_m", "m", 1e-6, 1e3,
-                          "largest standard deviation of a point's position for insertion into the map"});
+                          "points with a larger standard deviation of their position are not inserted into the map"});
   }
 };
 
@@ -39,9 +42,10 @@ struct WorldCovarianceParams {
     visit(p.tilt_sigma_rad,
           {"tilt_sigma_rad", "rad", 0.0, 1.0, "reported standard deviation of the tilt after initial levelling"});
     visit(p.drift_share, {"drift_share", "1", 0.0, 1.0,
-                          "map drift per sweep, as a share of the standard deviation of the weakest direction"});
+                          "standard deviation of the map's drift per sweep, as a share of the standard deviation of "
+                          "the least constrained direction"});
     visit(p.drift_sigma_max_m,
-          {"drift_sigma_max_m", "m", 0.0, 1e3, "upper limit of the standard deviation that enters the map drift"});
+          {"drift_sigma_max_m", "m", 0.0, 1e3, "upper limit of the standard deviation used for the map drift"});
   }
 };
 

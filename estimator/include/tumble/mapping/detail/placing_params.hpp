@@ -28,21 +28,26 @@ struct MatchingParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.neighbours, {"neighbours", "1", 3, 32, "number of map points per plane fit", Rank::first});
+    visit(p.neighbours, {"neighbours", "1", 3, 32, "number of map points used for each plane fit", Rank::first});
     visit(p.distance_m, {"match_distance_m", "m", 1e-3, 10.0,
-                         "largest distance between a point and its matches in the map", Rank::first});
-    visit(p.least, {"matches_min", "1", 0, 1e9, "least number of matches of an accepted sweep"});
+                         "maximum distance between a point and its matches in the map", Rank::first});
+    visit(p.least, {"matches_min", "1", 0, 1e9, "minimum number of matches for an accepted sweep"});
     visit(p.agreeing_least,
-          {"matches_agreeing_min", "1", 1, 1e9, "with fewer matches: least number that agree with the prior"});
-    visit(p.iterations_max, {"iterations_max", "1", 1, 200,
-                             "largest number of iterations of a registration; at most eight use all points"});
-    visit(p.correction_max_m, {"correction_max_m", "m", 0.0, 1e6, "largest accepted correction of the prior"});
-    visit(p.correction_max_rad, {"correction_max_rad", "rad", 0.0, 3.15, "largest accepted correction of the prior"});
-    visit(p.skew_sigma_m_s, {"skew_sigma_m_s", "m/s", 0.0, 1e3,
-                             "growth of a point's uncertainty over the sweep (time weighting); 0: no time weighting"});
+          {"matches_agreeing_min", "1", 1, 1e9,
+           "with fewer matches: minimum number of matches for an accepted sweep that agrees with the prior"});
+    visit(p.iterations_max,
+          {"iterations_max", "1", 1, 200,
+           "maximum number of iterations of a registration; at most eight iterations use all points"});
+    visit(p.correction_max_m, {"correction_max_m", "m", 0.0, 1e6,
+                               "maximum accepted correction of the prior pose; a larger correction is rejected"});
+    visit(p.correction_max_rad, {"correction_max_rad", "rad", 0.0, 3.15,
+                                 "maximum accepted correction of the prior pose; a larger correction is rejected"});
+    visit(p.skew_sigma_m_s,
+          {"skew_sigma_m_s", "m/s", 0.0, 1e3,
+           "growth of a point's standard deviation with the time since the start of the sweep; 0: no growth"});
     visit(p.degenerate_sigma_m,
           {"degenerate_sigma_m", "m", 1e-6, 1e3,
-           "standard deviation of the pose from the surfaces alone above which a sweep is degenerate"});
+           "a sweep counts as degenerate if the surfaces alone determine its pose with a larger standard deviation"});
   }
 };
 
@@ -62,21 +67,23 @@ struct RegistrationStagesParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.full_iterations, {"full_iterations", "1", 1, 200, "largest number of iterations with all points"});
+    visit(p.full_iterations, {"full_iterations", "1", 1, 200, "maximum number of iterations with all points"});
     visit(p.subsample_points,
-          {"subsample_points", "1", 1, 1e9, "largest number of points in the iterations after that"});
-    visit(p.coarse_iterations, {"coarse_iterations", "1", 1, 200, "largest number of iterations from a coarse start"});
-    visit(p.coarse_points, {"coarse_points", "1", 1, 1e9, "largest number of points for a coarse start"});
-    visit(p.coarse_matches_min, {"coarse_matches_min", "1", 0, 1e9, "least number of matches for a coarse start"});
+          {"subsample_points", "1", 1, 1e9, "maximum number of points in the remaining iterations"});
+    visit(p.coarse_iterations, {"coarse_iterations", "1", 1, 200, "coarse start: maximum number of iterations"});
+    visit(p.coarse_points, {"coarse_points", "1", 1, 1e9, "coarse start: maximum number of points"});
+    visit(p.coarse_matches_min, {"coarse_matches_min", "1", 0, 1e9, "coarse start: minimum number of matches"});
     visit(p.coarse_kernel_min_m,
-          {"coarse_kernel_min_m", "m", 1e-6, 1e3, "least width of the robust kernel for a coarse start"});
-    visit(p.coarse_rematch_m, {"coarse_rematch_m", "m", 0.0, 10.0,
-                               "coarse start: motion of a point after which its plane is searched again"});
-    visit(p.coarse_step_m, {"coarse_step_m", "m", 1e-12, 1.0, "coarse start: step below which it has converged"});
-    visit(p.coarse_step_rad,
-          {"coarse_step_rad", "rad", 1e-12, 1.0, "coarse start: rotation step below which it has converged"});
+          {"coarse_kernel_min_m", "m", 1e-6, 1e3, "coarse start: minimum width of the robust kernel"});
+    visit(p.coarse_rematch_m,
+          {"coarse_rematch_m", "m", 0.0, 10.0,
+           "coarse start: the plane of a point is searched again after the point has moved this far"});
+    visit(p.coarse_step_m,
+          {"coarse_step_m", "m", 1e-12, 1.0, "coarse start: position step below which the registration has converged"});
+    visit(p.coarse_step_rad, {"coarse_step_rad", "rad", 1e-12, 1.0,
+                              "coarse start: rotation step below which the registration has converged"});
     visit(p.coarse_fitting_share_min, {"coarse_fitting_share_min", "1", 0.0, 1.0,
-                                       "coarse start: least share of matches within three standard deviations"});
+                                       "coarse start: minimum share of matches within three standard deviations"});
   }
 };
 
@@ -97,16 +104,18 @@ struct TrackingParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.extend_sigma_max_m,
-          {"extend_sigma_max_m", "m", 0.0, 1e3,
-           "standard deviation of the prior position below which a sweep with too few matches extends the map"});
-    visit(p.extend_sigma_max_rad,
-          {"extend_sigma_max_rad", "rad", 0.0, 1e3,
-           "standard deviation of the prior attitude below which a sweep with too few matches extends the map"});
-    visit(p.lost_sweeps_max, {"lost_sweeps_max", "1", 1, 1e6,
-                              "unregistered sweeps in a row after which mapping continues by inertial prediction"});
-    visit(p.confirm_inlier_ratio, {"confirm_inlier_ratio", "1", 0.0, 1.0,
-                                   "share of matches within three standard deviations that confirms a relocalisation"});
+    visit(p.extend_sigma_max_m, {"extend_sigma_max_m", "m", 0.0, 1e3,
+                                 "a sweep with too few matches still extends the map if the standard deviation of its "
+                                 "prior position is below this value"});
+    visit(p.extend_sigma_max_rad, {"extend_sigma_max_rad", "rad", 0.0, 1e3,
+                                   "a sweep with too few matches still extends the map if the standard deviation of "
+                                   "its prior attitude is below this value"});
+    visit(p.lost_sweeps_max,
+          {"lost_sweeps_max", "1", 1, 1e6,
+           "number of consecutive unregistered sweeps after which mapping continues with inertial prediction"});
+    visit(p.confirm_inlier_ratio,
+          {"confirm_inlier_ratio", "1", 0.0, 1.0,
+           "minimum share of matches within three standard deviations that confirms a relocalisation"});
   }
 };
 
@@ -122,18 +131,19 @@ struct RelocalizationParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.deficit_tries_max,
-          {"deficit_tries_max", "1", 0, 12, "number of larger saturation deficits tried for one sweep"});
+    visit(p.deficit_tries_max, {"deficit_tries_max", "1", 0, 12,
+                                "number of larger initial saturation deficits that are tried for one sweep"});
     visit(p.deficit_try_rad_s,
           {"deficit_try_rad_s", "rad/s", 1e-3, 1e3,
-           "first increase of the saturation deficit; two, three and five times this value follow"});
-    visit(p.starts_per_sweep,
-          {"starts_per_sweep", "1", 1, 100, "starts per sweep after tracking failure, including the prior"});
+           "first increase of the initial saturation deficit; later tries use two, three and five times this value"});
+    visit(p.starts_per_sweep, {"starts_per_sweep", "1", 1, 100,
+                               "number of initial poses per sweep after a tracking failure, including the prior pose"});
     visit(p.shift_m,
-          {"shift_m", "m", kLeastShift_m, 100.0, "largest position offset of these starts in the first round"});
+          {"shift_m", "m", kLeastShift_m, 100.0, "maximum position offset of these initial poses in the first round"});
     visit(p.rotation_rad, {"rotation_rad", "rad", kLeastRotation_rad, 3.15,
-                           "largest rotation offset of these starts in the first round"});
-    visit(p.rounds, {"rounds", "1", 1, 100, "number of rounds of starts; each increases the reach by the same amount"});
+                           "maximum rotation offset of these initial poses in the first round"});
+    visit(p.rounds, {"rounds", "1", 1, 100,
+                     "number of rounds of initial poses; each round increases the maximum offsets by the same amount"});
   }
 };
 

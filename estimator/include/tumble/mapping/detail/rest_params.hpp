@@ -16,12 +16,14 @@ struct RestBoundsParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.levels_s,
-          {"rest_s", "s", 1e-9, 60.0, "longest part of the initial rest that levels the attitude", Rank::first});
-    visit(p.rate_rad_s, {"rest_rate_rad_s", "rad/s", 1e-6, 10.0,
-                         "at rest: largest distance of the rate from the bias and from its mean, per axis"});
+    visit(p.levels_s, {"rest_s", "s", 1e-9, 60.0, "maximum part of the initial rest that is used to level the attitude",
+                       Rank::first});
+    visit(p.rate_rad_s,
+          {"rest_rate_rad_s", "rad/s", 1e-6, 10.0,
+           "at rest: maximum difference between the rate and the bias, and between the rate and its mean, per axis"});
     visit(p.force_m_s2, {"rest_force_m_s2", "m/s^2", 1e-6, 10.0,
-                         "at rest: largest distance of the specific force from gravity and from its mean"});
+                         "at rest: maximum difference between the specific force and gravity, and between the specific "
+                         "force and its mean"});
   }
 };
 
@@ -37,8 +39,9 @@ struct OdometryStartParams {
   static void fields(Self& p, Visitor& visit) {
     visit(p.level_sigma_rad,
           {"level_sigma_rad", "rad", 1e-9, 1.0, "standard deviation of corrections to the levelled tilt"});
-    visit(p.speed_sigma_m_s, {"speed_sigma_m_s", "m/s", 1e-9, 100.0, "largest speed that counts as rest"});
-    visit(p.bias_rest_s, {"bias_rest_s", "s", 0.0, 60.0, "shortest initial rest that calibrates the gyro bias"});
+    visit(p.speed_sigma_m_s, {"speed_sigma_m_s", "m/s", 1e-9, 100.0, "maximum speed that counts as rest"});
+    visit(p.bias_rest_s,
+          {"bias_rest_s", "s", 0.0, 60.0, "minimum duration of an initial rest that calibrates the gyro bias"});
   }
 };
 
@@ -56,14 +59,15 @@ struct StandstillParams {
   static void fields(Self& p, Visitor& visit) {
     visit(p.start_sigma_m_s,
           {"start_sigma_m_s", "m/s", 1e-9, 100.0, "standard deviation of the velocity during the initial rest"});
-    visit(p.sigma_m_s,
-          {"sigma_m_s", "m/s", 1e-9, 100.0, "standard deviation of the velocity while the IMU measures only gravity"});
+    visit(p.sigma_m_s, {"sigma_m_s", "m/s", 1e-9, 100.0,
+                        "standard deviation of the velocity at a later rest, when the IMU measures only gravity"});
     visit(p.creep_max_m_s,
           {"creep_max_m_s", "m/s", 0.0, 100.0,
-           "an IMU that measures only gravity is at rest below this speed if no surface constrains the pose"});
-    visit(p.sweeps_min, {"sweeps_min", "1", 1, 1e6, "sweeps in a row before this rest is accepted"});
-    visit(p.noise_share, {"noise_share", "1", 1e-9, 1.0,
-                          "standard deviations of the inertial prediction at rest, as a share of those in motion"});
+           "if no surface constrains the pose, an IMU that measures only gravity is at rest below this speed"});
+    visit(p.sweeps_min, {"sweeps_min", "1", 1, 1e6, "number of consecutive sweeps after which this rest is accepted"});
+    visit(p.noise_share,
+          {"noise_share", "1", 1e-9, 1.0,
+           "standard deviations of the inertial prediction at rest, as a share of the standard deviations in motion"});
   }
 };
 

@@ -46,16 +46,20 @@ class SecondPass {
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.after_s, {"after_s", "s", 0.0, 100.0,
-                        "motion time after which the second pass processes all data with the calibration; 0: never"});
-      visit(p.lost_s, {"lost_s", "s", 0.0, 100.0,
-                       "time without a registered sweep after which the second pass starts early, once; 0: never"});
-      visit(p.lag_s, {"lag_s", "s", 0.0, 10.0, "age of a sample in the second pass when its rate is reported"});
-      visit(p.sweeps, {"sweeps", "1", 2, 1000, "sweeps that the second pass processes per new sweep"});
+                        "after this time in motion, a second pass processes all data again with the estimated "
+                        "calibration; 0: no second pass"});
+      visit(p.lost_s,
+            {"lost_s", "s", 0.0, 100.0,
+             "the second pass starts early, once, if no sweep was registered for this time; 0: no early start"});
+      visit(p.lag_s, {"lag_s", "s", 0.0, 10.0, "second pass: age of a sample when its rate is reported"});
+      visit(p.sweeps, {"sweeps", "1", 2, 1000,
+                       "number of sweeps that the second pass processes per new sweep; a larger value finishes earlier "
+                       "with more load"});
       visit(p.abandon_after_s, {"abandon_after_s", "s", 0.0, 1000.0,
-                                "longest motion that is stored; the second pass must catch up within it"});
+                                "maximum duration of stored motion; the second pass must finish within this time"});
       visit(p.inflation,
-            {"inflation", "1", 1.0, 1e6, "factor on the variance of the calibration that the second pass starts with"});
-      visit(p.rest_s, {"rest_s", "s", 0.1, 100.0, "longest part of the initial rest that is stored"});
+            {"inflation", "1", 1.0, 1e6, "factor on the variance of the calibration at the start of the second pass"});
+      visit(p.rest_s, {"rest_s", "s", 0.1, 100.0, "maximum duration of the initial rest that is stored"});
     }
   };
 

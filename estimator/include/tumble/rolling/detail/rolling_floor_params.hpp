@@ -40,17 +40,17 @@ struct RollingContactParams {
     visit(p.slope_walk_sqrts, {"slope_walk_sqrts", "sqrt(s)", 1e-12, 1e3, "random walk of the sines of a slope"});
     visit(p.impact_share,
           {"impact_share", "1", 0.0, 1e3,
-           "standard deviation of an impact's timing and direction, as a share of its velocity change"});
-    visit(p.unexplained_impact_m_s,
-          {"unexplained_impact_m_s", "m/s", 1e-12, 1e3,
-           "mean unexplained velocity change by impacts in a node while the sphere stays on the floor"});
+           "standard deviation of an impact's timing and direction, as a share of the impact's velocity change"});
+    visit(p.unexplained_impact_m_s, {"unexplained_impact_m_s", "m/s", 1e-12, 1e3,
+                                     "mean velocity change per node that impacts cause and the model does not explain, "
+                                     "while the sphere stays on the floor"});
     visit(p.rest_velocity_sigma_m_s,
           {"rest_velocity_sigma_m_s", "m/s", 1e-12, 1e3, "standard deviation of a node's mean velocity at rest"});
     visit(p.rest_rate_sigma_rad_s,
           {"rest_rate_sigma_rad_s", "rad/s", 1e-12, 1e3, "standard deviation of a node's mean rate at rest"});
     visit(p.speed_sigma_m_s,
           {"speed_sigma_m_s", "m/s", 1e-12, 1e3,
-           "without velocity information: standard deviation of the mean velocity over 1 s about zero"});
+           "standard deviation of the mean velocity over 1 s about zero, if nothing else measures the velocity"});
   }
 };
 
@@ -86,9 +86,10 @@ struct RollingModeParams {
           {"rough_begins_per_s", "1/s", 1e-12, 1e3, "rate of transitions from smooth to rough floor"});
     visit(p.rough_ends_per_s,
           {"rough_ends_per_s", "1/s", 1e-12, 1e3, "rate of transitions from rough to smooth floor"});
-    visit(p.event_shortest_s, {"event_shortest_s", "s", 0.0, 10.0, "shortest duration of a slip or bump", Rank::first});
-    visit(p.uncertain_m, {"uncertain_m", "m", 1e-12, 1e3,
-                          "growth of the horizontal standard deviation above which an event is reported as uncertain"});
+    visit(p.event_shortest_s, {"event_shortest_s", "s", 0.0, 10.0, "minimum duration of a slip or bump", Rank::first});
+    visit(p.uncertain_m,
+          {"uncertain_m", "m", 1e-12, 1e3,
+           "an event is reported as uncertain if the horizontal standard deviation grows by more than this"});
   }
 };
 

@@ -37,8 +37,8 @@ struct RollingPriorParams {
                                "prior standard deviation of each entry of the gyro's scale and misalignment"});
     visit(p.accel_delay_sigma_s, {"accel_delay_sigma_s", "s", 0.0, 1e3,
                                   "prior standard deviation of the accelerometer's delay relative to the gyro"});
-    visit(p.start_rate_rad_s,
-          {"start_rate_rad_s", "rad/s", 1e-12, 10.0, "rate above which the first reading counts as motion"});
+    visit(p.start_rate_rad_s, {"start_rate_rad_s", "rad/s", 1e-12, 10.0,
+                               "the recording starts in motion if the first rate reading exceeds this value"});
   }
 };
 
@@ -58,7 +58,7 @@ struct RollingImuNoiseParams {
     visit(p.velocity_walk_m_s_sqrts, {"velocity_walk_m_s_sqrts", "m/s/sqrt(s)", 1e-12, 1e3, "velocity random walk"});
     visit(p.spin_force_sqrts,
           {"spin_force_sqrts", "m/s/sqrt(s)/(rad/s)^2", 0.0, 1e3,
-           "additional velocity random walk per (rad/s)^2 of rate, from sensor errors under large forces"});
+           "additional velocity random walk per (rad/s)^2 of rate, caused by sensor errors under large forces"});
     visit(p.gyro_bias_walk_rad_s_sqrts,
           {"gyro_bias_walk_rad_s_sqrts", "rad/s/sqrt(s)", 1e-12, 1e3, "random walk of the gyro bias"});
     visit(p.accel_bias_walk_m_s2_sqrts,
@@ -80,16 +80,16 @@ struct RollingRailParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.clipped_rate_sigma_rad_s,
-          {"clipped_rate_sigma_rad_s", "rad/s", 1e-12, 1e3, "standard deviation of the rate beyond the rail"});
+    visit(p.clipped_rate_sigma_rad_s, {"clipped_rate_sigma_rad_s", "rad/s", 1e-12, 1e3,
+                                       "standard deviation of the saturation deficit of a clipped rate"});
     visit(p.recovered_rate_sigma_rad_s,
           {"recovered_rate_sigma_rad_s", "rad/s", 0.0, 1e3,
-           "standard deviation of a rate beyond the range that was recovered from several IMUs; 0: no recovery"});
-    visit(p.clipped_force_sigma_m_s2,
-          {"clipped_force_sigma_m_s2", "m/s^2", 1e-12, 1e3, "standard deviation of the force beyond the rail"});
+           "standard deviation of a clipped rate that was recovered from several IMUs; 0: no recovery"});
+    visit(p.clipped_force_sigma_m_s2, {"clipped_force_sigma_m_s2", "m/s^2", 1e-12, 1e3,
+                                       "standard deviation of the force beyond the saturation limit"});
     visit(p.subsample_saturation_share,
           {"subsample_saturation_share", "1", 0.0, 10.0,
-           "standard deviation of the mean force of an impact within one sample, as a share of it"});
+           "standard deviation of the mean force of an impact within one sample, as a share of this force"});
   }
 };
 
@@ -103,10 +103,10 @@ struct RollingGapParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.gap_from_s,
-          {"gap_from_s", "s", 1e-9, 1.0, "time between readings above which the force between them is unknown"});
-    visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1.0,
-                        "longest allowed time between two samples; a longer gap ends the run with an error"});
+    visit(p.gap_from_s, {"gap_from_s", "s", 1e-9, 1.0,
+                         "if two readings are farther apart than this, the force between the readings is unknown"});
+    visit(p.gap_max_s,
+          {"gap_max_s", "s", 1e-9, 1.0, "maximum time between two samples; a longer gap ends the run with an error"});
     visit(p.gap_acceleration_rad_s2,
           {"gap_acceleration_rad_s2", "rad/s^2", 1e-12, 1e4,
            "standard deviation of the angular acceleration during a gap, about a linear change of rate"});
