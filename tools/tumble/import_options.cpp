@@ -85,7 +85,8 @@ scenarios::SweepReading sweep_reading(const Session& session, const ImportOption
   reading.time_field = options.time_field;
   reading.time_unit = options.time_unit;
   reading.not_skewed = options.not_skewed;
-  reading.scratch = options.out.parent_path().empty() ? "." : options.out.parent_path();
+  // without an output file, the points are kept in memory
+  if (!options.out.empty()) reading.scratch = options.out.parent_path().empty() ? "." : options.out.parent_path();
   return reading;
 }
 
@@ -133,7 +134,7 @@ void declare_reference(VerbOptions& verb, ImportOptions& options) {
 
 }  // namespace
 
-void declare(VerbOptions& verb, ImportOptions& options) {
+void declare_sensors(VerbOptions& verb, ImportOptions& options) {
   verb.add(
           "PATH", options.path,
           "file or folder to import: lidar sweeps (PLY, PCD, VTK, KITTI .bin); IMU readings (CSV of a logger or of "
@@ -155,9 +156,6 @@ void declare(VerbOptions& verb, ImportOptions& options) {
            "positions from 0 [known names]");
   verb.add("--lever-arm", options.lever_arm_m, "X Y Z: vector from the robot's centre of mass to the IMU, m [0 0 0]")
       .words(3);
-  verb.add("--robot", options.robot, "type of robot: rig, sphere or pendulum; some methods need it [unknown]");
-  verb.add("--radius", options.radius_m, "radius of the sphere, m; position methods need it [unknown]")
-      .within(1e-3, 10.0);
   verb.add("--imu-topic", options.imu_topics,
            "IMU topic of a bag (sensor_msgs/Imu); the first is the primary IMU [all]");
   verb.add("--lidar-topic", options.lidar_topics,
@@ -167,6 +165,13 @@ void declare(VerbOptions& verb, ImportOptions& options) {
            "time stamps of a bag: 'header' from the messages; 'record' from the bag, if headers have no usable stamps; "
            "with 'record' a sweep starts one period earlier [header]");
   declare_lidar(verb, options);
+}
+
+void declare(VerbOptions& verb, ImportOptions& options) {
+  declare_sensors(verb, options);
+  verb.add("--robot", options.robot, "type of robot: rig, sphere or pendulum; some methods need it [unknown]");
+  verb.add("--radius", options.radius_m, "radius of the sphere, m; position methods need it [unknown]")
+      .within(1e-3, 10.0);
   declare_reference(verb, options);
   verb.add("-o,--output", options.out, "recording to write, FILE.h5").required();
 }
@@ -314,6 +319,7 @@ scenarios::BagReading bag_reading(const Session& session, const ImportOptions& o
     if (options.stamps == "record") reading.stamps = scenarios::StampSource::record;
   }
   reading.sweeps = sweep_reading(session, options);
+  reading.leave_out_topics = options.leave_out_topics;
   return reading;
 }
 

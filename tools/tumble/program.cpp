@@ -95,8 +95,10 @@ int show_the_way() {
       "tumble: a physics-simulated test harness and an estimator for robots that tumble and roll\n\nfirst steps\n  "
       "tumble run hill                a rig tumbles down a hill: our methods and baselines, scores, pictures\n  tumble "
       "run slip                a sphere rolls and slips\n  tumble list scenarios          lists the scenarios; also: "
-      "methods, sensors, suites\n\nyour own recording\n  tumble import FILE -o r.h5     imports a bag, IMU readings, "
-      "lidar sweeps or a trajectory\n  tumble estimate r.h5 --method rate/tumble -o DIR\n  tumble score YOURS.tum r.h5 "
+      "methods, sensors, suites\n\nyour own recording\n  tumble odometry BAG -o DIR     "
+      "trajectory, map and replay from a bag with IMU and lidar\n  tumble doctor BAG              searches a bag "
+      "for faults\n  tumble import FILE -o r.h5     imports a bag, IMU readings, lidar sweeps or a trajectory\n  "
+      "tumble estimate r.h5 --method rate/tumble -o DIR\n  tumble score YOURS.tum r.h5 "
       "   scores an external trajectory against the truth of a recording\n\nverbs (tumble VERB --help)\n";
   for (const Verb& verb : verbs()) text += fmt::format("  {:<11}  {}\n", verb.name, verb.doc);
   std::fputs(text.c_str(), stdout);
