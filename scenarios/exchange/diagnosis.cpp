@@ -23,6 +23,7 @@ constexpr double kApart_s = 0.5;
 /// Largest share of lost readings or sweeps. A lost reading costs no accuracy; many lost readings are a fault of the
 /// bus, the driver or the recorder.
 constexpr double kLostShareMax = 0.005;
+constexpr std::int64_t kLeastLost = 2;
 /// A step longer than this many periods contains a lost reading.
 constexpr double kLostStep = 1.5;
 /// Duration at the start in which the estimators initialise attitude and gyro bias.
@@ -50,7 +51,7 @@ std::optional<RecordingFinding> lost_items(const std::string& name, const char* 
     if (steps > kLostStep) missing += std::llround(steps) - 1;
   }
   const double share = static_cast<double>(missing) / static_cast<double>(missing + std::ssize(times_ns));
-  if (share <= kLostShareMax) return std::nullopt;
+  if (missing < kLeastLost || share <= kLostShareMax) return std::nullopt;
   return RecordingFinding{name,
                           fmt::format("{} of {} {} are lost ({}, limit {}); the longest step is {} s", missing,
                                       missing + std::ssize(times_ns), items, percent_text(share),

@@ -39,6 +39,9 @@ std::vector<RecordingFinding> findings_of(const OpenRecording& recording) {
     out.push_back(
         {recording.options.path.filename().string(), repair.cause, repair.option.name + " " + repair.option.value});
   append_findings(scenarios::findings_in_notes(recording.content.notes), out);
+  for (RecordingFinding& each : out) {
+    if (each.where.empty()) each.where = recording.options.path.filename().string();
+  }
   const sim::Sensors& sensors = recording.content.sensors;
   append_findings(scenarios::findings_in_readings(sensors), out);
   const bool rolls = sensors.robot == "sphere" || sensors.robot == "pendulum";

@@ -145,7 +145,7 @@ class Found {
     const std::string option = "--lidar NAME";
     if (!lidar.device.empty()) return add("data sheet of the lidar", lidar.device, kStated, option);
     const auto device = scenarios::probable_lidar(lidar, sheets_);
-    if (!device) return add("data sheet of the lidar", "none needed: no known device matches", kAssumed, option);
+    if (!device) return add("data sheet of the lidar", "none: no known device matches; not needed", kAssumed, option);
     lidar.device = device->device;
     add("data sheet of the lidar", device->device + ": " + device->evidence,
         device->evidence.starts_with("name") ? kByName : kMeasured, option);

@@ -134,7 +134,7 @@ nlohmann::json summary_of(const sim::Sensors& sensors, const Estimate& estimate,
 }
 
 Table summary_table(const nlohmann::json& summary) {
-  Table table("", {"duration", "path", "sweeps registered", "samples clipped", "health", "speed"});
+  Table table("result", {"duration", "path", "sweeps registered", "samples clipped", "health", "speed"});
   table.add_row(
       {fmt::format("{:.1f} s", summary["duration_s"].get<double>()),
        fmt::format("{:.1f} m", summary["path_m"].get<double>()),
@@ -152,7 +152,7 @@ void write_replay(const std::filesystem::path& page, const OpenRecording& record
     input.facts.emplace_back("recorded by", recording.content.info.attribution);
   input.sensors = &recording.content.sensors;
   input.truth = recording.truth ? &*recording.truth : nullptr;
-  if (!estimate.poses.empty() || !estimate.rates.empty()) input.estimates.push_back({method, &estimate});
+  input.estimates.push_back({method, &estimate});
   scenarios::replace_file(page, replay_page(replay_of(input, {})));
 }
 
@@ -180,7 +180,7 @@ int run_odometry(const Session& session, const OdometryOptions& options) {
   const double run_s = run_with_progress(session, methods.front(), sensors, estimate);
   scenarios::write_estimate(options.folder, info.name, info.kind, estimate, scenarios::digest(sensors, nullptr));
   if (!estimate.map.empty()) scenarios::write_map_pcd(options.folder / "map.pcd", estimate.map);
-  write_replay(options.folder / "replay.html", recording, full_name(info), estimate);
+  if (!estimate.poses.empty()) write_replay(options.folder / "replay.html", recording, full_name(info), estimate);
   folder.keep();
 
   print_notes(session, recording, estimate);
@@ -192,9 +192,11 @@ int run_odometry(const Session& session, const OdometryOptions& options) {
                                            {"found", found_document(found)},
                                            {"summary", summary},
                                            {"health", estimate.health}});
-  session.note(fmt::format("written: {} (trajectory.tum, map.ply, map.pcd, estimate.json, replay.html)",
-                           options.folder.string()));
-  if (estimate.status.ok()) return kDone;
+  if (estimate.status.ok()) {
+    session.note(fmt::format("written: {} (trajectory.tum, map.ply, map.pcd, estimate.json, replay.html)",
+                             options.folder.string()));
+    return kDone;
+  }
   throw BadInput(options.input.path.string() + ": " + full_name(info) +
                  " failed: " + failure_reason(estimate.status, sensors) + "; 'tumble doctor " +
                  options.input.path.string() + "' searches for the cause");

@@ -46,7 +46,7 @@ ImuSheet mpu6050() {
 }
 
 ImuSheet bmi088() {
-  return {.rate_hz = 400.0,
+  return {.rate_hz = 200.0,
           .gyro_range_rad_s = 34.90658504,
           .accel_range_m_s2 = 235.3596,
           .gyro_noise_rad_s_sqrt_hz = 0.0002443461,
@@ -62,7 +62,7 @@ ImuSheet icm20948() {
 }
 
 ImuSheet icm42688() {
-  return {.rate_hz = 1000.0,
+  return {.rate_hz = 200.0,
           .gyro_range_rad_s = 34.90658504,
           .accel_range_m_s2 = 156.9064,
           .gyro_noise_rad_s_sqrt_hz = 4.886922e-05,
@@ -78,7 +78,7 @@ ImuSheet mti3() {
 }
 
 ImuSheet lsm6dso() {
-  return {.rate_hz = 416.0,
+  return {.rate_hz = 208.0,
           .gyro_range_rad_s = 34.90658504,
           .accel_range_m_s2 = 156.9064,
           .gyro_noise_rad_s_sqrt_hz = 6.632251e-05,
