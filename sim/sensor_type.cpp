@@ -43,6 +43,13 @@ const SensorType& spinning_lidar_sensor() {
   return kType;
 }
 
+const SensorType& column_lidar_sensor() {
+  static const SensorType kType{
+      {"column_lidar", "column of up to 128 evenly spaced rings that rotates about an axis", column_lidar_parameters()},
+      add_lidar};
+  return kType;
+}
+
 const SensorType& rosette_lidar_sensor() {
   static const SensorType kType{
       {"rosette_lidar", "lidar with a rosette pattern and one or several scanning units side by side",
@@ -54,8 +61,8 @@ const SensorType& rosette_lidar_sensor() {
 }  // namespace
 
 std::span<const SensorType* const> all_sensor_types() {
-  static const std::array<const SensorType*, 4> kTypes = {&imu_sensor(), &spinning_lidar_sensor(),
-                                                          &rosette_lidar_sensor(), &barometer_sensor()};
+  static const std::array<const SensorType*, 5> kTypes = {
+      &imu_sensor(), &spinning_lidar_sensor(), &column_lidar_sensor(), &rosette_lidar_sensor(), &barometer_sensor()};
   return kTypes;
 }
 

@@ -384,3 +384,18 @@ def test_files_are_stored_as_the_programs_own(recordings, tmp_path):
         assert stored(again) == stored(first) and len(stored(first)) > 20
         assert any(compression == "gzip" for _, _, _, compression, _, _ in stored(again).values()), "the control"
         assert abs(again.stat().st_size / first.stat().st_size - 1.0) < 0.005
+
+
+def test_odometry_of_a_bag_equals_the_command(recordings, tmp_path):
+    bag = tmp_path / "hill.mcap"
+    tumble.call("export", recordings["hill"], "-o", bag)
+    tumble.call("odometry", bag, "-o", tmp_path / "command")
+    expected = tumble.read_estimate(tmp_path / "command")
+    own = tumble.odometry(bag)
+    assert own.method == "tumble" and own.status == "ok" and own.health == expected.health
+    assert same(own.poses.position, expected.poses.position) and same(own.poses.quaternion, expected.poses.quaternion)
+    live = tumble.odometry(bag, tmp_path / "live", live=True)
+    assert live.method == "tumble_live" and (tmp_path / "live" / "map.pcd").exists()
+    assert not np.array_equal(live.poses.position, own.poses.position), "the negative control"
+    with pytest.raises(tumble.TumbleError, match="options"):
+        tumble.odometry(bag, options="--live")

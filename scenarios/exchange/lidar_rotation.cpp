@@ -11,6 +11,7 @@
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/method.hpp"
 #include "scenarios/recordings/number_text.hpp"
+#include "scenarios/recordings/repairable.hpp"
 #include "scenarios/recordings/upper_median.hpp"
 #include "tumble/common/so3.hpp"
 
@@ -30,6 +31,8 @@ constexpr double kConclusive = 0.5, kDelayConclusive = 0.6;
 constexpr double kDegreesPerRadian = 57.29577951308232;
 constexpr double kDelayMost_s = 0.5, kDelayStep_s = 0.01, kDelaySaid_s = 0.03;
 constexpr std::int64_t kGap_ns = 100'000'000;
+/// Largest relative difference of an attitude from the inverse of the stated attitude, about 10 degrees.
+constexpr double kInverted = 0.2;
 
 /// Returns the sweeps `first` to `last` - 1 as a recording with only this lidar.
 sim::Sensors span_alone(const sim::LidarRecord& lidar, const PointStore* aside, std::size_t first, std::size_t last) {
@@ -199,7 +202,8 @@ std::string unit_text(const std::string& where, const RotationAgreement& found, 
       degrees ? "deg/s" : "rad/s", rounded(found.unit), percent(found.unit_error), pairs_text(found));
   if ((found.unit < 1.0) == degrees) return "caution: " + read;
   const std::string fits = degrees ? "rad/s" : "deg/s";
-  throw BadInput(fmt::format("{}: {}; the rates may be in {} (set '--gyro-unit {}')", where, read, fits, fits));
+  throw RepairableInput(fmt::format("{}: {}; the rates may be in {} (set '--gyro-unit {}')", where, read, fits, fits),
+                        {"--gyro-unit", fits});
 }
 
 std::string delay_text(const RotationAgreement& found) {
@@ -290,8 +294,50 @@ std::string agreement_text(const std::string& where, const RotationAgreement& fo
   return delay_text(found) + axes_text(found);
 }
 
-std::vector<std::string> lidar_rotation_notes(const std::string& where, const Imported& recording, GyroUnit unit) {
-  std::vector<std::string> out;
+namespace {
+
+/// Returns the attitude of the lidar on the body that makes lidar and gyro agree. Empty if they agree with the stated
+/// attitude, or if no rotation makes them agree.
+std::optional<Eigen::Matrix3d> better_attitude(const sim::ImuRecord& imu, const sim::LidarRecord& lidar,
+                                               const RotationAgreement& found) {
+  const bool agrees = found.error_as_read <= kAgrees && kConclusive * found.error_as_read <= found.axes_error;
+  const Eigen::Matrix3d axes = found.axes.matrix();
+  const bool by_axes =
+      found.axes_error <= kAgrees && axes.determinant() > 0.0 && kConclusive * found.next_error > found.axes_error;
+  if (agrees || found.unit != 1.0 || (!by_axes && found.turned_error > kAgrees)) return std::nullopt;
+  // The lidar's rotation in the axes of I is M times the gyro's rotation, so the true attitude is M^T R_IL.
+  const Eigen::Matrix3d M = by_axes ? axes : found.turned.toRotationMatrix();
+  return imu.T_BI.linear() * M.transpose() * bridge::T_IL(imu, lidar).linear();
+}
+
+bool is_inverse(const Eigen::Matrix3d& R, const Eigen::Matrix3d& other) {
+  return R.transpose().isApprox(other, kInverted);
+}
+
+/// Returns the pose of the lidar with a better attitude. If the better attitude is the inverse of the stated attitude,
+/// the whole stated pose is inverted.
+Eigen::Isometry3d better_pose(const sim::LidarRecord& lidar, const Eigen::Matrix3d& R_BL) {
+  if (is_inverse(lidar.T_BL.linear(), R_BL)) return lidar.T_BL.inverse();
+  Eigen::Isometry3d out = lidar.T_BL;
+  out.linear() = R_BL;
+  return out;
+}
+
+/// Returns the option that sets the better pose, and whether the stated pose is inverted.
+std::string pose_text(const sim::LidarRecord& lidar, const Eigen::Isometry3d& better_BL) {
+  const Eigen::Quaterniond q(better_BL.linear());
+  const Eigen::Vector3d p = better_BL.translation();
+  return fmt::format(
+      "{} (set '--T-body-lidar {} {} {} {} {} {} {}')",
+      is_inverse(lidar.T_BL.linear(), better_BL.linear()) ? "; the stated pose may be that of the body in the lidar"
+                                                          : "",
+      rounded(p.x()), rounded(p.y()), rounded(p.z()), rounded(q.x()), rounded(q.y()), rounded(q.z()), rounded(q.w()));
+}
+
+}  // namespace
+
+LidarRotationCheck check_lidar_rotation(const std::string& where, const Imported& recording, GyroUnit unit) {
+  LidarRotationCheck out;
   const sim::Sensors& sensors = recording.sensors;
   if (sensors.lidars.empty() || sensors.imus.empty()) return out;
   const sim::LidarRecord& lidar = sensors.lidars.front();
@@ -300,8 +346,15 @@ std::vector<std::string> lidar_rotation_notes(const std::string& where, const Im
   for (const sim::ImuRecord& imu : sensors.imus) {
     const auto agreement = rotation_agreement(imu, lidar, seen);
     if (!agreement) continue;
-    const std::string text = agreement_text(where + ": '" + imu.name + "'", *agreement, unit);
-    if (!text.empty()) out.push_back(imu.name + ": " + text);
+    std::string text = agreement_text(where + ": '" + imu.name + "'", *agreement, unit);
+    if (&imu == &sensors.imus.front()) {
+      out.primary = agreement;
+      if (const auto R_BL = better_attitude(imu, lidar, *agreement)) {
+        out.better_BL = better_pose(lidar, *R_BL);
+        text += pose_text(lidar, *out.better_BL);
+      }
+    }
+    if (!text.empty()) out.notes.push_back(imu.name + ": " + text);
   }
   return out;
 }

@@ -63,8 +63,15 @@ std::optional<RotationAgreement> rotation_agreement(const sim::ImuRecord& imu, c
 /// Throws BadInput if the rates are in deg/s instead of rad/s or vice versa. The message starts with `where`.
 std::string agreement_text(const std::string& where, const RotationAgreement& agreement, GyroUnit unit);
 
-/// Returns notes on each IMU of a recording. The list is empty unless the recording has a lidar and an IMU. Throws
-/// BadInput if the rates are in a wrong unit; the message starts with `where`, the recording's path.
-std::vector<std::string> lidar_rotation_notes(const std::string& where, const Imported& recording, GyroUnit unit);
+/// Result of the comparison of all IMUs with the first lidar.
+struct LidarRotationCheck {
+  std::vector<std::string> notes;              ///< at most one for each IMU
+  std::optional<RotationAgreement> primary;    ///< of the primary IMU; empty if undetermined
+  std::optional<Eigen::Isometry3d> better_BL;  ///< pose of the first lidar that makes lidar and primary IMU agree
+};
+
+/// Compares each IMU of a recording with the first lidar. The result is empty unless the recording has a lidar and an
+/// IMU. Throws BadInput if the rates are in a wrong unit; the message starts with `where`, the recording's path.
+LidarRotationCheck check_lidar_rotation(const std::string& where, const Imported& recording, GyroUnit unit);
 
 }  // namespace tumble::scenarios

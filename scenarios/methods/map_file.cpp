@@ -10,6 +10,7 @@
 #include <fstream>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/replace_file.hpp"
@@ -52,12 +53,8 @@ std::size_t read_header(std::istream& file, const std::filesystem::path& path) {
   return points;
 }
 
-}  // namespace
-
-void write_map(const std::filesystem::path& path, std::span<const MapPoint> map) {
+void write_points(const std::filesystem::path& path, std::string text, std::span<const MapPoint> map) {
   OutputFile file(path);
-  std::string text;
-  for (const std::string& line : header(map.size())) text += line + '\n';
   for (const MapPoint& point : map) {
     const Row row = {point.position_W_m.x(), point.position_W_m.y(), point.position_W_m.z(), point.normal_W.x(),
                      point.normal_W.y(),     point.normal_W.z(),     point.sigma_m};
@@ -65,6 +62,23 @@ void write_map(const std::filesystem::path& path, std::span<const MapPoint> map)
   }
   file.write(std::as_bytes(std::span(text)));
   file.move_into_place();
+}
+
+}  // namespace
+
+void write_map(const std::filesystem::path& path, std::span<const MapPoint> map) {
+  std::string text;
+  for (const std::string& line : header(map.size())) text += line + '\n';
+  write_points(path, std::move(text), map);
+}
+
+void write_map_pcd(const std::filesystem::path& path, std::span<const MapPoint> map) {
+  write_points(path,
+               fmt::format("VERSION 0.7\nFIELDS x y z normal_x normal_y normal_z sigma\nSIZE 4 4 4 4 4 4 4\n"
+                           "TYPE F F F F F F F\nCOUNT 1 1 1 1 1 1 1\nWIDTH {0}\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\n"
+                           "POINTS {0}\nDATA binary\n",
+                           map.size()),
+               map);
 }
 
 std::vector<MapPoint> read_map(const std::filesystem::path& path) {

@@ -59,6 +59,9 @@ struct Estimate {
 /// truth, and only for methods that declare `needs_truth`.
 struct OracleInput {
   const sim::Truth* truth = nullptr;
+  /// For display: the slam methods of the rig call this function after each lidar sweep, with the number of processed
+  /// sweeps and of all sweeps. A method with several passes starts again at 1. May be empty.
+  std::function<void(std::size_t done, std::size_t all)> on_sweep = {};
 };
 
 class SettingsTable;

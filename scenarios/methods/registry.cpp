@@ -125,7 +125,7 @@ Method make_method(MethodInfo info, RunCore run) {
     }
     try {
       const sim::Values resolved = resolve_settings("method " + name, given, settings);
-      return run(sensors, resolved, needs_truth ? oracle : OracleInput{});
+      return run(sensors, resolved, {.truth = needs_truth ? oracle.truth : nullptr, .on_sweep = oracle.on_sweep});
     } catch (const sim::InvalidSituation& error) {
       throw BadInput(error.what());
     } catch (const InvalidParams& error) {

@@ -87,6 +87,8 @@ struct SlamChain {
   /// twice. The second pass starts from the calibration of the first pass.
   bool calibration = false;
   const KnownMotion* along = nullptr;  ///< odometer
+  /// OracleInput::on_sweep
+  std::function<void(std::size_t done, std::size_t all)> on_sweep = {};
 };
 
 struct SlamStage;

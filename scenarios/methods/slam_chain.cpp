@@ -129,12 +129,13 @@ class SweepFeed {
 
 /// Processes the whole recording and adds the sweeps to `estimate`.
 void run_sweeps(const sim::LidarRecord& lidar, std::span<const ImuSample> samples, LidarInertialOdometry& odometry,
-                double time_offset_s, const KnownMotion* along, Estimate& estimate) {
+                double time_offset_s, const SlamChain& chain, Estimate& estimate) {
   const auto offset_ns = static_cast<TimeNs>(std::llround(time_offset_s * 1e9));
-  SweepFeed feed(samples, offset_ns, along, odometry, estimate);
+  SweepFeed feed(samples, offset_ns, chain.along, odometry, estimate);
   const std::size_t sweeps = bridge::sweep_count(lidar);
   for (std::size_t k = 0; k < sweeps; ++k) {
     if (!feed.add(bridge::sweep(lidar, k))) return;
+    if (chain.on_sweep) chain.on_sweep(k + 1, sweeps);
   }
   feed.finish();
 }
@@ -177,14 +178,14 @@ Estimate run_passes(const sim::LidarRecord& lidar, std::span<const ImuSample> sa
                     LidarInertialOdometry& odometry, CalibrationVerdict& verdict) {
   LidarInertialOdometry::Params params = given;
   Estimate run = before;
-  run_sweeps(lidar, samples, odometry, params.time_offset_s, chain.along, run);
+  run_sweeps(lidar, samples, odometry, params.time_offset_s, chain, run);
   if (!chain.calibration) return run;
   double mahalanobis = 0.0;
   int passes = 1;
   const auto again = [&] {
     run = before;
     odometry = LidarInertialOdometry(params);
-    run_sweeps(lidar, samples, odometry, params.time_offset_s, chain.along, run);
+    run_sweeps(lidar, samples, odometry, params.time_offset_s, chain, run);
     ++passes;
   };
   const auto start_from = [&](const SweepCalibration& learnt) {

@@ -26,7 +26,7 @@ const Settings<RateSmoother::Params>& slam_tumble_rate_settings() {
   return all;
 }
 
-Estimate run_slam_tumble(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+Estimate run_slam_tumble(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput& input) {
   std::vector<ImuSample> samples;
   Estimate estimate = begin_with_rates(sensors, samples, [&](Estimate& out) {
     const RateSmoother::Params params = smoother_params(sensors.imus.front(), slam_tumble_rate_settings(), parameters);
@@ -37,7 +37,8 @@ Estimate run_slam_tumble(const sim::Sensors& sensors, const sim::Values& paramet
     return status;
   });
   if (estimate.status.ok())
-    run_slam_chain(sensors, samples, {slam_tumble_chain_settings(), parameters}, {.calibration = true}, estimate);
+    run_slam_chain(sensors, samples, {slam_tumble_chain_settings(), parameters},
+                   {.calibration = true, .on_sweep = input.on_sweep}, estimate);
   return estimate;
 }
 

@@ -127,7 +127,7 @@ class Listener {
 /// Passes the recording to TumblingOdometry in real-time order: each sample at the end of its window, each sweep after
 /// its last point. Counts the sweeps that end after the last sample in `estimate`.
 Status replay(const sim::Sensors& sensors, std::span<const ImuSample> samples, TumblingOdometry& odometry,
-              Listener& listener, Estimate& estimate) {
+              const OracleInput& input, Listener& listener, Estimate& estimate) {
   const sim::LidarRecord& lidar = sensors.lidars.front();
   const std::size_t sweeps = bridge::sweep_count(lidar);
   std::optional<bridge::Sweep> present;
@@ -140,6 +140,7 @@ Status replay(const sim::Sensors& sensors, std::span<const ImuSample> samples, T
       if (Status status = odometry.add_sweep(present->start_ns, present->end_ns, present->points); !status.ok())
         return status;
       present.reset();
+      if (input.on_sweep) input.on_sweep(next, sweeps);
     }
     listener.observe(odometry);
     listener.take(odometry);
@@ -150,7 +151,8 @@ Status replay(const sim::Sensors& sensors, std::span<const ImuSample> samples, T
   return {};
 }
 
-Estimate run_slam_tumble_lag(const sim::Sensors& sensors, const sim::Values& parameters, Word word) {
+Estimate run_slam_tumble_lag(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput& input,
+                             Word word) {
   Estimate estimate;
   estimate.frame = Frame::imu;
   std::vector<ImuSample> samples;
@@ -166,7 +168,7 @@ Estimate run_slam_tumble_lag(const sim::Sensors& sensors, const sim::Values& par
   const TumblingOdometry::Params params = stated_params(sensors, parameters);
   TumblingOdometry odometry(params);
   Listener listener(word, params, estimate);
-  estimate.status = replay(sensors, samples, odometry, listener, estimate);
+  estimate.status = replay(sensors, samples, odometry, input, listener, estimate);
   if (!estimate.status.ok()) return estimate;
   report_rails(odometry.rails(), estimate.health);
   const std::size_t left_out = sensors.imus.front().time_ns.size() - samples.size();
@@ -186,8 +188,8 @@ Method slam_tumble_lag() {
                           "follows 0.3 s later.",
                    .ours = true,
                    .settings = {&slam_tumble_lag_settings()}},
-                  [](const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
-                    return run_slam_tumble_lag(sensors, parameters, Word::last);
+                  [](const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput& input) {
+                    return run_slam_tumble_lag(sensors, parameters, input, Word::last);
                   });
 }
 
@@ -196,8 +198,8 @@ Method slam_tumble_live() {
                    .doc = "The same pass, live: the pose at each IMU sample uses past data only.",
                    .ours = true,
                    .settings = {&slam_tumble_lag_settings()}},
-                  [](const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
-                    return run_slam_tumble_lag(sensors, parameters, Word::live);
+                  [](const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput& input) {
+                    return run_slam_tumble_lag(sensors, parameters, input, Word::live);
                   });
 }
 

@@ -110,6 +110,50 @@ void SpinningPattern::fire_cells(int first, FiringBlock& block) const {
   aim(azimuth_rad, block);
 }
 
+ColumnPattern::ColumnPattern(const Values& values)
+    : rate_rad_ns_(kRevolution_rad * values.at("spin_rate_hz") * 1e-9),
+      sense_(values.at("clockwise") != 0.0 ? -1.0 : 1.0),
+      lowest_rad_(values.at("elevation_low_rad")),
+      shift_share_(values.at("elevation_shift_share")) {
+  const double rings = values.at("rings");
+  banks_ = static_cast<int>(rings) / kMaxChannels;
+  if (rings != static_cast<double>(banks_ * kMaxChannels))
+    throw InvalidSituation("column_lidar: rings must be a multiple of 16");
+  if (values.at("elevation_high_rad") <= lowest_rad_)
+    throw InvalidSituation("column_lidar: elevation_high_rad must be greater than elevation_low_rad");
+  spacing_rad_ = (values.at("elevation_high_rad") - lowest_rad_) / (rings - 1.0);
+  sweep_period_ns_ = std::llround(1e9 / values.at("spin_rate_hz"));
+  slot_period_ns_ = period_ns(values, "column_period_s") / banks_;
+  firing_period_ns_ = period_ns(values, "firing_period_s");
+  if (slot_length_ns() >= slot_period_ns_)
+    throw InvalidSituation("column_lidar: rings times firing_period_s must fit into column_period_s");
+  for (int c = 0; c < kMaxChannels; ++c) ring_[c] = static_cast<std::uint16_t>(c);
+}
+
+[[gnu::target("avx2")]] void ColumnPattern::fire(std::int64_t sweep, std::int64_t slot, int slots,
+                                                 FiringBlock& block) const {
+  block.first_slot = slot;
+  block.slots = slots;
+  const double shift = shift_share_ * static_cast<double>(sweep);
+  const double lowest_rad = lowest_rad_ + spacing_rad_ * (shift - std::floor(shift));
+  for (int s = 0; s < kLanes; ++s) {
+    block.start_ns[s] = (slot + s) * slot_period_ns_;
+    block.reported_ns[s] = static_cast<std::uint32_t>(block.start_ns[s] - sweep * sweep_period_ns_);
+  }
+  for (int c = 0; c < channels_; ++c) {
+    ChannelFirings& out = block.channel[c];
+    for (int s = 0; s < kLanes; ++s) {
+      const double azimuth_rad =
+          rate_rad_ns_ * static_cast<double>(block.start_ns[s] + lag_ns(c) - sweep * sweep_period_ns_);
+      const double elevation_rad = lowest_rad + spacing_rad_ * ring(c, slot + s);
+      out.origin_x_m[s] = out.origin_y_m[s] = out.origin_z_m[s] = 0.0;
+      out.direction_x[s] = std::cos(elevation_rad) * std::cos(azimuth_rad);
+      out.direction_y[s] = sense_ * std::cos(elevation_rad) * std::sin(azimuth_rad);
+      out.direction_z[s] = std::sin(elevation_rad);
+    }
+  }
+}
+
 RosettePattern::RosettePattern(const Values& values) {
   const double units = values.at("units");
   if (units != std::floor(units)) throw InvalidSituation("rosette_lidar: units must be a whole number");

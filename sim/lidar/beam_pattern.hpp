@@ -46,7 +46,9 @@ class BeamPattern {
   std::int64_t lag_ns(int channel) const { return channel * firing_period_ns_; }
   /// Returns the longest time from the start of a slot to the last firing of the slot.
   std::int64_t slot_length_ns() const { return lag_ns(channels_ - 1); }
-  std::uint16_t ring(int channel) const { return ring_[channel]; }
+  std::uint16_t ring(int channel, std::int64_t slot) const {
+    return static_cast<std::uint16_t>(ring_[channel] + channels_ * (slot % banks_));
+  }
 
   /// Fills the firings of the slots `slot` to `slot + slots - 1` of a sweep, at most kLanes.
   virtual void fire(std::int64_t sweep, std::int64_t slot, int slots, FiringBlock& block) const = 0;
@@ -63,6 +65,7 @@ class BeamPattern {
  protected:
   std::int64_t sweep_period_ns_ = 0, slot_period_ns_ = 0, firing_period_ns_ = 0;
   int channels_ = kMaxChannels;
+  int banks_ = 1;  ///< consecutive slots with the same channels of different rings
   std::array<std::uint16_t, kMaxChannels> ring_{};
 };
 
@@ -88,6 +91,19 @@ class SpinningPattern final : public BeamPattern {
   bool driver_stamp_fault_;
   std::array<double, kMaxChannels> cos_elevation_, sin_elevation_, cos_lag_,
       sin_lag_;  ///< lag: azimuth since the start of the sequence
+};
+
+/// Lidar with a column of up to 128 evenly spaced rings that rotates about the z axis. A column fires in banks of 16
+/// rings from the bottom to the top, evenly distributed over the column's period. The slots are the banks. All beams
+/// start at the origin of L. Elevations may rise by a share of the ring spacing from sweep to sweep, which approximates
+/// patterns that do not repeat.
+class ColumnPattern final : public BeamPattern {
+ public:
+  explicit ColumnPattern(const Values& values);
+  void fire(std::int64_t sweep, std::int64_t slot, int slots, FiringBlock& block) const override;
+
+ private:
+  double rate_rad_ns_, sense_, lowest_rad_, spacing_rad_, shift_share_;
 };
 
 /// Rosette lidar: a beam that is refracted by two prisms rotating at constant rates, for one or several units with

@@ -112,6 +112,40 @@ constexpr std::array kSpinning = {
               "passes at half the true rate; 0: correct time stamps"},
 };
 
+// The default values are from the Ouster OS1 with 64 rings.
+constexpr std::array kColumn = {
+    Parameter{"spin_rate_hz", 10.0, 1.0, 50.0, "Hz", "turns per second; one turn is one sweep"},
+    Parameter{"clockwise", 1.0, 0.0, 1.0, "1", "1: the azimuth turns from x towards -y; 0: towards +y"},
+    Parameter{"rings", 64.0, 16.0, 128.0, "1", "number of rings, a multiple of 16"},
+    Parameter{"elevation_low_rad", -22.5 * kDegree_rad, -kRightAngle_rad, kRightAngle_rad, "rad",
+              "elevation of the lowest ring"},
+    Parameter{"elevation_high_rad", 22.5 * kDegree_rad, -kRightAngle_rad, kRightAngle_rad, "rad",
+              "elevation of the highest ring"},
+    Parameter{"elevation_shift_share", 0.0, 0.0, 1.0, "1",
+              "share of the ring spacing by which all elevations rise from sweep to sweep, modulo one spacing; 0: off"},
+    Parameter{"column_period_s", 97.65625e-6, 2e-6, 1e-2, "s",
+              "time between two columns; banks of 16 rings are distributed evenly over the period"},
+    Parameter{"firing_period_s", 0.0, 0.0, 1e-3, "s", "time between two rings of a bank"},
+    Parameter{"range_min_m", 0.5, 0.0, 100.0, "m", "minimum range; nearer returns are lost"},
+    Parameter{"range_max_m", 120.0, 0.1, 10000.0, "m", "maximum range; farther returns are lost"},
+    kRangeNoise,
+    Parameter{"range_quantum_m", 0.001, 0.0, 1.0, "m", "resolution of the reported range; 0: off"},
+    Parameter{"detection_range_m", 90.0, 0.0, 10000.0, "m",
+              "range at which half of the returns with detection_reflectivity and normal incidence are lost; 0: no "
+              "such loss"},
+    kReferenceReflectivity,
+    kSteepness,
+    kDropout,
+    kSweepDropout,
+    kStartDelay,
+    kIntensityQuantum,
+    kBeamRays,
+    divergence("divergence_horizontal_rad", 3.2e-3),
+    divergence("divergence_vertical_rad", 3.2e-3),
+    kEchoLength,
+    kCage,
+};
+
 constexpr std::array kRosette = {
     Parameter{"units", 3.0, 1.0, 3.0, "1", "number of scanning units side by side"},
     Parameter{"unit_spacing_rad", 0.5235987755982988, 0.0, 1.6, "rad", "yaw between neighbouring units"},
@@ -150,6 +184,10 @@ constexpr std::array kRosette = {
 
 std::span<const Parameter> spinning_lidar_parameters() {
   return kSpinning;
+}
+
+std::span<const Parameter> column_lidar_parameters() {
+  return kColumn;
 }
 
 std::span<const Parameter> rosette_lidar_parameters() {

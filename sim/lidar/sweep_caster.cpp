@@ -9,6 +9,7 @@ namespace {
 
 std::unique_ptr<BeamPattern> pattern_of(const SensorSpec& sensor) {
   if (sensor.kind == "spinning_lidar") return std::make_unique<SpinningPattern>(sensor.values);
+  if (sensor.kind == "column_lidar") return std::make_unique<ColumnPattern>(sensor.values);
   if (sensor.kind == "rosette_lidar") return std::make_unique<RosettePattern>(sensor.values);
   throw InvalidSituation("sensor '" + sensor.name + "': '" + sensor.kind + "' is not a kind of lidar");
 }
@@ -143,7 +144,7 @@ void SweepCaster::append(const Workspace& work, SweepPoints& points) const {
       points.range_m[at] = from.returns.range_m[s];
       points.intensity[at] = from.returns.intensity[s];
       points.offset_ns[at] = work.block.reported_ns[s] + static_cast<std::uint32_t>(pattern_->lag_ns(c));
-      points.ring[at] = pattern_->ring(c);
+      points.ring[at] = pattern_->ring(c, work.block.first_slot + s);
       points.surface_id[at] = from.echoes.packet.surface_id[s];
       ++at;
     }

@@ -36,7 +36,7 @@ TEST_P(EachVerb, RefusesAnUnknownOptionInOneLine) {
 INSTANTIATE_TEST_SUITE_P(Program, EachVerb,
                          testing::Values("list", "run", "record", "estimate", "score", "sweep", "merge", "report",
                                          "compare", "sensitivity", "render", "replay", "certify", "bench", "gate",
-                                         "triage", "shrink", "export", "import"));
+                                         "triage", "shrink", "export", "import", "odometry", "doctor"));
 
 /// OSMesa brings LLVM with it and PCL's readers VTK: both are loaded when they are asked for.
 TEST(Program, BeginsWithoutTheLibrariesThatFewVerbsNeed) {
@@ -108,7 +108,7 @@ INSTANTIATE_TEST_SUITE_P(
               "/dev/null: is a device"},
         Wrong{"a folder of TUM's poses", {"import", "/proc", "--format", "tum", "-o", "x.h5"}, "/proc: is a folder"},
         Wrong{"import without format", {"import", "absent.dat", "-o", "x.h5"}, "--format"},
-        Wrong{"device of an import", {"import", "absent.csv", "--device", "mti3", "-o", "x.h5"}, "mti30"},
+        Wrong{"device of an import", {"import", "absent.csv", "--device", "mti300", "-o", "x.h5"}, "mti30"},
         Wrong{"shrink without a name",
               {"shrink", "hill", "--seed", "1", "--method", "rate/raw", "-o", "A b.yaml"},
               "NAME.yaml"},

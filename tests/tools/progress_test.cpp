@@ -61,6 +61,11 @@ TEST(ProgressLine, OfNothingToDoIsComplete) {
             "[####]  0/0 draws  100 %  0 outcomes  1 not ok (1 failed)  0 rejected  in 0 s");
 }
 
+TEST(ProgressLine, OfAnEstimatorShowsSweepsPerSecond) {
+  EXPECT_EQ(progress_line(RegistrationProgress{40, 100, 0.5}, 10), "[####------]  40/100 lidar sweeps  80 sweeps/s");
+  EXPECT_EQ(progress_line(RegistrationProgress{0, 0, 0.0}, 4), "[####]  0/0 lidar sweeps  0 sweeps/s");
+}
+
 TEST(ProgressDisplay, OffATerminalWritesALineEveryTenSeconds) {
   std::vector<std::string> written;
   ProgressDisplay display([&](std::string_view text) { written.emplace_back(text); }, false);

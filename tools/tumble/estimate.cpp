@@ -8,15 +8,14 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/estimate_file.hpp"
-#include "scenarios/methods/external_method.hpp"
 #include "scenarios/methods/given_parameters.hpp"
 #include "scenarios/recordings/recording_check.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/recordings/replace_file.hpp"
 #include "scenarios/sweep/outcome.hpp"
 #include "tools/tumble/arguments.hpp"
+#include "tools/tumble/chosen_method.hpp"
 #include "tools/tumble/learnt_file.hpp"
-#include "tools/tumble/trouble_place.hpp"
 #include "tools/tumble/verbs.hpp"
 #include "tools/tumble/verdict_lines.hpp"
 
@@ -33,47 +32,6 @@ struct EstimateOptions {
   std::filesystem::path folder;
   std::filesystem::path learnt;
 };
-
-/// Returns why a run failed; names the required sensors if the recording lacks sensors.
-std::string reason(const Status& status, const sim::Sensors& sensors) {
-  const std::string field = status.field;
-  if (status.trouble == Trouble::empty && field == "imus")
-    return "the method needs an IMU, but the recording contains no IMU";
-  const std::string place = trouble_place(status, sensors);
-  return status.message() + (place.empty() ? "" : ": " + place);
-}
-
-/// Returns the method with this name that can run on this recording without the truth.
-scenarios::MethodPointer choose(const std::string& name, const scenarios::Subject& subject) {
-  std::vector<scenarios::MethodPointer> fitting;
-  std::string refused;
-  for (const scenarios::MethodPointer& method : scenarios::find_methods(name)) {
-    if (method->info.needs_truth) {
-      refused = "method '" + full_name(method->info) +
-                "' needs the truth, but 'tumble estimate' never reads the truth; use 'tumble run' instead";
-    } else if (const std::string why = method->info.why_not(subject); !why.empty()) {
-      refused = "method '" + full_name(method->info) + "': it " + why;
-    } else {
-      fitting.push_back(method);
-    }
-  }
-  if (fitting.empty()) throw BadInput(refused);
-  if (fitting.size() > 1) {
-    std::string line = "--method " + name + " names several methods; choose one of:";
-    for (const scenarios::MethodPointer& method : fitting) line += " " + full_name(method->info);
-    throw BadInput(line);
-  }
-  return fitting.front();
-}
-
-/// Converts a failure of an external command to BadInput.
-scenarios::Estimate run_of(const scenarios::Method& method, const sim::Sensors& sensors) {
-  try {
-    return method.run(sensors, {}, {});
-  } catch (const scenarios::NoAnswer& error) {
-    throw BadInput(full_name(method.info) + ": " + error.what());
-  }
-}
 
 /// Health counters that the table shows; --json and estimate.json contain all counters.
 struct ShownCounter {
@@ -114,7 +72,7 @@ Table summary(const scenarios::Estimate& estimate) {
 
 int run_estimate(const Session& session, const EstimateOptions& options) {
   const sim::Sensors sensors = scenarios::read_sensors(options.recording);
-  const scenarios::MethodPointer chosen = choose(options.method, {sensors.robot, !sensors.lidars.empty()});
+  const scenarios::MethodPointer chosen = chosen_method(options.method, {sensors.robot, !sensors.lidars.empty()});
   const scenarios::Method& method = *chosen;
   if (!options.learnt.empty() && !method.info.learns_rig) {
     throw BadInput("--learnt applies only to " + LearntFile::learning_methods() + "; '" + full_name(method.info) +
@@ -127,7 +85,7 @@ int run_estimate(const Session& session, const EstimateOptions& options) {
   scenarios::OutputFolder folder(options.folder);
   learnt.require_place();
   note_time_limits(session, std::span(&options.method, 1));
-  scenarios::Estimate estimate = run_of(methods.front(), sensors);
+  scenarios::Estimate estimate = run_method(methods.front(), sensors);
   if (!scenarios::states_digest(options.recording)) add_doubt({scenarios::Doubt::About::digest}, estimate);
   scenarios::write_estimate(options.folder, method.info.name, method.info.kind, estimate,
                             scenarios::digest(sensors, nullptr));
@@ -149,7 +107,7 @@ int run_estimate(const Session& session, const EstimateOptions& options) {
   if (estimate.status.ok()) return kDone;
   // the estimate is kept for inspection; the cause is in the recording
   throw BadInput(options.recording.string() + ": " + full_name(method.info) +
-                 " failed: " + reason(estimate.status, sensors));
+                 " failed: " + failure_reason(estimate.status, sensors));
 }
 
 }  // namespace

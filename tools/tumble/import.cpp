@@ -6,10 +6,9 @@
 #include <stdexcept>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/exchange/imu_notes.hpp"
-#include "scenarios/exchange/lidar_rotation.hpp"
 #include "tools/tumble/arguments.hpp"
 #include "tools/tumble/import_options.hpp"
+#include "tools/tumble/importing.hpp"
 #include "tools/tumble/verbs.hpp"
 
 namespace tumble::tools {
@@ -18,36 +17,6 @@ namespace {
 
 using scenarios::BadInput;
 using scenarios::Imported;
-
-Imported imu_table(const Session& session, const ImportOptions& options, const std::filesystem::path& file) {
-  return scenarios::import_imu_csv(file, imu_sheet(session, options), accel_unit(options), gyro_unit(options),
-                                   options.columns);
-}
-
-/// Imports files of one format.
-Imported import_format(const Session& session, const ImportOptions& options, const std::string& format) {
-  if (format == "csv" && std::filesystem::is_directory(options.path))
-    return scenarios::import_csv_folder(options.path, imu_sheet(session, options), accel_unit(options),
-                                        gyro_unit(options));
-  if (format == "csv") return imu_table(session, options, options.path);
-  if (format == "broad") {
-    Imported imported = scenarios::import_broad(options.path);
-    complete(imu_sheet(session, options), imported.sensors.imus.front());
-    return imported;
-  }
-  if (format == "repoimu" || format == "airbrakes") {
-    Imported imported = format == "repoimu" ? scenarios::import_repoimu(options.path, options.align_reference)
-                                            : scenarios::import_airbrakes(options.path);
-    complete(imu_sheet(session, options), imported.sensors.imus.front());
-    return imported;
-  }
-  if (format == "rosbag1") return scenarios::import_ros1_bag(options.path, bag_reading(session, options));
-  if (format == "rosbag2") return scenarios::import_ros2_bag(options.path, bag_reading(session, options));
-  if (format == "mcap") return scenarios::import_mcap(options.path, bag_reading(session, options));
-  if (format == "tum" || format == "odometry" || (format == "kitti" && !std::filesystem::is_directory(options.path)))
-    return scenarios::import_trajectory(trajectory_source(options, format));
-  return scenarios::import_sweeps(sweep_source(session, options, format));
-}
 
 nlohmann::json document_of(const ImportOptions& options, const std::string& format, const Imported& imported) {
   nlohmann::json document = {{"recording", options.out.string()},
@@ -95,34 +64,14 @@ Table table_of(const Imported& imported) {
   return table;
 }
 
-/// Notes the assumptions about an IMU for properties that the file cannot state.
-void say_what_is_assumed(const ImportOptions& options, const std::string& format, std::vector<std::string>& notes) {
-  if (options.lever_arm_m.empty() && (format == "csv" || !options.imu.empty())) {
-    notes.push_back(
-        "--lever-arm is missing, so the program assumes that the IMU is at the robot's centre of mass. Estimated rates "
-        "beyond saturation depend on the lever arm");
-  }
-}
-
 int import_from(const Session& session, const ImportOptions& options) {
   const std::string format = format_of(options);
   require_fitting(options, format);
   prepare_file(options.out,
                std::vector<std::filesystem::path>{options.path, options.imu, options.times, options.reference},
                kRecordingEndings);
-  Imported imported = import_format(session, options, format);
-  if (!options.imu.empty()) {
-    scenarios::attach_imus(imported, imu_table(session, options, options.imu));
-  }
-  if (const std::filesystem::path file = reference_file(options, format); !file.empty()) {
-    scenarios::attach_reference(imported, reference_source(options, file, !imported.sensors.lidars.empty()));
-    if (options.reference.empty())
-      imported.notes.push_back("the reference poses come from " + file.filename().string() + " in the imported folder");
-  }
-  for (std::string& note : scenarios::lidar_rotation_notes(options.path.string(), imported, gyro_unit(options)))
-    imported.notes.push_back(std::move(note));
-  for (std::string& note : scenarios::imu_notes(imported)) imported.notes.push_back(std::move(note));
-  say_what_is_assumed(options, format, imported.notes);
+  scenarios::LidarRotationCheck rotation;
+  Imported imported = import_recording(session, options, format, rotation);
   imported.sensors.robot = options.robot;
   imported.sensors.sphere_radius_m = options.radius_m;
   imported.info.tumble_version = program_version();

@@ -86,7 +86,8 @@ scenarios::SweepReading sweep_reading(const Session& session, const ImportOption
   reading.time_field = options.time_field;
   reading.time_unit = options.time_unit;
   reading.not_skewed = options.not_skewed;
-  reading.scratch = options.out.parent_path().empty() ? "." : options.out.parent_path();
+  // without an output file, the points are kept in memory
+  if (!options.out.empty()) reading.scratch = options.out.parent_path().empty() ? "." : options.out.parent_path();
   return reading;
 }
 
@@ -142,7 +143,7 @@ void declare_reference(VerbOptions& verb, ImportOptions& options) {
 
 }  // namespace
 
-void declare(VerbOptions& verb, ImportOptions& options) {
+void declare_sensors(VerbOptions& verb, ImportOptions& options) {
   verb.add("PATH", options.path,
            "imports this file or folder. Lidar sweeps can be PLY, PCD, VTK or KITTI .bin files. IMU readings can be a "
            "CSV file of a logger or of sensor_msgs/Imu, the folder of a CSV export, a BROAD HDF5 or RepoIMU CSV file "
@@ -167,11 +168,6 @@ void declare(VerbOptions& verb, ImportOptions& options) {
   verb.add("--lever-arm", options.lever_arm_m,
            "sets the lever arm X Y Z from the robot's centre of mass to the IMU, m [default: 0 0 0]")
       .words(3);
-  verb.add("--robot", options.robot,
-           "states the type of robot, which some methods need: rig, sphere or pendulum [default: unknown]");
-  verb.add("--radius", options.radius_m,
-           "states the radius of the sphere, m, which position methods need [default: unknown]")
-      .within(1e-3, 10.0);
   verb.add("--imu-topic", options.imu_topics,
            "imports this IMU topic of a bag (sensor_msgs/Imu); the first topic is the primary IMU [default: all IMU "
            "topics]");
@@ -183,6 +179,15 @@ void declare(VerbOptions& verb, ImportOptions& options) {
            "the bag, if the headers have no usable stamps. With 'record', a sweep starts one period before its stamp "
            "[default: header]");
   declare_lidar(verb, options);
+}
+
+void declare(VerbOptions& verb, ImportOptions& options) {
+  declare_sensors(verb, options);
+  verb.add("--robot", options.robot,
+           "states the type of robot, which some methods need: rig, sphere or pendulum [default: unknown]");
+  verb.add("--radius", options.radius_m,
+           "states the radius of the sphere, m, which position methods need [default: unknown]")
+      .within(1e-3, 10.0);
   declare_reference(verb, options);
   verb.add("-o,--output", options.out, "writes this recording, FILE.h5").required();
 }
@@ -333,6 +338,7 @@ scenarios::BagReading bag_reading(const Session& session, const ImportOptions& o
     if (options.stamps == "record") reading.stamps = scenarios::StampSource::record;
   }
   reading.sweeps = sweep_reading(session, options);
+  reading.leave_out_topics = options.leave_out_topics;
   return reading;
 }
 

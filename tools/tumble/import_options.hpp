@@ -35,8 +35,12 @@ struct ImportOptions {
   // topics of a bag
   std::vector<std::string> imu_topics, lidar_topics;
   std::string reference_topic, stamps;
+  bool leave_out_topics = false;  ///< leaves out a faulty topic if another topic of its kind can be read
 };
 
+/// Declares the path and the options that state how the IMU and the lidar are read.
+void declare_sensors(VerbOptions& verb, ImportOptions& options);
+/// Declares all options of `tumble import`.
 void declare(VerbOptions& verb, ImportOptions& options);
 
 /// Returns the format that the user names, or detects the format from the path's extension or content.

@@ -2,9 +2,11 @@
 #include "tools/tumble/progress.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 namespace tumble::tools {
 
@@ -21,6 +23,14 @@ std::string failures_text(const scenarios::SweepProgress& progress) {
   return text.empty() ? text : text + ")";
 }
 
+/// Returns a bar of `width` cells, or "" for a width of 0.
+std::string bar_text(double share, int width) {
+  if (width <= 0) return "";
+  const int filled = std::clamp(static_cast<int>(share * width), 0, width);
+  return "[" + std::string(static_cast<std::size_t>(filled), '#') +
+         std::string(static_cast<std::size_t>(width - filled), '-') + "]  ";
+}
+
 }  // namespace
 
 std::string duration_text(double seconds) {
@@ -34,12 +44,7 @@ std::string duration_text(double seconds) {
 std::string progress_line(const scenarios::SweepProgress& p, int bar_width) {
   const double share =
       p.draws_total == 0 ? 1.0 : static_cast<double>(p.draws_done) / static_cast<double>(p.draws_total);
-  std::string line;
-  if (bar_width > 0) {
-    const int filled = std::clamp(static_cast<int>(share * bar_width), 0, bar_width);
-    line = "[" + std::string(static_cast<std::size_t>(filled), '#') +
-           std::string(static_cast<std::size_t>(bar_width - filled), '-') + "]  ";
-  }
+  std::string line = bar_text(share, bar_width);
   line += fmt::format("{}/{} draws  {} %  {} outcomes  {} not ok{}  {} rejected", p.draws_done, p.draws_total,
                       static_cast<int>(share * 100.0), p.outcomes, p.not_ok(), failures_text(p), p.rejected);
   if (p.to_keep > 0) line += fmt::format("  kept {}/{}", p.kept, p.to_keep);
@@ -52,19 +57,40 @@ std::string progress_line(const scenarios::SweepProgress& p, int bar_width) {
   return line;
 }
 
+std::string progress_line(const RegistrationProgress& p, int bar_width) {
+  const double share = p.all == 0 ? 1.0 : static_cast<double>(p.done) / static_cast<double>(p.all);
+  const double per_s = p.elapsed_s > 0.0 ? static_cast<double>(p.done) / p.elapsed_s : 0.0;
+  return bar_text(share, bar_width) + fmt::format("{}/{} lidar sweeps  {:.0f} sweeps/s", p.done, p.all, per_s);
+}
+
 ProgressDisplay::ProgressDisplay(Write write, bool terminal) : write_(std::move(write)), terminal_(terminal) {}
 
-void ProgressDisplay::show(const scenarios::SweepProgress& progress) {
+ProgressDisplay ProgressDisplay::on_standard_error() {
+  const auto write = [](std::string_view text) {
+    std::fwrite(text.data(), 1, text.size(), stderr);
+    std::fflush(stderr);
+  };
+  return {write, isatty(STDERR_FILENO) == 1};
+}
+
+template <class Progress>
+void ProgressDisplay::show_line(const Progress& progress, double elapsed_s) {
   if (terminal_) {
     write_("\r" + progress_line(progress, kBarWidth) + "\x1b[K");
-  } else if (progress.elapsed_s - shown_at_s_ >= kLinePeriodS) {
-    shown_at_s_ = progress.elapsed_s;
+  } else if (elapsed_s - shown_at_s_ >= kLinePeriodS) {
+    shown_at_s_ = elapsed_s;
     write_(progress_line(progress, 0) + "\n");
   }
 }
 
-void ProgressDisplay::finish(const scenarios::SweepProgress& progress) {
+template <class Progress>
+void ProgressDisplay::finish_line(const Progress& progress) {
   write_(terminal_ ? "\r" + progress_line(progress, kBarWidth) + "\x1b[K\n" : progress_line(progress, 0) + "\n");
 }
+
+template void ProgressDisplay::show_line(const scenarios::SweepProgress&, double);
+template void ProgressDisplay::show_line(const RegistrationProgress&, double);
+template void ProgressDisplay::finish_line(const scenarios::SweepProgress&);
+template void ProgressDisplay::finish_line(const RegistrationProgress&);
 
 }  // namespace tumble::tools

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -17,18 +18,36 @@ std::string duration_text(double seconds);
 /// (2 diverged, 1 timeout)  0 rejected  left 1 min 10 s". The bar has `bar_width` cells; a width of 0 omits the bar.
 std::string progress_line(const scenarios::SweepProgress& progress, int bar_width);
 
-/// Shows the progress of a sweep: on a terminal in one line that is overwritten, elsewhere in a new line every ten
-/// seconds.
+/// Progress of an estimator over the lidar sweeps of one recording.
+struct RegistrationProgress {
+  std::size_t done = 0, all = 0;
+  double elapsed_s = 0.0;  ///< since the first sweep of this pass
+};
+
+/// Formats the progress, for example "[####------]  40/100 lidar sweeps  87 sweeps/s".
+std::string progress_line(const RegistrationProgress& progress, int bar_width);
+
+/// Shows the progress of a sweep or of an estimator: on a terminal in one line that is overwritten, elsewhere in a new
+/// line every ten seconds.
 class ProgressDisplay {
  public:
   using Write = std::function<void(std::string_view)>;
   ProgressDisplay(Write write, bool terminal);
+  static ProgressDisplay on_standard_error();
+  bool is_on_terminal() const { return terminal_; }
 
-  void show(const scenarios::SweepProgress& progress);
+  void show(const scenarios::SweepProgress& progress) { show_line(progress, progress.elapsed_s); }
+  void show(const RegistrationProgress& progress) { show_line(progress, progress.elapsed_s); }
   /// Shows and ends the last line.
-  void finish(const scenarios::SweepProgress& progress);
+  void finish(const scenarios::SweepProgress& progress) { finish_line(progress); }
+  void finish(const RegistrationProgress& progress) { finish_line(progress); }
 
  private:
+  template <class Progress>
+  void show_line(const Progress& progress, double elapsed_s);
+  template <class Progress>
+  void finish_line(const Progress& progress);
+
   Write write_;
   bool terminal_;
   double shown_at_s_ = 0.0;

@@ -1,25 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/tumble/sweeping.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <cstdio>
-#include <string_view>
 
 #include "tools/tumble/progress.hpp"
 
 namespace tumble::tools {
 
 namespace {
-
-ProgressDisplay display() {
-  const auto to_standard_error = [](std::string_view text) {
-    std::fwrite(text.data(), 1, text.size(), stderr);
-    std::fflush(stderr);
-  };
-  return {to_standard_error, isatty(STDERR_FILENO) == 1};
-}
 
 /// Adds the progress before this step and the progress of this step, for a total of `draws`.
 scenarios::SweepProgress sum(const scenarios::SweepProgress& before, const scenarios::SweepProgress& since,
@@ -44,7 +32,7 @@ scenarios::SweepProgress sum(const scenarios::SweepProgress& before, const scena
 scenarios::SweepProgress sweep_with_progress(const Session& session, const scenarios::DataRoot& data,
                                              const scenarios::Suite& suite, const scenarios::DatabaseOwner& database,
                                              scenarios::SweepOptions options) {
-  ProgressDisplay shown = display();
+  ProgressDisplay shown = ProgressDisplay::on_standard_error();
   if (!session.quiet) options.on_progress = [&](const scenarios::SweepProgress& p) { shown.show(p); };
   const scenarios::SweepProgress final = scenarios::sweep(data, suite, database, options);
   if (!session.quiet) shown.finish(final);
@@ -54,7 +42,7 @@ scenarios::SweepProgress sweep_with_progress(const Session& session, const scena
 AskedSweep sweep_until(const Session& session, const scenarios::DataRoot& data, const scenarios::Suite& suite,
                        const scenarios::DatabaseOwner& database, const scenarios::SweepOptions& options,
                        const scenarios::Question& question) {
-  ProgressDisplay shown = display();
+  ProgressDisplay shown = ProgressDisplay::on_standard_error();
   AskedSweep out;
   scenarios::Suite part = suite;
   // the worst draws are determined after the last step

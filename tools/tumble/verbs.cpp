@@ -5,6 +5,10 @@ namespace tumble::tools {
 
 std::span<const Verb> verbs() {
   static constexpr Verb kVerbs[] = {
+      {"odometry", "estimates trajectory and map from a bag or another recording of an IMU and a lidar",
+       declare_odometry},
+      {"doctor", "searches a bag or another recording for faults and names the option that repairs each",
+       declare_doctor},
       {"list", "lists scenarios, methods, metrics, sensors or suites with their parameters", declare_list},
       {"run", "simulates one draw of a scenario, runs methods on the recording and scores the estimates", declare_run},
       {"record", "simulates one draw of a scenario and writes the recording", declare_record},

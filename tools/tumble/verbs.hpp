@@ -27,6 +27,8 @@ std::span<const Verb> verbs();
 Action declare_list(VerbOptions& verb, const Session& session);
 Action declare_run(VerbOptions& verb, const Session& session);
 Action declare_record(VerbOptions& verb, const Session& session);
+Action declare_odometry(VerbOptions& verb, const Session& session);
+Action declare_doctor(VerbOptions& verb, const Session& session);
 Action declare_estimate(VerbOptions& verb, const Session& session);
 Action declare_score(VerbOptions& verb, const Session& session);
 Action declare_sweep(VerbOptions& verb, const Session& session);

@@ -45,6 +45,62 @@ ImuSheet mpu6050() {
           .accel_noise_m_s2_sqrt_hz = 0.00392266};
 }
 
+ImuSheet bmi088() {
+  return {.rate_hz = 200.0,
+          .gyro_range_rad_s = 34.90658504,
+          .accel_range_m_s2 = 235.3596,
+          .gyro_noise_rad_s_sqrt_hz = 0.0002443461,
+          .accel_noise_m_s2_sqrt_hz = 0.001716164};
+}
+
+ImuSheet icm20948() {
+  return {.rate_hz = 225.0,
+          .gyro_range_rad_s = 34.90658504,
+          .accel_range_m_s2 = 156.9064,
+          .gyro_noise_rad_s_sqrt_hz = 0.0002617994,
+          .accel_noise_m_s2_sqrt_hz = 0.002255529};
+}
+
+ImuSheet icm42688() {
+  return {.rate_hz = 200.0,
+          .gyro_range_rad_s = 34.90658504,
+          .accel_range_m_s2 = 156.9064,
+          .gyro_noise_rad_s_sqrt_hz = 4.886922e-05,
+          .accel_noise_m_s2_sqrt_hz = 0.0006864655};
+}
+
+ImuSheet mti3() {
+  return {.rate_hz = 100.0,
+          .gyro_range_rad_s = 34.90658504,
+          .accel_range_m_s2 = 156.9064,
+          .gyro_noise_rad_s_sqrt_hz = 0.000122173,
+          .accel_noise_m_s2_sqrt_hz = 0.001176798};
+}
+
+ImuSheet lsm6dso() {
+  return {.rate_hz = 208.0,
+          .gyro_range_rad_s = 34.90658504,
+          .accel_range_m_s2 = 156.9064,
+          .gyro_noise_rad_s_sqrt_hz = 6.632251e-05,
+          .accel_noise_m_s2_sqrt_hz = 0.001078731};
+}
+
+ImuSheet ouster_imu() {
+  return {.rate_hz = 100.0,
+          .gyro_range_rad_s = 4.36332313,
+          .accel_range_m_s2 = 19.6133,
+          .gyro_noise_rad_s_sqrt_hz = 0.0002617994,
+          .accel_noise_m_s2_sqrt_hz = 0.002255529};
+}
+
+ImuSheet mid360_imu() {
+  return {.rate_hz = 200.0,
+          .gyro_range_rad_s = 34.90658504,
+          .accel_range_m_s2 = 39.2266,
+          .gyro_noise_rad_s_sqrt_hz = 6.632251e-05,
+          .accel_noise_m_s2_sqrt_hz = 0.000980665};
+}
+
 }  // namespace sheets
 
 }  // namespace tumble

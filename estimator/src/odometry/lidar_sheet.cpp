@@ -15,4 +15,40 @@ LidarSheet mid100() {
   return {.range_min_m = 1.0, .range_max_m = 260.0};
 }
 
+LidarSheet vlp16() {
+  return {.range_min_m = 0.4, .range_max_m = 100.0};
+}
+
+LidarSheet xt16() {
+  return {.range_min_m = 0.05, .range_max_m = 120.0};
+}
+
+LidarSheet xt32() {
+  return {.range_min_m = 0.05, .range_max_m = 120.0};
+}
+
+LidarSheet helios32() {
+  return {.range_min_m = 0.2, .range_max_m = 150.0};
+}
+
+LidarSheet os0_64() {
+  return {.range_min_m = 0.3, .range_max_m = 50.0};
+}
+
+LidarSheet os0_128() {
+  return {.range_min_m = 0.3, .range_max_m = 50.0};
+}
+
+LidarSheet os1_64() {
+  return {.range_min_m = 0.3, .range_max_m = 120.0};
+}
+
+LidarSheet os1_128() {
+  return {.range_min_m = 0.3, .range_max_m = 120.0};
+}
+
+LidarSheet mid360() {
+  return {.range_min_m = 0.1, .range_max_m = 70.0};
+}
+
 }  // namespace tumble::sheets

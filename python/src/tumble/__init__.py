@@ -13,7 +13,7 @@ Mapper          LidarInertialOdometry
 Recordings      read and write recordings with ground truth; rate, tumbling and rolling process a whole recording
 Estimates       read_tum, write_tum, read_estimate
 Figures         plot (Matplotlib); point_errors: distances of returns from their true positions
-The program     record, run, estimate, score, sweep, results; serve and describe_method add a Python function as a method
+The program     odometry (trajectory and map from a bag), record, run, estimate, score, sweep, results; serve and describe_method add a Python function as a method
 """
 import importlib.metadata
 
@@ -64,7 +64,7 @@ from .errors import TumbleError
 from .estimates import Estimate, RateTable, Trajectory, read_estimate, read_tum, write_tum
 from .method import describe_method, serve
 from .placing import point_errors
-from .program import ProgramError, call, estimate, program, record, results, run, score, score_rows, sweep
+from .program import ProgramError, call, estimate, odometry, program, record, results, run, score, score_rows, sweep
 from .recordings import Imu, Lidar, Recording, Series, read, write
 from .processing import Tumble, rate, rolling, sheet_of, tumbling, tumbling_options
 from .truth import Contacts, ImuTruth, LidarTruth, SeriesTruth, Truth
@@ -76,6 +76,6 @@ __all__ = [
     "RateStream", "RateTable", "Rates", "Recording", "RegimeReport", "RegimeSmoother", "RegimeStream", "RigCalibration", "RollingFilter", "RollingMode", "RollingOdometry",
     "RollingPoses", "RollingSmoother", "Saave", "Series", "SeriesTruth", "SphereUnit", "Strapdown", "Sweep", "SweepCalibration", "SweepReport", "SweepScale", "SweepVerdict", "Trajectory",
     "Truth", "Tumble", "TumbleAttitude", "TumbleError", "TumblingOdometry", "Vqf", "call", "describe_method", "estimate",
-    "find_rails", "plot", "point_errors", "program", "rails_parameters", "rate", "read", "read_estimate", "read_tum", "record", "results", "rolling", "run",
+    "find_rails", "odometry", "plot", "point_errors", "program", "rails_parameters", "rate", "read", "read_estimate", "read_tum", "record", "results", "rolling", "run",
     "score", "score_rows", "serve", "sheet_of", "sheets", "sweep", "tumbling", "tumbling_options", "write", "write_tum",
 ]

@@ -16,6 +16,7 @@ from typing import Any
 
 from .checks import path_of, refusal, whole, wrong_type
 from .errors import TumbleError
+from .estimates import Estimate, read_estimate
 from .files import optional
 
 Path = str | os.PathLike[str]
@@ -107,6 +108,27 @@ def estimate(recording: Path, method: Path, folder: Path, settings: Mapping[str,
     call("estimate", _named("recording", recording), "--method", path_of("method", method), *_settings(settings), "-o",
          path_of("folder", folder))
     return pathlib.Path(folder)
+
+
+def odometry(recording: Path, folder: Path | None = None, live: bool = False, options: Sequence[Path | Number] = (),
+             timeout_s: float | None = None) -> Estimate:
+    """Estimates trajectory and map of an IMU and a lidar from a bag, with `tumble odometry`. Returns the estimate.
+
+    recording: a ROS 1 bag, ROS 2 bag, MCAP file, recording (HDF5) or another file that `tumble import` reads.
+    folder:    receives trajectory, map and replay page; must be new or empty. Default: the files are not kept.
+    live:      uses past data only (`slam/tumble_live`).
+    options:   further words of the command, for example ["--lever-arm", 0.1, 0, 0.02, "--imu-topic", "/imu"].
+
+    `poses` of the result are poses of the IMU in a world with z up, at the times of the IMU. Raises TumbleError for a recording that
+    cannot be used; the message names the option that helps.
+    """
+    if isinstance(options, (str, os.PathLike)) or not isinstance(options, Sequence):
+        raise wrong_type("options", options, "a list of words")
+    words: list[Path | Number] = [_named("recording", recording), *options, *(["--live"] if live else [])]
+    with tempfile.TemporaryDirectory() as scratch:
+        out = pathlib.Path(scratch) / "odometry" if folder is None else pathlib.Path(path_of("folder", folder))
+        call("odometry", *words, "-o", out, timeout_s=timeout_s)
+        return read_estimate(out)
 
 
 def score(estimate: Path, recording: Path, kind: str | None = None, frame: str | None = None) -> dict[str, float | None]:

@@ -107,6 +107,9 @@ struct BagReading {
   GyroUnit gyro_unit = GyroUnit::rad_s;
   StampSource stamps = StampSource::header;
   SweepReading sweeps;
+  /// Leaves out a topic that cannot be read, with a note, if the caller did not choose the topics and another topic of
+  /// the same kind can be read. Otherwise, one such topic is an error.
+  bool leave_out_topics = false;
 };
 
 /// Reads a ROS 1 bag (a file or a folder of its parts, not encrypted), a ROS 2 bag, or an MCAP file. A ROS 2 bag is a

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <exception>
 #include <utility>
 
 #include "scenarios/errors.hpp"
@@ -13,6 +14,7 @@
 #include "scenarios/recordings/bags/bag_sweeps.hpp"
 #include "scenarios/recordings/bags/sensor_places.hpp"
 #include "scenarios/recordings/recording_clock.hpp"
+#include "scenarios/recordings/repairable.hpp"
 #include "scenarios/recordings/timed_points.hpp"
 
 namespace tumble::scenarios {
@@ -77,37 +79,59 @@ void require_one_clock(const sim::Sensors& sensors, bool by_headers, const std::
   for (const Span& early : spans) {
     for (const Span& late : spans) {
       if (late.first_ns <= early.last_ns) continue;
-      throw BadInput(
-          fmt::format("{}: the time ranges of '{}' and '{}' do not overlap: one range ends {} s before the other "
-                      "begins; check that both use the same clock{}",
-                      path.string(), early.name, late.name,
-                      std::to_string((static_cast<double>(late.first_ns) - static_cast<double>(early.last_ns)) * 1e-9),
-                      by_headers ? "; set '--stamps record' to use the record stamps" : ""));
+      const std::string text = fmt::format(
+          "{}: the time ranges of '{}' and '{}' do not overlap: one range ends {} s before the other "
+          "begins; check that both use the same clock{}",
+          path.string(), early.name, late.name,
+          std::to_string((static_cast<double>(late.first_ns) - static_cast<double>(early.last_ns)) * 1e-9),
+          by_headers ? "; set '--stamps record' to use the record stamps" : "");
+      if (by_headers) throw RepairableInput(text, {"--stamps", "record"});
+      throw BadInput(text);
     }
   }
 }
 
-/// Rethrows an error of an automatically chosen topic; if there are other topics, adds advice how to skip the faulty
-/// topic.
-[[noreturn]] void fail_of_several(const BadInput& error, const char* option) {
-  throw BadInput(std::string(error.what()) + " (" + option + " selects the topics to read)");
-}
+/// Reads the topics of one kind. If the topics are chosen automatically, the error of one topic names the option that
+/// skips the topic.
+class TopicsOfKind {
+ public:
+  TopicsOfKind(const std::vector<std::string>& topics, bool chosen, bool leave_out, const char* option)
+      : topics_(topics), chosen_(chosen), leave_out_(leave_out), option_(option) {}
+
+  template <class Read>
+  void read(std::vector<std::string>& notes, Read&& read) const {
+    std::exception_ptr first;
+    std::size_t failed = 0;
+    for (const std::string& topic : topics_) {
+      try {
+        read(topic);
+      } catch (const BadInput& error) {
+        if (topics_.size() < 2 || chosen_) throw;
+        if (!leave_out_) throw BadInput(std::string(error.what()) + " (" + option_ + " selects the topics to read)");
+        if (!first) first = std::current_exception();
+        ++failed;
+        notes.push_back(topic + ": caution: the topic cannot be read and is left out: " + error.what());
+      }
+    }
+    if (first && failed == topics_.size()) std::rethrow_exception(first);
+  }
+
+ private:
+  const std::vector<std::string>& topics_;
+  bool chosen_, leave_out_;
+  const char* option_;
+};
 
 void add_imus(const OpenedBag& bag, SensorPlaces& places, const BagReading& reading, Imported& out) {
   const std::vector<std::string> topics = bag.chosen(reading.imu_topics, is_imu_type, kImu);
-  for (const std::string& topic : topics) {
-    try {
-      sim::ImuRecord imu = read_imu(bag, places, topic, reading, out.notes);
-      if (imu.time_ns.empty()) {
-        out.notes.push_back(topic + kNoMessage);
-        continue;
-      }
+  const TopicsOfKind imus(topics, !reading.imu_topics.empty(), reading.leave_out_topics, "--imu-topic");
+  imus.read(out.notes, [&](const std::string& topic) {
+    sim::ImuRecord imu = read_imu(bag, places, topic, reading, out.notes);
+    if (imu.time_ns.empty())
+      out.notes.push_back(topic + kNoMessage);
+    else
       out.sensors.imus.push_back(std::move(imu));
-    } catch (const BadInput& error) {
-      if (topics.size() < 2 || !reading.imu_topics.empty()) throw;
-      fail_of_several(error, "--imu-topic");
-    }
-  }
+  });
   if (out.sensors.imus.size() > 1 && reading.imu_topics.empty())
     out.notes.push_back(
         "'" + out.sensors.imus.front().name +
@@ -130,14 +154,7 @@ void add_lidars(const OpenedBag& bag, SensorPlaces& places, const BagReading& re
     }
   };
   const std::vector<std::string> topics = bag.chosen(reading.lidar_topics, is_cloud_type, kCloud);
-  for (const std::string& topic : topics) {
-    try {
-      read(topic);
-    } catch (const BadInput& error) {
-      if (topics.size() < 2 || chosen) throw;
-      fail_of_several(error, "--lidar-topic");
-    }
-  }
+  TopicsOfKind(topics, chosen, reading.leave_out_topics, "--lidar-topic").read(out.notes, read);
   // Methods map with the first lidar. Depth cameras have no point times and may come first.
   const auto is_timed = [](const auto& each) { return has_timed_points(each.second.lidar); };
   if (!chosen) std::stable_partition(lidars.begin(), lidars.end(), is_timed);

@@ -9,6 +9,7 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/clouds/sweep_stamps.hpp"
 #include "scenarios/recordings/number_text.hpp"
+#include "scenarios/recordings/repairable.hpp"
 #include "scenarios/recordings/rounded_stamps.hpp"
 #include "scenarios/recordings/upper_median.hpp"
 #include "scenarios/standard_gravity.hpp"
@@ -42,11 +43,13 @@ void require_plausible_force(const std::string& where, const sim::ImuRecord& imu
   const char* read_as = unit == AccelUnit::g ? "g" : "m/s^2";
   const std::string likely = likely_force_unit(middle, unit);
   const bool known = likely == "g" || likely == "m/s^2";
-  throw BadInput(
-      fmt::format("{}: if the file is read in {}, the median specific force is {} m/s^2; it must be within 3 and 30 "
-                  "m/s^2. The file may be in {}{}{}",
-                  where, read_as, std::to_string(middle), likely, known ? " (set '--accel-unit " + likely + "')" : "",
-                  middle < kLeastMedian_m_s2 ? ". Another possible cause: the device removed gravity" : ""));
+  const std::string text = fmt::format(
+      "{}: if the file is read in {}, the median specific force is {} m/s^2; it must be within 3 and 30 "
+      "m/s^2. The file may be in {}{}{}",
+      where, read_as, std::to_string(middle), likely, known ? " (set '--accel-unit " + likely + "')" : "",
+      middle < kLeastMedian_m_s2 ? ". Another possible cause: the device removed gravity" : "");
+  if (known) throw RepairableInput(text, {"--accel-unit", likely});
+  throw BadInput(text);
 }
 
 constexpr const char *kTakenInDegrees = " (set '--gyro-unit deg/s')", *kTakenInRadians = " (set '--gyro-unit rad/s')";
@@ -92,12 +95,14 @@ void require_rates_in_range(const std::string& where, const sim::ImuRecord& imu,
   if (share <= kBeyondShare) return;
   const bool as_rad = unit == GyroUnit::rad_s;
   const bool degrees = as_rad && beyond_share(imu, bound, 1.0 / kDegreesPerRadian) <= kBeyondShare;
-  throw BadInput(
-      fmt::format("{}: if the rates are read in {}{} % of them exceed {} rad/s, which is {}; at most 1 % may exceed "
-                  "this limit. The rates may be in {}{}",
-                  where, as_rad ? "rad/s, " : "deg/s, ", rounded(100.0 * share), rounded(bound),
-                  stated ? "twice the stated range of the device" : "more than any robot rotates",
-                  degrees ? "deg/s" : "raw counts of the sensor", degrees ? kTakenInDegrees : ""));
+  const std::string text = fmt::format(
+      "{}: if the rates are read in {}{} % of them exceed {} rad/s, which is {}; at most 1 % may exceed "
+      "this limit. The rates may be in {}{}",
+      where, as_rad ? "rad/s, " : "deg/s, ", rounded(100.0 * share), rounded(bound),
+      stated ? "twice the stated range of the device" : "more than any robot rotates",
+      degrees ? "deg/s" : "raw counts of the sensor", degrees ? kTakenInDegrees : "");
+  if (degrees) throw RepairableInput(text, {"--gyro-unit", "deg/s"});
+  throw BadInput(text);
 }
 
 constexpr double kRotationWindow_s = 0.2, kNearGravity = 0.1;
@@ -261,13 +266,17 @@ std::string require_plausible_rates(const std::string& where, const sim::ImuReco
       rounded(turn.ratio), turn.windows, rounded(turn.correlation));
   const bool as_deg = unit == GyroUnit::deg_s;
   if (!as_deg && near_factor(turn.ratio, 1.0 / kDegreesPerRadian))
-    throw BadInput(fmt::format(
-        "{}: if the rates are read in rad/s, {}; this ratio must be within 0.5 and 2. The rates may be in deg/s{}",
-        where, seen, kTakenInDegrees));
+    throw RepairableInput(
+        fmt::format("{}: if the rates are read in rad/s, {}; this ratio must be within 0.5 and 2. The rates may be in "
+                    "deg/s{}",
+                    where, seen, kTakenInDegrees),
+        {"--gyro-unit", "deg/s"});
   if (as_deg && near_factor(turn.ratio, kDegreesPerRadian))
-    throw BadInput(fmt::format(
-        "{}: if the rates are read in deg/s, {}; this ratio must be within 0.5 and 2. The rates may be in rad/s{}",
-        where, seen, kTakenInRadians));
+    throw RepairableInput(
+        fmt::format("{}: if the rates are read in deg/s, {}; this ratio must be within 0.5 and 2. The rates may be in "
+                    "rad/s{}",
+                    where, seen, kTakenInRadians),
+        {"--gyro-unit", "rad/s"});
   if (near_factor(turn.ratio, 1.0)) return seen + ": units and axes agree";
   return fmt::format("caution: {}; this ratio should be 1. Check the unit, the signs and the order of the axes", seen);
 }

@@ -188,12 +188,12 @@ TEST(LidarRotation, SweepsOfARoomTellTheGyro) {
   recording.sensors.imus.push_back(gyro(4.0));
   recording.sensors.lidars.push_back(lidar_in_room(36));
   EXPECT_GE(seen_rotations(recording.sensors.lidars.front(), nullptr).size(), 20U);
-  EXPECT_THAT(lidar_rotation_notes("bag", recording, GyroUnit::rad_s),
+  EXPECT_THAT(check_lidar_rotation("bag", recording, GyroUnit::rad_s).notes,
               ElementsAre(AllOf(HasSubstr("imu: the rotations of lidar and gyro agree"), HasSubstr("axes agree"))));
   for (Eigen::Vector3d& rate : recording.sensors.imus.front().gyro_rad_s) rate.z() = -rate.z();
-  EXPECT_THAT(lidar_rotation_notes("bag", recording, GyroUnit::rad_s), ElementsAre(HasSubstr("(x, y, -z)")));
+  EXPECT_THAT(check_lidar_rotation("bag", recording, GyroUnit::rad_s).notes, ElementsAre(HasSubstr("(x, y, -z)")));
   recording.sensors.imus.clear();
-  EXPECT_THAT(lidar_rotation_notes("bag", recording, GyroUnit::rad_s), IsEmpty());
+  EXPECT_THAT(check_lidar_rotation("bag", recording, GyroUnit::rad_s).notes, IsEmpty());
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ using testing::room;
 using testing::room_range;
 
 TEST(LidarParameters, ResolveAndBounds) {
-  for (const auto known : {spinning_lidar_parameters(), rosette_lidar_parameters()}) {
+  for (const auto known : {spinning_lidar_parameters(), column_lidar_parameters(), rosette_lidar_parameters()}) {
     for (const Parameter& p : known) {
       EXPECT_GE(p.default_value, p.low) << p.name;
       EXPECT_LE(p.default_value, p.high) << p.name;
@@ -131,6 +131,48 @@ TEST(SpinningLidar, FaultyDriverStampsCompressPackets) {
   EXPECT_EQ(faulty.record.offset_ns[24 * 16], right.record.offset_ns[24 * 16]);
 }
 
+TEST(ColumnLidar, RingsAreEvenlySpacedAndTurnWithTheColumn) {
+  const SensorSpec sensor = testing::exact_lidar_of("column_lidar");
+  const Cast out = cast(room(), sensor, resting(0.1));
+  // 1024 columns of four banks, and one bank more, because 24414 ns are 0.06 ns less than a quarter of 0.1 s / 1024
+  ASSERT_EQ(out.record.ring.size(), (1024u * 4u + 1u) * 16u);
+  double worst_rad = 0.0;
+  for (std::size_t i = 0; i < out.record.ring.size(); ++i) {
+    const Eigen::Vector3d direction = out.record.position_L_m[i].cast<double>().normalized();
+    const double elevation_rad = (-22.5 + 45.0 * out.record.ring[i] / 63.0) * M_PI / 180.0;
+    const double azimuth_rad = -2.0 * M_PI * 1e-8 * out.record.offset_ns[i];  // clockwise, 10 Hz
+    const Eigen::Vector3d expected(std::cos(elevation_rad) * std::cos(azimuth_rad),
+                                   std::cos(elevation_rad) * std::sin(azimuth_rad), std::sin(elevation_rad));
+    worst_rad = std::max(worst_rad, (direction - expected).norm());
+  }
+  EXPECT_LT(worst_rad, 1e-6) << "float positions";
+  // banks of 16 rings are a quarter of a column apart, which is rounded to whole ns
+  EXPECT_EQ(out.record.ring[0], 0u);
+  EXPECT_EQ(out.record.ring[16], 16u);
+  EXPECT_EQ(out.record.offset_ns[15], 0u);
+  EXPECT_EQ(out.record.offset_ns[16], 97656u / 4u);
+  EXPECT_EQ(out.record.offset_ns[64], 97656u);
+}
+
+TEST(ColumnLidar, ElevationsShiftFromSweepToSweep) {
+  SensorSpec sensor = testing::exact_lidar_of("column_lidar");
+  sensor.values.set("elevation_shift_share", 0.25);
+  const Cast out = cast(room(), sensor, resting(0.5));
+  const auto lowest_rad = [&](std::size_t sweep) {
+    const Eigen::Vector3d p = out.record.position_L_m[out.record.sweep_first[sweep]].cast<double>();
+    return std::asin(p.z() / p.norm());
+  };
+  const double spacing_rad = 45.0 / 63.0 * M_PI / 180.0;
+  EXPECT_NEAR(lowest_rad(1) - lowest_rad(0), 0.25 * spacing_rad, 1e-6);
+  EXPECT_NEAR(lowest_rad(4) - lowest_rad(0), 0.0, 1e-6) << "modulo one spacing";
+}
+
+TEST(ColumnLidar, RefusesRingsThatAreNoMultipleOf16) {
+  SensorSpec sensor = testing::exact_lidar_of("column_lidar");
+  sensor.values.set("rings", 40.0);
+  EXPECT_THROW(cast(room(), sensor, resting(0.1)), InvalidSituation);
+}
+
 TEST(RosetteLidar, FollowsTheFormula) {
   SensorSpec sensor = testing::exact_lidar_of("rosette_lidar");
   const Cast out = cast(room(), sensor, resting(0.2));
@@ -157,7 +199,7 @@ TEST(LidarSimulation, DeskewIdentity) {
   const Isometry3d T_BL = mounting();
   const Vector3d rate(9.0, -6.0, 14.0);  // 17.7 rad/s
   const Motion motion = moving(0.2, Vector3d(-0.5, 0.5, 0.1), Vector3d(3.0, -2.0, 1.0), rate);
-  for (const char* kind : {"spinning_lidar", "rosette_lidar"}) {
+  for (const char* kind : {"spinning_lidar", "column_lidar", "rosette_lidar"}) {
     const Cast out = cast(room(), testing::exact_lidar_of(kind), motion, 1, T_BL);
     ASSERT_EQ(out.record.sweep_start_ns.size(), 2u) << kind;
     double worst_m = 0.0, worst_hit_m = 0.0, one_pose_mean_m = 0.0;
@@ -186,7 +228,7 @@ TEST(LidarSimulation, DeskewIdentity) {
 TEST(LidarSimulation, SameBitsForAnyNumberOfThreads) {
   const engine::World world = testing::rough_world(60, 40);
   const Motion motion = moving(0.7, Vector3d(0, 0, 3), Vector3d(2.0, 1.0, 0.5), Vector3d(4.0, 3.0, -8.0));
-  for (const char* kind : {"spinning_lidar", "rosette_lidar"}) {
+  for (const char* kind : {"spinning_lidar", "column_lidar", "rosette_lidar"}) {
     const Cast one = cast(world, testing::lidar_of(kind), motion, 1);
     ASSERT_GT(one.record.range_m.size(), 10000u);
     expect_same(one, cast(world, testing::lidar_of(kind), motion, 2));

@@ -62,9 +62,11 @@ inline SensorSpec lidar_of(const std::string& kind) {
   SensorSpec sensor;
   sensor.name = "lidar";
   sensor.kind = kind;
-  sensor.device = kind == "spinning_lidar" ? "rs16" : "mid100";
-  sensor.values =
-      resolve(kind, {}, kind == "spinning_lidar" ? spinning_lidar_parameters() : rosette_lidar_parameters());
+  sensor.device = kind == "spinning_lidar" ? "rs16" : kind == "column_lidar" ? "os1_64" : "mid100";
+  sensor.values = resolve(kind, {},
+                          kind == "spinning_lidar" ? spinning_lidar_parameters()
+                          : kind == "column_lidar" ? column_lidar_parameters()
+                                                   : rosette_lidar_parameters());
   return sensor;
 }
 

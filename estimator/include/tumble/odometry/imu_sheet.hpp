@@ -48,6 +48,20 @@ ImuSheet vn100();
 ImuSheet phidget1044();
 /// InvenSense MPU-6050 at 500 deg/s and 16 g.
 ImuSheet mpu6050();
+/// Bosch BMI088 at 2000 deg/s and 24 g.
+ImuSheet bmi088();
+/// InvenSense ICM-20948 at 2000 deg/s and 16 g.
+ImuSheet icm20948();
+/// InvenSense ICM-42688-P at 2000 deg/s and 16 g.
+ImuSheet icm42688();
+/// Xsens MTi-3.
+ImuSheet mti3();
+/// STMicroelectronics LSM6DSO at 2000 deg/s and 16 g.
+ImuSheet lsm6dso();
+/// IMU inside an Ouster OS0 or OS1, in the default setting of 250 deg/s and 2 g.
+ImuSheet ouster_imu();
+/// IMU inside a Livox Mid-360; its ranges are assumed.
+ImuSheet mid360_imu();
 
 }  // namespace sheets
 

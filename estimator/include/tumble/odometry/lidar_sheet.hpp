@@ -28,6 +28,24 @@ LidarSheet rs16();
 LidarSheet mid40();
 /// Livox Mid-100.
 LidarSheet mid100();
+/// Velodyne VLP-16.
+LidarSheet vlp16();
+/// Hesai XT16.
+LidarSheet xt16();
+/// Hesai XT32.
+LidarSheet xt32();
+/// RoboSense Helios with 32 beams.
+LidarSheet helios32();
+/// Ouster OS0 with 64 rings.
+LidarSheet os0_64();
+/// Ouster OS0 with 128 rings.
+LidarSheet os0_128();
+/// Ouster OS1 with 64 rings.
+LidarSheet os1_64();
+/// Ouster OS1 with 128 rings.
+LidarSheet os1_128();
+/// Livox Mid-360.
+LidarSheet mid360();
 
 }  // namespace sheets
 

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <utility>
+
+#include "scenarios/errors.hpp"
+
+namespace tumble::scenarios {
+
+/// Option of `tumble import` that changes how a recording is read, for example {"--gyro-unit", "deg/s"}.
+struct ImportOption {
+  std::string name, value;
+};
+
+/// Error for a recording that can be read with another value of one option. The message also names the option.
+class RepairableInput : public BadInput {
+ public:
+  RepairableInput(const std::string& message, ImportOption repair) : BadInput(message), repair_(std::move(repair)) {}
+  const ImportOption& repair() const { return repair_; }
+
+ private:
+  ImportOption repair_;
+};
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `tumble odometry` and `tumble doctor` on bags of other drivers, sound and with faults.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "scenarios/recordings/dialects/export_for.hpp"
+#include "scenarios/recordings/left_out.hpp"
+#include "scenarios/recordings/recording_file.hpp"
+#include "system/program.hpp"
+#include "tests/tree.hpp"
+
+namespace tumble::system_test {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+/// A recording of `stroll`, seven seconds of 20, made once per process.
+fs::path short_stroll() {
+  static const fs::path recording = [] {
+    std::string text = read_file(test::source_dir() / "scenarios/catalogue/stroll.yaml");
+    const std::string whole = "duration_s: 20\n";
+    if (text.find(whole) == std::string::npos) throw std::runtime_error("stroll.yaml has no '" + whole + "'");
+    text.replace(text.find(whole), whole.size(), "duration_s: 7\n");
+    const fs::path folder = fs::path(testing::TempDir()) / ("tumble_stroll_" + std::to_string(getpid()));
+    fs::create_directories(folder);
+    std::ofstream(folder / "stroll.yaml") << text;
+    const Ended ended = run_program(
+        {"record", (folder / "stroll.yaml").string(), "--seed", "1001", "-o", (folder / "stroll.h5").string()});
+    if (ended.status != 0) throw std::runtime_error(ended.err);
+    return folder / "stroll.h5";
+  }();
+  return recording;
+}
+
+void scale(std::vector<Eigen::Vector3d>& rows, double factor) {
+  for (Eigen::Vector3d& row : rows) row *= factor;
+}
+
+/// Drops the sweeps for which `dropped` is true.
+void drop_sweeps(sim::LidarRecord& lidar, const std::function<bool(std::size_t)>& dropped) {
+  std::vector<bool> kept;
+  sim::LidarRecord out = lidar;
+  out.sweep_start_ns.clear();
+  out.sweep_first = {};
+  std::size_t points = 0;
+  for (std::size_t k = 0; k < lidar.sweep_start_ns.size(); ++k) {
+    const std::size_t count = lidar.sweep_first[k + 1] - lidar.sweep_first[k];
+    kept.insert(kept.end(), count, !dropped(k));
+    if (dropped(k)) continue;
+    out.sweep_start_ns.push_back(lidar.sweep_start_ns[k]);
+    out.sweep_first.push_back(points);
+    points += count;
+  }
+  out.sweep_first.push_back(points);
+  scenarios::keep_rows(kept, out.position_L_m), scenarios::keep_rows(kept, out.range_m);
+  scenarios::keep_rows(kept, out.intensity), scenarios::keep_rows(kept, out.offset_ns);
+  scenarios::keep_rows(kept, out.ring);
+  lidar = std::move(out);
+}
+
+struct Fault {
+  const char* name;
+  const char* evidence;  ///< part of a finding
+  const char* repair;    ///< part of the repair of a finding
+  void (*inject)(sim::ImuRecord& imu, sim::LidarRecord& lidar);
+};
+
+const Fault kFaults[] = {
+    {"accelerometer in g", "it is read in g", "--accel-unit",
+     [](sim::ImuRecord& imu, sim::LidarRecord&) { scale(imu.accel_m_s2, 1.0 / 9.80665); }},
+    {"gyro in deg/s", "the rates may be in deg/s", "--gyro-unit deg/s",
+     [](sim::ImuRecord& imu, sim::LidarRecord&) { scale(imu.gyro_rad_s, 57.29577951308232); }},
+    {"inverted pose of the lidar", "the stated pose may be that of the body in the lidar", "--T-body-lidar",
+     [](sim::ImuRecord&, sim::LidarRecord& lidar) { lidar.T_BL = lidar.T_BL.inverse(); }},
+    {"lidar turned by 90 deg", "check the signs and order of the axes, and the mounting", "--T-body-lidar",
+     [](sim::ImuRecord&, sim::LidarRecord& lidar) {
+       lidar.T_BL.rotate(Eigen::AngleAxisd(1.5707963267948966, Eigen::Vector3d::UnitX()));
+     }},
+    {"gyro axes x and y swapped", "the axes", "",
+     [](sim::ImuRecord& imu, sim::LidarRecord&) {
+       for (Eigen::Vector3d& rate : imu.gyro_rad_s) std::swap(rate.x(), rate.y());
+     }},
+    {"point times a hundred times too short", "point times span less than 2 %", "--time-unit",
+     [](sim::ImuRecord&, sim::LidarRecord& lidar) {
+       for (std::uint32_t& offset : lidar.offset_ns) offset /= 100;
+     }},
+    {"lidar starts 2 s late", "s after '", "",
+     [](sim::ImuRecord&, sim::LidarRecord& lidar) {
+       const auto late = [first = lidar.sweep_start_ns.front(), &lidar](std::size_t k) {
+         return lidar.sweep_start_ns[k] < first + 2'000'000'000;
+       };
+       drop_sweeps(lidar, late);
+     }},
+    {"clock of the lidar 0.2 s late", "the lidar's rotation follows the gyro's", "",
+     [](sim::ImuRecord&, sim::LidarRecord& lidar) {
+       for (std::int64_t& start : lidar.sweep_start_ns) start += 200'000'000;
+     }},
+    {"one of ten readings lost", "readings are lost", "",
+     [](sim::ImuRecord& imu, sim::LidarRecord&) {
+       std::vector<bool> kept;
+       for (std::size_t k = 0; k < imu.time_ns.size(); ++k) kept.push_back(k % 10 != 5);
+       scenarios::keep_rows(kept, imu.time_ns), scenarios::keep_rows(kept, imu.gyro_rad_s);
+       scenarios::keep_rows(kept, imu.accel_m_s2), scenarios::keep_rows(kept, imu.clip_flags);
+     }},
+    {"one of seven sweeps lost", "sweeps are lost", "",
+     [](sim::ImuRecord&, sim::LidarRecord& lidar) { drop_sweeps(lidar, [](std::size_t k) { return k % 7 == 3; }); }},
+    {"gyro saturated at half of its largest rate", "the gyro is saturated", "",
+     [](sim::ImuRecord& imu, sim::LidarRecord&) {
+       double most = 0.0;
+       for (const Eigen::Vector3d& rate : imu.gyro_rad_s) most = std::max(most, rate.cwiseAbs().maxCoeff());
+       for (Eigen::Vector3d& rate : imu.gyro_rad_s) rate = rate.cwiseMax(-0.5 * most).cwiseMin(0.5 * most);
+     }},
+};
+
+/// Exports the recording with a fault for another package, and returns the path of the bag.
+fs::path bag_of(const fs::path& folder, const char* peer, const Fault* fault) {
+  scenarios::RecordingInfo info = scenarios::read_info(short_stroll());
+  sim::Sensors sensors = scenarios::read_sensors(short_stroll());
+  if (fault != nullptr) fault->inject(sensors.imus.front(), sensors.lidars.front());
+  fs::remove_all(folder);
+  fs::create_directories(folder);
+  scenarios::write_recording(folder / "faulty.h5", info, sensors, nullptr);
+  scenarios::export_for(folder / "faulty.h5", peer, folder / "export", false);
+  fs::remove(folder / "faulty.h5");
+  const fs::path bag = folder / "export" / "recording.bag";
+  return fs::exists(bag) ? bag : folder / "export" / "bag";
+}
+
+bool has_finding(const json& document, const Fault& fault) {
+  return std::ranges::any_of(document["findings"], [&](const json& each) {
+    return each["evidence"].get<std::string>().find(fault.evidence) != std::string::npos &&
+           each["repair"].get<std::string>().find(fault.repair) != std::string::npos;
+  });
+}
+
+constexpr const char* kPeers[] = {"fast-lio", "dlio", "glim", "rko-lio"};
+
+TEST(Doctor, FindsNothingInSoundBags) {
+  const fs::path folder = test_folder();
+  for (const char* peer : {kPeers[0], kPeers[2]}) {
+    const Ended ended = run_program({"doctor", bag_of(folder / "bag", peer, nullptr).string(), "--json"});
+    EXPECT_EQ(ended.status, 0) << peer << "\n" << ended.out << ended.err;
+    EXPECT_EQ(json_of(ended)["findings"], json::array()) << peer;
+  }
+}
+
+TEST(Doctor, FindsEachFaultAndNamesItsRepair) {
+  const fs::path folder = test_folder();
+  std::size_t k = 0;
+  for (const Fault& fault : kFaults) {
+    const char* const peer = kPeers[k++ % std::size(kPeers)];
+    const Ended ended = run_program({"doctor", bag_of(folder / "bag", peer, &fault).string(), "--json"});
+    EXPECT_EQ(ended.status, 1) << fault.name << ", " << peer << "\n" << ended.err;
+    EXPECT_TRUE(has_finding(json_of(ended), fault)) << fault.name << ", " << peer << "\n" << ended.out;
+  }
+}
+
+TEST(Odometry, WritesAllFilesOfABagThatNeedsARepair) {
+  const fs::path folder = test_folder();
+  const fs::path bag = bag_of(folder / "bag", "fast-lio", &kFaults[1]);
+  const fs::path out = folder / "out";
+  const Ended ended = run_program({"odometry", bag.string(), "-o", out.string(), "--json"});
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  for (const char* file : {"trajectory.tum", "map.ply", "map.pcd", "estimate.json", "replay.html"})
+    EXPECT_GT(fs::file_size(out / file), 100u) << file;
+  EXPECT_THAT(read_file(out / "map.pcd"), HasSubstr("FIELDS x y z normal_x normal_y normal_z sigma\n"));
+  EXPECT_THAT(ended.err, HasSubstr("--gyro-unit deg/s was set"));
+  const json document = json_of(ended);
+  const json& summary = document["summary"];
+  EXPECT_EQ(summary["health"], "ok");
+  EXPECT_GE(summary["sweeps_registered"].get<int>(), 65);
+  // after 1.5 to 2 s of rest and a smooth start, 1.1 to 1.4 m/s
+  EXPECT_GT(summary["path_m"].get<double>(), 2.0);
+  EXPECT_LT(summary["path_m"].get<double>(), 8.0);
+  const auto found = [&](const std::string& item) {
+    for (const json& each : document["found"])
+      if (each["item"] == item) return each["found"].get<std::string>() + " | " + each["sure"].get<std::string>();
+    return std::string("missing");
+  };
+  EXPECT_THAT(found("data sheet of the lidar"), HasSubstr("rs16"));
+  EXPECT_THAT(found("unit of the gyro"), HasSubstr("deg/s"));
+  EXPECT_THAT(found("pose of the lidar"), HasSubstr("stated"));
+}
+
+TEST(Odometry, RefusesARecordingWithoutALidarAndOptionsThatExcludeEachOther) {
+  const fs::path folder = test_folder();
+  std::ofstream table(folder / "imu.csv");
+  table << "time,gyro_x,gyro_y,gyro_z,accel_x,accel_y,accel_z\n";
+  for (int k = 0; k < 200; ++k)
+    table << 0.01 * k << "," << 0.001 * (k % 3) << ",0,0,0.01,0," << 9.81 + 0.001 * (k % 5) << "\n";
+  table.close();
+  const std::string out = (folder / "out").string();
+  const Ended imu_only = run_program({"odometry", (folder / "imu.csv").string(), "-o", out});
+  EXPECT_EQ(imu_only.status, 2);
+  EXPECT_THAT(imu_only.err, HasSubstr("the recording has no lidar"));
+  EXPECT_FALSE(fs::exists(out));
+  const Ended both = run_program({"odometry", short_stroll().string(), "-o", out, "--live", "--method", "icp"});
+  EXPECT_EQ(both.status, 2);
+  EXPECT_THAT(both.err, HasSubstr("--live and --method exclude each other"));
+}
+
+}  // namespace
+}  // namespace tumble::system_test

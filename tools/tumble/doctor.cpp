@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/exchange/diagnosis.hpp"
+#include "tools/tumble/chosen_method.hpp"
+#include "tools/tumble/importing.hpp"
+#include "tools/tumble/verbs.hpp"
+#include "tools/tumble/verdict_lines.hpp"
+
+namespace tumble::tools {
+
+namespace {
+
+using scenarios::RecordingFinding;
+
+void append_findings(std::vector<RecordingFinding> more, std::vector<RecordingFinding>& out) {
+  std::move(more.begin(), more.end(), std::back_inserter(out));
+}
+
+/// Runs the causal estimator, whose health reports faults that show only in a map.
+std::vector<RecordingFinding> findings_of_odometry(const sim::Sensors& sensors) {
+  const scenarios::MethodPointer method = chosen_method("slam/tumble_lag", {sensors.robot, true});
+  const scenarios::Estimate estimate = run_method(*method, sensors);
+  std::vector<RecordingFinding> out =
+      scenarios::findings_in_estimate(estimate, sensors.lidars.front().sweep_start_ns.size());
+  for (const std::string& line : verdict_lines(estimate)) out.push_back({"odometry", line, ""});
+  return out;
+}
+
+std::vector<RecordingFinding> findings_of(const OpenRecording& recording) {
+  std::vector<RecordingFinding> out;
+  for (const Repair& repair : recording.repairs)
+    out.push_back(
+        {recording.options.path.filename().string(), repair.cause, repair.option.name + " " + repair.option.value});
+  append_findings(scenarios::findings_in_notes(recording.content.notes), out);
+  for (RecordingFinding& each : out) {
+    if (each.where.empty()) each.where = recording.options.path.filename().string();
+  }
+  const sim::Sensors& sensors = recording.content.sensors;
+  append_findings(scenarios::findings_in_readings(sensors), out);
+  const bool rolls = sensors.robot == "sphere" || sensors.robot == "pendulum";
+  if (!sensors.imus.empty() && !sensors.lidars.empty() && !rolls) append_findings(findings_of_odometry(sensors), out);
+  return out;
+}
+
+int run_doctor(const Session& session, const ImportOptions& options) {
+  // wrong options and an unknown format are wrong use; every later error is a finding
+  (void)format_of(options);
+  (void)bag_reading(session, options);
+  std::vector<RecordingFinding> findings;
+  try {
+    findings = findings_of(open_recording(session, options));
+  } catch (const scenarios::BadInput& error) {
+    if (!std::filesystem::exists(options.path)) throw;
+    findings.push_back({options.path.filename().string(), error.what(), scenarios::recommended_option(error.what())});
+  }
+  Table table("", {"where", "finding"});
+  table.wrap_last();
+  nlohmann::json document = nlohmann::json::array();
+  for (const RecordingFinding& each : findings) {
+    table.add_row({each.where, each.evidence + (each.repair.empty() ? "" : ". Repair: " + each.repair)});
+    document.push_back({{"where", each.where}, {"evidence", each.evidence}, {"repair", each.repair}});
+  }
+  if (findings.empty()) table.add_row({options.path.filename().string(), "no fault found"});
+  session.print({table}, {{"findings", document}});
+  return findings.empty() ? kDone : kCheckFailed;
+}
+
+}  // namespace
+
+Action declare_doctor(VerbOptions& verb, const Session& session) {
+  auto options = std::make_shared<ImportOptions>();
+  declare_sensors(verb, *options);
+  verb.footer("Exit status: 0 no fault found, 1 at least one finding, 2 wrong use.");
+  return [&session, options] { return run_doctor(session, *options); };
+}
+
+}  // namespace tumble::tools

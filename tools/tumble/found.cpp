@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/tumble/found.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "scenarios/draw/data_sheet.hpp"
+#include "scenarios/exchange/probable_devices.hpp"
+#include "scenarios/recordings/number_text.hpp"
+#include "scenarios/recordings/upper_median.hpp"
+#include "scenarios/standard_gravity.hpp"
+
+namespace tumble::tools {
+
+namespace {
+
+using scenarios::rounded;
+
+constexpr const char *kStated = "stated", *kMeasured = "measured", *kAssumed = "assumed", *kByName = "by name";
+
+std::string vector_text(const Eigen::Vector3d& v) {
+  return fmt::format("({} {} {})", rounded(v.x()), rounded(v.y()), rounded(v.z()));
+}
+
+std::string pose_text(const Eigen::Isometry3d& T) {
+  const Eigen::Quaterniond q(T.linear());
+  return fmt::format("{} m, quaternion x y z w ({} {} {} {})", vector_text(T.translation()), rounded(q.x()),
+                     rounded(q.y()), rounded(q.z()), rounded(q.w()));
+}
+
+std::string rate_text(std::int64_t period_ns) {
+  return period_ns > 0 ? rounded(1e9 / static_cast<double>(period_ns)) + " Hz" : "unknown rate";
+}
+
+/// Collects the rows for one recording.
+class Found {
+ public:
+  Found(const Session& session, OpenRecording& recording) : recording_(recording) {
+    for (const std::string& name : scenarios::device_names(session.data()))
+      sheets_.push_back(scenarios::load_data_sheet(session.data(), name));
+  }
+
+  std::vector<FoundItem> items() && { return std::move(items_); }
+
+  void add_source() {
+    const ImportOptions& options = recording_.options;
+    add("format", recording_.format, options.format.empty() ? kMeasured : kStated, "--format");
+    const auto stamps = repaired("--stamps");
+    const bool bag = recording_.format == "mcap" || recording_.format.starts_with("rosbag");
+    if (bag)
+      add("time stamps", options.stamps == "record" ? "of the bag's records" : "of the message headers",
+          stamps                   ? kMeasured
+          : options.stamps.empty() ? kAssumed
+                                   : kStated,
+          "--stamps");
+  }
+
+  void add_imu() {
+    sim::ImuRecord& imu = imus().front();
+    add("IMU",
+        fmt::format("'{}': {} readings at {}{}", imu.name, imu.time_ns.size(), rate_text(imu.period_ns),
+                    others(imus().size())),
+        imus().size() > 1 && recording_.options.imu_topics.empty() ? kAssumed : kStated, "--imu-topic");
+    add_imu_sheet(imu);
+    add_units(imu);
+    add_gravity(imu);
+  }
+
+  void add_lidar() {
+    sim::LidarRecord& lidar = lidars().front();
+    const std::set<std::uint16_t> rings(lidar.ring.begin(), lidar.ring.end());
+    add("lidar",
+        fmt::format("'{}': {} sweeps at {}, {} points, {} ring{}{}", lidar.name, lidar.sweep_start_ns.size(),
+                    rate_text(lidar.sweep_period_ns), lidar.position_L_m.size(), rings.size(),
+                    rings.size() == 1 ? "" : "s", others(lidars().size())),
+        lidars().size() > 1 && recording_.options.lidar_topics.empty() ? kAssumed : kStated, "--lidar-topic");
+    add_lidar_sheet(lidar);
+    add("point times", point_times(lidar), recording_.options.time_unit.empty() ? kMeasured : kStated,
+        "--time-field, --time-unit, --not-skewed");
+    add_clocks();
+  }
+
+  void add_mounting() {
+    const ImportOptions& options = recording_.options;
+    const Eigen::Vector3d arm_m = imus().front().T_BI.translation();
+    const bool arm_stated = !options.lever_arm_m.empty() || !arm_m.isZero(0.0);
+    add("lever arm of the IMU",
+        arm_stated ? vector_text(arm_m) + " m from the centre of mass"
+                   : "0: IMU at the centre of mass. Affects rates beyond the gyro's range only",
+        arm_stated ? kStated : kAssumed, "--lever-arm X Y Z");
+    sim::LidarRecord& lidar = lidars().front();
+    const bool pose_stated =
+        !options.T_body_lidar.empty() || !lidar.T_BL.isApprox(Eigen::Isometry3d::Identity(), 1e-12);
+    if (pose_stated) return add("pose of the lidar", pose_text(lidar.T_BL), kStated, kPoseOption);
+    if (const auto& better = recording_.rotation.better_BL) {
+      lidar.T_BL = *better;
+      return add("pose of the lidar",
+                 pose_text(lidar.T_BL) + ": attitude from the rotations of lidar and gyro; position 0", kMeasured,
+                 kPoseOption);
+    }
+    add("pose of the lidar", "equal to the body: an error beyond 1 deg or 5 cm may fail; calibrated during the run",
+        kAssumed, kPoseOption);
+  }
+
+  void add_own_body(const Eigen::AlignedBox3d& box, bool stated) {
+    add("robot's own returns",
+        fmt::format("inside {} to {} m around the lidar; these returns are dropped", vector_text(box.min()),
+                    vector_text(box.max())),
+        stated ? kStated : kAssumed, "--own-body X Y Z X Y Z");
+  }
+
+ private:
+  static constexpr const char* kPoseOption = "--T-body-lidar X Y Z QX QY QZ QW";
+
+  std::vector<sim::ImuRecord>& imus() { return recording_.content.sensors.imus; }
+  std::vector<sim::LidarRecord>& lidars() { return recording_.content.sensors.lidars; }
+
+  void add(std::string item, std::string found, std::string sure, std::string option) {
+    items_.push_back({std::move(item), std::move(found), std::move(sure), std::move(option)});
+  }
+
+  static std::string others(std::size_t count) { return count > 1 ? fmt::format(", first of {}", count) : ""; }
+
+  bool repaired(const std::string& option) const {
+    return std::ranges::any_of(recording_.repairs, [&](const Repair& each) { return each.option.name == option; });
+  }
+
+  void add_imu_sheet(sim::ImuRecord& imu) {
+    const std::string option = "--device NAME";
+    if (!imu.device.empty()) return add("data sheet of the IMU", imu.device, kStated, option);
+    const auto device = scenarios::probable_imu(imu, sheets_);
+    if (!device)
+      return add("data sheet of the IMU", "none: typical noise; the saturation limits are detected from the readings",
+                 kAssumed, option);
+    scenarios::apply_sheet(*std::ranges::find(sheets_, device->device, &scenarios::DataSheet::device), imu);
+    add("data sheet of the IMU", device->device + ": " + device->evidence, kByName, option);
+  }
+
+  void add_lidar_sheet(sim::LidarRecord& lidar) {
+    const std::string option = "--lidar NAME";
+    if (!lidar.device.empty()) return add("data sheet of the lidar", lidar.device, kStated, option);
+    const auto device = scenarios::probable_lidar(lidar, sheets_);
+    if (!device) return add("data sheet of the lidar", "none: no known device matches; not needed", kAssumed, option);
+    lidar.device = device->device;
+    add("data sheet of the lidar", device->device + ": " + device->evidence,
+        device->evidence.starts_with("name") ? kByName : kMeasured, option);
+  }
+
+  void add_units(const sim::ImuRecord& imu) {
+    const ImportOptions& options = recording_.options;
+    const auto& agreement = recording_.rotation.primary;
+    const std::string evidence =
+        agreement && agreement->unit == 1.0
+            ? fmt::format(": equals the lidar's rotation within {} %", rounded(100.0 * agreement->unit_error))
+            : ": the motion does not allow a check against the lidar";
+    add("unit of the gyro", (options.gyro_unit.empty() ? "rad/s" : options.gyro_unit) + evidence,
+        agreement                                              ? kMeasured
+        : options.gyro_unit.empty() || repaired("--gyro-unit") ? kAssumed
+                                                               : kStated,
+        "--gyro-unit");
+    std::vector<double> norms;
+    for (const Eigen::Vector3d& force : imu.accel_m_s2) norms.push_back(force.norm());
+    const double middle = scenarios::upper_median(std::move(norms));
+    add("unit of the accelerometer",
+        fmt::format("{}: the median force is {} m/s^2", options.accel_unit.empty() ? "m/s^2" : options.accel_unit,
+                    rounded(middle)),
+        kMeasured, "--accel-unit");
+  }
+
+  void add_gravity(const sim::ImuRecord& imu) {
+    const Eigen::Vector3d force = imu.accel_m_s2.empty() ? Eigen::Vector3d::Zero() : imu.accel_m_s2.front();
+    add("gravity",
+        fmt::format("{} m/s^2; the first reading measures {} m/s^2 along {}",
+                    rounded(recording_.content.sensors.gravity_m_s2), rounded(force.norm()),
+                    vector_text(force.normalized())),
+        kMeasured, "none: any mounting of the IMU");
+  }
+
+  static std::string point_times(const sim::LidarRecord& lidar) {
+    if (lidar.point_times == sim::PointTimes::unknown) return "none: sweeps are not deskewed";
+    if (lidar.point_times == sim::PointTimes::not_skewed) return "one instant per sweep";
+    const auto last = lidar.offset_ns.empty() ? lidar.offset_ns.end() : std::ranges::max_element(lidar.offset_ns);
+    const double longest_s = last == lidar.offset_ns.end() ? 0.0 : 1e-9 * static_cast<double>(*last);
+    return fmt::format("each point, up to {} s after the start of its sweep", rounded(longest_s));
+  }
+
+  void add_clocks() {
+    const auto& agreement = recording_.rotation.primary;
+    if (!agreement)
+      return add("clock of the lidar", "as stated by its stamps; calibrated during the run", kAssumed, "--stamps");
+    add("clock of the lidar",
+        agreement->delay_s == 0.0 ? std::string("equal to the IMU's within some 10 ms; calibrated during the run")
+                                  : fmt::format("{} s {} the IMU's", rounded(std::abs(agreement->delay_s)),
+                                                agreement->delay_s > 0.0 ? "after" : "before"),
+        kMeasured, "--stamps");
+  }
+
+  OpenRecording& recording_;
+  std::vector<scenarios::DataSheet> sheets_;
+  std::vector<FoundItem> items_;
+};
+
+}  // namespace
+
+std::vector<FoundItem> complete_recording(const Session& session, OpenRecording& recording,
+                                          const Eigen::AlignedBox3d& own_body_L, bool own_body_stated) {
+  Found found(session, recording);
+  found.add_source();
+  found.add_imu();
+  found.add_lidar();
+  found.add_mounting();
+  found.add_own_body(own_body_L, own_body_stated);
+  return std::move(found).items();
+}
+
+Table found_table(const std::vector<FoundItem>& items) {
+  Table table("", {"item", "sure", "change with", "found"});
+  table.wrap_last();
+  for (const FoundItem& each : items) table.add_row({each.item, each.sure, each.option, each.found});
+  return table;
+}
+
+nlohmann::json found_document(const std::vector<FoundItem>& items) {
+  nlohmann::json out = nlohmann::json::array();
+  for (const FoundItem& each : items)
+    out.push_back({{"item", each.item}, {"found", each.found}, {"sure", each.sure}, {"option", each.option}});
+  return out;
+}
+
+}  // namespace tumble::tools

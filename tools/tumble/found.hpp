@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "tools/tables/table.hpp"
+#include "tools/tumble/importing.hpp"
+
+/// Reports what `odometry` detected in a recording, and completes properties that neither the recording nor the user
+/// states.
+namespace tumble::tools {
+
+/// One detected or assumed property.
+struct FoundItem {
+  std::string item;
+  std::string found;   ///< value, with evidence or with the effect of an assumption
+  std::string sure;    ///< stated, measured, by name or assumed
+  std::string option;  ///< option that changes the item
+};
+
+/// Detects the data sheets of the first IMU and lidar, and the attitude of a lidar without a stated pose. Stores them
+/// in the recording. Returns all detected properties.
+///
+/// @param own_body_L  Box around the robot in lidar axes; returns inside are dropped. For display only.
+std::vector<FoundItem> complete_recording(const Session& session, OpenRecording& recording,
+                                          const Eigen::AlignedBox3d& own_body_L, bool own_body_stated);
+
+Table found_table(const std::vector<FoundItem>& items);
+nlohmann::json found_document(const std::vector<FoundItem>& items);
+
+}  // namespace tumble::tools

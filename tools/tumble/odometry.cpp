@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <functional>
+#include <iterator>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <span>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/exchange/diagnosis.hpp"
+#include "scenarios/methods/estimate_file.hpp"
+#include "scenarios/methods/given_parameters.hpp"
+#include "scenarios/methods/map_file.hpp"
+#include "scenarios/methods/robot_presets.hpp"
+#include "scenarios/recordings/replace_file.hpp"
+#include "tools/replay/page.hpp"
+#include "tools/replay/replay.hpp"
+#include "tools/tumble/chosen_method.hpp"
+#include "tools/tumble/found.hpp"
+#include "tools/tumble/progress.hpp"
+#include "tools/tumble/verbs.hpp"
+#include "tools/tumble/verdict_lines.hpp"
+
+namespace tumble::tools {
+
+namespace {
+
+using scenarios::BadInput;
+using scenarios::Estimate;
+
+struct OdometryOptions {
+  ImportOptions input;
+  std::filesystem::path folder;
+  std::string method;
+  bool live = false;
+  std::vector<double> own_body_m;
+  std::vector<std::string> parameters;
+};
+
+Eigen::AlignedBox3d own_body(const OdometryOptions& options) {
+  if (options.own_body_m.empty()) return scenarios::presets::rig_body_L();
+  const Eigen::Vector3d min = Eigen::Vector3d::Map(options.own_body_m.data()),
+                        max = Eigen::Vector3d::Map(options.own_body_m.data() + 3);
+  if (!((min.array() <= max.array()).all()))
+    throw BadInput("--own-body: the first corner must not exceed the second corner in any coordinate");
+  return {min, max};
+}
+
+std::string method_name(const OdometryOptions& options) {
+  if (options.live && !options.method.empty())
+    throw BadInput("--live and --method exclude each other; --live is --method slam/tumble_live");
+  if (!options.method.empty()) return options.method;
+  return options.live ? "slam/tumble_live" : "slam/tumble";
+}
+
+/// Returns the texts that set the box of the robot for a method with these parameters.
+std::vector<std::string> parameter_texts(const OdometryOptions& options, const scenarios::MethodInfo& info) {
+  std::vector<std::string> texts = options.parameters;
+  if (options.own_body_m.empty()) return texts;
+  const char* const names[] = {"own_body_min_x_m", "own_body_min_y_m", "own_body_min_z_m",
+                               "own_body_max_x_m", "own_body_max_y_m", "own_body_max_z_m"};
+  for (std::size_t k = 0; k < std::size(names); ++k)
+    texts.push_back(fmt::format("{}.{}={}", full_name(info), names[k], options.own_body_m[k]));
+  return texts;
+}
+
+void require_both_sensors(const std::filesystem::path& path, const sim::Sensors& sensors) {
+  if (!sensors.imus.empty() && !sensors.lidars.empty()) return;
+  const std::string file = path.string();
+  throw BadInput(fmt::format("{}: odometry needs an IMU and a lidar; the recording has no {}. {}", file,
+                             sensors.imus.empty() ? "IMU" : "lidar",
+                             sensors.lidars.empty() ? "For an IMU alone: 'tumble import " + file +
+                                                          " -o r.h5', then 'tumble estimate r.h5 --method rate/tumble'"
+                                                    : "Add IMU readings with --imu FILE.csv"));
+}
+
+/// Runs the method, with a progress bar on a terminal. Returns the duration of the run [s].
+double run_with_progress(const Session& session, const scenarios::Method& method, const sim::Sensors& sensors,
+                         Estimate& estimate) {
+  using Clock = std::chrono::steady_clock;
+  const auto since = [](Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+  };
+  ProgressDisplay display = ProgressDisplay::on_standard_error();
+  const Clock::time_point start = Clock::now();
+  Clock::time_point pass = start;
+  RegistrationProgress progress;
+  std::function<void(std::size_t, std::size_t)> on_sweep;
+  if (!session.quiet && display.is_on_terminal())
+    on_sweep = [&](std::size_t done, std::size_t all) {
+      if (done <= progress.done) pass = Clock::now();
+      progress = {done, all, since(pass)};
+      display.show(progress);
+    };
+  estimate = run_method(method, sensors, on_sweep);
+  if (progress.all > 0) display.finish(progress);
+  return since(start);
+}
+
+/// Length of the path through the ends of the sweeps [m]. The poses between the ends add noise to the length.
+double path_length_m(const Estimate& estimate) {
+  double sum_m = 0.0;
+  for (std::size_t k = 1; k < estimate.sweeps.size(); ++k)
+    sum_m += (estimate.sweeps[k].pose.p_WA_m - estimate.sweeps[k - 1].pose.p_WA_m).norm();
+  return sum_m;
+}
+
+double imu_duration_s(const sim::ImuRecord& imu) {
+  return imu.time_ns.empty() ? 0.0 : 1e-9 * static_cast<double>(imu.time_ns.back() - imu.time_ns.front());
+}
+
+std::string health_text(const Estimate& estimate) {
+  if (!estimate.status.ok()) return "failed";
+  std::string text;
+  for (const scenarios::Doubt& doubt : estimate.doubts) text += (text.empty() ? "" : ", ") + row_of(doubt);
+  return text.empty() ? "ok" : text;
+}
+
+nlohmann::json summary_of(const sim::Sensors& sensors, const Estimate& estimate, double run_s) {
+  const std::size_t sweeps = sensors.lidars.front().sweep_start_ns.size();
+  const scenarios::Saturation saturation = scenarios::saturation_of(sensors.imus.front());
+  const auto registered =
+      std::ranges::count_if(estimate.sweeps, [](const auto& sweep) { return sweep.verdict != SweepVerdict::rejected; });
+  return {{"duration_s", imu_duration_s(sensors.imus.front())},
+          {"path_m", path_length_m(estimate)},
+          {"sweeps_registered", registered},
+          {"sweeps", sweeps},
+          {"clipped_share", saturation.gyro_share},
+          {"health", health_text(estimate)},
+          {"sweeps_per_s", run_s > 0.0 ? static_cast<double>(sweeps) / run_s : 0.0}};
+}
+
+Table summary_table(const nlohmann::json& summary) {
+  Table table("result", {"duration", "path", "sweeps registered", "samples clipped", "health", "speed"});
+  table.add_row(
+      {fmt::format("{:.1f} s", summary["duration_s"].get<double>()),
+       fmt::format("{:.1f} m", summary["path_m"].get<double>()),
+       fmt::format("{} of {}", summary["sweeps_registered"].get<long>(), summary["sweeps"].get<std::size_t>()),
+       fmt::format("{:.1f} %", 100.0 * summary["clipped_share"].get<double>()), summary["health"].get<std::string>(),
+       fmt::format("{:.0f} sweeps/s", summary["sweeps_per_s"].get<double>())});
+  return table;
+}
+
+void write_replay(const std::filesystem::path& page, const OpenRecording& recording, const std::string& method,
+                  const Estimate& estimate) {
+  ReplayInput input;
+  input.title = recording.options.path.filename().string();
+  if (!recording.content.info.attribution.empty())
+    input.facts.emplace_back("recorded by", recording.content.info.attribution);
+  input.sensors = &recording.content.sensors;
+  input.truth = recording.truth ? &*recording.truth : nullptr;
+  input.estimates.push_back({method, &estimate});
+  scenarios::replace_file(page, replay_page(replay_of(input, {})));
+}
+
+void print_notes(const Session& session, const OpenRecording& recording, const Estimate& estimate) {
+  for (const Repair& repair : recording.repairs)
+    session.note(fmt::format("{} {} was set: {}", repair.option.name, repair.option.value, repair.cause));
+  for (const scenarios::RecordingFinding& each : scenarios::findings_in_notes(recording.content.notes))
+    session.note(each.where + ": " + each.evidence);
+  for (const std::string& line : verdict_lines(estimate)) session.note(line);
+}
+
+int run_odometry(const Session& session, const OdometryOptions& options) {
+  const Eigen::AlignedBox3d box = own_body(options);
+  const std::string name = method_name(options);
+  OpenRecording recording = open_recording(session, options.input);
+  require_both_sensors(options.input.path, recording.content.sensors);
+  const std::vector<FoundItem> found = complete_recording(session, recording, box, !options.own_body_m.empty());
+  if (!session.json) session.print({found_table(found)}, {});
+  const sim::Sensors& sensors = recording.content.sensors;
+  const scenarios::MethodPointer chosen[] = {chosen_method(name, {sensors.robot, true})};
+  const scenarios::MethodInfo& info = chosen[0]->info;
+  const std::vector<scenarios::Method> methods = scenarios::with_parameters(chosen, parameter_texts(options, info));
+  scenarios::OutputFolder folder(options.folder);
+  Estimate estimate;
+  const double run_s = run_with_progress(session, methods.front(), sensors, estimate);
+  scenarios::write_estimate(options.folder, info.name, info.kind, estimate, scenarios::digest(sensors, nullptr));
+  if (!estimate.map.empty()) scenarios::write_map_pcd(options.folder / "map.pcd", estimate.map);
+  if (!estimate.poses.empty()) write_replay(options.folder / "replay.html", recording, full_name(info), estimate);
+  folder.keep();
+
+  print_notes(session, recording, estimate);
+  const nlohmann::json summary = summary_of(sensors, estimate, run_s);
+  session.print({summary_table(summary)}, {{"folder", options.folder.string()},
+                                           {"method", full_name(info)},
+                                           {"status", estimate.status.ok() ? "ok" : "failed"},
+                                           {"message", estimate.status.message()},
+                                           {"found", found_document(found)},
+                                           {"summary", summary},
+                                           {"health", estimate.health}});
+  if (estimate.status.ok()) {
+    session.note(fmt::format("written: {} (trajectory.tum, map.ply, map.pcd, estimate.json, replay.html)",
+                             options.folder.string()));
+    return kDone;
+  }
+  throw BadInput(options.input.path.string() + ": " + full_name(info) +
+                 " failed: " + failure_reason(estimate.status, sensors) + "; 'tumble doctor " +
+                 options.input.path.string() + "' searches for the cause");
+}
+
+}  // namespace
+
+Action declare_odometry(VerbOptions& verb, const Session& session) {
+  auto options = std::make_shared<OdometryOptions>();
+  declare_sensors(verb, options->input);
+  verb.add("-o,--output", options->folder, "folder for trajectory, map, health and replay page").required();
+  verb.add_flag("--live", options->live, "uses past data only, as on the robot: slam/tumble_live");
+  verb.add("--method", options->method, "another slam method ('tumble list methods') [slam/tumble]");
+  verb.add("--own-body", options->own_body_m,
+           "X Y Z X Y Z: two opposite corners of a box around the robot in lidar axes, m; returns inside are dropped "
+           "[-0.5 -0.4 -0.27 0.5 0.4 0.23]")
+      .words(6);
+  verb.add("--set", options->parameters, "METHOD.PARAMETER=NUMBER; repeat for more ('tumble list methods NAME')")
+      .one_at_a_time();
+  return [&session, options] { return run_odometry(session, *options); };
+}
+
+}  // namespace tumble::tools
