@@ -17,6 +17,7 @@
 #include "results.hpp"
 #include "rig.hpp"
 #include "streams.hpp"
+#include "tumble/odometry/recording_estimate.hpp"
 
 namespace tumble::python {
 
@@ -292,8 +293,22 @@ void bind_tumbling(nb::module_& m) {
           "Returns all processed sweeps that take() has not returned yet.")
       .def(
           "finish",
-          [](BoundTumblingOdometry& self) { self.run([](TumblingOdometry& odometry) { odometry.finish(); }); },
-          "Processes all waiting sweeps that the IMU covers, at the end of a run or at a halt. take() returns them.")
+          [](BoundTumblingOdometry& self) {
+            require(self.run([](TumblingOdometry& odometry) { return odometry.finish(); }));
+          },
+          "Processes all waiting sweeps that the IMU covers, at the end of a run or at a halt. take() returns them.\n"
+          "With lag_s=1e9, estimates the whole recording. Raises TumbleError for a recording that cannot be estimated.")
+      .def(
+          "rates",
+          [](BoundTumblingOdometry& self) {
+            Rates out;
+            self.run([&](TumblingOdometry& odometry) {
+              if (odometry.recording()) out.rows = odometry.recording()->rates;
+              return true;
+            });
+            return out;
+          },
+          "Returns the rates of all samples after finish() with lag_s=1e9; otherwise no row.")
       .def_static("parameters", [] { return list_fields(TumblingOdometry::Params{}, kDerivedTumblingParameters); });
   bind_accessors(bound);
   bind_copy<BoundTumblingOdometry>(bound);

@@ -7,6 +7,7 @@
 #include "scenarios/methods/imu_check.hpp"
 #include "scenarios/methods/recovered_rates.hpp"
 #include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/report_rates.hpp"
 #include "scenarios/methods/sample_times.hpp"
 #include "scenarios/methods/sphere_imus.hpp"
 #include "tumble/attitude/tumble_attitude.hpp"
@@ -54,11 +55,11 @@ Estimate run_rig(const sim::Sensors& sensors, const sim::Values& parameters) {
   std::vector<ImuSample> samples;
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (!estimate.status.ok()) return estimate;
-  (void)check_imu(sensors, samples, estimate);  // Only a warning: constant external pushes can cause the same readings.
-  (void)report_frozen_axes(sensors, samples, estimate);
-  const std::vector<ImuSample> read = samples;
-  const RecoveredRates recovered = recover_in_time(sensors, samples, estimate.health);
-  (void)check_flights(sensors, read, recovered.carried.share, estimate);
+  check_imu(sensors, samples, estimate);  // Only a warning: constant external pushes can cause the same readings.
+  const CheckedImu imu = checked_imu(sensors);
+  report_findings(check_frozen(imu, samples), sensors, samples, estimate);
+  const RecoveredRates recovered = recovered_readings(sensors, samples, ReplacedReadings::unreliable, estimate);
+  report_findings(check_flights(imu, samples, carried_share(recovered.report)), sensors, samples, estimate);
   TumbleAttitude::Params params = stated(sensors);
   attitude_tumble_settings().apply(parameters, params);
   const TumbleAttitude filter(params);
@@ -66,17 +67,17 @@ Estimate run_rig(const sim::Sensors& sensors, const sim::Values& parameters) {
   estimate.attitudes.reserve(samples.size());
   std::vector<RateState> turned(samples.size());
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    estimate.status = filter.step(samples[k], recovered.covariances_rad2_s2[k], state);
+    estimate.status = filter.step(recovered.samples[k], recovered.covariances_rad2_s2[k], state);
     if (!estimate.status.ok()) return estimate;
     estimate.attitudes.push_back({samples[k].time_ns, state.q_WI, TumbleAttitude::attitude_covariance_rad2(state)});
     turned[k].time_ns = samples[k].time_ns;
-    turned[k].w_WI_I_rad_s = samples[k].angular_velocity_rad_s - state.bias_rad_s;
+    turned[k].w_WI_I_rad_s = recovered.samples[k].angular_velocity_rad_s - state.bias_rad_s;
     turned[k].covariance_rad2_s2 = recovered.covariances_rad2_s2[k];
     turned[k].source = recovered.sources[k];
   }
   report_unknown_attitude(estimate);
-  (void)check_rotation_between_rests(sensors, read, turned, estimate);
-  (void)check_rotation_about_pivots(sensors, read, turned, estimate);
+  report_findings(check_rests(imu, samples, turned), sensors, samples, estimate);
+  report_findings(check_pivots(imu, samples, turned), sensors, samples, estimate);
   return estimate;
 }
 

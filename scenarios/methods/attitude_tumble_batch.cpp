@@ -9,6 +9,7 @@
 #include "scenarios/methods/method.hpp"
 #include "scenarios/methods/recovered_rates.hpp"
 #include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/report_rates.hpp"
 #include "scenarios/methods/sample_times.hpp"
 
 namespace tumble::scenarios {
@@ -22,8 +23,8 @@ constexpr double kCarried = 0.5;
 /// Smooths the attitude with the recovered rates as readings, for a body that was not hand-held while its gyro clipped.
 /// `rates` is the output of the rate smoother.
 Status run_thrown(const sim::Sensors& sensors, const sim::Values& parameters, const std::vector<ImuSample>& samples,
-                  const std::vector<ImuSample>& recovered, const std::vector<Eigen::Matrix3d>& covariances,
-                  std::vector<RateState>& rates, Estimate& estimate) {
+                  const RecoveredRates& recovered, std::vector<RateState>& rates, Estimate& estimate) {
+  const std::vector<Eigen::Matrix3d>& covariances = recovered.covariances_rad2_s2;
   ClippedReadings known = find_clipped(sensors.imus.front(), samples, estimate.health);
   for (std::size_t k = 0; k < samples.size(); ++k) {
     if (!covariances[k].isZero(0.0)) known.signs[k].gyro = {};
@@ -32,23 +33,23 @@ Status run_thrown(const sim::Sensors& sensors, const sim::Values& parameters, co
   clipped.recovered_rad2_s2 = covariances;
   CarriedSmoother::Report report;
   const Status status = CarriedSmoother(carried_params(sensors, parameters))
-                            .estimate(recovered, clipped, rates, estimate.attitudes, report);
+                            .estimate(recovered.samples, clipped, rates, estimate.attitudes, report);
   if (status.ok()) report_carried(report, estimate.health);
   return status;
 }
 
 /// Checks the rates that the attitude smoother receives against gravity at the rests. The smoother's output cannot be
 /// checked, because the smoother itself aligns gravity at the rests.
-void check_readings(const sim::Sensors& sensors, const std::vector<ImuSample>& samples,
-                    const std::vector<ImuSample>& recovered, const RecoveredRates& recovery, Estimate& estimate) {
-  std::vector<RateState> read(recovery.sources.size());
+void check_at_rests(const sim::Sensors& sensors, const std::vector<ImuSample>& samples, const RecoveredRates& recovered,
+                    Estimate& estimate) {
+  std::vector<RateState> read(recovered.sources.size());
   for (std::size_t k = 0; k < read.size(); ++k) {
-    read[k].time_ns = recovered[k].time_ns;
-    read[k].w_WI_I_rad_s = recovered[k].angular_velocity_rad_s;
-    read[k].covariance_rad2_s2 = recovery.covariances_rad2_s2[k];
-    read[k].source = recovery.sources[k];
+    read[k].time_ns = recovered.samples[k].time_ns;
+    read[k].w_WI_I_rad_s = recovered.samples[k].angular_velocity_rad_s;
+    read[k].covariance_rad2_s2 = recovered.covariances_rad2_s2[k];
+    read[k].source = recovered.sources[k];
   }
-  (void)check_rotation_between_rests(sensors, samples, read, estimate);
+  report_findings(check_rests(checked_imu(sensors), samples, read), sensors, samples, estimate);
 }
 
 Estimate run_attitude_tumble_batch(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
@@ -56,23 +57,25 @@ Estimate run_attitude_tumble_batch(const sim::Sensors& sensors, const sim::Value
   std::vector<ImuSample> samples;
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (!estimate.status.ok()) return estimate;
-  (void)check_imu(sensors, samples, estimate);  // Only a warning, as in the filters.
-  (void)report_frozen_axes(sensors, samples, estimate);
-  std::vector<ImuSample> recovered = samples;
-  RecoveredRates recovery;
-  if (sensors.sphere_radius_m <= 0.0) recovery = recover_clipped(sensors, recovered, estimate.health);
-  (void)check_flights(sensors, samples, recovery.carried.share, estimate);
+  check_imu(sensors, samples, estimate);  // Only a warning, as in the filters.
+  const CheckedImu imu = checked_imu(sensors);
+  report_findings(check_frozen(imu, samples), sensors, samples, estimate);
+  RecoveredRates recovered;
+  recovered.samples = samples;
+  if (sensors.sphere_radius_m <= 0.0)
+    recovered = recovered_readings(sensors, samples, ReplacedReadings::clipped, estimate);
+  if (sensors.sphere_radius_m <= 0.0)
+    report_findings(check_flights(imu, samples, carried_share(recovered.report)), sensors, samples, estimate);
   std::vector<RateState> rates;
-  if (recovery.answered && recovery.carried.clipped_max < kCarried) {
-    estimate.status =
-        run_thrown(sensors, parameters, samples, recovered, recovery.covariances_rad2_s2, rates, estimate);
+  if (recovered.estimated && recovered.report.carried_clipped_max < kCarried) {
+    estimate.status = run_thrown(sensors, parameters, samples, recovered, rates, estimate);
   } else {
     estimate.status = run_carried(sensors, parameters, rates, estimate.attitudes, estimate.health);
   }
   if (!estimate.status.ok()) return estimate;
   report_unknown_attitude(estimate);
-  check_readings(sensors, samples, recovered, recovery, estimate);
-  (void)check_rotation_about_pivots(sensors, samples, rates, estimate);
+  check_at_rests(sensors, samples, recovered, estimate);
+  report_findings(check_pivots(imu, samples, rates), sensors, samples, estimate);
   return estimate;
 }
 

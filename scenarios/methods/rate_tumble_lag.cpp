@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -47,58 +46,9 @@ RegimeStream::Params stream_params(const sim::Sensors& sensors, const sim::Value
   params.carried.body.expert.gap_max_s = rate.gap_max_s;
   if (given == nullptr) return params;
 
-  batch.model = rate.model;
-  batch.rails = rate.rails;
-  batch.expert.planes = rate.expert.planes;
-  batch.expert.accel_planes = rate.expert.accel_planes;
-  start_from_learnt(*given, batch);
-  rate.model = batch.model;
-  rate.rails = batch.rails;
-  rate.expert.planes = batch.expert.planes;
-  rate.expert.accel_planes = batch.expert.accel_planes;
-  if (batch.calibrated_errors) rate.calibrated_errors = std::make_shared<KnownSensorErrors>(*batch.calibrated_errors);
+  start_from_learnt(*given, rate);
   return params;
 }
-
-LearntRig rig_of(const RateStream& stream, const RateStream::Params& params, const RateStream::State& state) {
-  LearntRig rig{stream.calibration(state), {}};
-  const RailDetector upright_rails(params.rails);
-  const SaturationLevels& known = state.rails.known;
-  for (int c = 0; c < 6; ++c) {
-    std::optional<double>& rail = rig.rail[static_cast<std::size_t>(c)];
-    rail = upright_rails.rail(known.upright_rails, c);
-    const auto& plane = (c < 3 ? known.planes : known.accel_planes).element[static_cast<std::size_t>(c % 3)];
-    if (plane) rail = plane->distance_rad_s;
-  }
-  if (!known.upright) rig.keep(known.planes);
-  if (!known.accel_clips_after_compensation) rig.keep(known.accel_planes, Triad::accelerometer);
-  return rig;
-}
-
-/// Returns the calibration of a stream. `at_prior` is true if the rig's constants were not estimated. The delay is the
-/// only device error that the stream estimates.
-std::optional<LearntRig> learnt_by(const RateStream& stream, const RateStream::Params& params, const LearntRig* given,
-                                   bool at_prior, const RateStream::State& state) {
-  const bool late = state.device.front().delay.found;
-  std::optional<LearntRig> rig;
-  if (!at_prior) {
-    rig = rig_of(stream, params, state);
-    if (given != nullptr) rig->device_errors = given->device_errors;
-  } else {
-    const LearntRig before = known_before(given, params.model);
-    rig = with_rails(before, state.rails.known);
-    if (!rig && late) {
-      rig = before;
-      rig->rails_alone = true;
-    }
-  }
-  if (late) rig->device_errors = stream.sensor_errors(state);
-  return rig;
-}
-
-}  // namespace
-
-namespace {
 
 Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& parameters, const LearntRig* given,
                          std::optional<LearntRig>* found) {
@@ -107,8 +57,11 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (!estimate.status.ok()) return estimate;
   RegimeStream::Params params = stream_params(sensors, parameters, given);
+  std::vector<AuxiliaryRecording> recordings;
+  estimate.status = auxiliary_recordings(sensors, recordings);
+  if (!estimate.status.ok()) return estimate;
   std::vector<std::vector<AuxiliaryReading>> auxiliary_imus;
-  estimate.status = auxiliary_readings(sensors, samples, params.rate.model, auxiliary_imus);
+  estimate.status = align(recordings, samples, bridge::kGapMaxS, params.rate.model, auxiliary_imus);
   if (!estimate.status.ok()) return estimate;
   // Auxiliary IMUs determine the rate even if the body is hand-held, but the hand-held smoother does not use auxiliary
   // IMUs.
@@ -127,10 +80,7 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
   }
   joined.flush(all, estimate.rates);
   const RateStream::State& state = all.rate;
-  // If the constants were reset, they may not have been estimated since then.
-  const RigConstants::Matrix before = stream.start().rig_covariance;
-  const bool at_prior = !(state.rig_covariance.topLeftCorner<3, 3>().trace() < before.topLeftCorner<3, 3>().trace());
-  estimate.health["calibration_at_prior"] = at_prior ? 1.0 : 0.0;
+  estimate.health["calibration_at_prior"] = is_at_prior(stream, state) ? 1.0 : 0.0;
   estimate.health["rig_resets"] = static_cast<double>(state.rig_resets);
   estimate.health["device_unlike"] = state.device.front().posterior.unlike;
   const KnownSensorErrors device = stream.sensor_errors(state);
@@ -152,12 +102,13 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
   estimate.health["carried_steps_skipped"] = static_cast<double>(all.carried.failures);
   estimate.health["carried_revolutions_open"] = static_cast<double>(all.carried.revolutions_open);
   if (estimate.status.ok() && found != nullptr) {
-    if (std::optional<LearntRig> rig = learnt_by(stream, params.rate, given, at_prior, state)) *found = std::move(rig);
+    if (std::optional<LearntRig> rig = learnt(stream, params.rate, given, state)) *found = std::move(rig);
   }
   if (estimate.status.ok()) {
-    (void)check_rates(sensors, samples, carried_share,
-                      estimate);  // reported only, because the results are already final
-    (void)report_frozen_axes(sensors, samples, estimate);
+    // reported only, because the results are already final
+    const ImuFindings findings = check_recording(checked_imu(sensors), samples, estimate.rates, carried_share);
+    report_findings(findings, sensors, samples, estimate);
+    report_stamps(sensors, estimate);
   }
   count_sources(estimate.rates, estimate.health);
   return estimate;

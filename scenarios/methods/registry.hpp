@@ -76,7 +76,7 @@ void count_sources(std::span<const RateState> rates, std::map<std::string, doubl
 /// Motion that an odometer measures in addition to the IMU.
 struct KnownMotion {
   /// Returns the motion of the IMU between two times. Empty unless the odometer covers both times.
-  std::function<std::optional<MotionReading>(TimeNs from_ns, TimeNs to_ns)> between;
+  std::function<std::optional<OdometerReading>(TimeNs from_ns, TimeNs to_ns)> between;
   double correction_max_m = 1.0;  ///< registrations with a larger correction are rejected
   double correction_max_rad = 1.0;
 };

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/sweep_log.hpp"
 
 namespace tumble::scenarios {
@@ -65,9 +66,8 @@ void report_scale(const SweepScale& scale, Estimate& estimate) {
 /// Returns true if the run is localised in its map: tracking never failed, the calibration stayed within its
 /// uncertainty, and lidar ranges and motion have one scale. A wrong scale gives a map of the wrong size even if all
 /// sweeps agree.
-bool is_localised(const CalibrationVerdict& calibration, const Localisation& localisation, const SweepScale* scale) {
-  if (!calibration.converged && calibration.moved > StatedCalibration::kMaxDeviations) return false;
-  return localisation.verdict().ok() && !(scale && scale->is_off());
+bool is_localised(bool calibration_is_off, const Localisation& localisation, const SweepScale* scale) {
+  return !calibration_is_off && localisation.verdict().ok() && !(scale && scale->is_off());
 }
 
 Status any_registered(std::span<const SweepReport> sweeps) {
@@ -84,14 +84,14 @@ void apply_smoothed(std::vector<PoseState> smoothed, SweepReport& sweep) {
   sweep.pose = sweep.trajectory.back();
 }
 
-bool conclude(const LidarInertialOdometry& odometry, const CalibrationVerdict& calibration,
-              const Localisation& localisation, const SweepScale* scale, Estimate& estimate) {
+bool conclude(const LidarInertialOdometry& odometry, bool calibration_is_off, const Localisation& localisation,
+              const SweepScale* scale, Estimate& estimate) {
   for (const SweepReport& sweep : estimate.sweeps) append_poses(sweep.trajectory, estimate);
   report_innovations(estimate);
   bool localised = false;
   if (!estimate.sweeps.empty()) {
     report_end(localisation, estimate);
-    localised = is_localised(calibration, localisation, scale);
+    localised = is_localised(calibration_is_off, localisation, scale);
     localised ? report_no_doubt(Doubt::About::place, estimate) : add_doubt({Doubt::About::place, 0.0}, estimate);
   }
   if (scale) report_scale(*scale, estimate);
@@ -100,11 +100,20 @@ bool conclude(const LidarInertialOdometry& odometry, const CalibrationVerdict& c
   return localised && estimate.status.ok();
 }
 
-void conclude_sweeps(const LidarInertialOdometry& odometry, const StatedCalibration& given, const SweepScale& scale,
-                     const Localisation& localisation, Estimate& estimate) {
-  const CalibrationVerdict calibration{given.deviations(odometry.calibration()), false};
-  estimate.health["lidar_calibration_mahalanobis"] = calibration.moved;
-  conclude(odometry, calibration, localisation, &scale, estimate);
+void report_calibration(const LidarInertialOdometry& odometry, const sim::Sensors& sensors,
+                        std::map<std::string, double>& health) {
+  SweepCalibration given;
+  given.T_IL = bridge::T_IL(sensors.imus.front(), sensors.lidars.front());
+  const auto moved = odometry.calibration().minus(given);
+  health["calibration_rotation_rad"] = moved.head<3>().norm();
+  health["calibration_translation_m"] = moved.segment<3>(3).norm();
+  health["calibration_time_offset_s"] = moved[6];
+}
+
+void report_passes(const MappedRecording& mapped, std::map<std::string, double>& health) {
+  if (mapped.passes > 1) health["passes"] = mapped.passes;
+  health["lidar_calibration_mahalanobis"] = mapped.calibration_deviations;
+  health["calibration_unconverged"] = mapped.calibration_converged ? 0.0 : 1.0;
 }
 
 }  // namespace tumble::scenarios

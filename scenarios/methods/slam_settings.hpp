@@ -32,10 +32,6 @@ SlamParams with_calibration(SlamParams params);
 /// Returns `params` so that registrations with few matches are accepted if the registered pose agrees with the prior.
 /// Baselines do not accept few matches, because a clipped gyro makes the prior wrong (`hill` seed 8: 272 m of error).
 SlamParams with_few_matches(SlamParams params);
-/// Returns `params` so that the registration estimates the saturation deficit, the part of the rate that a clipped axis
-/// hides.
-SlamParams with_saturation_deficit(SlamParams params);
-
 /// Returns the parameters of a method that uses the chain. Users cannot set the values that the recording states or the
 /// parameters in `fixed`.
 Settings<SlamParams> slam_settings(const SlamParams& defaults, std::vector<std::string> fixed = {});

@@ -1,56 +1,273 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cstddef>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/imu_check.hpp"
-#include "scenarios/methods/rate_tumble.hpp"
 #include "scenarios/methods/registry.hpp"
-#include "scenarios/methods/sample_times.hpp"
+#include "scenarios/methods/report_rails.hpp"
+#include "scenarios/methods/report_rates.hpp"
+#include "scenarios/methods/robot_presets.hpp"
+#include "scenarios/methods/settings.hpp"
+#include "scenarios/methods/slam_conclusion.hpp"
 #include "scenarios/methods/slam_registry.hpp"
-#include "scenarios/methods/slam_settings.hpp"
+#include "scenarios/methods/sweep_log.hpp"
+#include "tumble/odometry/recording_estimate.hpp"
+#include "tumble/odometry/tumbling_odometry.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
 
-const Settings<SlamParams>& slam_tumble_chain_settings() {
-  static const Settings<SlamParams> all =
-      slam_settings(with_few_matches(with_calibration(with_saturation_deficit({}))));
+Settings<TumblingOdometry::Params> odometry_settings(double lag_s, std::vector<std::string> fixed) {
+  TumblingOdometry::Params params;
+  params.lever_arm_I_m.setZero();  // The recording states the lever arm.
+  params.lag_s = lag_s;
+  // TumblingOdometry has its own parameters for these quantities.
+  fixed.insert(fixed.end(),
+               {"rate_lever_arm_sigma_m", "rate_gyro_noise_density", "rate_accel_noise_density", "rate_rails_stated_*",
+                "rate_period_s", "rate_lag_s", "rate_evidence_gravity_m_s2", "rate_carried_gravity_m_s2",
+                "rate_carried_gap_max_s", "rate_carried_period_s", "rate_carried_lag_s", "mapping_mount_sigma_*",
+                "mapping_time_offset_sigma_s", "mapping_gravity_m_s2", "mapping_range_*", "mapping_own_body_*"});
+  return Settings<TumblingOdometry::Params>(
+      params, {.stated = {"imu_*", "lever_arm_x_m", "lever_arm_y_m", "lever_arm_z_m", "gravity_m_s2",
+                          "mapping_accel_rail_m_s2"},
+               .fixed = std::move(fixed)});
+}
+
+const Settings<TumblingOdometry::Params>& whole_settings() {
+  // parameters of streams and of the second pass
+  static const auto all = odometry_settings(
+      TumblingOdometry::kWholeRecording,
+      {"lag_s", "sweeps_max", "second_pass_*", "rate_accel_bias_sigma_m_s2", "rate_inertia_sigma", "rate_step_s",
+       "rate_widen_first", "rate_step_max_rad_s", "rate_bound_*", "rate_flight_run_min", "rate_rig_inflation*",
+       "rate_contact_inflation", "rate_contact_slopes", "rate_uncalibrated", "rate_carried_window_s"});
   return all;
 }
 
-const Settings<RateSmoother::Params>& slam_tumble_rate_settings() {
-  static const Settings<RateSmoother::Params> all(
-      RateSmoother::Params{},
-      {.stated = stated_densities(), .beside = slam_tumble_chain_settings().rows(), .prefix = "rate_"});
+const Settings<TumblingOdometry::Params>& lag_settings() {
+  static const auto all = odometry_settings(TumblingOdometry::Params{}.lag_s, {"rate_carried_iterations_max"});
   return all;
 }
 
-Estimate run_slam_tumble(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput& input) {
+TumblingOdometry::Params stated_params(const sim::Sensors& sensors, TumblingOdometry::Params params) {
+  const sim::ImuRecord& imu = sensors.imus.front();
+  params.imu = bridge::imu_sheet(imu);
+  params.lever_arm_I_m = bridge::lever_arm_I_m(imu);
+  params.T_IL = bridge::T_IL(imu, sensors.lidars.front());
+  params.own_body_L = presets::rig_body_L();
+  params.expert.gravity_m_s2 = sensors.gravity_m_s2;
+  return params;
+}
+
+/// Selects which output of TumblingOdometry becomes the estimate.
+enum class Output {
+  live,   ///< pose at each IMU sample, as soon as the sample is processed
+  lag,    ///< final trajectory of each sweep
+  whole,  ///< final trajectory of each sweep, from the whole recording
+};
+
+using SweepProgress = TumblingOdometry::SweepProgress;
+
+/// Collects the output of TumblingOdometry in an estimate.
+class Collector {
+ public:
+  Collector(Output output, const TumblingOdometry::Params& params, Estimate& estimate)
+      : output_(output),
+        given_(params.stated_calibration()),
+        localisation_(params.expert.mapping.expert.matching.distance_m),
+        estimate_(estimate) {}
+
+  /// Stores the live pose after each processed sample.
+  void observe(const TumblingOdometry& odometry) {
+    PoseState pose;
+    if (output_ != Output::live || !odometry.newest(pose).ok()) return;
+    // While TumblingOdometry delays a sample, its newest pose belongs to the previous sample.
+    if (live_.empty() || pose.time_ns > live_.back().time_ns) live_.push_back(pose);
+  }
+  void take(TumblingOdometry& odometry) {
+    while (std::optional<TumblingOdometry::Sweep> sweep = odometry.take()) {
+      if (sweep->report.trajectory.empty()) {  // the IMU starts after the sweep
+        count_trouble(sweep->status, estimate_);
+        continue;
+      }
+      std::vector<PoseState> smoothed = std::move(sweep->report.smoothed);
+      const TimeNs end_ns = sweep->report.pose.time_ns;
+      localisation_.add(sweep->report);
+      append_sweep(sweep->status, end_ns, std::move(sweep->report), estimate_);
+      apply_next(std::move(smoothed));
+    }
+  }
+  /// Stores the remaining trajectories at the end of the run.
+  void conclude(const TumblingOdometry& odometry) {
+    if (output_ != Output::whole) {
+      for (std::vector<PoseState>& open : odometry.mapper().window_trajectories()) apply_next(std::move(open));
+    }
+    if (output_ == Output::live) replace_by_live();
+    const double moved = given_.deviations(odometry.mapper().calibration());
+    const RecordingEstimate* const whole = odometry.recording();
+    const bool off = whole ? whole->mapped.calibration_is_off() : moved > StatedCalibration::kMaxDeviations;
+    estimate_.health["lidar_calibration_mahalanobis"] = moved;
+    scenarios::conclude(odometry.mapper(), off, localisation_, &odometry.sweep_scale(), estimate_);
+  }
+
+ private:
+  void apply_next(std::vector<PoseState> smoothed) {
+    if (smoothed.empty() || smoothed_ == estimate_.sweeps.size()) return;
+    apply_smoothed(std::move(smoothed), estimate_.sweeps[smoothed_++]);
+  }
+
+  /// Replaces the trajectory of each sweep by its live poses. Sweeps before the first live pose (at rest about 0.3 s
+  /// after the start) are unchanged.
+  void replace_by_live() {
+    auto next = live_.begin();
+    for (SweepReport& sweep : estimate_.sweeps) {
+      const TimeNs end_ns = sweep.pose.time_ns;
+      const auto after = std::find_if(next, live_.end(), [&](const PoseState& pose) { return pose.time_ns > end_ns; });
+      if (after == next) continue;
+      sweep.trajectory.assign(next, after);
+      sweep.pose = sweep.trajectory.back();
+      next = after;
+    }
+  }
+
+  Output output_;
+  StatedCalibration given_;
+  Localisation localisation_;
+  Estimate& estimate_;
+  std::size_t smoothed_ = 0;
+  std::vector<PoseState> live_;
+};
+
+/// Passes the recording to TumblingOdometry in real-time order: each sample at the end of its window, each sweep after
+/// its last point. Sweeps that end after the last sample are used with the whole recording, and counted otherwise.
+Status replay(const sim::Sensors& sensors, std::span<const ImuSample> samples, bool whole, TumblingOdometry& odometry,
+              Collector& collector, const SweepProgress& on_sweep, Estimate& estimate) {
+  const sim::LidarRecord& lidar = sensors.lidars.front();
+  const std::size_t sweeps = bridge::sweep_count(lidar);
+  std::optional<bridge::Sweep> present;
+  std::size_t next = 0;
+  for (const ImuSample& sample : samples) {
+    if (Status status = odometry.add_imu(sample); !status.ok()) return status;
+    while (present || next < sweeps) {
+      if (!present) present = bridge::sweep(lidar, next++);
+      if (present->end_ns > sample.time_ns) break;
+      if (Status status = odometry.add_sweep(present->start_ns, present->end_ns, present->points); !status.ok())
+        return status;
+      present.reset();
+      if (!whole && on_sweep) on_sweep(next, sweeps);
+    }
+    collector.observe(odometry);
+    collector.take(odometry);
+  }
+  while (present || next < sweeps) {
+    if (!present) present = bridge::sweep(lidar, next++);
+    if (!whole || !odometry.add_sweep(present->start_ns, present->end_ns, present->points).ok())
+      leave_out_unfinished(estimate);
+    present.reset();
+  }
+  const Status status = odometry.finish(on_sweep);
+  collector.take(odometry);
+  return status;
+}
+
+/// Reports what RecordingEstimate contains in addition to the sweeps.
+void report_whole(const RecordingEstimate& whole, const sim::Sensors& sensors, std::span<const ImuSample> samples,
+                  Estimate& estimate) {
+  estimate.rates = whole.rates;
+  estimate.suspect_rad2_s2 = whole.suspect_rad2_s2;
+  for (std::size_t k = 0; k < estimate.rates.size(); ++k) estimate.rates[k].time_ns = whole.stamps_ns[k];
+  report_rates(whole.report, estimate);
+  report_findings(whole.findings, sensors, samples, estimate);
+  report_stamps(sensors, estimate);
+  if (whole.findings.contradict()) add_doubt({Doubt::About::rates}, estimate);
+  count_sources(estimate.rates, estimate.health);
+  if (whole.corrected_jitter_s > 0.0) estimate.health["stamps_mended_s"] = whole.corrected_jitter_s;
+  for (std::size_t left = whole.mapped.unfinished_sweeps; left > 0; --left) leave_out_unfinished(estimate);
+  report_passes(whole.mapped, estimate.health);
+  report_calibration(whole.mapped.mapper, sensors, estimate.health);
+}
+
+void report_stream(const TumblingOdometry& odometry, Estimate& estimate) {
+  report_rails(odometry.rails(), estimate.health);
+  estimate.health["gaps"] = static_cast<double>(odometry.gaps());
+  estimate.health["second_pass_applied"] = odometry.second_pass_applied() ? 1.0 : 0.0;
+}
+
+Estimate run(Output output, const Settings<TumblingOdometry::Params>& settings, const sim::Sensors& sensors,
+             const sim::Values& parameters, const SweepProgress& on_sweep) {
+  Estimate estimate;
+  estimate.frame = Frame::imu;
   std::vector<ImuSample> samples;
-  Estimate estimate = begin_with_rates(sensors, samples, [&](Estimate& out) {
-    const RateSmoother::Params params = smoother_params(sensors.imus.front(), slam_tumble_rate_settings(), parameters);
-    SmoothedRates smoothed;
-    const Status status = tumble_rates(sensors, samples, params, smoothed, out);
-    out.rates = std::move(smoothed.rates);
-    if (status.ok() && !check_rates(sensors, samples, smoothed.carried.share, out)) inflate_rates(out);
-    return status;
-  });
-  if (estimate.status.ok())
-    run_slam_chain(sensors, samples, {slam_tumble_chain_settings(), parameters},
-                   {.calibration = true, .on_sweep = input.on_sweep}, estimate);
+  estimate.status = bridge::primary_imu_samples(sensors, samples);
+  if (!estimate.status.ok()) return estimate;
+  if (sensors.lidars.empty() || bridge::sweep_count(sensors.lidars.front()) == 0) {
+    const char* const missing = sensors.lidars.empty() ? "lidars" : "lidar.sweep_start_ns";
+    estimate.status = {Trouble::empty, missing, 0.0, 1.0};
+    return estimate;
+  }
+  if (output != Output::whole) {  // Only a warning, as for attitudes.
+    check_imu(sensors, samples, estimate);
+    const CheckedImu imu = checked_imu(sensors);
+    report_findings(check_flights(imu, samples, std::nullopt), sensors, samples, estimate);
+    report_findings(check_frozen(imu, samples), sensors, samples, estimate);
+  }
+  TumblingOdometry::Params params = stated_params(sensors, settings.defaults());
+  settings.apply(parameters, params);
+  TumblingOdometry odometry(params);
+  Collector collector(output, params, estimate);
+  estimate.status = replay(sensors, samples, output == Output::whole, odometry, collector, on_sweep, estimate);
+  if (odometry.recording()) report_whole(*odometry.recording(), sensors, samples, estimate);
+  if (!estimate.status.ok()) return estimate;
+  const std::size_t left_out = sensors.imus.front().time_ns.size() - samples.size();
+  estimate.health["rejected_readings"] = static_cast<double>(left_out + odometry.rejected_readings());
+  if (odometry.early_sweeps() > 0) estimate.health["sweeps_before_imu"] = static_cast<double>(odometry.early_sweeps());
+  if (output != Output::whole) report_stream(odometry, estimate);
+  collector.conclude(odometry);
   return estimate;
+}
+
+Estimate run_whole(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput& input) {
+  return run(Output::whole, whole_settings(), sensors, parameters, input.on_sweep);
+}
+
+Estimate run_lag(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput& input) {
+  return run(Output::lag, lag_settings(), sensors, parameters, input.on_sweep);
+}
+
+Estimate run_live(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput& input) {
+  return run(Output::live, lag_settings(), sensors, parameters, input.on_sweep);
 }
 
 }  // namespace
 
 Method slam_tumble() {
   return rig_slam({.name = "tumble",
-                   .doc = "The chain of icp with the rates of rate/tumble; the registration estimates the saturation "
-                          "deficit of clipped axes.",
+                   .doc = "TumblingOdometry, the public API of the library, with the whole recording: rates of "
+                          "rate/tumble and passes of the mapper until the calibration has converged.",
                    .ours = true,
-                   .settings = {&slam_tumble_chain_settings(), &slam_tumble_rate_settings()}},
-                  at_sample_times<run_slam_tumble>);
+                   .settings = {&whole_settings()}},
+                  run_whole);
+}
+
+Method slam_tumble_lag() {
+  return rig_slam({.name = "tumble_lag",
+                   .doc = "TumblingOdometry, the public API of the library: one causal pass; the final pose of a sweep "
+                          "follows 0.3 s later.",
+                   .ours = true,
+                   .settings = {&lag_settings()}},
+                  run_lag);
+}
+
+Method slam_tumble_live() {
+  return rig_slam({.name = "tumble_live",
+                   .doc = "The same pass, live: the pose at each IMU sample uses past data only.",
+                   .ours = true,
+                   .settings = {&lag_settings()}},
+                  run_live);
 }
 
 }  // namespace tumble::scenarios

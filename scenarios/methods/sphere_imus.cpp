@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "scenarios/methods/bridge.hpp"
-#include "scenarios/methods/frozen_axes.hpp"
 
 namespace tumble::scenarios {
 
@@ -49,6 +48,10 @@ Doubt doubt_of(const UnitFault& fault, const std::string& name, TimeNs start_ns)
 }
 
 }  // namespace
+
+std::string to_string(const FrozenAxis& frozen) {
+  return std::string(frozen.triad == Triad::gyro ? "gyro_" : "accel_") + "xyz"[frozen.axis];
+}
 
 Status sphere_imus(const sim::Sensors& sensors, SphereImus& out) {
   out = {};

@@ -11,6 +11,9 @@
 /// All IMUs of a sphere, for the estimator.
 namespace tumble::scenarios {
 
+/// Returns the sensor and axis for a health key, for example "gyro_z".
+std::string to_string(const FrozenAxis& frozen);
+
 /// Usable readings of the units of a sphere.
 struct SphereImus {
   std::vector<std::string> names;

@@ -32,12 +32,14 @@ RegimeSmoother::RegimeSmoother(const Params& params)
   require_fields(params);
 }
 
-Status RegimeSmoother::estimate(std::span<const ImuSample> samples, std::vector<RateState>& rates,
-                                Report& report) const {
+Status RegimeSmoother::estimate(std::span<const ImuSample> samples,
+                                std::span<const std::vector<AuxiliaryReading>> auxiliary_imus,
+                                std::vector<RateState>& rates, Report& report) const {
   rates.clear();
   report = {};
-  if (const Status status = rate_.estimate(samples, rates, report.rate); !status.ok()) return status;
-  join(samples, rates, report);
+  const Status status = rate_.estimate(samples, auxiliary_imus, rates, report.rate);
+  if (!status.ok()) return status;
+  if (auxiliary_imus.empty()) join(samples, rates, report);
   return {};
 }
 

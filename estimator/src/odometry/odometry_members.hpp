@@ -100,6 +100,9 @@ void TumblingOdometry::members(Self& s, Visitor& visit) {
   visit("readings", s.readings_);
   visit("done", s.done_);
   visit("sweep_end_ns", s.sweep_end_ns_);
+  visit("recorded", s.recorded_);
+  visit.scratch(s.whole_);  // finish() computes the results again
+  visit.scratch(s.finished_);
 }
 
 }  // namespace tumble

@@ -2,19 +2,21 @@
 #include "tumble/odometry/tumbling_odometry.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 #include <memory>
 #include <utility>
 
 #include "tumble/common/detail/sample_check.hpp"
 #include "tumble/mapping/detail/sweep_check.hpp"
+#include "tumbling_odometry_params.hpp"
 
 namespace tumble {
 
-namespace {
+using odometry::mapper_params;
+using odometry::outlier_params;
+using odometry::rate_params;
 
-// Standard deviation of the horizontal part of gravity after levelling, if the world is not exactly level.
-constexpr double kGravitySigma_m_s2 = 0.03;
+namespace {
 
 /// Returns the points fired at `from_ns` or later. The times of the points are relative to `from_ns`.
 std::vector<LidarPoint> points_from(TimeNs from_ns, TimeNs start_ns, std::span<const LidarPoint> points) {
@@ -36,62 +38,11 @@ std::size_t drop_until(TimeNs time_ns, std::deque<WaitingSweep>& sweeps) {
   return dropped;
 }
 
-RegimeStream::Params rate_params(const TumblingOdometry::Params& params) {
-  require_fields(params);
-  RegimeStream::Params out = params.expert.rate;
-  RateModelParams& model = out.rate.model;
-  model.nominal.lever_arm_m = params.lever_arm_I_m;
-  model.lever_arm_sigma_m = params.lever_arm_sigma_m;
-  model.gyro_noise_density = params.imu.gyro_noise_rad_s_sqrt_hz;
-  model.accel_noise_density = params.imu.accel_noise_m_s2_sqrt_hz;
-  if (params.imu.gyro_range_rad_s > 0.0) out.rate.rails.stated_gyro_rad_s = params.imu.gyro_range_rad_s;
-  if (params.imu.accel_range_m_s2 > 0.0) out.rate.rails.stated_accel_m_s2 = params.imu.accel_range_m_s2;
-  out.rate.period_s = 1.0 / params.imu.rate_hz;
-  out.rate.lag_s = std::max(params.lag_s, 2.0 * out.rate.period_s);
-  out.evidence.gravity_m_s2 = out.carried.body.gravity_m_s2 = params.expert.gravity_m_s2;
-  out.carried.body.expert.gap_max_s = out.rate.gap_max_s;
-  return out;
-}
-
-OutlierFilter::Device outlier_params(const TumblingOdometry::Params& params) {
-  return {.gyro_range_rad_s = params.imu.gyro_range_rad_s,
-          .accel_range_m_s2 = params.imu.accel_range_m_s2,
-          .period_s = 1.0 / params.imu.rate_hz,
-          .gap_max_s = params.expert.rate.rate.gap_max_s};
-}
-
-LidarInertialOdometry::Params mapper_params(const TumblingOdometry::Params& params) {
-  LidarInertialOdometry::Params out = params.expert.mapping;
-  out.T_IL = params.T_IL;
-  out.mount_sigma_rad = params.mount_sigma_rad;
-  out.mount_sigma_m = params.mount_sigma_m;
-  out.time_offset_sigma_s = params.time_offset_sigma_s;
-  out.expert.gravity_m_s2 = params.expert.gravity_m_s2;
-  out.range_min_m = params.lidar.range_min_m;
-  out.range_max_m = params.lidar.range_max_m;
-  out.own_body_L = params.own_body_L;
-  if (params.imu.accel_range_m_s2 > 0.0) out.expert.rails.accel_m_s2 = unsaturated_range(params.imu.accel_range_m_s2);
-  return out;
-}
-
 constexpr double kSilent_s = 1.0;       // silence of the lidar after which empty sweeps are inserted
 constexpr double kAhead_s = 1.0;        // maximum time by which a sweep may end after the newest sample
 constexpr double kSweepsMax_hz = 20.0;  // maximum sweep rate of a lidar; limits how many sweeps wait for the lag
 
 }  // namespace
-
-RegimeStream::Params TumblingExpertParams::rate_defaults() {
-  RegimeStream::Params out;
-  out.rate.expert.uncalibrated = 0.003;
-  return out;
-}
-
-OdometryParams TumblingExpertParams::mapping_defaults() {
-  LidarInertialOdometry::Params out;
-  out.expert.gravity_sigma_m_s2 = kGravitySigma_m_s2;
-  out.expert.rails.estimate_deficit = true;
-  return out;
-}
 
 TumblingOdometry::TumblingOdometry(const Params& params)
     : params_(params),
@@ -103,6 +54,7 @@ TumblingOdometry::TumblingOdometry(const Params& params)
 
 Status TumblingOdometry::add_imu(const ImuSample& sample) {
   if (const Status status = check_sample(sample); !status.ok()) return status;
+  if (is_whole()) return record(sample);
   StampOrder::Verdict verdict{};
   if (const Status status = order_.judge(sample.time_ns, order_state_, verdict); !status.ok()) return status;
   if (verdict == StampOrder::Verdict::restarts_after_gap) restart_rates();
@@ -138,6 +90,7 @@ Status TumblingOdometry::take_in(const ImuSample& sample) {
 }
 
 Status TumblingOdometry::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points) {
+  if (finished_) return {Trouble::out_of_range, "sweeps after finish()", 1.0, 0.0};
   if (end_ns < start_ns) return {Trouble::time_order, "end_ns", double(end_ns), double(start_ns)};
   if (const Status status = check_stamp(start_ns, "start_ns"); !status.ok()) return status;
   if (const Status status = check_stamp(end_ns, "end_ns"); !status.ok()) return status;
@@ -171,7 +124,9 @@ Status TumblingOdometry::add_motion(const MotionReading& motion) {
 
 Status TumblingOdometry::add_reading(const OdometerReading& reading) {
   if (!newest_ns_) return {Trouble::empty, "imu samples", 0.0, 1.0};
-  return readings_.add(reading, pass_.needed_ns(*registered_ns_), *newest_ns_ + static_cast<TimeNs>(1e9 * kAhead_s));
+  const std::size_t most = is_whole() ? std::numeric_limits<std::size_t>::max() : WaitingReadings::kMost;
+  const TimeNs latest_ns = *newest_ns_ + static_cast<TimeNs>(1e9 * kAhead_s);
+  return readings_.add(reading, pass_.needed_ns(*registered_ns_), latest_ns, most);
 }
 
 std::optional<TumblingOdometry::Sweep> TumblingOdometry::take() {
@@ -190,6 +145,7 @@ std::optional<double> TumblingOdometry::estimated_jitter_s() const {
 }
 
 Status TumblingOdometry::health() const {
+  if (is_whole()) return health_of_recording();
   const Status of_imu = pass_.rates().rate().health(pass_.rate_state().rate);
   if (!of_imu.ok()) return of_imu;
   if (const Status of_force = pass_.force_at_rest(); !of_force.ok()) return of_force;
@@ -200,12 +156,14 @@ Status TumblingOdometry::health() const {
   return of_localisation.ok() ? params_.stated_calibration().verdict(mapper().calibration()) : of_localisation;
 }
 
-void TumblingOdometry::finish() {
+Status TumblingOdometry::finish(const SweepProgress& on_sweep) {
+  if (is_whole()) return finish_whole(on_sweep);
   OutlierFilter::finish(outliers_);
-  if (!newest_rate()) return;  // no samples since the last call
+  if (!newest_rate()) return {};  // no samples since the last call
   flush_all();
   second_pass_.complete(pass_);
   begin_rates();
+  return {};
 }
 
 void TumblingOdometry::register_sweep(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points) {

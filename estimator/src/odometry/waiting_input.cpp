@@ -14,7 +14,7 @@ TimeNs middle_ns(const OdometerReading& reading) {
 
 }  // namespace
 
-Status WaitingReadings::add(const OdometerReading& reading, TimeNs done_ns, TimeNs latest_ns) {
+Status WaitingReadings::add(const OdometerReading& reading, TimeNs done_ns, TimeNs latest_ns, std::size_t most) {
   if (const Status status = check_reading(reading); !status.ok()) return status;
   const bool motion = std::holds_alternative<MotionReading>(reading);
   const char* const first = motion ? "from_ns" : "time_ns";
@@ -24,11 +24,20 @@ Status WaitingReadings::add(const OdometerReading& reading, TimeNs done_ns, Time
   if (to_ns > latest_ns) return {Trouble::out_of_range, last, double(to_ns), double(latest_ns)};
   const TimeNs middle = middle_ns(reading);
   if (middle <= done_ns) return {Trouble::time_order, last, double(to_ns), double(done_ns)};
-  if (waiting_.size() >= kMost)
-    return {Trouble::out_of_range, "readings waiting", double(waiting_.size() + 1), double(kMost)};
+  if (waiting_.size() >= most)
+    return {Trouble::out_of_range, "readings waiting", double(waiting_.size() + 1), double(most)};
   const auto later = [](TimeNs time_ns, const OdometerReading& other) { return time_ns < middle_ns(other); };
   waiting_.insert(std::upper_bound(waiting_.begin(), waiting_.end(), middle, later), reading);
   return {};
+}
+
+std::optional<OdometerReading> WaitingReadings::find(TimeNs from_ns, TimeNs end_ns) const {
+  const auto later = [](TimeNs time_ns, const OdometerReading& other) { return time_ns < middle_ns(other); };
+  auto next = std::upper_bound(waiting_.begin(), waiting_.end(), end_ns, later);
+  while (next != waiting_.begin() && middle_ns(*--next) > from_ns - kBeyond_ns) {
+    if (begins_ns(*next) >= from_ns - kBeyond_ns && ends_ns(*next) <= end_ns + kBeyond_ns) return *next;
+  }
+  return std::nullopt;
 }
 
 std::optional<OdometerReading> WaitingReadings::take(TimeNs from_ns, TimeNs end_ns) {

@@ -77,6 +77,9 @@ class Tumble(Shown):
     odometry: _tumble.TumblingOdometry  #: the estimator, with its calibration: rig(), calibration()
 
 
+WHOLE_RECORDING = 1e9  # value of lag_s [s]
+
+
 def tumbling_options(recording: Recording, **options: Any) -> dict[str, Any]:
     """Returns the keywords of TumblingOdometry from a recording. `options` override the values of the recording."""
     _require_recording(recording)
@@ -92,7 +95,7 @@ def tumbling(recording: Recording, on_sample: Callable[[_tumble.TumblingOdometry
     """Estimates pose, velocity and map of a tumbling body with the first IMU and the first lidar of a recording.
 
     The data are added in the order of a live robot: each sample at the end of its window, each sweep after its last point. This is the
-    program's method `slam/tumble_lag`.
+    program's method `slam/tumble_lag`. With lag_s=1e9, the call estimates the whole recording at once, as `slam/tumble` does.
 
     on_sample   is called after each sample with the odometry, whose newest() returns the live pose
     options     keywords of TumblingOdometry; they override the values of the recording
@@ -101,6 +104,7 @@ def tumbling(recording: Recording, on_sample: Callable[[_tumble.TumblingOdometry
     imu, lidar = recording.imus[0], recording.sweeps
     done: list[_tumble.Sweep] = []
     given = 0
+    whole = options.get("lag_s", 0.0) >= WHOLE_RECORDING
 
     def add(samples: slice) -> None:
         flags = None if imu.clip_flags is None else imu.clip_flags[samples]
@@ -119,10 +123,10 @@ def tumbling(recording: Recording, on_sample: Callable[[_tumble.TumblingOdometry
 
     for sweep in lidar:
         reached = int(np.searchsorted(imu.time_ns, sweep.end_ns, side="left"))
-        if reached == len(imu):
+        if reached == len(imu) and not (whole and sweep.start_ns < imu.time_ns[-1]):
             break  # the IMU samples end before this sweep does
         if reached >= given:
-            add_until(reached + 1)
+            add_until(min(reached + 1, len(imu)))
         odometry.add_sweep(sweep.start_ns, sweep.end_ns, sweep.position, sweep.offset_ns, sweep.ring, sweep.intensity)
         done += odometry.take_all()
     if given < len(imu):
@@ -130,8 +134,11 @@ def tumbling(recording: Recording, on_sample: Callable[[_tumble.TumblingOdometry
     odometry.finish()
     done += odometry.take_all()
     placed = [sweep.report for sweep in done if sweep.placed]
-    final = [report.smoothed for report in placed if len(report.smoothed) > 0]
-    return Tumble(poses=_tumble.Poses.joined([*final, odometry.window_trajectory()]), sweeps=placed,
+    if whole:
+        final = [report.trajectory for report in placed]
+    else:
+        final = [*(report.smoothed for report in placed if len(report.smoothed) > 0), odometry.window_trajectory()]
+    return Tumble(poses=_tumble.Poses.joined(final), sweeps=placed,
                   refused=[sweep.message for sweep in done if not sweep.placed], map=odometry.map(), odometry=odometry)
 
 

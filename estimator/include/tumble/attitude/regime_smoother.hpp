@@ -19,8 +19,8 @@ namespace tumble {
 ///
 /// All samples of a clipped segment use the smallest probability of hand-held motion within and near the segment. The
 /// smallest probability is used because a hand may release the body during the segment. Flight then determines the
-/// nearby rates, but provides no information about hand-held motion a second later. RegimeSmoother does not use
-/// additional IMUs, which determine the rate in any kind of motion.
+/// nearby rates, but provides no information about hand-held motion a second later. Additional IMUs determine the rate
+/// in any kind of motion, so CarriedSmoother does not run if there are additional IMUs.
 class RegimeSmoother {
  public:
   struct Params {
@@ -57,7 +57,13 @@ class RegimeSmoother {
 
   /// Computes one RateState per sample. Returns the status of RateSmoother; on error `rates` is empty. If
   /// CarriedSmoother fails, `rates` contains the result of RateSmoother.
-  Status estimate(std::span<const ImuSample> samples, std::vector<RateState>& rates, Report& report) const;
+  Status estimate(std::span<const ImuSample> samples, std::vector<RateState>& rates, Report& report) const {
+    return estimate(samples, {}, rates, report);
+  }
+  /// Estimates the rates with additional IMUs on the body, like RateSmoother::estimate. CarriedSmoother does not run
+  /// with additional IMUs, and `report.judged` is false.
+  Status estimate(std::span<const ImuSample> samples, std::span<const std::vector<AuxiliaryReading>> auxiliary_imus,
+                  std::vector<RateState>& rates, Report& report) const;
 
   /// Replaces `rates`, the result of RateSmoother, by the combination with the rates of CarriedSmoother. The report of
   /// RateSmoother must be in `report.rate`.

@@ -4,6 +4,8 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <deque>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -19,6 +21,8 @@
 #include "tumble/odometry/tumbling_params.hpp"
 
 namespace tumble {
+
+struct RecordingEstimate;
 
 /// Estimates pose, velocity and map of a tumbling body from one IMU, whose gyro may saturate, and a lidar with skewed
 /// sweeps. The estimation is causal. SampleClock corrects time stamps that a host computer assigned. RegimeStream
@@ -39,6 +43,11 @@ namespace tumble {
 /// reported are not changed. If no sweep arrives for a second, inertial integration continues, and take() returns a
 /// sweep without points.
 ///
+/// With `lag_s` = kWholeRecording, add_imu() and add_sweep() store the data, and finish() estimates everything from the
+/// whole recording: rates with RegimeSmoother, checks of the IMU, and passes of the mapper until the lidar's
+/// calibration has converged. There are then no live poses, and take() returns all sweeps after finish(). A gap of more
+/// than a second or a step of the clock ends the recording. finish() needs more stack and memory than other calls.
+///
 /// An IMU sample costs one step of RegimeStream, and sometimes the registration of a sweep. After start-up, a sample
 /// that ends no sweep allocates no memory. While SecondPass runs, a sweep costs up to four registrations. The end of
 /// SecondPass costs five more registrations. The lag, the map radius, `sweeps_max` and the buffer of SecondPass limit
@@ -49,6 +58,8 @@ namespace tumble {
 class TumblingOdometry {
  public:
   using Params = TumblingParams;
+  using SweepProgress = std::function<void(std::size_t done, std::size_t all)>;
+  static constexpr double kWholeRecording = Params::kWholeRecording;  ///< value of Params::lag_s
 
   /// Sweep is the result of one sweep.
   struct Sweep {
@@ -90,7 +101,13 @@ class TumblingOdometry {
   /// returns the registered sweeps. The final poses of the sweeps that are still in the window are available from
   /// mapper().window_trajectories(). If more samples are added after finish(), the rate estimation restarts with the
   /// current calibration.
-  void finish();
+  ///
+  /// With kWholeRecording, finish() estimates the whole recording, and later samples and sweeps are rejected until
+  /// reset(). take() then returns all sweeps with their final poses in `report.pose` and `report.trajectory`. Returns
+  /// the errors of RateSmoother::estimate(), for example `too_few`, or the error of a sample in the mapper. Without
+  /// kWholeRecording, finish() returns `ok`. For display, finish() calls `on_sweep` before each sweep with the number
+  /// of processed sweeps and of all sweeps; each pass over the recording starts again at 0.
+  Status finish(const SweepProgress& on_sweep = {});
   /// Starts a new run with a new map, at the origin and at rest. Sweeps not yet fetched by take() remain available, and
   /// the counts continue.
   void reset();
@@ -113,7 +130,7 @@ class TumblingOdometry {
   /// - too large a change of the lidar's calibration (StatedCalibration).
   Status health() const;
   /// Returns the estimated scale of the lidar's ranges relative to the IMU, as far as the motion determines the scale.
-  const SweepScale& sweep_scale() const { return pass_.sweep_scale(); }
+  const SweepScale& sweep_scale() const;
   /// Returns the time of the newest accepted IMU sample.
   std::optional<TimeNs> newest_ns() const { return newest_ns_; }
   /// Returns the rate of the newest IMU sample, if any. While the gyro is saturated, the rate of the newest sample is
@@ -122,8 +139,8 @@ class TumblingOdometry {
   /// Returns the latest smoothed rate, which is about lag_s old. The result is empty while the lag fills.
   const std::optional<RateState>& smoothed_rate() const { return pass_.smoothed_rate(); }
   /// Returns the estimated calibration of the IMU on the body: lever arm, biases, inertia and sensing directions.
-  RigCalibration rig() const { return pass_.rates().rate().calibration(pass_.rate_state().rate); }
-  const SaturationLevels& rails() const { return pass_.rate_state().rate.rails.known; }
+  RigCalibration rig() const;
+  const SaturationLevels& rails() const;
   /// Returns the number of restarts after a gap or after a clock that stepped back.
   std::size_t gaps() const { return gaps_; }
   /// Returns the number of samples that OutlierFilter rejected because of wild readings or time stamps.
@@ -144,12 +161,16 @@ class TumblingOdometry {
   /// stamps.
   std::optional<double> estimated_jitter_s() const;
   /// Returns the mapper, which provides the map and the calibration of the lidar.
-  const LidarInertialOdometry& mapper() const { return pass_.mapper(); }
+  const LidarInertialOdometry& mapper() const;
+  /// Returns the rates of all samples, the checks and the passes of a whole recording (recording_estimate.hpp). Returns
+  /// null before finish() and without kWholeRecording.
+  const RecordingEstimate* recording() const { return whole_.get(); }
 
   /// Saves the complete state: map, calibration, SecondPass, and sweeps that take() has not yet returned. The saved
   /// bytes are equal on every machine and include a checksum. If an object with equal parameters loads the bytes, the
   /// object continues with bit-identical results. Two states are equal if their saved bytes are equal. The size of a
-  /// saved map is in docs/tutorials/your_robot.md.
+  /// saved map is in docs/tutorials/your_robot.md. With kWholeRecording, the bytes contain the recorded data instead of
+  /// the results. Call finish() after load() to compute the results again.
   std::vector<std::byte> save() const;
   /// Replaces the state by a saved state. On error the state is unchanged. The returned status names the field, the
   /// stored value and the bound. The error is `too_few` (truncated bytes), `non_finite`, `time_order`, `gap` or
@@ -177,6 +198,10 @@ class TumblingOdometry {
   void set_gyro_offset(const Eigen::Vector3d& offset_rad_s);
   const Eigen::Vector3d& gyro_offset_rad_s() const { return pass_.rates().params().rate.model.nominal.gyro_bias_rad_s; }
   void begin_rates();
+  bool is_whole() const { return params_.lag_s >= kWholeRecording; }
+  Status record(const ImuSample& sample);
+  Status finish_whole(const SweepProgress& on_sweep);
+  Status health_of_recording() const;
 
   Params params_;
   StampOrder order_;
@@ -196,7 +221,10 @@ class TumblingOdometry {
   std::deque<WaitingSweep> waiting_;
   WaitingReadings readings_;
   std::deque<Sweep> done_;
-  std::optional<TimeNs> sweep_end_ns_;  ///< end of the last accepted sweep
+  std::optional<TimeNs> sweep_end_ns_;              ///< end of the last accepted sweep
+  std::vector<ImuSample> recorded_;                 ///< samples of a whole recording; its sweeps are in `waiting_`
+  std::shared_ptr<const RecordingEstimate> whole_;  ///< set by finish() with kWholeRecording
+  bool finished_ = false;
 };
 
 }  // namespace tumble

@@ -52,6 +52,8 @@ struct TumblingExpertParams {
 
 /// Parameters of TumblingOdometry.
 struct TumblingParams {
+  static constexpr double kWholeRecording = 1e9;  ///< value of `lag_s`; see TumblingOdometry
+
   ImuSheet imu;
   /// Lever arm from the body's centre of mass to the IMU, in IMU axes, and its standard deviation per axis. The lever
   /// arm relates rates to forces, and TumblingOdometry estimates its error. The lever arm has no default, because zero
@@ -68,7 +70,8 @@ struct TumblingParams {
   /// Lidar returns inside the box own_body_L hit the robot itself and are dropped. An empty box of Eigen, the default,
   /// keeps all returns. A box with swapped corners is rejected.
   Eigen::AlignedBox3d own_body_L;
-  double lag_s = 0.2;  ///< delay of reported rates and sweeps; at least two samples
+  /// Delay of reported rates and sweeps: at least two samples and at most 10 s, or kWholeRecording.
+  double lag_s = 0.2;
 
   using Expert = TumblingExpertParams;
   Expert expert;  ///< parameters that few users change
@@ -92,11 +95,10 @@ struct TumblingParams {
     visit(p.mount_sigma_m, calibration_fields::kMountSigma_m);
     visit(p.time_offset_sigma_s, calibration_fields::kTimeOffsetSigma_s);
     visit.group("", p.lidar);
-    visit(
-        p.lag_s,
-        {"lag_s", "s", 0.0, 10.0,
-         "maximum time for which a sweep waits for later data; a longer time adds delay and makes poses more accurate",
-         Rank::first});
+    visit(p.lag_s, {"lag_s", "s", 0.0, kWholeRecording,
+                    "maximum time for which a sweep waits for later data, at most 10 s; a longer time adds delay and "
+                    "makes poses more accurate; 1e9: the whole recording",
+                    Rank::first});
     visit.group("", p.expert);
   }
 };

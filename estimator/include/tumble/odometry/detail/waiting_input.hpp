@@ -29,13 +29,16 @@ class WaitingReadings {
 
   /// Stores a reading; readings may arrive in any order. The reading's time must be after `done_ns`, the end of the
   /// last registered sweep, and at most `latest_ns`. Returns an error of check_reading(), `time_order` if the reading's
-  /// sweep is already registered, or `out_of_range` (too late, or too many waiting readings).
-  Status add(const OdometerReading& reading, TimeNs done_ns, TimeNs latest_ns);
+  /// sweep is already registered, or `out_of_range` (too late, or more than `most` waiting readings).
+  Status add(const OdometerReading& reading, TimeNs done_ns, TimeNs latest_ns, std::size_t most = kMost);
 
   /// Returns the reading of the sweep from `from_ns` to `end_ns`. If the sweep has several readings, only the last
   /// reading is returned, because the errors of the readings are correlated. The function deletes all readings up to
   /// `end_ns`.
   std::optional<OdometerReading> take(TimeNs from_ns, TimeNs end_ns);
+
+  /// Returns the last reading within a sweep, like take(), and keeps all readings. Cost: O(log n).
+  std::optional<OdometerReading> find(TimeNs from_ns, TimeNs end_ns) const;
 
   /// Returns the number of dropped readings that span two sweeps.
   std::size_t straddling() const { return straddling_; }

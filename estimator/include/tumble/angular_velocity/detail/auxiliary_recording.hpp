@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "tumble/angular_velocity/rail_detector.hpp"
+#include "tumble/angular_velocity/rate_model_params.hpp"
+#include "tumble/common/imu.hpp"
+#include "tumble/common/status.hpp"
+
+namespace tumble {
+
+/// Readings of an additional IMU over a whole recording, in order of time.
+struct AuxiliaryRecording {
+  AuxiliaryImu imu;  ///< the sensing directions are estimated from the readings
+  RailDetector::Params stated_rails;
+  std::vector<ImuSample> samples;
+};
+
+/// Interpolates additional IMUs at the time stamps of the primary IMU (see align()). Appends each IMU with its
+/// estimated sensing directions to `model.auxiliary_imus`, and its readings to `out`. Only the first kAuxiliaryImusMax
+/// recordings are used. Returns the first error of align(). Cost: O(N), plus the search of ClippingFinder.
+Status align(std::span<const AuxiliaryRecording> recordings, std::span<const ImuSample> primary, double gap_max_s,
+             RateModelParams& model, std::vector<std::vector<AuxiliaryReading>>& out);
+
+}  // namespace tumble

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+#include "tumble/angular_velocity/clipping_finder.hpp"
+#include "tumble/angular_velocity/rate_state.hpp"
+#include "tumble/attitude/regime_smoother.hpp"
+#include "tumble/common/time.hpp"
+#include "tumble/mapping/detail/sweep_scale.hpp"
+#include "tumble/odometry/detail/imu_findings.hpp"
+#include "tumble/odometry/detail/mapping_passes.hpp"
+
+namespace tumble {
+
+/// Results of TumblingOdometry for a whole recording, in addition to the sweeps of take().
+struct RecordingEstimate {
+  explicit RecordingEstimate(const LidarInertialOdometry::Params& mapping) : mapped(mapping) {}
+
+  std::vector<TimeNs> stamps_ns;  ///< received time stamps of the samples in use; their rates have corrected times
+  std::vector<RateState> rates;   ///< one per sample in use; their covariances include `suspect_rad2_s2`
+  std::vector<Eigen::Matrix3d> suspect_rad2_s2;  ///< see suspect_covariance(); empty without such a finding
+  RegimeSmoother::Report report;                 ///< report of the rate estimation, with the calibration of the IMU
+  SaturationLevels rails;
+  ImuFindings findings;
+  MappedRecording mapped;           ///< mapper and passes; TumblingOdometry::take() returns the sweeps
+  SweepScale scale;                 ///< scale of the lidar's ranges
+  double corrected_jitter_s = 0.0;  ///< largest correction of a time stamp
+};
+
+}  // namespace tumble

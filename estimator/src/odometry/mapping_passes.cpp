@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/odometry/detail/mapping_passes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+#include <variant>
+
+namespace tumble {
+
+namespace {
+
+constexpr int kSearches = 3;                    // additional passes for a calibration that has not converged
+constexpr std::size_t kSweepsPerRejection = 5;  // more rejections: the pass does not determine the calibration
+
+/// Cuts a sweep at the end of the IMU data if most of the sweep remains. Without the cut, a clock offset would drop the
+/// last sweep.
+bool shorten(TimeNs end_ns, WaitingSweep& sweep) {
+  if (end_ns >= sweep.end_ns) return true;
+  const TimeNs left_ns = end_ns - sweep.start_ns, length_ns = sweep.end_ns - sweep.start_ns;
+  if (2 * left_ns < length_ns) return false;
+  // Points beyond the sweep's end are kept, because they are a fault of the recording that the mapper reports.
+  std::erase_if(sweep.points, [&](const LidarPoint& p) { return p.offset_ns > left_ns && p.offset_ns <= length_ns; });
+  sweep.end_ns = end_ns;
+  return true;
+}
+
+/// One pass of the mapper over a recording.
+class Pass {
+ public:
+  Pass(const MappingInput& input, const LidarInertialOdometry::Params& params)
+      : input_(input), offset_ns_(static_cast<TimeNs>(std::llround(params.time_offset_s * 1e9))), out_(params) {
+    if (input.start) out_.mapper.start_at(*input.start);
+  }
+
+  MappedRecording run() {
+    for (std::size_t k = 0; k < input_.sweeps && out_.status.ok(); ++k) add(input_.sweep(k));
+    for (std::vector<PoseState>& open : out_.mapper.window_trajectories()) apply_next(std::move(open));
+    for (const MappedSweep& sweep : out_.sweeps) {
+      if (!sweep.report.trajectory.empty()) out_.localisation.add(sweep.report);
+    }
+    return std::move(out_);
+  }
+
+ private:
+  /// Adds the IMU samples up to the sweep's end, the odometer reading, and the sweep.
+  void add(WaitingSweep sweep) {
+    add_samples(sweep.end_ns + offset_ns_);
+    if (!out_.status.ok()) return;
+    if (!shorten(input_.samples.back().time_ns - offset_ns_, sweep)) {
+      ++out_.unfinished_sweeps;
+      return;
+    }
+    add_reading(sweep.end_ns + offset_ns_);
+    if (out_.status.ok()) add_points(sweep);
+  }
+
+  /// Adds IMU samples up to the first sample at or after `to_ns`.
+  void add_samples(TimeNs to_ns) {
+    while (next_ < input_.samples.size() && (next_ == 0 || input_.samples[next_ - 1].time_ns < to_ns)) {
+      out_.status = out_.mapper.add_imu(input_.samples[next_], input_.rates[next_]);
+      if (!out_.status.ok()) return;
+      ++next_;
+    }
+  }
+
+  void add_reading(TimeNs to_ns) {
+    if (!input_.reading || !last_pose_ns_) return;
+    if (const auto reading = input_.reading(*last_pose_ns_, to_ns)) out_.status = out_.mapper.add_reading(*reading);
+  }
+
+  void add_points(const WaitingSweep& sweep) {
+    MappedSweep& added = out_.sweeps.emplace_back();
+    added.status = out_.mapper.add_sweep(sweep.start_ns, sweep.end_ns, sweep.points, added.report);
+    if (added.report.trajectory.empty()) return;
+    last_pose_ns_ = added.report.pose.time_ns;
+    apply_next(std::exchange(added.report.smoothed, {}));
+  }
+
+  /// Replaces the trajectory of the oldest sweep in the window by its smoothed trajectory.
+  void apply_next(std::vector<PoseState> smoothed) {
+    if (smoothed.empty()) return;
+    while (smoothed_ < out_.sweeps.size() && out_.sweeps[smoothed_].report.trajectory.empty()) ++smoothed_;
+    if (smoothed_ == out_.sweeps.size()) return;
+    SweepReport& report = out_.sweeps[smoothed_++].report;
+    report.trajectory = std::move(smoothed);
+    report.pose = report.trajectory.back();
+  }
+
+  const MappingInput& input_;
+  TimeNs offset_ns_;
+  MappedRecording out_;
+  std::size_t next_ = 0;      ///< next sample
+  std::size_t smoothed_ = 0;  ///< next sweep without a smoothed trajectory
+  std::optional<TimeNs> last_pose_ns_;
+};
+
+/// Returns the initial calibration of a pass with the stated uncertainty.
+StatedCalibration stated_calibration(const LidarInertialOdometry::Params& started,
+                                     const LidarInertialOdometry::Params& given) {
+  StatedCalibration out;
+  out.calibration.T_IL = started.T_IL;
+  out.calibration.time_offset_s = started.time_offset_s;
+  out.mount_sigma_rad = given.mount_sigma_rad;
+  out.mount_sigma_m = given.mount_sigma_m;
+  out.time_offset_sigma_s = given.time_offset_sigma_s;
+  return out;
+}
+
+/// Returns whether few enough sweeps were rejected to use the calibration of the pass.
+bool determines_calibration(const MappedRecording& pass) {
+  if (!pass.status.ok()) return false;
+  std::size_t rejected = 0, located = 0;
+  for (const MappedSweep& sweep : pass.sweeps) {
+    if (sweep.report.trajectory.empty()) continue;
+    ++located;
+    rejected += sweep.report.verdict == SweepVerdict::rejected;
+  }
+  return kSweepsPerRejection * rejected <= located;
+}
+
+void start_from(const SweepCalibration& learnt, LidarInertialOdometry::Params& params) {
+  params.T_IL = learnt.T_IL;
+  params.time_offset_s = learnt.time_offset_s;
+}
+
+}  // namespace
+
+SaturationLevels flag_saturated_forces(const RailDetector::Params& stated, std::span<ImuSample> samples) {
+  ClippingFinder::Params params;
+  params.upright_rails = stated;
+  ClippingFinder::Found found = ClippingFinder(params).find(samples);
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    const unsigned forces = clip_flags({.accel = found.clippings[k].accel});
+    samples[k].device_clip_flags = static_cast<std::uint8_t>(samples[k].device_clip_flags | forces);
+  }
+  return std::move(found.rails);
+}
+
+MappedRecording::MappedRecording(const LidarInertialOdometry::Params& params)
+    : mapper(params), localisation(params.expert.matching.distance_m) {}
+
+bool MappedRecording::calibration_is_off() const {
+  return !calibration_converged && calibration_deviations > StatedCalibration::kMaxDeviations;
+}
+
+MappedRecording map_once(const MappingInput& input, const LidarInertialOdometry::Params& params) {
+  return Pass(input, params).run();
+}
+
+MappedRecording map_with_calibration(const MappingInput& input, const LidarInertialOdometry::Params& params) {
+  LidarInertialOdometry::Params started = params;
+  MappedRecording out = map_once(input, started);
+  int passes = 1;
+  const auto again = [&] {
+    out = map_once(input, started);
+    ++passes;
+  };
+  double moved = 0.0;
+  while (determines_calibration(out)) {
+    moved = stated_calibration(started, params).deviations(out.mapper.calibration());
+    if (moved <= StatedCalibration::kMaxDeviations || passes > kSearches) break;
+    start_from(out.mapper.calibration(), started);
+    again();
+  }
+  const bool converged = determines_calibration(out) && moved <= StatedCalibration::kMaxDeviations;
+  if (converged) {
+    const auto sigma = out.mapper.calibration_weighting_covariance().diagonal().cwiseSqrt().eval();
+    start_from(out.mapper.calibration(), started);
+    started.mount_sigma_rad = sigma.head<3>().maxCoeff();
+    started.mount_sigma_m = sigma.segment<3>(3).maxCoeff();
+    started.time_offset_sigma_s = sigma[6];
+    again();
+  }
+  out.passes = passes;
+  out.calibration_deviations = stated_calibration(params, params).deviations(out.mapper.calibration());
+  out.calibration_converged = converged;
+  return out;
+}
+
+SweepScale find_sweep_scale(std::span<const ImuSample> samples, const MappedRecording& mapped, double gravity_m_s2) {
+  std::vector<SweepReport> located;
+  for (const MappedSweep& sweep : mapped.sweeps) {
+    if (!sweep.report.trajectory.empty()) located.push_back(sweep.report);
+  }
+  return find_sweep_scale(samples, located, gravity_m_s2);
+}
+
+}  // namespace tumble

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// TumblingOdometry with the whole recording.
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include "tumble/odometry/recording_estimate.hpp"
+#include "tumble/odometry/tumbling_odometry.hpp"
+#include "tumble/rolling/rolling_smoother.hpp"
+#include "tumbling_odometry_params.hpp"
+
+namespace tumble {
+
+static_assert(TumblingParams::kWholeRecording == RollingSmoother::kWholeRun, "both classes use one value");
+
+namespace {
+
+CheckedImu checked_imu(const TumblingOdometry::Params& params) {
+  return {.gyro_range_rad_s = params.imu.gyro_range_rad_s,
+          .accel_range_m_s2 = params.imu.accel_range_m_s2,
+          .gravity_m_s2 = params.expert.gravity_m_s2,
+          .lever_arm_I_m = params.lever_arm_I_m};
+}
+
+/// Removes outliers and corrects the time stamps. `stamps_ns` receives the stamps of the remaining samples.
+Status select_samples(const OutlierFilter& filter, const SampleClock& clock, std::vector<ImuSample>& samples,
+                      OutlierFilter::State& outliers, RecordingEstimate& out) {
+  const std::vector<bool> inlier = find_inliers(filter, samples);
+  std::size_t next = 0;
+  outliers.rejected += std::erase_if(samples, [&](const ImuSample&) { return !inlier[next++]; });
+  for (const ImuSample& sample : samples) out.stamps_ns.push_back(sample.time_ns);
+  std::vector<TimeNs> times_ns = out.stamps_ns;
+  if (Status status = to_sample_times(clock, times_ns, out.corrected_jitter_s); !status.ok()) return status;
+  for (std::size_t k = 0; k < samples.size(); ++k) samples[k].time_ns = times_ns[k];
+  return {};
+}
+
+/// Estimates the rates and checks the readings.
+Status estimate_rates(const TumblingOdometry::Params& params, std::span<const ImuSample> samples,
+                      RecordingEstimate& out) {
+  const RegimeSmoother smoother(odometry::recording_rate_params(params));
+  if (Status status = smoother.estimate(samples, out.rates, out.report); !status.ok()) return status;
+  const std::optional<double> carried = out.report.judged ? std::optional(out.report.shares.carried) : std::nullopt;
+  out.findings = check_recording(checked_imu(params), samples, out.rates, carried);
+  out.suspect_rad2_s2 = suspect_covariance(out.findings, samples, out.rates);
+  for (std::size_t k = 0; k < out.suspect_rad2_s2.size(); ++k)
+    out.rates[k].covariance_rad2_s2 += out.suspect_rad2_s2[k];
+  return {};
+}
+
+/// Returns the finding about the whole recording with the highest priority.
+Status verdict(const RecordingEstimate& whole, const StatedCalibration& stated) {
+  if (!whole.findings.all.empty()) return whole.findings.all.front().status;
+  if (const Status of_ranges = whole.scale.verdict(); !of_ranges.ok()) return of_ranges;
+  if (const Status of_vertical = whole.mapped.mapper.vertical(); !of_vertical.ok()) return of_vertical;
+  if (const Status of_tracking = whole.mapped.localisation.verdict(); !of_tracking.ok()) return of_tracking;
+  return whole.mapped.calibration_is_off() ? stated.verdict(whole.mapped.mapper.calibration()) : Status{};
+}
+
+}  // namespace
+
+/// Stores a sample until finish().
+Status TumblingOdometry::record(const ImuSample& sample) {
+  if (finished_) return {Trouble::out_of_range, "samples after finish()", 1.0, 0.0};
+  StampOrder::Verdict verdict{};
+  if (const Status status = order_.judge(sample.time_ns, order_state_, verdict); !status.ok()) return status;
+  if (verdict != StampOrder::Verdict::continues && recorded_.size() > 1) {
+    const TimeNs last_ns = recorded_.back().time_ns;
+    const bool back = verdict == StampOrder::Verdict::restarts_after_step_back;
+    return {back ? Trouble::time_order : Trouble::gap, "time_ns", double(sample.time_ns), double(last_ns)};
+  }
+  if (verdict != StampOrder::Verdict::continues) {  // the first stamp was wrong
+    recorded_.clear();
+    order_state_ = {};
+    registered_ns_.reset();
+  }
+  StampOrder::accept(sample.time_ns, order_state_);
+  recorded_.push_back(sample);
+  newest_ns_ = sample.time_ns;
+  if (!registered_ns_) registered_ns_ = sample.time_ns;
+  return {};
+}
+
+/// Estimates rates, map and poses from the recorded data.
+Status TumblingOdometry::finish_whole(const SweepProgress& on_sweep) {
+  if (finished_) return {};
+  finished_ = true;
+  done_.clear();
+  const LidarInertialOdometry::Params mapping = odometry::mapper_params(params_);
+  const auto whole = std::make_shared<RecordingEstimate>(mapping);
+  std::vector<ImuSample> samples = recorded_;
+  if (Status status = select_samples(filter_, clock_, samples, outliers_, *whole); !status.ok()) return status;
+  if (Status status = estimate_rates(params_, samples, *whole); !status.ok()) return status;
+  whole->rails = flag_saturated_forces(odometry::recording_rate_params(params_).rate.rails, samples);
+  if (!waiting_.empty()) {
+    const MappingInput input{samples,
+                             whole->rates,
+                             waiting_.size(),
+                             [&](std::size_t k) {
+                               if (on_sweep) on_sweep(k, waiting_.size());
+                               return waiting_[k];
+                             },
+                             [this](TimeNs from_ns, TimeNs to_ns) { return readings_.find(from_ns, to_ns); },
+                             pass_.mapper().start()};
+    whole->mapped = map_with_calibration(input, mapping);
+    whole->scale = find_sweep_scale(samples, whole->mapped, params_.expert.gravity_m_s2);
+  }
+  for (MappedSweep& sweep : whole->mapped.sweeps) done_.push_back({sweep.status, std::move(sweep.report)});
+  whole->mapped.sweeps.clear();
+  whole_ = whole;
+  return whole->mapped.status;
+}
+
+const LidarInertialOdometry& TumblingOdometry::mapper() const {
+  return whole_ ? whole_->mapped.mapper : pass_.mapper();
+}
+
+const SweepScale& TumblingOdometry::sweep_scale() const {
+  return whole_ ? whole_->scale : pass_.sweep_scale();
+}
+
+RigCalibration TumblingOdometry::rig() const {
+  return whole_ ? whole_->report.rate.calibration : pass_.rates().rate().calibration(pass_.rate_state().rate);
+}
+
+const SaturationLevels& TumblingOdometry::rails() const {
+  return whole_ ? whole_->rails : pass_.rate_state().rate.rails.known;
+}
+
+Status TumblingOdometry::health_of_recording() const {
+  return whole_ ? verdict(*whole_, params_.stated_calibration()) : Status{};
+}
+
+}  // namespace tumble

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/methods/report_rates.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+
+#include "scenarios/methods/carried.hpp"
+#include "scenarios/methods/report_rails.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+/// Reports whether the smoother's unit check failed or passed.
+void report_unit(Doubt::About unit, bool suspect, Estimate& result) {
+  suspect ? add_doubt({unit}, result) : report_no_doubt(unit, result);
+}
+
+void report_smoother(const RateReport& report, Estimate& result) {
+  std::map<std::string, double>& health = result.health;
+  health["iterations"] = report.iterations;
+  health["converged"] = report.converged ? 1.0 : 0.0;
+  health["restarts"] = report.restarts;
+  health["calibration_mahalanobis"] = report.calibration_mahalanobis;
+  health["calibration_at_prior"] = report.calibration_at_prior ? 1.0 : 0.0;
+  health["flight_share"] = report.flight_share;
+  health["readings_missing"] = static_cast<double>(report.missing_readings);
+  health["rails_disagreeing"] = static_cast<double>(
+      std::count(report.contradicts_stated_range.begin(), report.contradicts_stated_range.end(), true));
+  constexpr int kDelay = SensorErrors::kDelay;
+  health["accel_delay_s"] = report.sensor_errors.errors.accel_delay_s;
+  health["accel_delay_sigma_s"] = std::sqrt(report.sensor_errors.covariance(kDelay, kDelay));
+  health["device_calibrated"] = report.data_sheet_probability;
+  health["triads_together"] = report.synchronous_probability;
+  health["error_rounds"] = report.error_rounds;
+  health["gyro_update_s"] = report.gyro_update_s;
+  health["accel_update_s"] = report.accel_update_s;
+  health["rails_upright"] = report.clips_after_compensation ? 1.0 : 0.0;
+  report_unit(Doubt::About::rate_unit, report.rate_unit_suspect, result);
+  report_unit(Doubt::About::force_unit, report.force_unit_suspect, result);
+  const char* const names[] = {"x", "y", "z"};
+  for (int j = 0; j < 3; ++j) {
+    const std::string axis = names[j];
+    health["learnt_lever_arm_" + axis + "_m"] = report.calibration.constants.lever_arm_m[j];
+    health["learnt_lever_arm_sigma_" + axis + "_m"] = std::sqrt(report.calibration.covariance(j, j));
+  }
+  report_rails(report, health);
+}
+
+}  // namespace
+
+std::optional<double> carried_share(const RegimeSmoother::Report& report) {
+  return report.judged ? std::optional(report.shares.carried) : std::nullopt;
+}
+
+void report_rates(const RegimeSmoother::Report& report, Estimate& result) {
+  report_smoother(report.rate, result);
+  if (!report.judged) return;
+  std::map<std::string, double>& health = result.health;
+  health["regime_flight_share"] = report.shares.flight;
+  health["regime_contact_share"] = report.shares.contact;
+  health["regime_carried_share"] = report.shares.carried;
+  health["regime_carried_clipped_max"] = report.carried_clipped_max;
+  health["regime_carried_asked"] = report.carried_asked ? 1.0 : 0.0;
+  if (!report.carried_asked) return;
+  std::map<std::string, double> of_carried;
+  report_carried(report.carried, of_carried);
+  for (const auto& [name, value] : of_carried) health["carried_" + name] = value;
+}
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+
+#include "scenarios/methods/method.hpp"
+#include "tumble/attitude/regime_smoother.hpp"
+
+namespace tumble::scenarios {
+
+/// Adds the report of the rate estimation to the health and the failed checks of `result`.
+void report_rates(const RegimeSmoother::Report& report, Estimate& result);
+
+/// Returns the fraction of hand-held samples; empty if not estimated.
+std::optional<double> carried_share(const RegimeSmoother::Report& report);
+
+}  // namespace tumble::scenarios
