@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cstddef>
+#include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include "scenarios/errors.hpp"
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/imu_check.hpp"
 #include "scenarios/methods/registry.hpp"
@@ -150,7 +153,15 @@ Status replay(const sim::Sensors& sensors, std::span<const ImuSample> samples, T
   return {};
 }
 
-Estimate run_slam_tumble_lag(const sim::Sensors& sensors, const sim::Values& parameters, Word word) {
+void report_prior_map(Estimate& estimate) {
+  const auto first = std::find_if(estimate.sweeps.begin(), estimate.sweeps.end(),
+                                  [](const SweepReport& sweep) { return sweep.in_prior_map; });
+  const bool localised = first != estimate.sweeps.end();
+  estimate.health["prior_map_sweep"] = localised ? static_cast<double>(first - estimate.sweeps.begin()) : 0.0;
+}
+
+Estimate run_slam_tumble_lag(const sim::Sensors& sensors, const sim::Values& parameters, Word word,
+                             const PriorMap* map = nullptr) {
   Estimate estimate;
   estimate.frame = Frame::imu;
   std::vector<ImuSample> samples;
@@ -165,6 +176,8 @@ Estimate run_slam_tumble_lag(const sim::Sensors& sensors, const sim::Values& par
   (void)report_frozen_axes(sensors, samples, estimate);
   const TumblingOdometry::Params params = stated_params(sensors, parameters);
   TumblingOdometry odometry(params);
+  if (map != nullptr) estimate.status = odometry.use_map(*map);
+  if (!estimate.status.ok()) return estimate;
   Listener listener(word, params, estimate);
   estimate.status = replay(sensors, samples, odometry, listener, estimate);
   if (!estimate.status.ok()) return estimate;
@@ -175,6 +188,7 @@ Estimate run_slam_tumble_lag(const sim::Sensors& sensors, const sim::Values& par
   estimate.health["gaps"] = static_cast<double>(odometry.gaps());
   estimate.health["second_pass_applied"] = odometry.second_pass_applied() ? 1.0 : 0.0;
   listener.conclude(odometry);
+  if (map != nullptr) report_prior_map(estimate);
   return estimate;
 }
 
@@ -189,6 +203,24 @@ Method slam_tumble_lag() {
                   [](const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
                     return run_slam_tumble_lag(sensors, parameters, Word::last);
                   });
+}
+
+std::optional<Method> localised_in(const Method& method, std::shared_ptr<const PriorMap> map) {
+  const bool live = method.info.name == "tumble_live";
+  if (method.info.kind != Kind::slam || (!live && method.info.name != "tumble_lag")) return std::nullopt;
+  Method out = method;
+  out.run = [info = method.info, word = live ? Word::live : Word::last, map = std::move(map)](
+                const sim::Sensors& sensors, const sim::Values& given, const OracleInput&) {
+    const std::string name = "method " + full_name(info);
+    try {
+      return run_slam_tumble_lag(sensors, resolve_settings(name, given, info.settings), word, map.get());
+    } catch (const sim::InvalidSituation& error) {
+      throw BadInput(error.what());
+    } catch (const InvalidParams& error) {
+      throw BadInput(name + ": " + error.what());
+    }
+  };
+  return out;
 }
 
 Method slam_tumble_live() {

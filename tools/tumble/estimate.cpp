@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/estimate_file.hpp"
 #include "scenarios/methods/external_method.hpp"
 #include "scenarios/methods/given_parameters.hpp"
+#include "scenarios/methods/prior_map_file.hpp"
+#include "scenarios/methods/slam_registry.hpp"
 #include "scenarios/recordings/recording_check.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/recordings/replace_file.hpp"
@@ -32,6 +37,9 @@ struct EstimateOptions {
   std::vector<std::string> parameters;
   std::filesystem::path folder;
   std::filesystem::path learnt;
+  std::filesystem::path map;
+  std::vector<double> map_pose;  ///< x y z [m] and heading [rad], with two standard deviations [m, rad]
+  bool map_frozen = false;
 };
 
 /// Returns why a run failed; names the required sensors if the recording lacks sensors.
@@ -63,6 +71,38 @@ scenarios::MethodPointer choose(const std::string& name, const scenarios::Subjec
     throw BadInput(line);
   }
   return fitting.front();
+}
+
+/// Returns the prior map of the options.
+std::shared_ptr<const PriorMap> read_map_of(const EstimateOptions& options) {
+  constexpr std::size_t kPose = 4, kWithSigmas = 6;
+  auto map = std::make_shared<PriorMap>();
+  map->points = scenarios::read_prior_map(options.map);
+  map->extend = !options.map_frozen;
+  const std::vector<double>& pose = options.map_pose;
+  if (pose.size() != 0 && pose.size() != kPose && pose.size() != kWithSigmas)
+    throw BadInput(fmt::format("--map-pose has {} numbers; it needs X Y Z HEADING or X Y Z HEADING SIGMA_M SIGMA_RAD",
+                               pose.size()));
+  if (!pose.empty()) {
+    map->T_MI = Eigen::Translation3d(pose[0], pose[1], pose[2]) * Eigen::AngleAxisd(pose[3], Eigen::Vector3d::UnitZ());
+    if (pose.size() == kWithSigmas) map->sigma_m = pose[4], map->sigma_rad = pose[5];
+  }
+  if (const Status status = check_prior_map(*map); !status.ok())
+    throw BadInput(options.map.string() + ": " + status.message());
+  return map;
+}
+
+/// Returns `method` with the prior map of the options, if any.
+scenarios::Method with_prior_map(const scenarios::Method& method, const EstimateOptions& options) {
+  if (options.map.empty()) {
+    if (!options.map_pose.empty() || options.map_frozen) throw BadInput("--map-pose and --map-frozen need --map");
+    return method;
+  }
+  std::optional<scenarios::Method> localised = scenarios::localised_in(method, read_map_of(options));
+  if (!localised)
+    throw BadInput("--map is for slam/tumble_live and slam/tumble_lag; '" + full_name(method.info) +
+                   "' does not localise itself in a prior map");
+  return *localised;
 }
 
 /// Converts a failure of an external command to BadInput.
@@ -120,7 +160,7 @@ int run_estimate(const Session& session, const EstimateOptions& options) {
                    "' does not calibrate the rig");
   }
   LearntFile learnt(options.learnt);
-  const scenarios::Method learning = learnt.wrap(method);
+  const scenarios::Method learning = learnt.wrap(with_prior_map(method, options));
   const scenarios::MethodPointer selected[] = {scenarios::unowned(learning)};
   const std::vector<scenarios::Method> methods = scenarios::with_parameters(selected, options.parameters);
   scenarios::OutputFolder folder(options.folder);
@@ -130,6 +170,7 @@ int run_estimate(const Session& session, const EstimateOptions& options) {
   if (!scenarios::states_digest(options.recording)) add_doubt({scenarios::Doubt::About::digest}, estimate);
   scenarios::write_estimate(options.folder, method.info.name, method.info.kind, estimate,
                             scenarios::digest(sensors, nullptr));
+  if (!estimate.map.empty()) scenarios::write_prior_map(options.folder / scenarios::kPriorMapName, estimate.map);
   learnt.keep(session);
   folder.keep();
 
@@ -143,6 +184,11 @@ int run_estimate(const Session& session, const EstimateOptions& options) {
   session.note(fmt::format("all {} health counters: --json, or {}", estimate.health.size(),
                            (options.folder / "estimate.json").string()));
   if (const std::string caution = learnt.caution(sensors); !caution.empty()) session.note(caution);
+  if (!options.map.empty()) {
+    const double sweep = estimate.health["prior_map_sweep"];
+    session.note(sweep > 0.0 ? fmt::format("localised in {} from sweep {} on", options.map.string(), sweep + 1.0)
+                             : options.map.string() + ": not localised in the prior map; poses are in a local frame");
+  }
   // printed also after a failure, because a sensor fault may be the cause
   for (const std::string& line : verdict_lines(estimate)) session.note(full_name(method.info) + ": " + line);
   if (estimate.status.ok()) return kDone;
@@ -165,6 +211,14 @@ Action declare_estimate(VerbOptions& verb, const Session& session) {
   verb.add("--learnt", options->learnt,
            "FILE.json with the calibration of the rig from an earlier run of 'rate/tumble' or 'rate/tumble_lag', if it "
            "exists; receives the calibration of this run");
+  verb.add(
+      "--map", options->map,
+      "map of an earlier run, in which 'slam/tumble_live' or 'slam/tumble_lag' localises itself: map.tumblemap of an "
+      "estimate, or a PCD or PLY file");
+  verb.add("--map-pose", options->map_pose,
+           "X Y Z HEADING of the IMU in the map at the start [m, rad], and its standard deviations SIGMA_M SIGMA_RAD "
+           "[exact; without the option, the whole map is searched]");
+  verb.add_flag("--map-frozen", options->map_frozen, "keeps the map unchanged; otherwise sweeps extend the map");
   return [&session, options] { return run_estimate(session, *options); };
 }
 
