@@ -9,9 +9,10 @@ namespace tumble::mapping {
 namespace {
 
 // A wrong pose makes a covered surface point agree by chance with at most this probability.
-constexpr double kChance = 0.75;
-// The second best pose shows the chance in the present surroundings. This margin covers its sampling error.
-constexpr double kChanceMargin = 0.05;
+constexpr double kChance = 0.8;
+// The second best pose shows the chance in the present surroundings. This share of its disagreeing points is added to
+// the chance as a margin for its sampling error.
+constexpr double kChanceMargin = 0.3;
 constexpr double kFalseAcceptance = 1e-6;  // bound for one search
 constexpr std::size_t kLeastPoints = 100;  // number of surface points for a search
 constexpr double kLeastCovered = 0.4;      // least share of surface points that the prior map covers
@@ -84,7 +85,8 @@ void MapLocaliser::propose(const std::vector<SurfacePoint>& points, const Eigen:
   if (found.empty()) return;
   T_MW_ = found.front().T_MW;
   tried_ = std::max(double(tried), 1.0);
-  chance_ = std::max(kChance, found.size() > 1 ? found[1].ratio() + kChanceMargin : 0.0);
+  const double second = found.size() > 1 ? found[1].ratio() : 0.0;
+  chance_ = std::max(kChance, second + kChanceMargin * (1.0 - second));
 }
 
 /// Chernoff bound of the binomial test, with Bonferroni's correction for the number of compared poses.

@@ -311,9 +311,10 @@ void PriorScene::count(const std::vector<SurfacePoint>& points, FramePose& pose)
     const Eigen::Vector3f x = T * point.position_W_m;
     voxels_.nearest(x, 1, kCovered_m, found);
     if (found.count == 0) continue;
-    ++pose.covered;
     const Eigen::Vector3f& n = normals_[found.index[0]];
-    if (found.distance2_m2[0] > kNearSurface_m * kNearSurface_m || n.isZero(0.0f)) continue;
+    if (n.isZero(0.0f)) continue;  // a rough surface supports no pose
+    ++pose.covered;
+    if (found.distance2_m2[0] > kNearSurface_m * kNearSurface_m) continue;
     pose.agreeing += std::abs(n.dot(x - voxels_.position_W_m(found.index[0]))) <= kAgree_m &&
                      std::abs(n.dot(T.linear() * point.normal_W)) >= kAgreeNormal;
   }
