@@ -12,7 +12,7 @@
 #include "saving.hpp"
 #include "trouble.hpp"
 #include "tumble/mapping/prior_map.hpp"
-#include "tumble/odometry/saved_map.hpp"
+#include "tumble/odometry/detail/saved_map.hpp"
 
 namespace tumble::python {
 

@@ -11,7 +11,7 @@
 #include "scenarios/recordings/replace_file.hpp"
 #include "scenarios/regular_file.hpp"
 #include "tumble/mapping/prior_map.hpp"
-#include "tumble/odometry/saved_map.hpp"
+#include "tumble/odometry/detail/saved_map.hpp"
 
 namespace tumble::scenarios {
 

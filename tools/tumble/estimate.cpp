@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -105,6 +106,15 @@ scenarios::Method with_prior_map(const scenarios::Method& method, const Estimate
   return *localised;
 }
 
+/// States from which sweep on the poses are in the prior map.
+std::string localisation_text(const scenarios::Estimate& estimate) {
+  const auto first = std::find_if(estimate.sweeps.begin(), estimate.sweeps.end(),
+                                  [](const SweepReport& sweep) { return sweep.in_prior_map; });
+  if (first == estimate.sweeps.end()) return "not localised in the prior map; poses are in a local frame";
+  return fmt::format("localised in the prior map; poses are in its frame from sweep {} of {} on",
+                     first - estimate.sweeps.begin() + 1, estimate.sweeps.size());
+}
+
 /// Converts a failure of an external command to BadInput.
 scenarios::Estimate run_of(const scenarios::Method& method, const sim::Sensors& sensors) {
   try {
@@ -184,11 +194,7 @@ int run_estimate(const Session& session, const EstimateOptions& options) {
   session.note(fmt::format("all {} health counters: --json, or {}", estimate.health.size(),
                            (options.folder / "estimate.json").string()));
   if (const std::string caution = learnt.caution(sensors); !caution.empty()) session.note(caution);
-  if (!options.map.empty()) {
-    const double sweep = estimate.health["prior_map_sweep"];
-    session.note(sweep > 0.0 ? fmt::format("localised in {} from sweep {} on", options.map.string(), sweep + 1.0)
-                             : options.map.string() + ": not localised in the prior map; poses are in a local frame");
-  }
+  if (!options.map.empty()) session.note(options.map.string() + ": " + localisation_text(estimate));
   // printed also after a failure, because a sensor fault may be the cause
   for (const std::string& line : verdict_lines(estimate)) session.note(full_name(method.info) + ": " + line);
   if (estimate.status.ok()) return kDone;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/odometry/saved_map.hpp"
+#include "tumble/odometry/detail/saved_map.hpp"
 
 #include "../mapping/odometry_members.hpp"
 #include "saved_state.hpp"
