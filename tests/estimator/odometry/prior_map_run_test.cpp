@@ -32,8 +32,8 @@ test::Motion motion(double swing) {
   return out;
 }
 
-struct Run {
-  explicit Run(double swing) : moves(motion(swing)), imu(test::make_imu(moves, 4.0)), odometry(rig_params()) {}
+struct RoomRun {
+  explicit RoomRun(double swing) : moves(motion(swing)), imu(test::make_imu(moves, 4.0)), odometry(rig_params()) {}
 
   /// Adds the data of the sweeps from..to-1, and keeps the newest report.
   void feed(int from, int to) {
@@ -59,7 +59,7 @@ struct Run {
 /// Map of a run, in the frame of the room.
 const std::vector<MapPoint>& map_of_first_run() {
   static const std::vector<MapPoint> points = [] {
-    Run run(1.0);
+    RoomRun run(1.0);
     run.feed(0, 25);
     return run.odometry.mapper().map();
   }();
@@ -67,7 +67,7 @@ const std::vector<MapPoint>& map_of_first_run() {
 }
 
 TEST(PriorMapRun, HealthReportsThatARunIsNotLocalisedUntilItIs) {
-  Run run(-0.7);
+  RoomRun run(-0.7);
   ASSERT_TRUE(run.odometry.use_map({.points = map_of_first_run()}).ok());
   run.feed(0, 5);
   EXPECT_NE(std::string(run.odometry.health().field).find("not localised in the prior map"), std::string::npos);
@@ -80,7 +80,7 @@ TEST(PriorMapRun, HealthReportsThatARunIsNotLocalisedUntilItIs) {
 }
 
 TEST(PriorMapRun, ResetKeepsTheMapAndLocalisesAgain) {
-  Run run(-0.7);
+  RoomRun run(-0.7);
   ASSERT_TRUE(run.odometry.use_map({.points = map_of_first_run()}).ok());
   run.odometry.reset();
   EXPECT_TRUE(run.odometry.mapper().has_prior_map());
@@ -92,7 +92,7 @@ TEST(PriorMapRun, ResetKeepsTheMapAndLocalisesAgain) {
 }
 
 TEST(PriorMapRun, ASavedRunContinuesInThePriorMapBitByBit) {
-  Run run(-0.7), other(-0.7);
+  RoomRun run(-0.7), other(-0.7);
   ASSERT_TRUE(run.odometry.use_map({.points = map_of_first_run(), .extend = false}).ok());
   run.feed(0, 8);
   const Status loaded = other.odometry.load(run.odometry.save());
