@@ -52,7 +52,8 @@ void bind_report(nb::module_& m) {
       .def_ro("points_used", &Report::points_used)
       .def_ro("lone_points", &Report::lone_points)
       .def_ro("points_registered", &Report::points_registered)
-      .def_ro("map_points_added", &Report::map_points_added);
+      .def_ro("map_points_added", &Report::map_points_added)
+      .def_ro("in_prior_map", &Report::in_prior_map, "whether the poses are in the frame of the prior map");
   using C = SweepCalibration;
   nb::class_<C>(m, "SweepCalibration", "Estimated calibration of lidar, IMU and gravity.")
       .def_prop_ro(

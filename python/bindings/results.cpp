@@ -4,10 +4,15 @@
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/vector.h>
 
+#include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "arrays.hpp"
+#include "saving.hpp"
 #include "trouble.hpp"
+#include "tumble/mapping/prior_map.hpp"
+#include "tumble/odometry/detail/saved_map.hpp"
 
 namespace tumble::python {
 
@@ -171,7 +176,35 @@ void bind_map(nb::module_& m) {
           "(N, 3) float32, unit; zero where no plane could be fitted")
       .def_prop_ro(
           "sigma", [](const M& s) { return column<float>(s.rows, [](auto& r) { return &r.sigma_m; }); },
-          "(N,) float32, m: uncertainty of the position, one standard deviation");
+          "(N,) float32, m: uncertainty of the position, one standard deviation")
+      .def(
+          "save",
+          [](const M& s) {
+            const std::vector<std::byte> bytes = save_map(s.rows);
+            return nb::bytes(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+          },
+          nb::sig("def save(self) -> bytes"), "Returns the map as bytes with a checksum, for load() in a later run.")
+      .def_static(
+          "load",
+          [](nb::handle state) {
+            M out;
+            require(load_map(state_of(state), out.rows));
+            return out;
+          },
+          nb::arg("state"), nb::sig("def load(state: bytes) -> MapPoints"),
+          "Returns the map that save() stored. Raises TumbleError if the bytes are damaged or of another kind.")
+      .def_static(
+          "from_positions",
+          [](nb::handle position) {
+            const nb::object rows = as_array(position, "position");
+            const auto count = nb::len(rows);
+            const std::vector<double> numbers = numbers_of(rows.attr("reshape")(-1), "position", 3 * count);
+            std::vector<Eigen::Vector3f> positions(count);
+            for (std::size_t k = 0; k < count; ++k)
+              positions[k] = Eigen::Vector3d(numbers[3 * k], numbers[3 * k + 1], numbers[3 * k + 2]).cast<float>();
+            return M{with_normals(positions)};
+          },
+          nb::arg("position"), "Returns map points with fitted normals for positions (N, 3) [m].");
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "arrays.hpp"
@@ -275,6 +276,23 @@ void bind_tumbling(nb::module_& m) {
           nb::arg("offset_ns"), nb::arg("ring") = nb::none(), nb::arg("intensity") = nb::none(),
           "Adds a sweep of points measured in [start_ns, end_ns]; the call may come at any time after the last point.\n"
           "position (N, 3), m: in lidar axes at the time of each point. offset_ns (N,): time after start_ns.")
+      .def(
+          "use_map",
+          [](BoundTumblingOdometry& self, const MapPoints& map, nb::handle T_MI, double sigma_m, double sigma_rad,
+             bool extend) {
+            PriorMap prior{.points = map.rows, .sigma_m = sigma_m, .sigma_rad = sigma_rad, .extend = extend};
+            if (!T_MI.is_none()) prior.T_MI = pose_of(T_MI, "T_MI");
+            require(self.run([&](TumblingOdometry& odometry) { return odometry.use_map(std::move(prior)); }));
+          },
+          nb::arg("map"), nb::arg("T_MI") = nb::none(), nb::arg("sigma_m") = 0.0, nb::arg("sigma_rad") = 0.0,
+          nb::arg("extend") = true,
+          "Localises the run in the map of an earlier run; call it before the first sweep. T_MI (4, 4): pose of the "
+          "IMU "
+          "in\n"
+          "the map at the start, with its standard deviations per axis and of the heading; None: the whole map is "
+          "searched.\n"
+          "extend=False keeps the map unchanged. Until report.in_prior_map is true, poses are in a local frame, and\n"
+          "health() reports that the run is not localised.")
       .def(
           "take",
           [](BoundTumblingOdometry& self) {

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <functional>
+#include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -9,6 +11,7 @@
 #include "scenarios/methods/method.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "tumble/common/imu.hpp"
+#include "tumble/mapping/prior_map.hpp"
 
 /// Declares slam methods in addition to registry.hpp, and functions that these methods share.
 namespace tumble::scenarios {
@@ -18,6 +21,11 @@ Method slam_constant_velocity();
 Method slam_floor();
 Method slam_tumble_lag();
 Method slam_tumble_live();
+
+/// Returns a copy of slam/tumble_lag or slam/tumble_live that localises itself in a prior map (TumblingOdometry::
+/// use_map), or nothing for another method. The health counter `prior_map_sweep` is the number of sweeps until the run
+/// was localised, or 0. Poses of earlier sweeps are in a local frame.
+std::optional<Method> localised_in(const Method& method, std::shared_ptr<const PriorMap> map);
 
 /// Options that distinguish the slam methods of the rig.
 struct RigSlam {

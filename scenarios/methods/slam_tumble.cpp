@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cstddef>
+#include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include "scenarios/errors.hpp"
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/imu_check.hpp"
 #include "scenarios/methods/registry.hpp"
@@ -197,8 +200,15 @@ void report_stream(const TumblingOdometry& odometry, Estimate& estimate) {
   estimate.health["second_pass_applied"] = odometry.second_pass_applied() ? 1.0 : 0.0;
 }
 
+void report_prior_map(Estimate& estimate) {
+  const auto first = std::find_if(estimate.sweeps.begin(), estimate.sweeps.end(),
+                                  [](const SweepReport& sweep) { return sweep.in_prior_map; });
+  const bool localised = first != estimate.sweeps.end();
+  estimate.health["prior_map_sweep"] = localised ? static_cast<double>(first - estimate.sweeps.begin()) : 0.0;
+}
+
 Estimate run(Output output, const Settings<TumblingOdometry::Params>& settings, const sim::Sensors& sensors,
-             const sim::Values& parameters, const SweepProgress& on_sweep) {
+             const sim::Values& parameters, const SweepProgress& on_sweep, const PriorMap* map = nullptr) {
   Estimate estimate;
   estimate.frame = Frame::imu;
   std::vector<ImuSample> samples;
@@ -218,6 +228,8 @@ Estimate run(Output output, const Settings<TumblingOdometry::Params>& settings, 
   TumblingOdometry::Params params = stated_params(sensors, settings.defaults());
   settings.apply(parameters, params);
   TumblingOdometry odometry(params);
+  if (map != nullptr) estimate.status = odometry.use_map(*map);
+  if (!estimate.status.ok()) return estimate;
   Collector collector(output, params, estimate);
   estimate.status = replay(sensors, samples, output == Output::whole, odometry, collector, on_sweep, estimate);
   if (odometry.recording()) report_whole(*odometry.recording(), sensors, samples, estimate);
@@ -227,6 +239,7 @@ Estimate run(Output output, const Settings<TumblingOdometry::Params>& settings, 
   if (odometry.early_sweeps() > 0) estimate.health["sweeps_before_imu"] = static_cast<double>(odometry.early_sweeps());
   if (output != Output::whole) report_stream(odometry, estimate);
   collector.conclude(odometry);
+  if (map != nullptr) report_prior_map(estimate);
   return estimate;
 }
 
@@ -260,6 +273,25 @@ Method slam_tumble_lag() {
                    .ours = true,
                    .settings = {&lag_settings()}},
                   run_lag);
+}
+
+std::optional<Method> localised_in(const Method& method, std::shared_ptr<const PriorMap> map) {
+  const bool live = method.info.name == "tumble_live";
+  if (method.info.kind != Kind::slam || (!live && method.info.name != "tumble_lag")) return std::nullopt;
+  Method out = method;
+  out.run = [info = method.info, output = live ? Output::live : Output::lag, map = std::move(map)](
+                const sim::Sensors& sensors, const sim::Values& given, const OracleInput& input) {
+    const std::string name = "method " + full_name(info);
+    try {
+      return run(output, lag_settings(), sensors, resolve_settings(name, given, info.settings), input.on_sweep,
+                 map.get());
+    } catch (const sim::InvalidSituation& error) {
+      throw BadInput(error.what());
+    } catch (const InvalidParams& error) {
+      throw BadInput(name + ": " + error.what());
+    }
+  };
+  return out;
 }
 
 Method slam_tumble_live() {

@@ -45,6 +45,12 @@ class LagWindow {
   /// Fixes the positions of all inserted points, because indices of the map have changed.
   void clear_inserted();
 
+  /// Calls `change` with each sweep, oldest first.
+  template <class Change>
+  void for_each(const Change& change) {
+    for (WindowSweep& sweep : sweeps_) change(sweep);
+  }
+
   std::size_t length() const { return length_; }
   const std::deque<WindowSweep>& sweeps() const { return sweeps_; }
 

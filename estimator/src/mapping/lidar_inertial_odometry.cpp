@@ -175,6 +175,7 @@ std::size_t LidarInertialOdometry::map_bytes() const {
 }
 
 std::vector<MapPoint> LidarInertialOdometry::map() const {
+  if (!impl_->extends_map()) return impl_->localiser.map().points;
   return impl_->map.with_normals(impl_->params);
 }
 

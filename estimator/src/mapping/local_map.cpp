@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "unknowns.hpp"
 
@@ -94,6 +95,27 @@ void LocalMap::move(const SweepTrajectory& trajectory, const Eigen::Isometry3d& 
     const Eigen::Vector3d position = trajectory.common_position_m(t_s) + at.preintegrated_position_m +
                                      at.q_WI * (T_IL * inserted_point.point.x_L_m.cast<double>());
     map_.move(inserted_point.index, position.cast<float>());
+  }
+}
+
+void LocalMap::start_from(const Params& params, std::span<const MapPoint> points, const Eigen::Isometry3f* T_MW) {
+  constexpr float kDistant_m = 1e5f;
+  const LocalMap before = std::exchange(*this, LocalMap(params));
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const float sign : {1.0f, -1.0f}) seen_from_W_m_.push_back(sign * kDistant_m * Eigen::Vector3f::Unit(axis));
+  }
+  for (const MapPoint& point : points) {
+    Eigen::Index axis = 0;
+    point.normal_W.cwiseAbs().maxCoeff(&axis);
+    const auto sweep = static_cast<std::uint32_t>(2 * axis + (point.normal_W[axis] < 0.0f));
+    map_.insert(point.position_W_m, point.sigma_m, sweep);
+  }
+  if (T_MW == nullptr) return;
+  const std::uint32_t first = sweeps();
+  for (const Eigen::Vector3f& from : before.seen_from_W_m_) seen_from_W_m_.push_back(*T_MW * from);
+  for (std::uint32_t index = 0; index < before.map_.index_end(); ++index) {
+    if (!before.map_.exists(index) || before.map_.seen_through(index) > 0) continue;
+    map_.insert(*T_MW * before.map_.position_W_m(index), before.map_.sigma_m(index), first + before.map_.sweep(index));
   }
 }
 

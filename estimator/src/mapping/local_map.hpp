@@ -47,6 +47,11 @@ class LocalMap {
   void move(const SweepTrajectory& trajectory, const Eigen::Isometry3d& T_IL, double later_s,
             std::span<const InsertedPoint> inserted);
 
+  /// Replaces the map by the points of a prior map. The points belong to six sweeps, whose distant origins lie along
+  /// the axes, so that the points keep the orientation of their normals. If `T_MW` is given, the points of the replaced
+  /// map are added, moved to the prior map's frame.
+  void start_from(const Params& params, std::span<const MapPoint> points, const Eigen::Isometry3f* T_MW);
+
   /// Returns the number of sweeps that contributed points. Each point stores the number of its sweep.
   std::uint32_t sweeps() const { return static_cast<std::uint32_t>(seen_from_W_m_.size()); }
   /// Removes the points of `first_sweep` and all later sweeps. Cost: O(number of points). The indices of points change.

@@ -72,6 +72,32 @@ void ScanLines::members(Self& s, Visitor& visit) {
 }
 
 template <class Self, class Visitor>
+void MapLocaliser::members(Self& s, Visitor& visit) {
+  bool has_map = s.has_map();
+  visit("prior.has_map", has_map);
+  PriorMap map = s.has_map() ? s.map() : PriorMap{};
+  visit("prior.points", map.points);
+  visit("prior.T_MI", map.T_MI);
+  visit("prior.sigma_m", map.sigma_m);
+  visit("prior.sigma_rad", map.sigma_rad);
+  visit("prior.extend", map.extend);
+  visit.scratch(s.scene_);
+  if constexpr (Visitor::kReads) {
+    if (has_map && visit.going()) visit.refuse(check_prior_map(map));
+    if (has_map && visit.going()) s.scene_ = std::make_shared<const PriorScene>(std::move(map));
+  }
+  visit("prior.localised", s.localised_);
+  if constexpr (Visitor::kReads) visit.require("prior.localised", has_map || !s.localised_);
+  visit("prior.T_MW", s.T_MW_);
+  visit("prior.chance", s.chance_, 0.0, 2.0);
+  visit("prior.tried", s.tried_, 1.0, 1e18);
+  visit("prior.passed", s.passed_, 0.0, 1e9);
+  visit("prior.failed", s.failed_, 0.0, 1e9);
+  visit("prior.attempts", s.attempts_, 0.0, 1e9);
+  visit("prior.sweeps_since_search", s.sweeps_since_search_, 0.0, 1e9);
+}
+
+template <class Self, class Visitor>
 void LocalMap::members(Self& s, Visitor& visit) {
   visit("map", s.map_);
   visit("map.seen_from_W_m", s.seen_from_W_m_);
@@ -97,6 +123,7 @@ void LidarInertialOdometry::Impl::members(Self& s, Visitor& visit) {
   visit("local map", s.map);
   visit("world", s.world);
   visit("other", s.other);
+  visit("localiser", s.localiser);
   visit.scratch(s.scratch);
 }
 

@@ -8,6 +8,7 @@
 #include "inertial_track.hpp"
 #include "lag_window.hpp"
 #include "local_map.hpp"
+#include "map_localiser.hpp"
 #include "prediction.hpp"
 #include "relocalizer.hpp"
 #include "sweep_points.hpp"
@@ -84,6 +85,12 @@ struct LidarInertialOdometry::Impl {
   const MotionState* rejected_relocalisation() const;
   void add_map_drift(const mapping::UpdatedSweep& sweep, const SweepReport& report);
   void prune_until(TimeNs end_ns);
+  /// Compares the local map with the prior map after a registered sweep. If a pose is accepted, the state continues in
+  /// the frame and with the points of the prior map.
+  void localise(const SweepReport& report);
+  void enter_prior_map(const mapping::FramePose& pose);
+  /// Returns whether sweeps extend the map.
+  bool extends_map() const { return !localiser.is_localised() || localiser.map().extend; }
 
   PoseState pose_along(const SweepTrajectory& motion, double t_s, const Registration::Matrix& errors) const;
   /// Returns the poses at the ends of the IMU's windows, and at `end_ns` for the last window. `errors` is the
@@ -109,6 +116,7 @@ struct LidarInertialOdometry::Impl {
   mapping::LocalMap map;
   mapping::WorldCovariance world;
   std::optional<mapping::DeadReckoning> other;  // alternative for an unconfirmed or a contradicted relocalisation
+  mapping::MapLocaliser localiser;              // of a prior map, if any
   mapping::SweepScratch scratch;
 };
 

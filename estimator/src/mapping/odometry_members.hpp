@@ -6,6 +6,7 @@
 #include "tumble/mapping/detail/localisation.hpp"
 #include "tumble/mapping/detail/sweep_scale.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
+#include "tumble/mapping/prior_map.hpp"
 
 /// odometry_members.hpp lists the members of sweeps and reports, and members of the mapper's Params that are not
 /// Fields, as state_visitor.hpp describes.
@@ -17,6 +18,13 @@ void members(Self& s, Visitor& visit) {
   visit.with_nan("point.intensity", s.intensity);
   visit("point.offset_ns", s.offset_ns);
   visit("point.ring", s.ring);
+}
+
+template <StateOf<MapPoint> Self, class Visitor>
+void members(Self& s, Visitor& visit) {
+  visit("point.position_W_m", s.position_W_m);
+  visit("point.normal_W", s.normal_W);
+  visit("point.sigma_m", s.sigma_m);
 }
 
 template <StateOf<VelocityReading> Self, class Visitor>
@@ -61,6 +69,7 @@ void members(Self& s, Visitor& visit) {
   visit("report.lone_points", s.lone_points);
   visit("report.points_registered", s.points_registered);
   visit("report.map_points_added", s.map_points_added);
+  visit("report.in_prior_map", s.in_prior_map);
 }
 
 template <StateOf<SweepScale> Self, class Visitor>

@@ -59,6 +59,7 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
     return add_sweep(start_ns, end_ns, returns, report);
   }
   report.verdict = placed->verdict;
+  report.in_prior_map = localiser.is_localised();
 
   // The updated state determines the motion, the map update, and the start of the next sweep.
   const std::unique_ptr<const StateEstimate> start(new StateEstimate(update(motion, *placed, *prediction)));
@@ -72,9 +73,10 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
   // If the map has too few points, LocalMap inserts the sweep at the predicted pose. LocalMap omits points that are too
   // uncertain.
   std::vector<InsertedPoint> inserted;
-  if (placed->verdict != SweepVerdict::rejected || placed->map_too_sparse)
+  if (extends_map() && (placed->verdict != SweepVerdict::rejected || placed->map_too_sparse))
     inserted = insert(sweep, points, counts.rings_differ, *placed, report);
   propagate(sweep, *placed, motion, std::move(inserted), report);
+  localise(report);
   return points_status;
 }
 
@@ -290,7 +292,8 @@ void LidarInertialOdometry::Impl::prune_until(TimeNs end_ns) {
   known = mapping::InertialPrior{};
   track.prune_until(end_ns);
   if (mapping::is_unconfirmed(tracking))
-    return;  // withdrawing the points needs their sweep numbers, which pruning changes
+    return;                              // withdrawing the points needs their sweep numbers, which pruning changes
+  if (localiser.is_localised()) return;  // the prior map is kept as a whole
   if (map.prune(params, boundary.state_estimate.mean.state.p_WI_m)) window.clear_inserted();
 }
 

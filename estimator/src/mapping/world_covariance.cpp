@@ -35,6 +35,14 @@ Pose WorldCovariance::by_start_mounting(const Eigen::Vector3d& p_WI_m) const {
   return start;
 }
 
+WorldCovariance WorldCovariance::of_prior_map(const WorldCovarianceParams& params, const Eigen::Vector3d& p_WI_m) {
+  WorldCovariance out;
+  out.params_ = params;
+  out.params_.tilt_sigma_rad = 0.0;
+  out.start_W_m_ = out.map_at_W_m_ = p_WI_m;
+  return out;
+}
+
 double WorldCovariance::sigma_in_map_m(const Registration::Matrix& joint, const Eigen::Vector3d& p_WI_m) const {
   const Pose P = less_mounting(joint, by_start_mounting(p_WI_m));
   return std::sqrt(std::max(P.topLeftCorner<3, 3>().trace(), 0.0));

@@ -17,6 +17,9 @@ class WorldCovariance {
                   const Eigen::Vector3d& p_WI_m = Eigen::Vector3d::Zero())
       : params_(params), start_W_m_(p_WI_m), map_at_W_m_(p_WI_m), start_by_mounting_(pose_by_mounting(q_WI, p_IL_m)) {}
 
+  /// Returns the errors relative to a prior map, in which a run continues at a position. The prior map is exact.
+  static WorldCovariance of_prior_map(const WorldCovarianceParams& params, const Eigen::Vector3d& p_WI_m);
+
   /// Returns the covariance of a pose's error in the world. `joint` is the covariance of all unknowns in the map at the
   /// time of the pose.
   Pose in_world(const Registration::Matrix& joint, const Eigen::Vector3d& p_WI_m) const;

@@ -168,6 +168,7 @@ void OdometryPass::begin_rates(const RegimeStream::Params& rate) {
 }
 
 void OdometryPass::take_map(OdometryPass&& other) {
+  if (mapper_.has_prior_map()) other.mapper_.use_map_of(mapper_);
   mapper_ = std::move(other.mapper_);
   scale_ = std::move(other.scale_);
   localisation_ = other.localisation_;

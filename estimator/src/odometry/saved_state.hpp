@@ -37,7 +37,8 @@ enum class SavedKind : std::uint32_t {
   carried_stream,
   carried_live,
   rolling_filter,
-  rolling_smoother
+  rolling_smoother,
+  map
 };
 inline constexpr std::uint32_t kSavedVersion = 1;
 inline constexpr std::size_t kSavedHeader = 40;

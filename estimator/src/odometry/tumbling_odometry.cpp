@@ -129,6 +129,10 @@ Status TumblingOdometry::add_reading(const OdometerReading& reading) {
   return readings_.add(reading, pass_.needed_ns(*registered_ns_), latest_ns, most);
 }
 
+Status TumblingOdometry::use_map(PriorMap map) {
+  return pass_.use_map(std::move(map));
+}
+
 std::optional<TumblingOdometry::Sweep> TumblingOdometry::take() {
   if (done_.empty()) return std::nullopt;
   Sweep out = std::move(done_.front());
@@ -152,6 +156,7 @@ Status TumblingOdometry::health() const {
   const Status of_ranges = pass_.sweep_scale().verdict();
   if (!of_ranges.ok()) return of_ranges;
   if (const Status of_vertical = mapper().vertical(); !of_vertical.ok()) return of_vertical;
+  if (const Status of_map = mapper().localised(); !of_map.ok()) return of_map;
   const Status of_localisation = pass_.localisation().present();
   return of_localisation.ok() ? params_.stated_calibration().verdict(mapper().calibration()) : of_localisation;
 }
@@ -178,6 +183,8 @@ void TumblingOdometry::register_sweep(TimeNs start_ns, TimeNs end_ns, std::vecto
   registered_ns_ = end_ns;
   if (out.report.trajectory.empty()) return;
   second_pass_.store(start_ns, end_ns, std::move(points), reading, out.report.verdict);
+  // the second pass has its own local frame
+  if (mapper().has_prior_map() && mapper().localised().ok()) second_pass_.give_up();
   second_pass_.advance(pass_);
 }
 
@@ -281,12 +288,14 @@ void TumblingOdometry::reset() {
   fresh->early_sweeps_ = early_sweeps_;
   fresh->outliers_.rejected = outliers_.rejected;
   fresh->done_ = std::move(done_);
+  fresh->pass_.use_map_of(pass_);
   *this = std::move(*fresh);
 }
 
 void TumblingOdometry::reset(const Eigen::Isometry3d& T_WI) {
   reset();
   pass_.start_at(T_WI);
+  pass_.use_map_of(pass_);
 }
 
 void TumblingOdometry::begin_rates() {

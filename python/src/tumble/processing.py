@@ -91,16 +91,20 @@ def tumbling_options(recording: Recording, **options: Any) -> dict[str, Any]:
     return stated | options
 
 
-def tumbling(recording: Recording, on_sample: Callable[[_tumble.TumblingOdometry], None] | None = None, **options: Any) -> Tumble:
+def tumbling(recording: Recording, on_sample: Callable[[_tumble.TumblingOdometry], None] | None = None,
+             map: _tumble.MapPoints | None = None, **options: Any) -> Tumble:
     """Estimates pose, velocity and map of a tumbling body with the first IMU and the first lidar of a recording.
 
     The data are added in the order of a live robot: each sample at the end of its window, each sweep after its last point. This is the
     program's method `slam/tumble_lag`. With lag_s=1e9, the call estimates the whole recording at once, as `slam/tumble` does.
 
     on_sample   is called after each sample with the odometry, whose newest() returns the live pose
+    map         of an earlier run, in which this run localises itself without a start pose (TumblingOdometry.use_map)
     options     keywords of TumblingOdometry; they override the values of the recording
     """
     odometry = _tumble.TumblingOdometry(**tumbling_options(recording, **options))
+    if map is not None:
+        odometry.use_map(map)
     imu, lidar = recording.imus[0], recording.sweeps
     done: list[_tumble.Sweep] = []
     given = 0

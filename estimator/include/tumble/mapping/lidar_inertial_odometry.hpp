@@ -15,6 +15,7 @@
 #include "tumble/mapping/detail/odometer_reading.hpp"
 #include "tumble/mapping/lidar.hpp"
 #include "tumble/mapping/odometry_params.hpp"
+#include "tumble/mapping/prior_map.hpp"
 #include "tumble/mapping/sweep_report.hpp"
 
 namespace tumble {
@@ -66,6 +67,21 @@ class LidarInertialOdometry {
   void start_at(const Eigen::Isometry3d& T_WI);
   /// Returns the pose given to start_at(), if any.
   const std::optional<Eigen::Isometry3d>& start() const;
+
+  /// Sets the map of an earlier run, in which the run localises itself. Call use_map() before the first sweep.
+  ///
+  /// Until the run is localised, poses are in a local frame, and localised() returns `degenerate`. The local map is
+  /// compared with the prior map after each registered sweep. When a pose is accepted, the state continues in the frame
+  /// of the prior map: SweepReport::in_prior_map is true, and covariances are relative to the prior map. If `map.T_MI`
+  /// is set, use_map() also calls start_at(). The prior map is kept as a whole, also beyond map_radius_m.
+  /// Returns the errors of check_prior_map(), or `time_order` after the first sweep. On error nothing changes.
+  Status use_map(PriorMap map);
+  /// Uses the prior map of another object, if any, with its parameters. The localisation starts again, from the pose
+  /// given to start_at(), or else from the pose given with the map.
+  void use_map_of(const LidarInertialOdometry& other);
+  /// Returns ok if the run is localised in the prior map or if there is no prior map, and `degenerate` otherwise.
+  Status localised() const;
+  bool has_prior_map() const;
 
   /// Processes a sample with the angular velocity that a rate method estimated for the sample. On error the state is
   /// unchanged: `non_finite`, `time_order`, or `out_of_range` if `rate` has another time stamp. The first sample after

@@ -56,6 +56,8 @@ struct SweepReport {
   std::size_t lone_points = 0;        ///< unused returns that no neighbouring beam confirms
   std::size_t points_registered = 0;  ///< one per voxel of the usable points
   std::size_t map_points_added = 0;
+  /// True if the poses of the report are in the frame of the prior map. Without a prior map, always false.
+  bool in_prior_map = false;
 };
 
 }  // namespace tumble

@@ -70,6 +70,11 @@ class TumblingOdometry {
   /// Throws InvalidParams if a parameter is out of bounds, the lever arm is not set, or the own-body box is invalid.
   explicit TumblingOdometry(const Params& params);
 
+  /// Sets the map of an earlier run, in which the run localises itself, before the first sweep. Until the run is
+  /// localised, poses are in a local frame, and health() reports that the run is not localised in the prior map.
+  /// Afterwards `report.in_prior_map` is true, and poses are in the frame of the prior map. reset() keeps the prior map
+  /// and localises again; reset(pose) gives the pose in the prior map. Errors: see LidarInertialOdometry::use_map().
+  Status use_map(PriorMap map);
   /// Processes an IMU sample; stamps must increase. Registers the sweeps whose rates become available. Samples with
   /// `non_finite`, `out_of_range`, `time_order` or `gap` are rejected. A single wrong stamp costs one sample
   /// (StampOrder).
@@ -126,6 +131,7 @@ class TumblingOdometry {
   /// - a wrong unit of the accelerometer after a second of rest (RestGravity),
   /// - a wrong scale of the lidar's ranges (SweepScale),
   /// - an uncertain vertical after a start in motion (LidarInertialOdometry::vertical),
+  /// - a run that is not localised in its prior map (LidarInertialOdometry::localised),
   /// - tracking failure (Localisation::present),
   /// - too large a change of the lidar's calibration (StatedCalibration).
   Status health() const;

@@ -38,6 +38,9 @@ class OdometryPass {
   Status add_imu(const ImuSample& sample);
   /// Sets the pose at which the map starts; see LidarInertialOdometry::start_at().
   void start_at(const Eigen::Isometry3d& T_WI) { mapper_.start_at(T_WI); }
+  /// Sets the prior map; see LidarInertialOdometry::use_map().
+  Status use_map(PriorMap map) { return mapper_.use_map(std::move(map)); }
+  void use_map_of(const OdometryPass& other) { mapper_.use_map_of(other.mapper_); }
   /// Returns whether rates are available up to this time of the lidar's clock.
   bool covers(TimeNs end_ns) const;
   /// Returns the lidar time up to which rates are available, or nothing before the first rate.

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "lag_window.hpp"
+#include "prediction.hpp"
+
+namespace tumble::mapping {
+
+/// FrameChange converts estimates from the local frame W to the frame M of a prior map.
+struct FrameChange {
+  Eigen::Isometry3d T_MW;
+  /// Covariance of a displacement and a rotation of W about `sensor_M_m`, in M.
+  Eigen::Matrix<double, 6, 6> covariance;
+  Eigen::Vector3d sensor_M_m;
+
+  void apply(SweepBoundary& boundary) const;
+  void apply(LagWindow& window) const;
+
+ private:
+  void apply(Registration::Estimate& mean) const;
+  /// Rotates a covariance, and adds the error of T_MW for an estimate with the given mean in M.
+  void apply(const Registration::Estimate& mean, Registration::Matrix& of_all) const;
+  Registration::Matrix rotation() const;
+};
+
+}  // namespace tumble::mapping

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Localisation of a run in a prior map.
+#include <utility>
+#include <variant>
+
+#include "frame_change.hpp"
+#include "odometry_impl.hpp"
+
+namespace tumble {
+
+Status LidarInertialOdometry::use_map(PriorMap map) {
+  if (const Status status = check_prior_map(map); !status.ok()) return status;
+  if (mapping::has_started(impl_->tracking)) return {Trouble::time_order, "sweeps before the prior map", 1.0, 0.0};
+  if (map.T_MI) start_at(*map.T_MI);
+  impl_->localiser = mapping::MapLocaliser(std::move(map));
+  return {};
+}
+
+void LidarInertialOdometry::use_map_of(const LidarInertialOdometry& other) {
+  impl_->localiser = other.impl_->localiser;
+  impl_->localiser.restart(impl_->start_pose);
+  if (!impl_->start_pose && has_prior_map() && impl_->localiser.map().T_MI) start_at(*impl_->localiser.map().T_MI);
+}
+
+Status LidarInertialOdometry::localised() const {
+  return impl_->localiser.status();
+}
+
+bool LidarInertialOdometry::has_prior_map() const {
+  return impl_->localiser.has_map();
+}
+
+/// A local map after a tracking failure, or with an unconfirmed relocalisation, may be wrong and is not compared.
+void LidarInertialOdometry::Impl::localise(const SweepReport& report) {
+  if (!localiser.has_map() || localiser.is_localised()) return;
+  if (report.verdict != SweepVerdict::registered || !std::holds_alternative<mapping::Tracking>(tracking)) return;
+  const std::optional<mapping::FramePose> pose =
+      localiser.observe(map.voxels(), boundary.state_estimate.mean.state.p_WI_m);
+  if (pose) enter_prior_map(*pose);
+}
+
+void LidarInertialOdometry::Impl::enter_prior_map(const mapping::FramePose& pose) {
+  const Eigen::Vector3d sensor_M_m = pose.T_MW * boundary.state_estimate.mean.state.p_WI_m;
+  const mapping::FrameChange change{pose.T_MW, pose.covariance, sensor_M_m};
+  change.apply(boundary);
+  change.apply(window);
+  window.clear_inserted();  // the indices of the points change
+  const Eigen::Isometry3f T_MW = pose.T_MW.cast<float>();
+  map.start_from(params, localiser.map().points, localiser.map().extend ? &T_MW : nullptr);
+  world = mapping::WorldCovariance::of_prior_map(params.expert.world, sensor_M_m);
+}
+
+}  // namespace tumble

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <vector>
+
+#include "tumble/mapping/prior_map.hpp"
+#include "tumble/mapping/voxel_map.hpp"
+
+/// prior_scene.hpp aligns the map of the current run (frame W) to a prior map (frame M), see mapping.md, "Localisation
+/// in a prior map".
+namespace tumble::mapping {
+
+/// SurfacePoint is a point of the current run's map with its normal. A list has at most one point per cube of 1 m, so
+/// that the errors of its points are nearly independent.
+struct SurfacePoint {
+  Eigen::Vector3f position_W_m;
+  Eigen::Vector3f normal_W;
+};
+
+/// Returns the surface points of `map` within `radius_m` of a position, nearest cube first.
+std::vector<SurfacePoint> surface_points(const VoxelMap& map, const Eigen::Vector3f& p_WI_m, float radius_m);
+
+/// FramePose is a hypothesis for the pose of the local frame W in the prior map, and its fit.
+struct FramePose {
+  Eigen::Isometry3d T_MW = Eigen::Isometry3d::Identity();
+  std::size_t covered = 0;   ///< surface points near the prior map's surfaces
+  std::size_t agreeing = 0;  ///< covered points that lie on the prior map's surfaces
+  /// Covariance of a displacement and rotation (in M) of the local frame about the sensor.
+  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+
+  double ratio() const { return covered == 0 ? 0.0 : double(agreeing) / double(covered); }
+};
+
+/// SearchRegion limits the sensor's position in M and the heading of W in M.
+struct SearchRegion {
+  Eigen::Vector3d p_WI_m = Eigen::Vector3d::Zero();  ///< sensor position to which the limits refer, in W
+  Eigen::Vector3d p_MI_m = Eigen::Vector3d::Zero();  ///< centre of the region
+  double reach_m = 0.0, reach_rad = 0.0;
+};
+
+/// PriorScene is a prior map, prepared for the search of a pose.
+class PriorScene {
+ public:
+  explicit PriorScene(PriorMap map);
+
+  const PriorMap& map() const { return map_; }
+  /// Returns the distinct best poses of the local frame, best first, at most two. Cost: O(surface area of the map) for
+  /// a search in the whole map, about a second for a map of 100 m.
+  ///
+  /// @param sensor_W_m  sensor position, about which poses are refined
+  /// @param attempt     the search anchors the local map at another surface point for each attempt
+  /// @param region      limits of the search; null: the whole map
+  /// @param tried       number of poses that the search compared
+  std::vector<FramePose> search(const std::vector<SurfacePoint>& points, const Eigen::Vector3d& sensor_W_m,
+                                std::size_t attempt, const SearchRegion* region, std::size_t& tried) const;
+  /// Refines a pose by point-to-plane registration, and counts the points that agree.
+  FramePose refined(const FramePose& start, const std::vector<SurfacePoint>& points, const Eigen::Vector3d& sensor_W_m,
+                    float first_kernel_m) const;
+
+ private:
+  struct Candidate {
+    int score;
+    std::uint32_t cell;
+    std::uint16_t yaw;
+  };
+  struct SurfaceCell {
+    Eigen::Vector3f position_M_m;
+    float normal_z;
+    std::int64_t at;
+  };
+  void build_grid();
+  std::int64_t index_of(const Eigen::Vector3f& position_M_m) const;
+  std::vector<Candidate> best_candidates(const std::vector<SurfacePoint>& points, const SurfacePoint& anchor,
+                                         const SearchRegion* region, std::size_t& tried) const;
+  Eigen::Isometry3d pose_of(const Candidate& candidate, const SurfacePoint& anchor) const;
+  void count(const std::vector<SurfacePoint>& points, FramePose& pose) const;
+
+  PriorMap map_;
+  VoxelMap voxels_;
+  std::vector<Eigen::Vector3f> normals_;  // by index of voxels_
+  // dense grid of the surfaces with a margin of the query's radius, and the list of its occupied cells
+  float cell_m_ = 0.0f;
+  Eigen::Vector3f low_M_m_ = Eigen::Vector3f::Zero();
+  Eigen::Vector3i size_ = Eigen::Vector3i::Zero();
+  std::vector<std::uint8_t> grid_;
+  std::vector<SurfaceCell> cells_;
+};
+
+/// Radius around the sensor within which surface points are compared.
+inline constexpr float kQueryRadius_m = 20.0f;
+
+}  // namespace tumble::mapping

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// TumblingOdometry in the map of an earlier run.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <numbers>
+#include <string>
+
+#include "tests/estimator/mapping/synthetic_room.hpp"
+#include "tumble/common/so3.hpp"
+#include "tumble/odometry/detail/saved_map.hpp"
+#include "tumble/odometry/tumbling_odometry.hpp"
+
+namespace tumble {
+namespace {
+
+TumblingOdometry::Params rig_params() {
+  TumblingOdometry::Params params;
+  params.lever_arm_I_m = {-0.02, -0.08, 0.05};
+  params.T_IL.translation() = Eigen::Vector3d(0.02, 0.087, 0.04);
+  params.T_IL.linear() = so3::exp({0.0, 0.0, -0.5 * std::numbers::pi}).toRotationMatrix();
+  return params;
+}
+
+/// A slow turn that swings through metres.
+test::Motion motion(double swing) {
+  test::Motion out;
+  out.rest_s = 0.6;
+  out.spin_rad_s = 3.0;
+  out.second_spin_rad_s = 1.0;
+  out.swing = swing;
+  return out;
+}
+
+struct RoomRun {
+  explicit RoomRun(double swing) : moves(motion(swing)), imu(test::make_imu(moves, 4.0)), odometry(rig_params()) {}
+
+  /// Adds the data of the sweeps from..to-1, and keeps the newest report.
+  void feed(int from, int to) {
+    for (int sweep = from; sweep < to; ++sweep) {
+      for (int k = sweep * test::kSamplesPerSweep; k < (sweep + 1) * test::kSamplesPerSweep; ++k)
+        ASSERT_TRUE(odometry.add_imu(imu[static_cast<std::size_t>(k)]).ok());
+      const std::vector<LidarPoint> points = test::make_sweep(test::Room::box_with_pillars(), moves, rig_params().T_IL,
+                                                              sweep, test::kRoomNoise_m, test::kHalfColumns);
+      ASSERT_TRUE(odometry.add_sweep(sweep * test::kSweep_ns, (sweep + 1) * test::kSweep_ns, points).ok());
+      while (std::optional<TumblingOdometry::Sweep> done = odometry.take()) newest = std::move(done->report);
+    }
+  }
+  double error_in_room_m() const {
+    return (newest.pose.p_WA_m - moves.p_m(1e-9 * static_cast<double>(newest.pose.time_ns))).norm();
+  }
+
+  test::Motion moves;
+  std::vector<ImuSample> imu;
+  TumblingOdometry odometry;
+  SweepReport newest;
+};
+
+/// Map of a run, in the frame of the room.
+const std::vector<MapPoint>& map_of_first_run() {
+  static const std::vector<MapPoint> points = [] {
+    RoomRun run(1.0);
+    run.feed(0, 25);
+    return run.odometry.mapper().map();
+  }();
+  return points;
+}
+
+TEST(PriorMapRun, HealthReportsThatARunIsNotLocalisedUntilItIs) {
+  RoomRun run(-0.7);
+  ASSERT_TRUE(run.odometry.use_map({.points = map_of_first_run()}).ok());
+  run.feed(0, 5);
+  EXPECT_NE(std::string(run.odometry.health().field).find("not localised in the prior map"), std::string::npos);
+  EXPECT_FALSE(run.newest.in_prior_map);
+  run.feed(5, 30);
+  EXPECT_TRUE(run.odometry.health().ok()) << run.odometry.health().message();
+  EXPECT_TRUE(run.newest.in_prior_map);
+  EXPECT_LT(run.error_in_room_m(), 0.1);
+  EXPECT_FALSE(run.odometry.second_pass_applied());
+}
+
+TEST(PriorMapRun, ResetKeepsTheMapAndLocalisesAgain) {
+  RoomRun run(-0.7);
+  ASSERT_TRUE(run.odometry.use_map({.points = map_of_first_run()}).ok());
+  run.odometry.reset();
+  EXPECT_TRUE(run.odometry.mapper().has_prior_map());
+  run.odometry.reset(Eigen::Isometry3d::Identity());
+  EXPECT_FALSE(run.odometry.mapper().localised().ok());
+  run.feed(0, 25);
+  EXPECT_TRUE(run.newest.in_prior_map);
+  EXPECT_LT(run.error_in_room_m(), 0.1);
+}
+
+TEST(PriorMapRun, ASavedRunContinuesInThePriorMapBitByBit) {
+  RoomRun run(-0.7), other(-0.7);
+  ASSERT_TRUE(run.odometry.use_map({.points = map_of_first_run(), .extend = false}).ok());
+  run.feed(0, 8);
+  const Status loaded = other.odometry.load(run.odometry.save());
+  ASSERT_TRUE(loaded.ok()) << loaded.message();
+  run.feed(8, 25);
+  other.feed(8, 25);
+  EXPECT_TRUE(run.newest.in_prior_map);
+  EXPECT_EQ(run.newest.pose.p_WA_m, other.newest.pose.p_WA_m);
+  EXPECT_EQ(run.odometry.save(), other.odometry.save());
+}
+
+}  // namespace
+}  // namespace tumble
