@@ -45,6 +45,12 @@ ImuSheet mpu6050() {
           .accel_noise_m_s2_sqrt_hz = 0.00392266};
 }
 
+std::span<const std::pair<const char*, ImuSheet (*)()>> imus() {
+  static constexpr std::pair<const char*, ImuSheet (*)()> kAll[] = {
+      {"mti30", mti30}, {"vn100", vn100}, {"phidget1044", phidget1044}, {"mpu6050", mpu6050}};
+  return kAll;
+}
+
 }  // namespace sheets
 
 }  // namespace tumble

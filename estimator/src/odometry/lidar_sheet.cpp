@@ -15,4 +15,10 @@ LidarSheet mid100() {
   return {.range_min_m = 1.0, .range_max_m = 260.0};
 }
 
+std::span<const std::pair<const char*, LidarSheet (*)()>> lidars() {
+  static constexpr std::pair<const char*, LidarSheet (*)()> kAll[] = {
+      {"rs16", rs16}, {"mid40", mid40}, {"mid100", mid100}};
+  return kAll;
+}
+
 }  // namespace tumble::sheets

@@ -80,6 +80,27 @@ constexpr double kSweepsMax_hz = 20.0;  // maximum sweep rate of a lidar; limits
 
 }  // namespace
 
+std::span<const char* const> TumblingExpertParams::derived_fields() {
+  static constexpr const char* kNames[] = {"rate_lever_arm_sigma_m",
+                                           "rate_gyro_noise_density",
+                                           "rate_accel_noise_density",
+                                           "rate_period_s",
+                                           "rate_lag_s",
+                                           "rate_evidence_gravity_m_s2",
+                                           "rate_carried_gravity_m_s2",
+                                           "rate_carried_gap_max_s",
+                                           "rate_carried_period_s",
+                                           "rate_carried_lag_s",
+                                           "rate_carried_iterations_max",
+                                           "mapping_mount_sigma_*",
+                                           "mapping_time_offset_sigma_s",
+                                           "mapping_gravity_m_s2",
+                                           "mapping_range_*",
+                                           "mapping_own_body_*",
+                                           "mapping_accel_rail_m_s2"};
+  return kNames;
+}
+
 RegimeStream::Params TumblingExpertParams::rate_defaults() {
   RegimeStream::Params out;
   out.rate.expert.uncalibrated = 0.003;
@@ -181,8 +202,8 @@ std::optional<TumblingOdometry::Sweep> TumblingOdometry::take() {
   return out;
 }
 
-Status TumblingOdometry::newest(PoseState& pose) const {
-  return pass_.newest(pose);
+Status TumblingOdometry::newest(PoseState& pose, Eigen::Matrix3d* velocity_covariance_I_m2_s2) const {
+  return pass_.newest(pose, velocity_covariance_I_m2_s2);
 }
 
 std::optional<double> TumblingOdometry::estimated_jitter_s() const {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <span>
+#include <utility>
+
 #include "tumble/common/parameters.hpp"
 
 namespace tumble {
@@ -48,6 +51,9 @@ ImuSheet vn100();
 ImuSheet phidget1044();
 /// InvenSense MPU-6050 at 500 deg/s and 16 g.
 ImuSheet mpu6050();
+
+/// Returns all data sheets of IMUs with their names, for programs that select a data sheet by name.
+std::span<const std::pair<const char*, ImuSheet (*)()>> imus();
 
 }  // namespace sheets
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <span>
+#include <utility>
+
 #include "tumble/common/parameters.hpp"
 
 namespace tumble {
@@ -28,6 +31,9 @@ LidarSheet rs16();
 LidarSheet mid40();
 /// Livox Mid-100.
 LidarSheet mid100();
+
+/// Returns all data sheets of lidars with their names, for programs that select a data sheet by name.
+std::span<const std::pair<const char*, LidarSheet (*)()>> lidars();
 
 }  // namespace sheets
 
