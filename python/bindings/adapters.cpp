@@ -39,6 +39,12 @@ nb::bytes bytes_of(const std::vector<Record>& records) {
 }
 static_assert(sizeof(ros::DeskewedPoint) == 16 && sizeof(MapPoint) == 28);
 
+/// An object with the methods of ros::Publisher.
+class PublisherLike : public nb::object {
+  NB_OBJECT_DEFAULT(PublisherLike, nb::object, "typing.Any", is_any_object)
+};
+using NumbersByName = nb::typed<nb::dict, nb::str, nb::object>;
+
 /// Passes results to a Python object with the methods of ros::Publisher.
 class PythonPublisher : public ros::Publisher {
  public:
@@ -148,7 +154,7 @@ void bind_adapters(nb::module_& m) {
   nb::class_<Tumbling>(m, "TumblingAdapter", "TumblingOdometry behind the messages of a robot: see ros/README.md.")
       .def(
           "__init__",
-          [](Tumbling* self, nb::object publisher, const nb::dict& numbers, const std::string& imu_sheet,
+          [](Tumbling* self, const PublisherLike& publisher, const NumbersByName& numbers, const std::string& imu_sheet,
              const std::string& lidar_sheet, const std::string& time_field, const Numbers& own_body,
              const Numbers& T_base_imu, const Numbers& T_base_lidar) {
             ros::TumblingAdapterParams params = tumbling_defaults(imu_sheet, lidar_sheet);
@@ -157,7 +163,7 @@ void bind_adapters(nb::module_& m) {
             params.odometry.own_body_L = ros::box_of("own_body", own_body);
             params.time_field = time_field;
             read_numbers(numbers, params);
-            new (self) Tumbling(std::move(publisher), params);
+            new (self) Tumbling(publisher, params);
           },
           nb::arg("publisher"), nb::arg("numbers"), nb::arg("imu_sheet"), nb::arg("lidar_sheet"), nb::arg("time_field"),
           nb::arg("own_body"), nb::arg("T_base_imu"), nb::arg("T_base_lidar"))
@@ -185,13 +191,13 @@ void bind_adapters(nb::module_& m) {
   nb::class_<Rolling>(m, "RollingAdapter", "RollingOdometry behind the messages of a robot: see ros/README.md.")
       .def(
           "__init__",
-          [](Rolling* self, nb::object publisher, const nb::dict& numbers, const std::string& imu_sheet,
+          [](Rolling* self, const PublisherLike& publisher, const NumbersByName& numbers, const std::string& imu_sheet,
              const std::vector<Numbers>& T_base_imus) {
             ros::RollingAdapterParams params;
             for (const Numbers& T_base_imu : T_base_imus)
               params.odometry.units.push_back({ros::imu_sheet(imu_sheet), ros::pose_of("T_base_imu", T_base_imu)});
             read_numbers(numbers, params);
-            new (self) Rolling(std::move(publisher), params);
+            new (self) Rolling(publisher, params);
           },
           nb::arg("publisher"), nb::arg("numbers"), nb::arg("imu_sheet"), nb::arg("T_base_imus"))
       .def_static("parameters",
