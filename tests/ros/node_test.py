@@ -35,10 +35,14 @@ def stamp_of(message) -> int:
 
 
 def pose_numbers(T: np.ndarray) -> list[float]:
-    """x y z qx qy qz qw of a pose whose rotation is a turn about z."""
-    yaw = np.arctan2(T[1, 0], T[0, 0])
-    assert np.allclose(T[:3, :3], [[np.cos(yaw), -np.sin(yaw), 0], [np.sin(yaw), np.cos(yaw), 0], [0, 0, 1]], atol=1e-9), T
-    return [*T[:3, 3].tolist(), 0.0, 0.0, float(np.sin(yaw / 2)), float(np.cos(yaw / 2))]
+    """x y z qx qy qz qw of a pose."""
+    # the eigenvector of the largest eigenvalue (I. Bar-Itzhack, J. Guidance 23, 2000)
+    R = T[:3, :3]
+    K = np.zeros((4, 4))
+    K[:3, :3] = R + R.T - np.trace(R) * np.eye(3)
+    K[:3, 3] = K[3, :3] = [R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]]
+    K[3, 3] = np.trace(R)
+    return [*T[:3, 3].tolist(), *np.linalg.eigh(K / 3.0)[1][:, 3].tolist()]
 
 
 class Expected:
@@ -144,6 +148,14 @@ def call(node, service: str) -> Trigger.Response:
     return answer.result()
 
 
+def wait_for_node(node, process: subprocess.Popen) -> None:
+    """Waits until the listener knows the publishers of the node. The player waits for the node's subscriptions."""
+    deadline = time.monotonic() + 30.0
+    while any(node.count_publishers(f"{NODE}/{topic}") == 0 for topic in ("odom", "odom_imu", "imu", "points", "map")):
+        assert process.poll() is None and time.monotonic() < deadline, "the node does not publish, see its log"
+        time.sleep(0.1)
+
+
 def play(recording: pathlib.Path, folder: pathlib.Path, name: str) -> dict:
     sent = folder / f"{name}_sent.json"
     subprocess.run([sys.executable, str(HERE / "play.py"), str(recording), str(sent)], check=True, timeout=120)
@@ -168,11 +180,13 @@ def main(recording: pathlib.Path, folder: pathlib.Path) -> int:
     for turn in ("first", "after_kill"):
         received = Received(node)
         process = start_node(parameters, folder / f"{turn}.log")
+        wait_for_node(node, process)
         sent = play(recording, folder, turn)
         found = differences(expected, received)
         problems += [f"{turn}: {each}" for each in found]
-        clouds, samples = int(received.counts.get("clouds messages", 0)), int(received.counts.get("imu messages", 0))
-        print(f"{turn}: {len(sent['points'])} clouds of {POINTS} points sent, {clouds} counted by the last diagnostics; {len(sent['imu'])} samples sent, {samples} counted")
+        lost = [len(set(want) - set(got)) for want, got in ((expected.sweeps, received.sweeps), (expected.rates, received.rates))]
+        print(f"{turn}: {len(sent['points'])} clouds of {POINTS} points and {len(sent['imu'])} samples sent; "
+              f"of {len(expected.sweeps)} deskewed sweeps {lost[0]} are missing, of {len(expected.rates)} rates {lost[1]}")
         print(f"{turn}: latency of odom {latency(sent['points'], received.poses)}; of odom_imu {latency(sent['imu'], received.newest)}")
         if process.poll() is not None:
             problems.append(f"{turn}: the node has ended, see {folder / turn}.log")

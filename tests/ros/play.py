@@ -72,7 +72,7 @@ def main(recording: str, sent: str) -> int:
             print("play.py: no subscriber of imu and points within 60 s", file=sys.stderr)
             return 1
         time.sleep(0.1)
-    time.sleep(1.0)  # the other direction of the discovery
+    time.sleep(3.0)  # until both ends of each topic know each other
     times, began = {"imu": [], "points": []}, time.monotonic() - 1e-9 * queue[0][0]
     for time_ns, topic, message in queue:
         time.sleep(max(0.0, began + 1e-9 * time_ns - time.monotonic()))

@@ -43,7 +43,7 @@ void play(const ThrownBody& body, TimeNs later_ns, AddImu add_imu, AddSweep add_
 }
 
 /// Clouds that start before `until_ns` may be rejected.
-void play(const ThrownBody& body, TimeNs later_ns, TumblingAdapter& adapter, TimeNs until_ns = 0) {
+void play_to(TumblingAdapter& adapter, const ThrownBody& body, TimeNs later_ns, TimeNs until_ns = 0) {
   play(
       body, later_ns, [&](const ImuSample& sample) { adapter.on_imu(sample); },
       [&](TimeNs start_ns, const std::vector<LidarPoint>& points) {
@@ -62,7 +62,7 @@ TEST(TumblingAdapter, PublishesTheLibrarysResultsBitForBit) {
   const ThrownBody body;
   RecordedOutputs got;
   TumblingAdapter adapter(adapter_params(body), got);
-  play(body, kEpoch_ns, adapter);
+  play_to(adapter, body, kEpoch_ns);
   adapter.finish();
 
   TumblingOdometry odometry(test::params_of(body));
@@ -122,7 +122,7 @@ TEST(TumblingAdapter, RecoversTheSaturatedRate) {
   const ThrownBody body;
   RecordedOutputs got;
   TumblingAdapter adapter(adapter_params(body), got);
-  play(body, 0, adapter);
+  play_to(adapter, body, 0);
   std::vector<double> errors_rad_s, raw_errors_rad_s;
   for (const ros::RecoveredImu& imu : got.rates) {
     // a sample is the mean over its window of 10 ms
@@ -145,7 +145,7 @@ TEST(TumblingAdapter, TheTwistHasItsStatedAccuracy) {
   const ThrownBody body;
   RecordedOutputs got;
   TumblingAdapter adapter(adapter_params(body), got);
-  play(body, 0, adapter);
+  play_to(adapter, body, 0);
   double nees = 0.0;
   for (const ros::Odometry& odometry : got.sweeps) {
     const double t_s = 1e-9 * double(odometry.stamp_ns), h_s = 1e-4;
@@ -169,7 +169,7 @@ TEST(TumblingAdapter, PublishesTheBaseFrame) {
   params.T_BL = T_BI;  // the lidar's axes are the IMU's
   RecordedOutputs base;
   TumblingAdapter adapter(params, base);
-  play(body, 0, adapter);
+  play_to(adapter, body, 0);
   ASSERT_FALSE(base.sweeps.empty());
   // z of the IMU is up, so the base hangs upside down from it
   const Eigen::Isometry3d first = base.sweeps.front().T_OB;
@@ -187,7 +187,7 @@ TEST(TumblingAdapter, ALevelBaseStartsAtTheOrigin) {
   params.T_BL = params.T_BI;
   RecordedOutputs got;
   TumblingAdapter adapter(params, got);
-  play(body, 0, adapter);
+  play_to(adapter, body, 0);
   ASSERT_FALSE(got.sweeps.empty());
   // levelled within 1 mrad, 0.5 m from the base
   EXPECT_LT(got.sweeps.front().T_OB.translation().norm(), 2e-3);
@@ -203,9 +203,9 @@ TEST(TumblingAdapter, ContinuesAfterTheClockStepsBack) {
   const ThrownBody body;
   RecordedOutputs got;
   TumblingAdapter adapter(adapter_params(body), got);
-  play(body, kEpoch_ns, adapter);
+  play_to(adapter, body, kEpoch_ns);
   const Eigen::Vector3d last = got.sweeps.back().T_OB.translation();
-  play(body, 0, adapter, 300'000'000);  // a bag that is played again, with another clock; 0.2 s until the restart
+  play_to(adapter, body, 0, 300'000'000);  // a bag that is played again, with another clock; 0.2 s until the restart
   EXPECT_EQ(adapter.odometry().gaps(), 1u);
   const auto again = std::find_if(got.sweeps.begin(), got.sweeps.end(),
                                   [](const ros::Odometry& each) { return each.stamp_ns < kEpoch_ns; });
@@ -225,7 +225,7 @@ TEST(TumblingAdapter, ResetStartsAtTheGivenPose) {
   const Eigen::Isometry3d T_OB =
       Eigen::Translation3d(10.0, 20.0, 1.0) * Eigen::AngleAxisd(1.0, Eigen::Vector3d::UnitZ());
   adapter.reset(T_OB);
-  play(body, 0, adapter);
+  play_to(adapter, body, 0);
   ASSERT_FALSE(got.sweeps.empty());
   EXPECT_LT((got.sweeps.front().T_OB.translation() - T_OB.translation()).norm(), 2e-3);
   EXPECT_LT((got.sweeps.front().T_OB.linear() - T_OB.linear()).norm(), 5e-3);
@@ -259,7 +259,7 @@ TEST(TumblingAdapter, SkipsWhatNobodyReads) {
   RecordedOutputs got;
   got.wanted = false;
   TumblingAdapter adapter(adapter_params(body), got);
-  play(body, 0, adapter);
+  play_to(adapter, body, 0);
   EXPECT_TRUE(got.newest.empty() && got.deskewed.empty() && got.maps.empty());
   EXPECT_GT(got.sweeps.size(), 20u);
 }

@@ -89,7 +89,7 @@ class OdometryNode(Node):
         """Declares the numbers of the library, and returns the values that are set. A number without default is NaN until it is set."""
         out: dict[str, Any] = {}
         for each in parameters:
-            default = [float(x) for x in each.value] if hasattr(each.value, "__len__") else each.value
+            default = [float(x) for x in each.default] if hasattr(each.default, "__len__") else each.default
             described = ParameterDescriptor(description=f"{each.meaning} [{each.unit}]", read_only=True)
             if isinstance(default, float) and each.low <= default <= each.high:
                 described.floating_point_range = [FloatingPointRange(from_value=each.low, to_value=each.high)]
