@@ -25,6 +25,9 @@ OdometryNode::OdometryNode(const std::string& name, const rclcpp::NodeOptions& o
         answer->success = start_again(Eigen::Isometry3d::Identity());
         answer->message = answer->success ? "started again at the origin" : "no data yet";
       });
+  timer_ = create_wall_timer(std::chrono::milliseconds(200), [this] {
+    std::erase_if(inputs_, [](const std::function<bool()>& subscribe) { return subscribe(); });
+  });
   initial_pose_ = create_subscription<geometry_msgs::msg::PoseWithCovarianceStamped>(
       "initialpose", 1, [this](const geometry_msgs::msg::PoseWithCovarianceStamped& given) {
         const auto& p = given.pose.pose.position;
@@ -63,14 +66,6 @@ void OdometryNode::diagnostics(TimeNs stamp_ns, const Diagnostics& now) {
     status.values.back().value = value;
   }
   diagnostics_publisher_->publish(out);
-}
-
-rclcpp::QoS OdometryNode::input_qos(std::size_t depth) {
-  rclcpp::QoS out(depth);
-  const std::string reliability = text("reliability");
-  if (reliability == "best_effort") return out.best_effort();
-  if (reliability == "reliable") return out.reliable();
-  throw std::invalid_argument("parameter reliability is '" + reliability + "', must be best_effort or reliable");
 }
 
 std::optional<Eigen::Isometry3d> OdometryNode::mounting(const std::string& parameter, const std::string& frame) {

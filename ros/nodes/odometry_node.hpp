@@ -5,7 +5,9 @@
 #include <tf2_ros/transform_broadcaster.h>
 #include <tf2_ros/transform_listener.h>
 
+#include <chrono>
 #include <diagnostic_msgs/msg/diagnostic_array.hpp>
+#include <functional>
 #include <geometry_msgs/msg/pose_with_covariance_stamped.hpp>
 #include <memory>
 #include <nav_msgs/msg/odometry.hpp>
@@ -14,6 +16,7 @@
 #include <sensor_msgs/msg/imu.hpp>
 #include <std_srvs/srv/trigger.hpp>
 #include <string>
+#include <vector>
 
 #include "tumble_ros/node_params.hpp"
 #include "tumble_ros/publisher.hpp"
@@ -39,7 +42,10 @@ class OdometryNode : public rclcpp::Node, public Publisher {
 
   std::string text(const std::string& parameter) { return get_parameter(parameter).as_string(); }
   std::vector<double> list(const std::string& parameter) { return get_parameter(parameter).as_double_array(); }
-  rclcpp::QoS input_qos(std::size_t depth);
+  /// Subscribes as soon as the topic has a publisher, reliably if all its publishers are reliable. Best effort would
+  /// lose large clouds.
+  template <class Message>
+  void subscribe(const std::string& topic, std::size_t depth, std::function<void(const Message&)> callback);
   /// Returns the pose of a sensor in the base frame, from the parameter or else from TF; nothing while TF lacks it.
   std::optional<Eigen::Isometry3d> mounting(const std::string& parameter, const std::string& frame);
   void report(const char* topic, const Status& status);
@@ -51,6 +57,9 @@ class OdometryNode : public rclcpp::Node, public Publisher {
  private:
   nav_msgs::msg::Odometry message(const Odometry& odometry, bool from_imu);
 
+  std::vector<std::function<bool()>> inputs_;  ///< subscriptions that wait for a publisher; true: subscribed
+  std::vector<rclcpp::SubscriptionBase::SharedPtr> subscriptions_;
+  rclcpp::TimerBase::SharedPtr timer_;
   tf2_ros::Buffer buffer_;
   tf2_ros::TransformListener listener_;
   tf2_ros::TransformBroadcaster broadcaster_;
@@ -63,6 +72,17 @@ class OdometryNode : public rclcpp::Node, public Publisher {
 inline ImuSample sample_of(const sensor_msgs::msg::Imu& message) {
   const auto &w = message.angular_velocity, &f = message.linear_acceleration;
   return {rclcpp::Time(message.header.stamp).nanoseconds(), {w.x, w.y, w.z}, {f.x, f.y, f.z}, 0};
+}
+
+template <class Message>
+void OdometryNode::subscribe(const std::string& topic, std::size_t depth,
+                             std::function<void(const Message&)> callback) {
+  inputs_.push_back([this, topic, depth, callback] {
+    if (count_publishers(topic) == 0) return false;
+    subscriptions_.push_back(
+        create_subscription<Message>(topic, rclcpp::QoS(depth).reliability_best_available(), callback));
+    return true;
+  });
 }
 
 template <class Params>

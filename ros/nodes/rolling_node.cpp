@@ -23,10 +23,9 @@ class RollingNode : public OdometryNode {
     adapter_.emplace(params, *this);
     for (std::size_t unit = 0; unit < count; ++unit) {
       const std::string name = count == 1 ? "imu" : "imu_" + std::to_string(unit + 1);
-      imus_.push_back(create_subscription<sensor_msgs::msg::Imu>(
-          name, input_qos(kImuDepth), [this, unit](const sensor_msgs::msg::Imu& message) {
-            report("imu", adapter_->on_imu(unit, sample_of(message)));
-          }));
+      subscribe<sensor_msgs::msg::Imu>(name, kImuDepth, [this, unit](const sensor_msgs::msg::Imu& message) {
+        report("imu", adapter_->on_imu(unit, sample_of(message)));
+      });
     }
   }
 
@@ -38,7 +37,6 @@ class RollingNode : public OdometryNode {
 
  private:
   std::optional<RollingAdapter> adapter_;
-  std::vector<rclcpp::Subscription<sensor_msgs::msg::Imu>::SharedPtr> imus_;
 };
 
 }  // namespace tumble::ros

@@ -55,14 +55,12 @@ class TumblingNode : public OdometryNode {
     save_map_ = saving("~/save_map", "map_file", [this] { return ply_of(adapter_->map()); });
     save_calibration_ =
         saving("~/save_calibration", "calibration_file", [this] { return adapter_->calibration_yaml(); });
-    imu_ = create_subscription<sensor_msgs::msg::Imu>("imu", input_qos(kImuDepth),
-                                                      [this](const sensor_msgs::msg::Imu& message) {
-                                                        if (imu_frame_.empty()) imu_frame_ = message.header.frame_id;
-                                                        if (start())
-                                                          report("imu", adapter_->on_imu(sample_of(message)));
-                                                      });
-    points_ = create_subscription<sensor_msgs::msg::PointCloud2>(
-        "points", input_qos(kCloudDepth), [this](const sensor_msgs::msg::PointCloud2& message) { on_points(message); });
+    subscribe<sensor_msgs::msg::Imu>("imu", kImuDepth, [this](const sensor_msgs::msg::Imu& message) {
+      if (imu_frame_.empty()) imu_frame_ = message.header.frame_id;
+      if (start()) report("imu", adapter_->on_imu(sample_of(message)));
+    });
+    subscribe<sensor_msgs::msg::PointCloud2>(
+        "points", kCloudDepth, [this](const sensor_msgs::msg::PointCloud2& message) { on_points(message); });
   }
 
   bool wants(Output output) override {
@@ -142,8 +140,6 @@ class TumblingNode : public OdometryNode {
   std::optional<TumblingAdapter> adapter_;
   rclcpp::Publisher<sensor_msgs::msg::Imu>::SharedPtr imu_publisher_;
   rclcpp::Publisher<sensor_msgs::msg::PointCloud2>::SharedPtr points_publisher_, map_publisher_;
-  rclcpp::Subscription<sensor_msgs::msg::Imu>::SharedPtr imu_;
-  rclcpp::Subscription<sensor_msgs::msg::PointCloud2>::SharedPtr points_;
   rclcpp::Service<Trigger>::SharedPtr save_map_, save_calibration_;
 };
 

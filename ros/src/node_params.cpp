@@ -31,9 +31,6 @@ std::span<const TextParameter> text_parameters() {
       {"imu_frame", "", 0, "frame of the IMU; empty: frame_id of its messages"},
       {"lidar_frame", "", 0, "frame of the lidar; empty: frame_id of its messages"},
       {"tf", "imu", 0, "source of /tf: imu (every IMU sample), sweep (registered sweeps) or none"},
-      {"reliability", "best_effort", 0,
-       "subscription to IMU and points: best_effort receives every publisher, reliable only reliable ones but all "
-       "messages"},
       {"imu_sheet", "", 0, "data sheet of the IMU, which gives the defaults of imu_*"},
       {"lidar_sheet", "", 0, "data sheet of the lidar, which gives the defaults of range_*"},
       {"time_field", "", 0, "field of PointCloud2 with the times of the points; empty: by the usual names"},

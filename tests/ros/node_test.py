@@ -167,7 +167,7 @@ def main(recording: pathlib.Path, folder: pathlib.Path) -> int:
     read = tumble.read(recording, truth=False)
     box = [x for corner in tumble.processing.RIG_BODY_L for x in corner]
     parameters = {**SHEETS, "lever_arm_m": list(map(float, read.imus[0].lever_arm_m)), "own_body": box, "T_base_imu": [0.0] * 6 + [1.0],
-                  "T_base_lidar": pose_numbers(read.T_IL), "reliability": "reliable", "tf": "none",
+                  "T_base_lidar": pose_numbers(read.T_IL), "tf": "none",
                   "map_file": str(folder / "map.ply"), "calibration_file": str(folder / "calibration.yaml")}
     expected = Expected(read, parameters)
     assert len(expected.poses) > 20 and len(expected.rates) > 300, (len(expected.poses), len(expected.rates))
@@ -204,6 +204,8 @@ def main(recording: pathlib.Path, folder: pathlib.Path) -> int:
         status = process.wait(20)
         if turn == "after_kill" and status != 0:
             problems.append(f"the node ended with {status} after Ctrl-C")
+        if (log := (folder / f"{turn}.log").read_text()):
+            problems.append(f"{turn}: the node reports {log[:300]}")
         for subscription in received.subscriptions:
             node.destroy_subscription(subscription)
     # negative controls: another pose and a lost message are found

@@ -11,6 +11,7 @@ the C++ nodes share. Needs rclpy, sensor_msgs, nav_msgs, diagnostic_msgs and std
 from __future__ import annotations
 
 import array
+import functools
 import math
 import pathlib
 import sys
@@ -36,7 +37,6 @@ except ImportError:  # the packages of PyPI lack tf2
     tf2_ros = None
 
 IDENTITY = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]
-RELIABILITY = {"best_effort": ReliabilityPolicy.BEST_EFFORT, "reliable": ReliabilityPolicy.RELIABLE}
 #: Messages that wait while a sweep is registered: two seconds of a fast IMU, and of ten sweeps per second.
 IMU_DEPTH, CLOUD_DEPTH = 2000, 20
 
@@ -72,9 +72,6 @@ class OdometryNode(Node):
             self.text[key] = self.declare_parameter(key, [] if count > 0 else default, described).value
         if self.text["tf"] not in ("imu", "sweep", "none"):
             raise ValueError(f"parameter tf is '{self.text['tf']}', must be imu, sweep or none")
-        if self.text["reliability"] not in RELIABILITY:
-            raise ValueError(f"parameter reliability is '{self.text['reliability']}', must be one of {', '.join(RELIABILITY)}")
-        self.input_reliability = RELIABILITY[self.text["reliability"]]
         self.frames = {"imu": self.text["imu_frame"], "lidar": self.text["lidar_frame"]}
         self.buffer = tf2_ros.Buffer() if tf2_ros else None
         self.listener = tf2_ros.TransformListener(self.buffer, self) if tf2_ros else None
@@ -84,6 +81,16 @@ class OdometryNode(Node):
         self.diagnostics_publisher = self.create_publisher(DiagnosticArray, "/diagnostics", 10)
         self.create_subscription(PoseWithCovarianceStamped, "initialpose", self.on_initial_pose, 1)
         self.create_service(Trigger, "~/reset", self.on_reset)
+        self.inputs: list[tuple[Any, str, Any, int]] = []
+        self.create_timer(0.2, self.subscribe)
+
+    def subscribe(self) -> None:
+        """Subscribes to the inputs that have a publisher, reliably if all its publishers are reliable. Best effort would lose large clouds."""
+        for each in list(self.inputs):
+            kind, topic, callback, depth = each
+            if self.count_publishers(self.resolve_topic_name(topic)) > 0:
+                self.create_subscription(kind, topic, callback, QoSProfile(depth=depth, reliability=ReliabilityPolicy.BEST_AVAILABLE))
+                self.inputs.remove(each)
 
     def numbers(self, parameters: list[_tumble.Parameter]) -> dict[str, Any]:
         """Declares the numbers of the library, and returns the values that are set. A number without default is NaN until it is set."""
@@ -203,8 +210,7 @@ class TumblingNode(OdometryNode):
         self.map_publisher = self.create_publisher(PointCloud2, "~/map", latched)
         self.create_service(Trigger, "~/save_map", self.on_save_map)
         self.create_service(Trigger, "~/save_calibration", self.on_save_calibration)
-        self.create_subscription(Imu, "imu", self.on_imu, QoSProfile(depth=IMU_DEPTH, reliability=self.input_reliability))
-        self.create_subscription(PointCloud2, "points", self.on_points, QoSProfile(depth=CLOUD_DEPTH, reliability=self.input_reliability))
+        self.inputs = [(Imu, "imu", self.on_imu, IMU_DEPTH), (PointCloud2, "points", self.on_points, CLOUD_DEPTH)]
         self.start()  # reports wrong parameters at once, if they give the mounting
 
     def start(self) -> bool:
@@ -273,10 +279,7 @@ class RollingNode(OdometryNode):
         if count < 1 or len(poses) % 7 > 0:
             raise ValueError(f"parameter T_base_imu has {len(poses)} numbers, must have 7 for each IMU: x y z qx qy qz qw")
         self.adapter = _tumble.RollingAdapter(self, given, self.text["imu_sheet"], [poses[7 * k:7 * k + 7] for k in range(count)])
-        quality = QoSProfile(depth=IMU_DEPTH, reliability=self.input_reliability)
-        for unit in range(count):
-            name = "imu" if count == 1 else f"imu_{unit + 1}"
-            self.create_subscription(Imu, name, lambda message, unit=unit: self.on_imu(unit, message), quality)
+        self.inputs = [(Imu, "imu" if count == 1 else f"imu_{unit + 1}", functools.partial(self.on_imu, unit), IMU_DEPTH) for unit in range(count)]
 
     def on_imu(self, unit: int, message: Imu) -> None:
         w, f = message.angular_velocity, message.linear_acceleration
@@ -292,14 +295,18 @@ def main(words: Sequence[str]) -> int:
         print(f"usage: python -m tumble.ros {'|'.join(NODES)} [--ros-args -p NAME:=VALUE -r TOPIC:=TOPIC ...]", file=sys.stderr)
         return 2
     rclpy.init(args=list(words))
+    node = None
     try:
-        rclpy.spin(NODES[words[1]]())
+        node = NODES[words[1]]()
+        rclpy.spin(node)
     except (ValueError, RuntimeError) as error:
         print(f"tumble.ros: {error}", file=sys.stderr)
         return 2
     except (KeyboardInterrupt, ExternalShutdownException):
         pass
     finally:
+        if node is not None:
+            node.adapter = None  # node and adapter refer to each other
         if rclpy.ok():
             rclpy.shutdown()
     return 0
