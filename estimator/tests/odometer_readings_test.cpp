@@ -207,7 +207,7 @@ Eigen::Vector3d after_second_pass(bool with_readings) {
   again.complete(first);
   EXPECT_TRUE(again.taken());
   PoseState pose;
-  EXPECT_TRUE(first.newest(pose).ok());
+  EXPECT_TRUE(first.newest(pose, nullptr).ok());
   return pose.p_WA_m;
 }
 

@@ -14,5 +14,6 @@ void bind_rolling(nanobind::module_& m);
 void bind_mapping(nanobind::module_& m);
 void bind_sheets(nanobind::module_& m);
 void bind_tumbling(nanobind::module_& m);
+void bind_adapters(nanobind::module_& m);
 
 }  // namespace tumble::python

@@ -19,4 +19,5 @@ NB_MODULE(_tumble, m) {
   tumble::python::bind_mapping(m);
   tumble::python::bind_sheets(m);
   tumble::python::bind_tumbling(m);
+  tumble::python::bind_adapters(m);
 }

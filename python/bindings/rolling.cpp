@@ -126,18 +126,12 @@ void bind_filter(nb::module_& m) {
   bind_keeping<RollingFilter>(bound);
 }
 
-/// RollingOdometry derives these parameters from its own numbers and from the data sheets.
-const std::vector<const char*> kDerivedRollingParameters = {"merge_count",
-                                                            "merge_gyro_range_rad_s",
-                                                            "merge_accel_range_m_s2",
-                                                            "rolling_radius_m",
-                                                            "rolling_gravity_m_s2",
-                                                            "rolling_lever_arm_m",
-                                                            "rolling_lever_arm_sigma_m",
-                                                            "rolling_gyro_range_rad_s",
-                                                            "rolling_accel_range_m_s2",
-                                                            "rolling_recovered_rate_sigma_rad_s",
-                                                            "rolling_lag_s"};
+/// Names of the parameters that RollingOdometry determines.
+const std::vector<const char*>& derived_rolling_parameters() {
+  static const std::vector<const char*> all(RollingOdometry::Params::derived_fields().begin(),
+                                            RollingOdometry::Params::derived_fields().end());
+  return all;
+}
 
 RollingOdometry::Params rolling_params(const nb::kwargs& given) {
   Keywords keywords("RollingOdometry", given);
@@ -156,7 +150,7 @@ RollingOdometry::Params rolling_params(const nb::kwargs& given) {
       raise_input("type", "units", nb::str(pair), nb::str("pairs (ImuSheet, T_BI)"));
     params.units.push_back({sheet, pose_of(pair[1], "units T_BI")});
   }
-  read_fields(keywords, params, kDerivedRollingParameters);
+  read_fields(keywords, params, derived_rolling_parameters());
   keywords.done();
   return params;
 }
@@ -320,7 +314,7 @@ void bind_rolling_odometry(nb::module_& m) {
             });
           },
           "state of each unit, from a comparison of the units, in the order of `units`")
-      .def_static("parameters", [] { return list_fields(RollingOdometry::Params{}, kDerivedRollingParameters); });
+      .def_static("parameters", [] { return list_fields(RollingOdometry::Params{}, derived_rolling_parameters()); });
   bind_copy<Object>(bound);
   bind_saving<BoundRollingOdometry>(bound, &restored_rolling);
 }

@@ -35,26 +35,16 @@ TumblingOdometry restored_tumbling(std::span<const std::byte> bytes) {
 using BoundTumblingOdometry = Guarded<TumblingOdometry>;
 using Sweep = TumblingOdometry::Sweep;
 
-/// TumblingOdometry derives these parameters from its own numbers.
-const std::vector<const char*> kDerivedTumblingParameters = {"imu_*",
-                                                             "range_*",
-                                                             "rate_lever_arm_sigma_m",
-                                                             "rate_gyro_noise_density",
-                                                             "rate_accel_noise_density",
-                                                             "rate_period_s",
-                                                             "rate_lag_s",
-                                                             "rate_evidence_gravity_m_s2",
-                                                             "rate_carried_gravity_m_s2",
-                                                             "rate_carried_gap_max_s",
-                                                             "rate_carried_period_s",
-                                                             "rate_carried_lag_s",
-                                                             "rate_carried_iterations_max",
-                                                             "mapping_mount_sigma_*",
-                                                             "mapping_time_offset_sigma_s",
-                                                             "mapping_gravity_m_s2",
-                                                             "mapping_range_*",
-                                                             "mapping_own_body_*",
-                                                             "mapping_accel_rail_m_s2"};
+/// Names of the parameters that the sheets and TumblingOdometry itself determine.
+const std::vector<const char*>& derived_tumbling_parameters() {
+  static const std::vector<const char*> all = [] {
+    const auto derived = TumblingOdometry::Params::Expert::derived_fields();
+    std::vector<const char*> out(derived.begin(), derived.end());
+    out.insert(out.end(), {"imu_*", "range_*"});
+    return out;
+  }();
+  return all;
+}
 
 template <class Sheet>
 Sheet sheet_of(nb::handle given, const char* field, const char* type) {
@@ -75,7 +65,7 @@ TumblingOdometry::Params tumbling_params(const nb::kwargs& given) {
     params.own_body_L = box_of(body, "own_body_L");
   if (const nb::object rig = keywords.take("calibration"); rig.is_valid() && !rig.is_none())
     params.expert.rate.rate.model.calibration = rig_of(rig, "calibration");
-  read_fields(keywords, params, kDerivedTumblingParameters);
+  read_fields(keywords, params, derived_tumbling_parameters());
   keywords.done();
   return params;
 }
@@ -327,7 +317,7 @@ void bind_tumbling(nb::module_& m) {
             return out;
           },
           "Returns the rates of all samples after finish() with lag_s=1e9; otherwise no row.")
-      .def_static("parameters", [] { return list_fields(TumblingOdometry::Params{}, kDerivedTumblingParameters); });
+      .def_static("parameters", [] { return list_fields(TumblingOdometry::Params{}, derived_tumbling_parameters()); });
   bind_accessors(bound);
   bind_copy<BoundTumblingOdometry>(bound);
   bind_saving<TumblingOdometry>(bound, &restored_tumbling);

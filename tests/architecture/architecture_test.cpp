@@ -59,6 +59,12 @@ const std::vector<Rule>& rules() {
       {"python/bindings",
        {"^sim/", "^scenarios/", "^tools/", "^estimator/", "^pcl/", "mujoco", "embree", "^hdf5", "^yaml-cpp", "^sqlite",
         "^SQLiteCpp", "^nlohmann", "^fmt/", "^iostream$", "^fstream$", "^thread$"}},
+      // the ROS 2 package has the library's public headers; ROS only in its nodes
+      {"ros",
+       {"^sim/", "^scenarios/", "^tools/", "^estimator/", "^tumble/.*detail/", "^pcl/", "mujoco", "embree", "^hdf5",
+        "^yaml-cpp", "^sqlite", "^SQLiteCpp", "^nlohmann", "^fmt/", "^thread$"}},
+      {"ros/include", {"^rclcpp", "_msgs/", "_srvs/", "^tf2", "^iostream$", "^fstream$", "^filesystem$"}},
+      {"ros/src", {"^rclcpp", "_msgs/", "_srvs/", "^tf2", "^iostream$", "^fstream$", "^filesystem$"}},
       // what goes between evalio and the package has neither's code but their headers and Python
       {"python/evalio/bindings",
        {"^sim/", "^scenarios/", "^tools/", "^estimator/", "^tumble/", "^pcl/", "mujoco", "embree", "^hdf5", "^fmt/",
@@ -120,7 +126,7 @@ std::vector<fs::path> sources_below(const std::vector<std::string>& folders) {
 }
 
 std::vector<fs::path> all_sources() {
-  return sources_below({"estimator", "sim", "scenarios", "tools", "python/bindings", "python/evalio/bindings"});
+  return sources_below({"estimator", "sim", "scenarios", "tools", "python/bindings", "python/evalio/bindings", "ros"});
 }
 
 std::string path_in_tree(const fs::path& path) {
@@ -167,6 +173,11 @@ TEST(Architecture, CheckerRefusesForbiddenIncludes) {
   EXPECT_NE(broken_rule("scenarios/draw/x.cpp", "mujoco/mujoco.h"), "");
   EXPECT_NE(broken_rule("python/bindings/x.cpp", "scenarios/methods/bridge.hpp"), "");
   EXPECT_EQ(broken_rule("python/bindings/x.cpp", "tumble/tumble.hpp"), "");
+  EXPECT_NE(broken_rule("ros/src/x.cpp", "tumble/mapping/detail/odometer_reading.hpp"), "");
+  EXPECT_NE(broken_rule("ros/src/x.cpp", "rclcpp/rclcpp.hpp"), "");
+  EXPECT_NE(broken_rule("ros/nodes/x.cpp", "scenarios/recordings/import.hpp"), "");
+  EXPECT_EQ(broken_rule("ros/nodes/x.cpp", "rclcpp/rclcpp.hpp"), "");
+  EXPECT_EQ(broken_rule("ros/src/x.cpp", "tumble/tumble.hpp"), "");
   EXPECT_NE(broken_rule("python/evalio/bindings/x.cpp", "tumble/tumble.hpp"), "");
   EXPECT_EQ(broken_rule("python/evalio/bindings/x.cpp", "evalio/pipeline.h"), "");
   EXPECT_NE(broken_rule("scenarios/baselines/attitude/x.cpp", "scenarios/methods/method.hpp"), "");

@@ -101,7 +101,7 @@ TEST(Vocabulary, ReplacedNamesDoNotReturn) {
   const fs::path root = tumble::test::source_dir();
   std::size_t read = 0;
   for (const char* folder :
-       {"docs", "estimator", "examples", "models", "peers", "python", "scenarios", "sim", "tests", "tools"}) {
+       {"docs", "estimator", "examples", "models", "peers", "python", "ros", "scenarios", "sim", "tests", "tools"}) {
     for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
       const std::string extension = entry.path().extension().string();
       const Text kind = kind_of(extension);

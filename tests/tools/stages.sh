@@ -53,6 +53,6 @@ expect 'a warning of Doxygen' "$(outcome docs --all --from lint)" "$(lines 'lint
 outcome none --all > /dev/null
 jobs=$(nproc)
 expect 'what was asked of CTest and the linter' "$(grep -E '^(bin/ctest|tools/lint|tools/docs)' "$scratch/called")" "$(lines \
-  "bin/ctest --preset release -j $jobs -LE bench|browser|soak|peers|python|cluster|threads|fuzz" "bin/ctest --preset release -j $jobs -L ^(browser|soak|peers|python)\$" "bin/ctest --preset release -j $jobs -L cluster -j 1" \
+  "bin/ctest --preset release -j $jobs -LE bench|browser|soak|peers|python|ros|cluster|threads|fuzz" "bin/ctest --preset release -j $jobs -L ^(browser|soak|peers|python|ros)\$" "bin/ctest --preset release -j $jobs -L cluster -j 1" \
   "bin/ctest --preset sanitize -j $jobs -L ^(fast|sim|methods)\$" "bin/ctest --preset threads -j $jobs -L threads" \
   "bin/ctest --preset sanitize -j $jobs -L fuzz" 'tools/lint --all' 'tools/docs ' "bin/ctest --preset release -j $jobs -L bench -j 1")"

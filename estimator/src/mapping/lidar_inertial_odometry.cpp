@@ -91,7 +91,7 @@ Status LidarInertialOdometry::add_sweep(TimeNs lidar_start_ns, TimeNs lidar_end_
 }
 
 Status LidarInertialOdometry::predict(std::span<const ImuSample> samples, std::span<const RateState> rates,
-                                      PoseState& pose) const {
+                                      PoseState& pose, Eigen::Matrix3d* velocity_covariance_I_m2_s2) const {
   const Impl& my = *impl_;
   if (!mapping::has_started(my.tracking)) return {Trouble::empty, "sweeps", 0.0, 1.0};
   if (samples.size() != rates.size()) return {Trouble::too_few, "rates", double(rates.size()), double(samples.size())};
@@ -101,7 +101,14 @@ Status LidarInertialOdometry::predict(std::span<const ImuSample> samples, std::s
     if (Status status = track.check(samples[k]); !status.ok()) return status;
     track.take(my.params, samples[k], rates[k]);
   }
-  if (track.samples().empty()) return pose_at(my.boundary.time_ns(), pose);
+  const auto report_velocity = [&](const mapping::MotionErrors& errors, const MotionState& state) {
+    if (velocity_covariance_I_m2_s2) *velocity_covariance_I_m2_s2 = mapping::velocity_covariance_I(state, errors);
+  };
+  if (track.samples().empty()) {
+    report_velocity(mapping::unknowns::block(my.boundary.state_estimate.error, mapping::unknowns::motion),
+                    my.boundary.state_estimate.mean.state);
+    return pose_at(my.boundary.time_ns(), pose);
+  }
   const TimeNs end_ns = track.samples().back().time_ns;
   if (std::holds_alternative<mapping::ConstantVelocity>(my.known)) track.exclude_accelerometer(end_ns);
   const Registration::Estimate& last = my.boundary.state_estimate.mean;
@@ -120,6 +127,8 @@ Status LidarInertialOdometry::predict(std::span<const ImuSample> samples, std::s
     return status;
   pose = my.pose_along(trajectory, trajectory.duration_s(), at_start->errors);
   pose.time_ns = end_ns;
+  report_velocity(mapping::motion_errors(mapping::unknowns_at(trajectory, trajectory.duration_s()), at_start->errors),
+                  trajectory.state(trajectory.duration_s()));
   return {};
 }
 

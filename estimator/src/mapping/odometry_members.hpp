@@ -54,6 +54,7 @@ template <StateOf<LidarInertialOdometry::SweepReport> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("report.verdict", s.verdict, SweepVerdict::rejected);
   visit("report.pose", s.pose);
+  visit("report.velocity_covariance_I_m2_s2", s.velocity_covariance_I_m2_s2);
   visit("report.trajectory", s.trajectory);
   visit("report.smoothed", s.smoothed);
   visit("report.inlier_share", s.inlier_share);

@@ -274,6 +274,9 @@ void LidarInertialOdometry::Impl::propagate(const UpdatedSweep& sweep, const Pla
   mapping::boundary_after(params, sweep.start, motion, sweep.trajectory, aligned, boundary);
   report.pose = boundary.state_estimate.mean.state.pose();
   report.pose.covariance = report.trajectory.back().covariance;
+  report.velocity_covariance_I_m2_s2 = mapping::velocity_covariance_I(
+      boundary.state_estimate.mean.state,
+      mapping::unknowns::block(boundary.state_estimate.error, mapping::unknowns::motion));
   if (placed.verdict != SweepVerdict::first) add_map_drift(sweep, report);
   prune_until(motion.end_ns);
 }

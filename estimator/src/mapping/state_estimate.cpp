@@ -57,6 +57,22 @@ Matrix unknowns_at(const SweepTrajectory& trajectory, double t_s) {
   return F;
 }
 
+MotionErrors motion_errors(const Matrix& F, const Matrix& errors) {
+  const auto rows = F.topRows<Registration::kMotion>();
+  const Eigen::Matrix<double, Registration::kMotion, Registration::kUnknowns> moved = rows * errors;
+  return moved * rows.transpose();
+}
+
+/// The velocity error in IMU axes is R_IW (δv + v × φ) for the errors δv and φ in W.
+Eigen::Matrix3d velocity_covariance_I(const MotionState& state, const MotionErrors& errors) {
+  namespace u = unknowns;
+  const Eigen::Matrix3d R_IW = state.q_WI.toRotationMatrix().transpose();
+  Eigen::Matrix<double, 3, Registration::kMotion> J = Eigen::Matrix<double, 3, Registration::kMotion>::Zero();
+  u::columns(J, u::attitude) = R_IW * so3::hat(state.v_WI_m_s);
+  u::columns(J, u::velocity) = R_IW;
+  return J * errors * J.transpose();
+}
+
 /// Computes the covariance of pose and mounting after the propagation by F. The blocks have the size of whole SIMD
 /// packets, which keeps the order of summation of the full matrix product. The rows of F for mounting and other
 /// constants are rows of the identity: mapping.md (R11).

@@ -35,6 +35,16 @@ void sandwich(const Registration::Matrix& F, const Registration::Matrix& P, Regi
 /// recording.
 Registration::Matrix pose_and_mounting(const Registration::Matrix& F, const Registration::Matrix& errors);
 
+/// MotionErrors is the covariance of the errors of position, attitude and velocity in W.
+using MotionErrors = Eigen::Matrix<double, Registration::kMotion, Registration::kMotion>;
+
+/// Returns the block of the product F errors F^T that contains the motion. F is the result of unknowns_at().
+MotionErrors motion_errors(const Registration::Matrix& F, const Registration::Matrix& errors);
+
+/// Returns the covariance of the error of the velocity in IMU axes, R_IW v_WI_W. An attitude error rotates the
+/// velocity.
+Eigen::Matrix3d velocity_covariance_I(const MotionState& state, const MotionErrors& errors);
+
 /// Propagates the estimate to the end of the segment, at `end_ns`. `trajectory` is the motion of the estimate's mean.
 void at_end(const StateEstimate& at_start, const SweepTrajectory& trajectory, const Registration::Matrix& end_by_start,
             TimeNs end_ns, StateEstimate& end);

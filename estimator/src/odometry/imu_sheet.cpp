@@ -101,6 +101,14 @@ ImuSheet mid360_imu() {
           .accel_noise_m_s2_sqrt_hz = 0.000980665};
 }
 
+std::span<const std::pair<const char*, ImuSheet (*)()>> imus() {
+  static constexpr std::pair<const char*, ImuSheet (*)()> kAll[] = {
+      {"mti30", mti30},     {"vn100", vn100},           {"phidget1044", phidget1044}, {"mpu6050", mpu6050},
+      {"bmi088", bmi088},   {"icm20948", icm20948},     {"icm42688", icm42688},       {"mti3", mti3},
+      {"lsm6dso", lsm6dso}, {"ouster_imu", ouster_imu}, {"mid360_imu", mid360_imu}};
+  return kAll;
+}
+
 }  // namespace sheets
 
 }  // namespace tumble

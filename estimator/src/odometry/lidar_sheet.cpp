@@ -51,4 +51,12 @@ LidarSheet mid360() {
   return {.range_min_m = 0.1, .range_max_m = 70.0};
 }
 
+std::span<const std::pair<const char*, LidarSheet (*)()>> lidars() {
+  static constexpr std::pair<const char*, LidarSheet (*)()> kAll[] = {
+      {"rs16", rs16},       {"mid40", mid40},   {"mid100", mid100},     {"vlp16", vlp16},
+      {"xt16", xt16},       {"xt32", xt32},     {"helios32", helios32}, {"os0_64", os0_64},
+      {"os0_128", os0_128}, {"os1_64", os1_64}, {"os1_128", os1_128},   {"mid360", mid360}};
+  return kAll;
+}
+
 }  // namespace tumble::sheets

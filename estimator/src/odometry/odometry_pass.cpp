@@ -126,7 +126,7 @@ Status OdometryPass::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const L
   return status;
 }
 
-Status OdometryPass::newest(PoseState& pose) const {
+Status OdometryPass::newest(PoseState& pose, Eigen::Matrix3d* velocity_covariance_I_m2_s2) const {
   std::vector<RateState> rates;
   rates_.flush(rate_state_, rates);
   std::vector<ImuSample> samples;
@@ -136,7 +136,7 @@ Status OdometryPass::newest(PoseState& pose) const {
     samples.push_back(classified.at(rate.time_ns));
     rate = for_the_mapper(rate, samples.back(), rate_sigma_max_rad_s_);
   }
-  return mapper_.predict(samples, rates, pose);
+  return mapper_.predict(samples, rates, pose, velocity_covariance_I_m2_s2);
 }
 
 void OdometryPass::take_rate(const RateState& rate) {

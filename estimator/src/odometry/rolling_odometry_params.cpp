@@ -23,6 +23,21 @@ void require_stated(RollingOdometry::Params params) {
 
 }  // namespace
 
+std::span<const char* const> RollingOdometry::Params::derived_fields() {
+  static constexpr const char* kNames[] = {"merge_count",
+                                           "merge_gyro_range_rad_s",
+                                           "merge_accel_range_m_s2",
+                                           "rolling_radius_m",
+                                           "rolling_gravity_m_s2",
+                                           "rolling_lever_arm_m",
+                                           "rolling_lever_arm_sigma_m",
+                                           "rolling_gyro_range_rad_s",
+                                           "rolling_accel_range_m_s2",
+                                           "rolling_recovered_rate_sigma_rad_s",
+                                           "rolling_lag_s"};
+  return kNames;
+}
+
 void RollingOdometry::Params::assume_unknown_imus() {
   const auto widen = [](double& sigma, double least) { sigma = std::max(sigma, least); };
   RollingParams& filter = expert.rolling.filter;

@@ -140,8 +140,8 @@ std::optional<TumblingOdometry::Sweep> TumblingOdometry::take() {
   return out;
 }
 
-Status TumblingOdometry::newest(PoseState& pose) const {
-  return pass_.newest(pose);
+Status TumblingOdometry::newest(PoseState& pose, Eigen::Matrix3d* velocity_covariance_I_m2_s2) const {
+  return pass_.newest(pose, velocity_covariance_I_m2_s2);
 }
 
 std::optional<double> TumblingOdometry::estimated_jitter_s() const {

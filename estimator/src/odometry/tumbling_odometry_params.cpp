@@ -12,6 +12,27 @@ constexpr double kGravitySigma_m_s2 = 0.03;
 
 }  // namespace
 
+std::span<const char* const> TumblingExpertParams::derived_fields() {
+  static constexpr const char* kNames[] = {"rate_lever_arm_sigma_m",
+                                           "rate_gyro_noise_density",
+                                           "rate_accel_noise_density",
+                                           "rate_period_s",
+                                           "rate_lag_s",
+                                           "rate_evidence_gravity_m_s2",
+                                           "rate_carried_gravity_m_s2",
+                                           "rate_carried_gap_max_s",
+                                           "rate_carried_period_s",
+                                           "rate_carried_lag_s",
+                                           "rate_carried_iterations_max",
+                                           "mapping_mount_sigma_*",
+                                           "mapping_time_offset_sigma_s",
+                                           "mapping_gravity_m_s2",
+                                           "mapping_range_*",
+                                           "mapping_own_body_*",
+                                           "mapping_accel_rail_m_s2"};
+  return kNames;
+}
+
 RegimeStream::Params TumblingExpertParams::rate_defaults() {
   RegimeStream::Params out;
   out.rate.expert.uncalibrated = 0.003;

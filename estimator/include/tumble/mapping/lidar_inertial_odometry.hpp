@@ -118,8 +118,9 @@ class LidarInertialOdometry {
   /// last sweep. The function does not add the samples to the state. If no sample is later than the last sweep,
   /// predict() returns the pose at the end of the last sweep. A caller needs predict() before a sweep or its rates are
   /// available. Returns the errors of add_imu(), or `empty` before the first sweep. Cost: O(samples since the last
-  /// sweep).
-  Status predict(std::span<const ImuSample> samples, std::span<const RateState> rates, PoseState& pose) const;
+  /// sweep). `velocity_covariance_I_m2_s2` receives the covariance of SweepReport with this name, unless null.
+  Status predict(std::span<const ImuSample> samples, std::span<const RateState> rates, PoseState& pose,
+                 Eigen::Matrix3d* velocity_covariance_I_m2_s2 = nullptr) const;
 
   /// Returns the current calibration and the covariance of its errors. Parts of the calibration that are not estimated
   /// have their stated values and covariance 0.

@@ -25,6 +25,8 @@ const char* to_string(SweepVerdict verdict);
 struct SweepReport {
   SweepVerdict verdict = SweepVerdict::rejected;
   PoseState pose;                     ///< pose and velocity of the IMU at the end of the sweep, with covariance
+  /// Covariance of the error of the velocity in IMU axes, R_IW v_WI_W, at the end of the sweep [m^2/s^2].
+  Eigen::Matrix3d velocity_covariance_I_m2_s2 = Eigen::Matrix3d::Zero();
   std::vector<PoseState> trajectory;  ///< IMU poses within the sweep, corrected by the registration
   /// Final poses of the oldest sweep in the window, smoothed with the data of all newer sweeps in the window. If the
   /// window has two sweeps, the oldest sweep is the previous sweep. The list of smoothed poses is empty while the

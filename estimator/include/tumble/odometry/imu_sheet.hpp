@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <span>
+#include <utility>
+
 #include "tumble/common/parameters.hpp"
 
 namespace tumble {
@@ -62,6 +65,9 @@ ImuSheet lsm6dso();
 ImuSheet ouster_imu();
 /// IMU inside a Livox Mid-360; its ranges are assumed.
 ImuSheet mid360_imu();
+
+/// Returns all data sheets of IMUs with their names, for programs that select a data sheet by name.
+std::span<const std::pair<const char*, ImuSheet (*)()>> imus();
 
 }  // namespace sheets
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <span>
+#include <utility>
+
 #include "tumble/common/parameters.hpp"
 
 namespace tumble {
@@ -46,6 +49,9 @@ LidarSheet os1_64();
 LidarSheet os1_128();
 /// Livox Mid-360.
 LidarSheet mid360();
+
+/// Returns all data sheets of lidars with their names, for programs that select a data sheet by name.
+std::span<const std::pair<const char*, LidarSheet (*)()>> lidars();
 
 }  // namespace sheets
 

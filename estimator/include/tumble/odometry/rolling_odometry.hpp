@@ -67,6 +67,10 @@ class RollingOdometry {
       SampleClock::Params stamps;  ///< correction of stamps that a host assigned
     } expert;
 
+    /// Returns the names of the fields that RollingOdometry derives from other fields and from the data sheets. Values
+    /// of these fields have no effect.
+    static std::span<const char* const> derived_fields();
+
     /// Widens the priors for IMUs that have no data sheet and no calibration, mounted anywhere in the sphere. Assumes a
     /// level floor, because the accelerometer bias of such an IMU resembles a slope.
     void assume_unknown_imus();

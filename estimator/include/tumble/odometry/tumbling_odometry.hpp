@@ -122,8 +122,9 @@ class TumblingOdometry {
 
   /// Predicts pose and velocity of the IMU at its newest sample, with covariance, by inertial integration from the last
   /// registered sweep. Returns `empty` before the first sweep. The function newest() allocates memory. Cost: O(samples
-  /// since the last sweep).
-  Status newest(PoseState& pose) const;
+  /// since the last sweep). `velocity_covariance_I_m2_s2` receives the covariance of the error of the velocity in IMU
+  /// axes, unless null.
+  Status newest(PoseState& pose, Eigen::Matrix3d* velocity_covariance_I_m2_s2 = nullptr) const;
   /// Reports whether the inputs and the pose are plausible now. Estimation continues after any finding, and a finding
   /// ends when its cause ends (at the latest a minute later). Returns `ok`, or `out_of_range` with a finding:
   /// - a frozen IMU axis and the duration of the freeze,

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <limits>
+#include <span>
 
 #include "tumble/attitude/regime_stream.hpp"
 #include "tumble/common/parameters.hpp"
@@ -38,6 +39,9 @@ struct TumblingExpertParams {
   SecondPass::Params second_pass;
   static OdometryParams mapping_defaults();
   static RegimeStream::Params rate_defaults();
+  /// Returns the names of the fields that TumblingOdometry derives from other fields; a '*' at the end of a name
+  /// stands for any end. Values of these fields have no effect.
+  static std::span<const char* const> derived_fields();
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {

@@ -51,7 +51,7 @@ class OdometryPass {
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points,
                    const std::optional<OdometerReading>& reading, LidarInertialOdometry::SweepReport& report);
   /// Predicts the newest pose like TumblingOdometry::newest.
-  Status newest(PoseState& pose) const;
+  Status newest(PoseState& pose, Eigen::Matrix3d* velocity_covariance_I_m2_s2) const;
 
   /// Converts a time of the lidar's clock to the IMU's clock.
   TimeNs needed_ns(TimeNs lidar_ns) const;

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tumble/common/fields_by_name.hpp"
+#include "tumble/tumble.hpp"
+
+/// Parameters of the nodes. The C++ nodes and the Python node declare their parameters from these descriptions, so no
+/// parameter is described twice.
+namespace tumble::ros {
+
+/// Parameters of both adapters.
+struct AdapterParams {
+  double diagnostics_period_s = 1.0;
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.diagnostics_period_s,
+          {"diagnostics_period_s", "s", 0.1, 1e6,
+           "time between two publications of the diagnostics, by the stamps of the IMU", Rank::first});
+  }
+};
+
+/// Parameters of TumblingAdapter.
+struct TumblingAdapterParams {
+  TumblingParams odometry;                                 ///< T_IL is set from T_BI and T_BL
+  Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();  ///< pose of the IMU in the base frame
+  Eigen::Isometry3d T_BL = Eigen::Isometry3d::Identity();  ///< pose of the lidar in the base frame
+  std::string time_field;                                  ///< see PointCloudReader
+  double map_period_s = 5.0;
+  AdapterParams adapter;
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit.group("", p.odometry);
+    visit(p.map_period_s, {"map_period_s", "s", 0.1, 1e6,
+                           "time between two publications of the map, by the stamps of the IMU", Rank::first});
+    visit.group("", p.adapter);
+  }
+  static std::span<const char* const> derived_fields() { return TumblingParams::Expert::derived_fields(); }
+};
+
+/// Parameters of RollingAdapter. The base frame is the sphere, with its origin in the sphere's centre.
+struct RollingAdapterParams {
+  RollingOdometry::Params odometry;
+  AdapterParams adapter;
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit.group("", p.odometry);
+    visit.group("", p.adapter);
+  }
+  static std::span<const char* const> derived_fields() { return RollingOdometry::Params::derived_fields(); }
+};
+
+/// Calls `each(name, value, field)` for each number that a node declares as a parameter.
+template <class Params, class Each>
+void visit_parameters(Params& params, Each each) {
+  const auto derived = std::remove_cv_t<Params>::derived_fields();
+  visit_by_name(params, [&](const std::string& name, auto& value, const Field& field) {
+    if (!is_among(std::string_view(name), derived)) each(name, value, field);
+  });
+}
+
+/// TextParameter describes a parameter of a node that is a text or, if `count` is above 0, a list of numbers.
+struct TextParameter {
+  const char* name;
+  const char* value;  ///< default of a text
+  int count;          ///< length of the list; the default list is empty
+  const char* meaning;
+};
+
+/// Returns the text and list parameters of both nodes.
+std::span<const TextParameter> text_parameters();
+
+/// Converts x, y, z in metres and the quaternion qx, qy, qz, qw to a pose. Throws InvalidParams with the name of the
+/// parameter unless there are seven finite numbers and the quaternion has length 1 within 1e-3.
+Eigen::Isometry3d pose_of(const std::string& parameter, std::span<const double> numbers);
+
+/// Converts the smallest and the largest corner to a box; no numbers give an empty box. Throws InvalidParams with the
+/// name of the parameter for another count.
+Eigen::AlignedBox3d box_of(const std::string& parameter, std::span<const double> numbers);
+
+/// Return the data sheet with this name, or the default sheet for an empty name. Throw InvalidParams for an unknown
+/// name, with all known names.
+ImuSheet imu_sheet(const std::string& name);
+LidarSheet lidar_sheet(const std::string& name);
+
+}  // namespace tumble::ros

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tumble/tumble.hpp"
+#include "tumble_ros/node_params.hpp"
+#include "tumble_ros/point_cloud.hpp"
+#include "tumble_ros/publisher.hpp"
+#include "tumble_ros/schedule.hpp"
+
+namespace tumble::ros {
+
+/// TumblingAdapter connects TumblingOdometry to the messages of a robot. It contains the logic of the ROS nodes and
+/// needs no ROS. The adapter changes no estimate: the library called directly gives the same bits.
+///
+/// | call | when |
+/// | --- | --- |
+/// | Publisher::imu | for each IMU sample, lag_s later |
+/// | Publisher::odometry, points | for each registered sweep |
+/// | Publisher::odometry_imu | for each accepted IMU sample after the first registered sweep |
+/// | Publisher::map, diagnostics | at the periods of the parameters |
+///
+/// The odometry frame has z up. Its origin and heading are those of the base frame at the start, if the base is level.
+/// A robot that starts tilted has its origin off by the tilt times the distance from base to IMU. Results are published
+/// within on_imu(). If the clock steps back, the library restarts after 0.2 s at the newest pose.
+class TumblingAdapter {
+ public:
+  using Params = TumblingAdapterParams;
+
+  /// Throws InvalidParams like TumblingOdometry. `publisher` must outlive the adapter.
+  TumblingAdapter(const Params& params, Publisher& publisher);
+
+  /// Processes an IMU sample in IMU axes. Returns the status of TumblingOdometry::add_imu().
+  Status on_imu(const ImuSample& sample);
+  /// Processes a point cloud in lidar axes. Returns the status of PointCloudReader::read() or of
+  /// TumblingOdometry::add_sweep().
+  Status on_cloud(const PointCloudView& cloud);
+  /// Registers the sweeps that wait for later samples and publishes them, at the end of a recording.
+  void finish();
+  /// Starts a new run with a new map. Position and heading of the base are those of `T_OB`.
+  void reset(const Eigen::Isometry3d& T_OB);
+
+  /// Returns the estimated mounting and lever arm as a ROS 2 parameter file, from which the next run can start.
+  std::string calibration_yaml() const;
+  std::vector<MapPoint> map() const { return odometry_.mapper().map(); }
+  const TumblingOdometry& odometry() const { return odometry_; }
+
+ private:
+  void publish_rate();
+  void publish_sweeps();
+  void publish_points(const SweepReport& report);
+  void publish_newest();
+  void publish_diagnostics();
+  const RateState& rate_at(TimeNs time_ns) const;
+
+  Params params_;
+  Publisher& publisher_;
+  TumblingOdometry odometry_;
+  PointCloudReader reader_;
+  std::deque<ImuSample> samples_;    ///< accepted samples whose rate is not smoothed yet
+  std::deque<RateState> rates_;      ///< smoothed rates of the last seconds
+  std::deque<TimedSweep> sweeps_;    ///< sweeps that wait for their poses
+  std::optional<SweepReport> last_;  ///< newest registered sweep, without its trajectory
+  Rejections imu_, clouds_;
+  Schedule map_, diagnostics_;
+};
+
+}  // namespace tumble::ros

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "odometry_node.hpp"
+
+#include <algorithm>
+
+namespace tumble::ros {
+
+OdometryNode::OdometryNode(const std::string& name, const rclcpp::NodeOptions& options)
+    : rclcpp::Node(name, options), buffer_(get_clock()), listener_(buffer_), broadcaster_(*this) {
+  for (const TextParameter& each : text_parameters()) {
+    rcl_interfaces::msg::ParameterDescriptor described;
+    described.description = each.meaning;
+    described.read_only = true;
+    if (each.count > 0) {
+      declare_parameter(each.name, std::vector<double>{}, described);
+    } else {
+      declare_parameter(each.name, std::string(each.value), described);
+    }
+  }
+  odometry_publisher_ = create_publisher<nav_msgs::msg::Odometry>("~/odom", 10);
+  odometry_imu_publisher_ = create_publisher<nav_msgs::msg::Odometry>("~/odom_imu", 100);
+  diagnostics_publisher_ = create_publisher<diagnostic_msgs::msg::DiagnosticArray>("/diagnostics", 10);
+  reset_ = create_service<Trigger>(
+      "~/reset", [this](const Trigger::Request::SharedPtr, const Trigger::Response::SharedPtr& answer) {
+        answer->success = start_again(Eigen::Isometry3d::Identity());
+        answer->message = answer->success ? "started again at the origin" : "no data yet";
+      });
+  timer_ = create_wall_timer(std::chrono::milliseconds(200), [this] {
+    std::erase_if(inputs_, [](const std::function<bool()>& subscribe) { return subscribe(); });
+  });
+  initial_pose_ = create_subscription<geometry_msgs::msg::PoseWithCovarianceStamped>(
+      "initialpose", 1, [this](const geometry_msgs::msg::PoseWithCovarianceStamped& given) {
+        const auto& p = given.pose.pose.position;
+        const auto& q = given.pose.pose.orientation;
+        try {
+          start_again(pose_of("initialpose", std::vector<double>{p.x, p.y, p.z, q.x, q.y, q.z, q.w}));
+        } catch (const InvalidParams& error) {
+          RCLCPP_WARN(get_logger(), "%s", error.what());
+        }
+      });
+}
+
+bool OdometryNode::wants(Output output) {
+  return output == Output::odometry_imu &&
+         (text("tf") == "imu" || odometry_imu_publisher_->get_subscription_count() > 0);
+}
+
+void OdometryNode::odometry(const Odometry& odometry) {
+  odometry_publisher_->publish(message(odometry, false));
+}
+
+void OdometryNode::odometry_imu(const Odometry& odometry) {
+  odometry_imu_publisher_->publish(message(odometry, true));
+}
+
+void OdometryNode::diagnostics(TimeNs stamp_ns, const Diagnostics& now) {
+  diagnostic_msgs::msg::DiagnosticArray out;
+  out.header.stamp = rclcpp::Time(stamp_ns);
+  auto& status = out.status.emplace_back();
+  status.level = now.ok ? status.OK : status.WARN;
+  status.name = get_name();
+  status.message = now.message;
+  for (const auto& [key, value] : now.values) {
+    status.values.emplace_back();
+    status.values.back().key = key;
+    status.values.back().value = value;
+  }
+  diagnostics_publisher_->publish(out);
+}
+
+std::optional<Eigen::Isometry3d> OdometryNode::mounting(const std::string& parameter, const std::string& frame) {
+  if (const std::vector<double> numbers = list(parameter); !numbers.empty()) return pose_of(parameter, numbers);
+  if (frame.empty()) return std::nullopt;
+  if (frame == text("base_frame")) return Eigen::Isometry3d::Identity();
+  try {
+    const auto found = buffer_.lookupTransform(text("base_frame"), frame, tf2::TimePointZero).transform;
+    const auto &p = found.translation, &q = found.rotation;  // two types
+    return pose_of(frame, std::vector<double>{p.x, p.y, p.z, q.x, q.y, q.z, q.w});
+  } catch (const tf2::TransformException& error) {
+    RCLCPP_WARN_THROTTLE(get_logger(), *get_clock(), 5000, "waiting for TF: %s; or set %s", error.what(),
+                         parameter.c_str());
+    return std::nullopt;
+  }
+}
+
+void OdometryNode::report(const char* topic, const Status& status) {
+  if (!status.ok()) RCLCPP_WARN_THROTTLE(get_logger(), *get_clock(), 1000, "%s: %s", topic, status.message().c_str());
+}
+
+nav_msgs::msg::Odometry OdometryNode::message(const Odometry& odometry, bool from_imu) {
+  nav_msgs::msg::Odometry out;
+  out.header.stamp = rclcpp::Time(odometry.stamp_ns);
+  out.header.frame_id = text("odom_frame");
+  out.child_frame_id = text("base_frame");
+  const Eigen::Vector3d p = odometry.T_OB.translation();
+  const Eigen::Quaterniond q(odometry.T_OB.linear());
+  out.pose.pose.position.x = p.x();
+  out.pose.pose.position.y = p.y();
+  out.pose.pose.position.z = p.z();
+  out.pose.pose.orientation.x = q.x();
+  out.pose.pose.orientation.y = q.y();
+  out.pose.pose.orientation.z = q.z();
+  out.pose.pose.orientation.w = q.w();
+  out.twist.twist.linear.x = odometry.twist_B[0];
+  out.twist.twist.linear.y = odometry.twist_B[1];
+  out.twist.twist.linear.z = odometry.twist_B[2];
+  out.twist.twist.angular.x = odometry.twist_B[3];
+  out.twist.twist.angular.y = odometry.twist_B[4];
+  out.twist.twist.angular.z = odometry.twist_B[5];
+  std::copy_n(odometry.pose_covariance.data(), 36, out.pose.covariance.begin());
+  std::copy_n(odometry.twist_covariance.data(), 36, out.twist.covariance.begin());
+  if (text("tf") != (from_imu ? "imu" : "sweep")) return out;
+  geometry_msgs::msg::TransformStamped moved;
+  moved.header = out.header;
+  moved.child_frame_id = out.child_frame_id;
+  moved.transform.translation.x = p.x();
+  moved.transform.translation.y = p.y();
+  moved.transform.translation.z = p.z();
+  moved.transform.rotation = out.pose.pose.orientation;
+  broadcaster_.sendTransform(moved);
+  return out;
+}
+
+}  // namespace tumble::ros

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <tf2_ros/buffer.h>
+#include <tf2_ros/transform_broadcaster.h>
+#include <tf2_ros/transform_listener.h>
+
+#include <chrono>
+#include <diagnostic_msgs/msg/diagnostic_array.hpp>
+#include <functional>
+#include <geometry_msgs/msg/pose_with_covariance_stamped.hpp>
+#include <memory>
+#include <nav_msgs/msg/odometry.hpp>
+#include <optional>
+#include <rclcpp/rclcpp.hpp>
+#include <sensor_msgs/msg/imu.hpp>
+#include <std_srvs/srv/trigger.hpp>
+#include <string>
+#include <vector>
+
+#include "tumble_ros/node_params.hpp"
+#include "tumble_ros/publisher.hpp"
+
+namespace tumble::ros {
+
+/// Base of both nodes: parameters, /tf, odometry and diagnostics. tumble/ros.py is the same node in Python.
+class OdometryNode : public rclcpp::Node, public Publisher {
+ public:
+  OdometryNode(const std::string& name, const rclcpp::NodeOptions& options);
+
+  bool wants(Output output) override;
+  void odometry(const Odometry& odometry) override;
+  void odometry_imu(const Odometry& odometry) override;
+  void diagnostics(TimeNs stamp_ns, const Diagnostics& now) override;
+
+ protected:
+  using Trigger = std_srvs::srv::Trigger;
+  static constexpr std::size_t kImuDepth = 2000;  ///< samples that wait while a sweep is registered
+
+  /// Starts a new run at a pose of the base. Returns false before the first data.
+  virtual bool start_again(const Eigen::Isometry3d& T_OB) = 0;
+
+  std::string text(const std::string& parameter) { return get_parameter(parameter).as_string(); }
+  std::vector<double> list(const std::string& parameter) { return get_parameter(parameter).as_double_array(); }
+  /// Subscribes as soon as the topic has a publisher, reliably if all its publishers are reliable. Best effort would
+  /// lose large clouds.
+  template <class Message>
+  void subscribe(const std::string& topic, std::size_t depth, std::function<void(const Message&)> callback);
+  /// Returns the pose of a sensor in the base frame, from the parameter or else from TF; nothing while TF lacks it.
+  std::optional<Eigen::Isometry3d> mounting(const std::string& parameter, const std::string& frame);
+  void report(const char* topic, const Status& status);
+
+  /// Declares the numbers of `params` with the values of `params` as defaults, and reads them.
+  template <class Params>
+  void declare_numbers(Params& params);
+
+ private:
+  nav_msgs::msg::Odometry message(const Odometry& odometry, bool from_imu);
+
+  std::vector<std::function<bool()>> inputs_;  ///< subscriptions that wait for a publisher; true: subscribed
+  std::vector<rclcpp::SubscriptionBase::SharedPtr> subscriptions_;
+  rclcpp::TimerBase::SharedPtr timer_;
+  tf2_ros::Buffer buffer_;
+  tf2_ros::TransformListener listener_;
+  tf2_ros::TransformBroadcaster broadcaster_;
+  rclcpp::Publisher<nav_msgs::msg::Odometry>::SharedPtr odometry_publisher_, odometry_imu_publisher_;
+  rclcpp::Publisher<diagnostic_msgs::msg::DiagnosticArray>::SharedPtr diagnostics_publisher_;
+  rclcpp::Subscription<geometry_msgs::msg::PoseWithCovarianceStamped>::SharedPtr initial_pose_;
+  rclcpp::Service<Trigger>::SharedPtr reset_;
+};
+
+inline ImuSample sample_of(const sensor_msgs::msg::Imu& message) {
+  const auto &w = message.angular_velocity, &f = message.linear_acceleration;
+  return {rclcpp::Time(message.header.stamp).nanoseconds(), {w.x, w.y, w.z}, {f.x, f.y, f.z}, 0};
+}
+
+template <class Message>
+void OdometryNode::subscribe(const std::string& topic, std::size_t depth,
+                             std::function<void(const Message&)> callback) {
+  inputs_.push_back([this, topic, depth, callback] {
+    if (count_publishers(topic) == 0) return false;
+    subscriptions_.push_back(
+        create_subscription<Message>(topic, rclcpp::QoS(depth).reliability_best_available(), callback));
+    return true;
+  });
+}
+
+template <class Params>
+void OdometryNode::declare_numbers(Params& params) {
+  visit_parameters(params, [&](const std::string& name, auto& value, const Field& field) {
+    using Value = std::remove_cvref_t<decltype(value)>;
+    rcl_interfaces::msg::ParameterDescriptor described;
+    described.description = std::string(field.meaning) + " [" + field.unit + "]";
+    described.read_only = true;
+    if constexpr (std::is_same_v<Value, Eigen::Vector3d>) {
+      const auto given = declare_parameter(name, std::vector<double>(value.begin(), value.end()), described);
+      if (given.size() != 3) throw InvalidParams(name, static_cast<double>(given.size()), "3 numbers");
+      value = Eigen::Vector3d(given.data());
+    } else if constexpr (std::is_floating_point_v<Value>) {
+      value = declare_parameter(name, static_cast<double>(value), described);
+    } else if constexpr (std::is_same_v<Value, bool>) {
+      value = declare_parameter(name, value, described);
+    } else {
+      value = static_cast<Value>(declare_parameter(name, static_cast<std::int64_t>(value), described));
+    }
+  });
+}
+
+}  // namespace tumble::ros

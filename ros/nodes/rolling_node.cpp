@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <rclcpp_components/register_node_macro.hpp>
+
+#include "odometry_node.hpp"
+#include "tumble_ros/rolling_adapter.hpp"
+
+namespace tumble::ros {
+
+/// RollingOdometry: topics imu for one IMU, imu_1 to imu_4 for several. T_base_imu has seven numbers for each IMU.
+class RollingNode : public OdometryNode {
+ public:
+  explicit RollingNode(const rclcpp::NodeOptions& options) : OdometryNode("rolling_odometry", options) {
+    RollingAdapterParams params;
+    declare_numbers(params);
+    const std::vector<double> poses = list("T_base_imu");
+    const std::size_t count = poses.size() / 7;
+    if (count < 1 || poses.size() % 7 != 0)
+      throw InvalidParams("T_base_imu", static_cast<double>(poses.size()), "7 numbers for each IMU: x y z qx qy qz qw");
+    for (std::size_t unit = 0; unit < count; ++unit) {
+      params.odometry.units.push_back(
+          {imu_sheet(text("imu_sheet")), pose_of("T_base_imu", std::span(poses).subspan(7 * unit, 7))});
+    }
+    adapter_.emplace(params, *this);
+    for (std::size_t unit = 0; unit < count; ++unit) {
+      const std::string name = count == 1 ? "imu" : "imu_" + std::to_string(unit + 1);
+      subscribe<sensor_msgs::msg::Imu>(name, kImuDepth, [this, unit](const sensor_msgs::msg::Imu& message) {
+        report("imu", adapter_->on_imu(unit, sample_of(message)));
+      });
+    }
+  }
+
+ protected:
+  bool start_again(const Eigen::Isometry3d& T_OB) override {
+    adapter_->reset(T_OB);
+    return true;
+  }
+
+ private:
+  std::optional<RollingAdapter> adapter_;
+};
+
+}  // namespace tumble::ros
+
+RCLCPP_COMPONENTS_REGISTER_NODE(tumble::ros::RollingNode)

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble_ros/publisher.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+#include "tumble/common/so3.hpp"
+
+namespace tumble::ros {
+
+Odometry base_odometry(const PoseState& imu, const Eigen::Matrix3d& velocity_covariance_I_m2_s2, const RateState& rate,
+                       const Eigen::Isometry3d& T_IB) {
+  Odometry out;
+  out.stamp_ns = imu.time_ns;
+  const Eigen::Matrix3d R_OI = imu.q_WA.toRotationMatrix(), R_BI = T_IB.linear().transpose();
+  const Eigen::Vector3d arm_I = T_IB.translation(), arm_O = R_OI * arm_I;
+  out.T_OB.linear() = R_OI * T_IB.linear();
+  out.T_OB.translation() = imu.p_WA_m + arm_O;
+  // an attitude error phi in O moves the base by phi x arm
+  Matrix6 J = Matrix6::Identity();
+  J.topRightCorner<3, 3>() = -so3::hat(arm_O);
+  out.pose_covariance = J * imu.covariance * J.transpose();
+
+  const Eigen::Vector3d w_I = rate.w_WI_I_rad_s;
+  out.twist_B.head<3>() = R_BI * (R_OI.transpose() * imu.v_WA_m_s + w_I.cross(arm_I));
+  out.twist_B.tail<3>() = R_BI * w_I;
+  const Eigen::Matrix3d by_rate = R_BI * -so3::hat(arm_I), rate_covariance = rate.covariance_rad2_s2;
+  out.twist_covariance.topLeftCorner<3, 3>() =
+      R_BI * velocity_covariance_I_m2_s2 * R_BI.transpose() + by_rate * rate_covariance * by_rate.transpose();
+  out.twist_covariance.topRightCorner<3, 3>() = by_rate * rate_covariance * R_BI.transpose();
+  out.twist_covariance.bottomLeftCorner<3, 3>() = out.twist_covariance.topRightCorner<3, 3>().transpose();
+  out.twist_covariance.bottomRightCorner<3, 3>() = R_BI * rate_covariance * R_BI.transpose();
+  return out;
+}
+
+namespace {
+
+/// Motion from one pose of a trajectory to the next, also extrapolated to times before the first pose.
+struct Segment {
+  TimeNs from_ns;
+  double length_s;
+  Eigen::Quaterniond q_WI;
+  Eigen::Vector3d p_WI_m, turn_rad, step_m;
+
+  Eigen::Isometry3d at(double since_s) const {
+    const double share = length_s > 0.0 ? since_s / length_s : 0.0;
+    return Eigen::Translation3d(p_WI_m + share * step_m) * (q_WI * so3::exp(share * turn_rad));
+  }
+};
+
+std::vector<Segment> segments_of(const std::vector<PoseState>& trajectory) {
+  std::vector<Segment> out;
+  for (std::size_t i = 0; i + 1 < trajectory.size(); ++i) {
+    const PoseState &a = trajectory[i], &b = trajectory[i + 1];
+    out.push_back({a.time_ns, seconds(b.time_ns - a.time_ns), a.q_WA, a.p_WA_m, so3::log(a.q_WA.conjugate() * b.q_WA),
+                   b.p_WA_m - a.p_WA_m});
+  }
+  if (out.empty()) {
+    const PoseState& only = trajectory.front();
+    out.push_back({only.time_ns, 1.0, only.q_WA, only.p_WA_m, Eigen::Vector3d::Zero(), only.v_WA_m_s});
+  }
+  return out;
+}
+
+}  // namespace
+
+void deskew(const std::vector<PoseState>& trajectory, const Eigen::Isometry3d& T_IL, TimeNs start_ns,
+            const std::vector<LidarPoint>& points, std::vector<DeskewedPoint>& deskewed) {
+  deskewed.clear();
+  if (trajectory.empty()) return;
+  const std::vector<Segment> segments = segments_of(trajectory);
+  const PoseState& end = trajectory.back();
+  const Eigen::Isometry3d T_LW_end = ((Eigen::Translation3d(end.p_WA_m) * end.q_WA) * T_IL).inverse();
+  std::size_t k = 0;
+  deskewed.reserve(points.size());
+  for (const LidarPoint& point : points) {
+    const TimeNs at_ns = start_ns + point.offset_ns;
+    while (k > 0 && at_ns < segments[k].from_ns) --k;
+    while (k + 1 < segments.size() && at_ns >= segments[k + 1].from_ns) ++k;
+    const Eigen::Isometry3d T_LL = T_LW_end * segments[k].at(seconds(at_ns - segments[k].from_ns)) * T_IL;
+    deskewed.push_back({(T_LL * point.position_L_m.cast<double>()).cast<float>(), point.intensity});
+  }
+}
+
+std::string ply_of(const std::vector<MapPoint>& map) {
+  std::string out = "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(map.size()) + "\n";
+  for (const char* name : {"x", "y", "z", "nx", "ny", "nz", "sigma_m"})
+    out += std::string("property float ") + name + "\n";
+  out += "end_header\n";
+  for (const MapPoint& point : map) {
+    std::array<float, 7> row;
+    Eigen::Map<Eigen::Vector3f>(row.data()) = point.position_W_m;
+    Eigen::Map<Eigen::Vector3f>(row.data() + 3) = point.normal_W;
+    row[6] = point.sigma_m;
+    out.append(reinterpret_cast<const char*>(row.data()), sizeof(row));
+  }
+  return out;
+}
+
+}  // namespace tumble::ros

@@ -1,0 +1,226 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Runs `python -m tumble.ros tumbling` as a process on one core, plays a recording to it, and compares what it publishes with the library.
+
+node_test.py RECORDING FOLDER    FOLDER receives the logs. The node is killed between two plays; the second play must give the same.
+"""
+import json
+import pathlib
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import numpy as np
+import rclpy
+from diagnostic_msgs.msg import DiagnosticArray
+from nav_msgs.msg import Odometry
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.qos import QoSProfile
+from sensor_msgs.msg import Imu, PointCloud2
+from std_srvs.srv import Trigger
+
+import tumble
+from tumble import _tumble
+from play import POINTS, messages
+
+HERE = pathlib.Path(__file__).parent
+NODE = "/tumbling_odometry"
+SHEETS = {"imu_sheet": "mti30", "lidar_sheet": "rs16"}
+
+
+def stamp_of(message) -> int:
+    return message.header.stamp.sec * 1_000_000_000 + message.header.stamp.nanosec
+
+
+def pose_numbers(T: np.ndarray) -> list[float]:
+    """x y z qx qy qz qw of a pose."""
+    # the eigenvector of the largest eigenvalue (I. Bar-Itzhack, J. Guidance 23, 2000)
+    R = T[:3, :3]
+    K = np.zeros((4, 4))
+    K[:3, :3] = R + R.T - np.trace(R) * np.eye(3)
+    K[:3, 3] = K[3, :3] = [R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]]
+    K[3, 3] = np.trace(R)
+    return [*T[:3, 3].tolist(), *np.linalg.eigh(K / 3.0)[1][:, 3].tolist()]
+
+
+class Expected:
+    """The library's answer: the adapter in this process, given the messages in the order of their times."""
+
+    def __init__(self, recording, parameters: dict) -> None:
+        self.poses, self.rates, self.sweeps = {}, {}, {}
+        lists = {key: parameters[key] for key in ("own_body", "T_base_imu", "T_base_lidar")}
+        adapter = _tumble.TumblingAdapter(self, {"lever_arm_m": parameters["lever_arm_m"]}, *SHEETS.values(), "", *lists.values())
+        for _, topic, message in messages(recording):
+            if topic == "imu":
+                w, f = message.angular_velocity, message.linear_acceleration
+                assert adapter.on_imu(stamp_of(message), w.x, w.y, w.z, f.x, f.y, f.z) == ""
+            else:
+                fields = [(each.name, each.offset, each.datatype, each.count) for each in message.fields]
+                assert adapter.on_cloud(stamp_of(message), 1, message.width, fields, False, message.point_step, message.row_step, message.data) == ""
+
+    def wants(self, output: str) -> bool:
+        return output == "points"
+
+    def odometry(self, odometry) -> None:
+        self.poses[odometry.stamp_ns] = (odometry.position, odometry.orientation, odometry.pose_covariance, odometry.twist, odometry.twist_covariance)
+
+    def imu(self, recovered) -> None:
+        self.rates[recovered.stamp_ns] = (recovered.rate, recovered.covariance, recovered.force)
+
+    def points(self, stamp_ns: int, data: bytes) -> None:
+        self.sweeps[stamp_ns] = data
+
+    def diagnostics(self, *_) -> None:
+        pass
+
+
+class Received:
+    """Everything that the node publishes, and when."""
+
+    def __init__(self, node) -> None:
+        self.poses, self.newest, self.rates, self.sweeps, self.maps, self.counts = {}, {}, {}, {}, [], {}
+        quality = QoSProfile(depth=5000)
+        self.subscriptions = [
+            node.create_subscription(Odometry, f"{NODE}/odom", lambda m: self.poses.setdefault(stamp_of(m), (m, time.monotonic())), quality),
+            node.create_subscription(Odometry, f"{NODE}/odom_imu", lambda m: self.newest.setdefault(stamp_of(m), (m, time.monotonic())), quality),
+            node.create_subscription(Imu, f"{NODE}/imu", lambda m: self.rates.setdefault(stamp_of(m), m), quality),
+            node.create_subscription(PointCloud2, f"{NODE}/points", lambda m: self.sweeps.setdefault(stamp_of(m), m.data.tobytes()), quality),
+            node.create_subscription(PointCloud2, f"{NODE}/map", self.maps.append, quality),
+            node.create_subscription(DiagnosticArray, "/diagnostics", self.diagnose, quality)]
+
+    def diagnose(self, message) -> None:
+        self.counts = {each.key: each.value for each in message.status[0].values}
+        self.finding = message.status[0].message
+
+
+def start_node(parameters: dict, log: pathlib.Path) -> subprocess.Popen:
+    words = [word for key, value in parameters.items() for word in ("-p", f"{key}:={json.dumps(value) if isinstance(value, list) else value}")]
+    command = ["taskset", "-c", "0", sys.executable, "-m", "tumble.ros", "tumbling", "--ros-args", *words]
+    with log.open("w") as file:
+        return subprocess.Popen(command, stdout=file, stderr=subprocess.STDOUT)
+
+
+def differences(expected: Expected, received: Received) -> list[str]:
+    out = []
+    for name, want, got in (("odom", expected.poses, received.poses), ("imu", expected.rates, received.rates)):
+        if missing := set(want) - set(got):
+            out.append(f"{name}: {len(missing)} of {len(want)} messages are missing, the first at {min(missing)} ns")
+    if missing := set(expected.sweeps) - set(received.sweeps):
+        out.append(f"points: {len(missing)} of {len(expected.sweeps)} sweeps are missing")
+    for stamp, (position, orientation, covariance, twist, twist_covariance) in expected.poses.items():
+        message = received.poses.get(stamp, (None,))[0]
+        if message is None:
+            continue
+        p, q, v = message.pose.pose.position, message.pose.pose.orientation, message.twist.twist
+        same = ([p.x, p.y, p.z] == position and [q.x, q.y, q.z, q.w] == orientation and list(message.pose.covariance) == covariance
+                and [v.linear.x, v.linear.y, v.linear.z, v.angular.x, v.angular.y, v.angular.z] == twist
+                and list(message.twist.covariance) == twist_covariance)
+        if not same or message.header.frame_id != "odom" or message.child_frame_id != "base_link":
+            out.append(f"odom at {stamp} ns differs: {[p.x, p.y, p.z]}, must be {position}")
+    for stamp, (rate, covariance, force) in expected.rates.items():
+        message = received.rates.get(stamp)
+        if message is None:
+            continue
+        w, f = message.angular_velocity, message.linear_acceleration
+        if [w.x, w.y, w.z] != rate or list(message.angular_velocity_covariance) != covariance or [f.x, f.y, f.z] != force:
+            out.append(f"imu at {stamp} ns differs: {[w.x, w.y, w.z]}, must be {rate}")
+    out += [f"points at {stamp} ns differ" for stamp, data in expected.sweeps.items() if received.sweeps.get(stamp, data) != data]
+    return out
+
+
+def latency(sent: list, got: dict) -> str:
+    """From the moment when a message was sent to the moment when the pose of its end arrived."""
+    times, ends = np.array([at for at, _ in sent]), np.array([when for _, when in sent])
+    waits = [when - ends[np.abs(times - stamp).argmin()] for stamp, (_, when) in got.items()]
+    return f"median {1e3 * np.median(waits):.1f} ms, largest {1e3 * max(waits):.1f} ms, n = {len(waits)}"
+
+
+def call(node, service: str) -> Trigger.Response:
+    client = node.create_client(Trigger, f"{NODE}/{service}")
+    assert client.wait_for_service(20.0), f"no service {service}"
+    answer = client.call_async(Trigger.Request())
+    deadline = time.monotonic() + 20.0
+    while not answer.done() and time.monotonic() < deadline:
+        time.sleep(0.05)
+    assert answer.done(), f"service {service} does not answer"
+    return answer.result()
+
+
+def wait_for_node(node, process: subprocess.Popen) -> None:
+    """Waits until the listener knows the publishers of the node. The player waits for the node's subscriptions."""
+    deadline = time.monotonic() + 30.0
+    while any(node.count_publishers(f"{NODE}/{topic}") == 0 for topic in ("odom", "odom_imu", "imu", "points", "map")):
+        assert process.poll() is None and time.monotonic() < deadline, "the node does not publish, see its log"
+        time.sleep(0.1)
+
+
+def play(recording: pathlib.Path, folder: pathlib.Path, name: str) -> dict:
+    sent = folder / f"{name}_sent.json"
+    subprocess.run([sys.executable, str(HERE / "play.py"), str(recording), str(sent)], check=True, timeout=120)
+    return json.loads(sent.read_text())
+
+
+def main(recording: pathlib.Path, folder: pathlib.Path) -> int:
+    folder.mkdir(parents=True, exist_ok=True)
+    read = tumble.read(recording, truth=False)
+    box = [x for corner in tumble.processing.RIG_BODY_L for x in corner]
+    parameters = {**SHEETS, "lever_arm_m": list(map(float, read.imus[0].lever_arm_m)), "own_body": box, "T_base_imu": [0.0] * 6 + [1.0],
+                  "T_base_lidar": pose_numbers(read.T_IL), "tf": "none",
+                  "map_file": str(folder / "map.ply"), "calibration_file": str(folder / "calibration.yaml")}
+    expected = Expected(read, parameters)
+    assert len(expected.poses) > 20 and len(expected.rates) > 300, (len(expected.poses), len(expected.rates))
+    rclpy.init()
+    node = rclpy.create_node("listener")
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    threading.Thread(target=executor.spin, daemon=True).start()
+    problems = []
+    for turn in ("first", "after_kill"):
+        received = Received(node)
+        process = start_node(parameters, folder / f"{turn}.log")
+        wait_for_node(node, process)
+        sent = play(recording, folder, turn)
+        found = differences(expected, received)
+        problems += [f"{turn}: {each}" for each in found]
+        lost = [len(set(want) - set(got)) for want, got in ((expected.sweeps, received.sweeps), (expected.rates, received.rates))]
+        print(f"{turn}: {len(sent['points'])} clouds of {POINTS} points and {len(sent['imu'])} samples sent; "
+              f"of {len(expected.sweeps)} deskewed sweeps {lost[0]} are missing, of {len(expected.rates)} rates {lost[1]}")
+        print(f"{turn}: latency of odom {latency(sent['points'], received.poses)}; of odom_imu {latency(sent['imu'], received.newest)}")
+        if process.poll() is not None:
+            problems.append(f"{turn}: the node has ended, see {folder / turn}.log")
+            break
+        if turn == "first":
+            for service in ("save_map", "save_calibration"):
+                answer = call(node, service)
+                if not answer.success:
+                    problems.append(f"{service}: {answer.message}")
+            if not received.maps or received.maps[0].header.frame_id != "odom":
+                problems.append("no map")
+            if not (folder / "map.ply").read_bytes().startswith(b"ply"):
+                problems.append("map.ply is no PLY file")
+        process.send_signal(signal.SIGKILL if turn == "first" else signal.SIGINT)
+        status = process.wait(20)
+        if turn == "after_kill" and status != 0:
+            problems.append(f"the node ended with {status} after Ctrl-C")
+        if (log := (folder / f"{turn}.log").read_text()):
+            problems.append(f"{turn}: the node reports {log[:300]}")
+        for subscription in received.subscriptions:
+            node.destroy_subscription(subscription)
+    # negative controls: another pose and a lost message are found
+    if not problems:
+        stamp = next(iter(expected.poses))
+        received.poses[stamp][0].pose.pose.position.x += 1e-9
+        del received.rates[next(iter(expected.rates))]
+        if len(differences(expected, received)) != 2:
+            problems.append("a changed pose and a lost sample are not found")
+    for problem in problems[:20]:
+        print(f"node_test: {problem}", file=sys.stderr)
+    executor.shutdown()
+    rclpy.shutdown()
+    return 1 if problems else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])))

@@ -1,0 +1,32 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# Runs the node of the Python package with ROS 2 from PyPI and compares it with the library.
+#   node_test.sh TREE BUILD    BUILD has bin/tumble; the environment (400 MB) and what is compiled stay in BUILD/python and BUILD/ros_node
+# The nodes run in a network of their own where the kernel allows it, so that they meet no other ROS nodes.
+set -euo pipefail
+tree=$1 build=$2 work=$2/ros_node
+environment=$work/environment
+mkdir -p "$work"
+[ -x "$environment/bin/python" ] || /usr/bin/python3 -m venv "$environment"
+pip() { "$environment/bin/python" -m pip install --quiet --disable-pip-version-check "$@"; }
+pip -r "$tree/tests/ros/requirements.txt"
+"$tree/python/make_wheel" "$build/python/wheel"
+wheel=$(echo "$build"/python/wheel/dist/*.whl)
+pip --force-reinstall --no-deps "$wheel"
+pip "$wheel[files]"
+
+# a short tumble: 6 s of `hill`, 16 rings of 1800 columns at 10 Hz
+sed 's/^duration_s: 10$/duration_s: 6/' "$tree/scenarios/catalogue/hill.yaml" >"$work/hill.yaml"
+grep -q '^duration_s: 6$' "$work/hill.yaml"
+[ -f "$work/hill.h5" ] || "$build/bin/tumble" record "$work/hill.yaml" --seed 1001 -o "$work/hill.h5" --quiet
+
+export ROS_DOMAIN_ID=77 RMW_IMPLEMENTATION=rmw_fastrtps_cpp ROS_LOG_DIR=$work/log PYTHONUNBUFFERED=1
+run=("$environment/bin/python" "$tree/tests/ros/node_test.py" "$work/hill.h5" "$work")
+cd "$work"
+if unshare -rn true 2>/dev/null; then
+  export ROS_AUTOMATIC_DISCOVERY_RANGE=SUBNET
+  unshare -rn bash -c 'ip link set lo up multicast on && ip route add 239.0.0.0/8 dev lo && exec "$@"' bash "${run[@]}"
+else
+  export ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST
+  "${run[@]}"
+fi

@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// TumblingAdapter publishes the library's results bit for bit, for the base frame, also after a step of the clock.
+#include "tumble_ros/tumbling_adapter.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "cloud_message.hpp"
+#include "estimator/tests/live_readings.hpp"
+#include "estimator/tests/thrown_params.hpp"
+#include "recorded_outputs.hpp"
+
+namespace tumble {
+
+namespace {
+
+using ros::TumblingAdapter;
+using test::RecordedOutputs;
+using test::ThrownBody;
+
+constexpr TimeNs kEpoch_ns = 1'732'700'000'000'000'000;
+
+TumblingAdapter::Params adapter_params(const ThrownBody& body) {
+  TumblingAdapter::Params params;
+  params.odometry = test::params_of(body);
+  return params;
+}
+
+/// Calls add_imu for each sample and add_sweep for each sweep when its last sample has arrived, `later_ns` later.
+template <class AddImu, class AddSweep>
+void play(const ThrownBody& body, TimeNs later_ns, AddImu add_imu, AddSweep add_sweep) {
+  const auto sweeps = body.sweeps();
+  auto sweep = sweeps.begin();
+  for (ImuSample sample : test::noisy(body.imu(), body.rail_rad_s)) {
+    sample.time_ns += later_ns;
+    add_imu(sample);
+    for (; sweep != sweeps.end() && sweep->end_ns + later_ns <= sample.time_ns; ++sweep)
+      add_sweep(sweep->start_ns + later_ns, sweep->points);
+  }
+}
+
+/// Clouds that start before `until_ns` may be rejected.
+void play_to(TumblingAdapter& adapter, const ThrownBody& body, TimeNs later_ns, TimeNs until_ns = 0) {
+  play(
+      body, later_ns, [&](const ImuSample& sample) { adapter.on_imu(sample); },
+      [&](TimeNs start_ns, const std::vector<LidarPoint>& points) {
+        const test::CloudMessage cloud = test::ouster_cloud(points);
+        const Status status = adapter.on_cloud(cloud.view(start_ns));
+        EXPECT_TRUE(status.ok() || start_ns - later_ns < until_ns) << status.message();
+      });
+}
+
+template <class A, class B>
+bool same_bits(const A& a, const B& b) {
+  return a.rows() == b.rows() && std::memcmp(a.data(), b.data(), sizeof(double) * std::size_t(a.size())) == 0;
+}
+
+TEST(TumblingAdapter, PublishesTheLibrarysResultsBitForBit) {
+  const ThrownBody body;
+  RecordedOutputs got;
+  TumblingAdapter adapter(adapter_params(body), got);
+  play_to(adapter, body, kEpoch_ns);
+  adapter.finish();
+
+  TumblingOdometry odometry(test::params_of(body));
+  odometry.reset(Eigen::Isometry3d::Identity());
+  std::vector<SweepReport> sweeps;
+  std::vector<PoseState> newest;
+  std::vector<RateState> rates;
+  const auto take = [&] {
+    while (const auto sweep = odometry.take())
+      if (!sweep->report.trajectory.empty()) sweeps.push_back(sweep->report);
+  };
+  play(
+      body, kEpoch_ns,
+      [&](const ImuSample& sample) {
+        const auto before = odometry.newest_ns();
+        odometry.add_imu(sample);
+        const auto& rate = odometry.smoothed_rate();
+        if (rate && (rates.empty() || rates.back().time_ns != rate->time_ns)) rates.push_back(*rate);
+        take();
+        PoseState pose;
+        if (odometry.newest_ns() != before && odometry.newest(pose).ok()) newest.push_back(pose);
+      },
+      [&](TimeNs start_ns, const std::vector<LidarPoint>& points) {
+        // the end of a sweep is its last point
+        const auto last = std::max_element(points.begin(), points.end(),
+                                           [](const auto& a, const auto& b) { return a.offset_ns < b.offset_ns; });
+        odometry.add_sweep(start_ns, start_ns + last->offset_ns, points);
+      });
+  odometry.finish();
+  take();
+
+  ASSERT_GT(sweeps.size(), 20u);
+  ASSERT_EQ(got.sweeps.size(), sweeps.size());
+  for (std::size_t k = 0; k < sweeps.size(); ++k) {
+    EXPECT_EQ(got.sweeps[k].stamp_ns, sweeps[k].pose.time_ns);
+    EXPECT_TRUE(same_bits(Eigen::Vector3d(got.sweeps[k].T_OB.translation()), sweeps[k].pose.p_WA_m));
+    EXPECT_TRUE(same_bits(got.sweeps[k].pose_covariance, sweeps[k].pose.covariance));
+  }
+  ASSERT_EQ(got.newest.size(), newest.size());
+  for (std::size_t k = 0; k < newest.size(); ++k)
+    EXPECT_TRUE(same_bits(Eigen::Vector3d(got.newest[k].T_OB.translation()), newest[k].p_WA_m));
+  ASSERT_EQ(got.rates.size(), rates.size());
+  for (std::size_t k = 0; k < rates.size(); ++k) {
+    EXPECT_EQ(got.rates[k].rate.time_ns, rates[k].time_ns);
+    EXPECT_TRUE(same_bits(got.rates[k].rate.w_WI_I_rad_s, rates[k].w_WI_I_rad_s));
+    EXPECT_TRUE(same_bits(got.rates[k].rate.covariance_rad2_s2, rates[k].covariance_rad2_s2));
+  }
+  // every registered sweep but those without their points is published without its motion
+  EXPECT_EQ(got.deskewed.size(), got.sweeps.size());
+  EXPECT_EQ(got.maps.size(), 1u);  // every 5 s
+  EXPECT_NEAR(double(got.health.size()), body.end_s, 1.0);
+  EXPECT_TRUE(got.health.back().second.ok) << got.health.back().second.message;
+  EXPECT_FALSE(got.health.front().second.ok) << "no sweep yet";
+}
+
+TEST(TumblingAdapter, RecoversTheSaturatedRate) {
+  const ThrownBody body;
+  RecordedOutputs got;
+  TumblingAdapter adapter(adapter_params(body), got);
+  play_to(adapter, body, 0);
+  std::vector<double> errors_rad_s, raw_errors_rad_s;
+  for (const ros::RecoveredImu& imu : got.rates) {
+    // a sample is the mean over its window of 10 ms
+    const Eigen::Vector3d truth = body.w_WI_I_rad_s(1e-9 * double(imu.rate.time_ns) - 0.005);
+    if (imu.rate.clipped_axes == 0) continue;
+    errors_rad_s.push_back((imu.rate.w_WI_I_rad_s - truth).norm());
+    raw_errors_rad_s.push_back((truth.cwiseMin(body.rail_rad_s) - truth).norm());
+  }
+  ASSERT_GT(errors_rad_s.size(), 50u);
+  const auto median = [](std::vector<double>& of) {
+    std::nth_element(of.begin(), of.begin() + long(of.size() / 2), of.end());
+    return of[of.size() / 2];
+  };
+  EXPECT_LT(median(errors_rad_s), 0.5 * median(raw_errors_rad_s));  // before the calibration has converged
+  EXPECT_GT(median(raw_errors_rad_s), 3.0);
+}
+
+// The velocity's covariance has the size of its error: the body rests, then flies at 2 m/s and more.
+TEST(TumblingAdapter, TheTwistHasItsStatedAccuracy) {
+  const ThrownBody body;
+  RecordedOutputs got;
+  TumblingAdapter adapter(adapter_params(body), got);
+  play_to(adapter, body, 0);
+  double nees = 0.0;
+  for (const ros::Odometry& odometry : got.sweeps) {
+    const double t_s = 1e-9 * double(odometry.stamp_ns), h_s = 1e-4;
+    const Eigen::Vector3d v_W = (body.T_WI(t_s + h_s).translation() - body.T_WI(t_s - h_s).translation()) / (2.0 * h_s);
+    const Eigen::Vector3d error = odometry.twist_B.head<3>() - body.T_WI(t_s).linear().transpose() * v_W;
+    const Eigen::Matrix3d covariance = odometry.twist_covariance.topLeftCorner<3, 3>();
+    EXPECT_GT(covariance.diagonal().minCoeff(), 0.0);
+    nees += error.dot(covariance.ldlt().solve(error)) / 3.0 / double(got.sweeps.size());
+  }
+  EXPECT_LT(nees, 4.0);    // 1 is consistent; 31 sweeps of one run
+  EXPECT_GT(nees, 0.003);  // 0.015: mounting and lever arm are exact here, and stated within 1 cm and 0.6 degrees
+}
+
+TEST(TumblingAdapter, PublishesTheBaseFrame) {
+  const ThrownBody body;
+  const Eigen::Isometry3d T_BI = Eigen::Translation3d(0.2, -0.1, 0.4) *
+                                 Eigen::AngleAxisd(M_PI / 2.0, Eigen::Vector3d::UnitZ()) *
+                                 Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX());
+  TumblingAdapter::Params params = adapter_params(body);
+  params.T_BI = T_BI;
+  params.T_BL = T_BI;  // the lidar's axes are the IMU's
+  RecordedOutputs base;
+  TumblingAdapter adapter(params, base);
+  play_to(adapter, body, 0);
+  ASSERT_FALSE(base.sweeps.empty());
+  // z of the IMU is up, so the base hangs upside down from it
+  const Eigen::Isometry3d first = base.sweeps.front().T_OB;
+  const Eigen::Isometry3d T_OI = first * T_BI;
+  EXPECT_NEAR(T_OI.translation().x(), 0.2, 0.02);
+  EXPECT_NEAR(T_OI.translation().y(), -0.1, 0.02);
+  EXPECT_NEAR(T_OI.translation().z(), 0.4, 0.02);
+  EXPECT_LT((T_OI.linear() * Eigen::Vector3d::UnitZ() - Eigen::Vector3d::UnitZ()).norm(), 0.02) << "z of the IMU is up";
+}
+
+TEST(TumblingAdapter, ALevelBaseStartsAtTheOrigin) {
+  const ThrownBody body;
+  TumblingAdapter::Params params = adapter_params(body);
+  params.T_BI = Eigen::Translation3d(0.2, -0.1, 0.4) * Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitZ());
+  params.T_BL = params.T_BI;
+  RecordedOutputs got;
+  TumblingAdapter adapter(params, got);
+  play_to(adapter, body, 0);
+  ASSERT_FALSE(got.sweeps.empty());
+  // levelled within 1 mrad, 0.5 m from the base
+  EXPECT_LT(got.sweeps.front().T_OB.translation().norm(), 2e-3);
+  EXPECT_TRUE(got.sweeps.front().T_OB.linear().isIdentity(5e-3));
+  // later poses are those of the base: of the IMU's known motion, turned by the mounting
+  const ros::Odometry& last = got.sweeps.back();
+  const Eigen::Isometry3d truth = params.T_BI * body.T_WI(1e-9 * double(last.stamp_ns)) * params.T_BI.inverse();
+  EXPECT_LT((last.T_OB.translation() - truth.translation()).norm(), 0.1);
+  EXPECT_LT((last.T_OB.linear() - truth.linear()).norm(), 0.05);
+}
+
+TEST(TumblingAdapter, ContinuesAfterTheClockStepsBack) {
+  const ThrownBody body;
+  RecordedOutputs got;
+  TumblingAdapter adapter(adapter_params(body), got);
+  play_to(adapter, body, kEpoch_ns);
+  const Eigen::Vector3d last = got.sweeps.back().T_OB.translation();
+  play_to(adapter, body, 0, 300'000'000);  // a bag that is played again, with another clock; 0.2 s until the restart
+  EXPECT_EQ(adapter.odometry().gaps(), 1u);
+  const auto again = std::find_if(got.sweeps.begin(), got.sweeps.end(),
+                                  [](const ros::Odometry& each) { return each.stamp_ns < kEpoch_ns; });
+  ASSERT_GT(got.sweeps.end() - again, 20);
+  EXPECT_LT((again->T_OB.translation() - last).norm(), 0.2) << "the run continues at its newest pose";
+  for (auto each = again + 1; each != got.sweeps.end(); ++each) EXPECT_GT(each->stamp_ns, (each - 1)->stamp_ns);
+  EXPECT_LT(got.rates.back().rate.time_ns, 10'000'000'000);
+  EXPECT_LT(got.deskewed.back().stamp_ns, 10'000'000'000);
+}
+
+TEST(TumblingAdapter, ResetStartsAtTheGivenPose) {
+  const ThrownBody body;
+  RecordedOutputs got;
+  TumblingAdapter::Params params = adapter_params(body);
+  params.T_BI = params.T_BL = Eigen::Isometry3d(Eigen::Translation3d(0.0, 0.0, 0.3));
+  TumblingAdapter adapter(params, got);
+  const Eigen::Isometry3d T_OB =
+      Eigen::Translation3d(10.0, 20.0, 1.0) * Eigen::AngleAxisd(1.0, Eigen::Vector3d::UnitZ());
+  adapter.reset(T_OB);
+  play_to(adapter, body, 0);
+  ASSERT_FALSE(got.sweeps.empty());
+  EXPECT_LT((got.sweeps.front().T_OB.translation() - T_OB.translation()).norm(), 2e-3);
+  EXPECT_LT((got.sweeps.front().T_OB.linear() - T_OB.linear()).norm(), 5e-3);
+}
+
+TEST(TumblingAdapter, ReportsRejectedMessages) {
+  const ThrownBody body;
+  RecordedOutputs got;
+  TumblingAdapter adapter(adapter_params(body), got);
+  ImuSample bad;
+  bad.angular_velocity_rad_s.x() = std::nan("");
+  EXPECT_EQ(adapter.on_imu(bad).trouble, Trouble::non_finite);
+  EXPECT_EQ(adapter.on_cloud(ros::PointCloudView{}).trouble, Trouble::empty);
+  ImuSample fine;
+  fine.time_ns = 2'000'000'000;
+  fine.specific_force_m_s2.z() = 9.8;
+  adapter.on_imu(fine);
+  const auto& values = got.health.back().second.values;
+  const auto value = [&](const std::string& key) {
+    const auto found = std::find_if(values.begin(), values.end(), [&](const auto& each) { return each.first == key; });
+    return found == values.end() ? std::string("missing") : found->second;
+  };
+  EXPECT_EQ(value("imu messages rejected"), "1");
+  EXPECT_EQ(value("imu messages"), "2");
+  EXPECT_EQ(value("clouds messages rejected"), "1");
+  EXPECT_NE(value("clouds last error").find("points"), std::string::npos);
+}
+
+TEST(TumblingAdapter, SkipsWhatNobodyReads) {
+  const ThrownBody body;
+  RecordedOutputs got;
+  got.wanted = false;
+  TumblingAdapter adapter(adapter_params(body), got);
+  play_to(adapter, body, 0);
+  EXPECT_TRUE(got.newest.empty() && got.deskewed.empty() && got.maps.empty());
+  EXPECT_GT(got.sweeps.size(), 20u);
+}
+
+}  // namespace
+
+}  // namespace tumble
