@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
-#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,7 +11,6 @@
 #include "scenarios/methods/estimate_file.hpp"
 #include "scenarios/methods/given_parameters.hpp"
 #include "scenarios/methods/prior_map_file.hpp"
-#include "scenarios/methods/slam_registry.hpp"
 #include "scenarios/recordings/recording_check.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/recordings/replace_file.hpp"
@@ -22,6 +18,7 @@
 #include "tools/tumble/arguments.hpp"
 #include "tools/tumble/chosen_method.hpp"
 #include "tools/tumble/learnt_file.hpp"
+#include "tools/tumble/prior_map_options.hpp"
 #include "tools/tumble/verbs.hpp"
 #include "tools/tumble/verdict_lines.hpp"
 
@@ -37,51 +34,8 @@ struct EstimateOptions {
   std::vector<std::string> parameters;
   std::filesystem::path folder;
   std::filesystem::path learnt;
-  std::filesystem::path map;
-  std::vector<double> map_pose;  ///< x y z [m] and heading [rad], with two standard deviations [m, rad]
-  bool map_frozen = false;
+  PriorMapOptions prior_map;
 };
-
-/// Returns the prior map of the options.
-std::shared_ptr<const PriorMap> read_map_of(const EstimateOptions& options) {
-  constexpr std::size_t kPose = 4, kWithSigmas = 6;
-  auto map = std::make_shared<PriorMap>();
-  map->points = scenarios::read_prior_map(options.map);
-  map->extend = !options.map_frozen;
-  const std::vector<double>& pose = options.map_pose;
-  if (pose.size() != 0 && pose.size() != kPose && pose.size() != kWithSigmas)
-    throw BadInput(fmt::format("--map-pose has {} numbers; it needs X Y Z HEADING or X Y Z HEADING SIGMA_M SIGMA_RAD",
-                               pose.size()));
-  if (!pose.empty()) {
-    map->T_MI = Eigen::Translation3d(pose[0], pose[1], pose[2]) * Eigen::AngleAxisd(pose[3], Eigen::Vector3d::UnitZ());
-    if (pose.size() == kWithSigmas) map->sigma_m = pose[4], map->sigma_rad = pose[5];
-  }
-  if (const Status status = check_prior_map(*map); !status.ok())
-    throw BadInput(options.map.string() + ": " + status.message());
-  return map;
-}
-
-/// Returns `method` with the prior map of the options, if any.
-scenarios::Method with_prior_map(const scenarios::Method& method, const EstimateOptions& options) {
-  if (options.map.empty()) {
-    if (!options.map_pose.empty() || options.map_frozen) throw BadInput("--map-pose and --map-frozen need --map");
-    return method;
-  }
-  std::optional<scenarios::Method> localised = scenarios::localised_in(method, read_map_of(options));
-  if (!localised)
-    throw BadInput("--map applies only to slam/tumble_live and slam/tumble_lag; '" + full_name(method.info) +
-                   "' does not localise itself in a prior map");
-  return *localised;
-}
-
-/// States from which sweep on the poses are in the prior map.
-std::string localisation_text(const scenarios::Estimate& estimate) {
-  const auto first = std::find_if(estimate.sweeps.begin(), estimate.sweeps.end(),
-                                  [](const SweepReport& sweep) { return sweep.in_prior_map; });
-  if (first == estimate.sweeps.end()) return "not localised in the prior map; poses are in a local frame";
-  return fmt::format("localised in the prior map; poses are in its frame from sweep {} of {} on",
-                     first - estimate.sweeps.begin() + 1, estimate.sweeps.size());
-}
 
 /// Health counters that the table shows; --json and estimate.json contain all counters.
 struct ShownCounter {
@@ -129,7 +83,7 @@ int run_estimate(const Session& session, const EstimateOptions& options) {
                    "' does not calibrate the rig");
   }
   LearntFile learnt(options.learnt);
-  const scenarios::Method learning = learnt.wrap(with_prior_map(method, options));
+  const scenarios::Method learning = learnt.wrap(with_prior_map(method, options.prior_map));
   const scenarios::MethodPointer selected[] = {scenarios::unowned(learning)};
   const std::vector<scenarios::Method> methods = scenarios::with_parameters(selected, options.parameters);
   scenarios::OutputFolder folder(options.folder);
@@ -153,7 +107,7 @@ int run_estimate(const Session& session, const EstimateOptions& options) {
   session.note(fmt::format("--json and {1} contain all {0} health counters", estimate.health.size(),
                            (options.folder / "estimate.json").string()));
   if (const std::string caution = learnt.caution(sensors); !caution.empty()) session.note(caution);
-  if (!options.map.empty()) session.note(options.map.string() + ": " + localisation_text(estimate));
+  if (!options.prior_map.map.empty()) session.note(localisation_text(options.prior_map, estimate));
   // printed also after a failure, because a sensor fault may be the cause
   for (const std::string& line : verdict_lines(estimate)) session.note(full_name(method.info) + ": " + line);
   if (estimate.status.ok()) return kDone;
@@ -176,15 +130,7 @@ Action declare_estimate(VerbOptions& verb, const Session& session) {
   verb.add("--learnt", options->learnt,
            "starts 'rate/tumble' or 'rate/tumble_lag' from the calibration of the rig in this FILE.json, if the file "
            "exists; at the end writes the calibration of this run to the file");
-  verb.add(
-      "--map", options->map,
-      "localises 'slam/tumble_live' or 'slam/tumble_lag' in this map of an earlier run: map.tumblemap of an estimate, "
-      "or a PCD or PLY file");
-  verb.add(
-      "--map-pose", options->map_pose,
-      "states the IMU's pose in the map at the start: X Y Z HEADING [m, rad], then the standard deviations SIGMA_M "
-      "SIGMA_RAD [default: 0 0; without --map-pose, the program searches the whole map]");
-  verb.add_flag("--map-frozen", options->map_frozen, "keeps the map unchanged; by default, sweeps extend the map");
+  declare_prior_map(verb, options->prior_map);
   return [&session, options] { return run_estimate(session, *options); };
 }
 

@@ -14,12 +14,14 @@
 #include "scenarios/methods/estimate_file.hpp"
 #include "scenarios/methods/given_parameters.hpp"
 #include "scenarios/methods/map_file.hpp"
+#include "scenarios/methods/prior_map_file.hpp"
 #include "scenarios/methods/robot_presets.hpp"
 #include "scenarios/recordings/replace_file.hpp"
 #include "tools/replay/page.hpp"
 #include "tools/replay/replay.hpp"
 #include "tools/tumble/chosen_method.hpp"
 #include "tools/tumble/found.hpp"
+#include "tools/tumble/prior_map_options.hpp"
 #include "tools/tumble/progress.hpp"
 #include "tools/tumble/verbs.hpp"
 #include "tools/tumble/verdict_lines.hpp"
@@ -36,6 +38,7 @@ struct OdometryOptions {
   std::filesystem::path folder;
   std::string method;
   bool live = false;
+  PriorMapOptions prior_map;
   std::vector<double> own_body_m;
   std::vector<std::string> parameters;
 };
@@ -53,7 +56,8 @@ std::string method_name(const OdometryOptions& options) {
   if (options.live && !options.method.empty())
     throw BadInput("--live and --method exclude each other; --live is --method slam/tumble_live");
   if (!options.method.empty()) return options.method;
-  return options.live ? "slam/tumble_live" : "slam/tumble";
+  if (options.live) return "slam/tumble_live";
+  return options.prior_map.map.empty() ? "slam/tumble" : "slam/tumble_lag";
 }
 
 /// Returns the texts that set the box of the robot for a method with these parameters.
@@ -172,18 +176,23 @@ int run_odometry(const Session& session, const OdometryOptions& options) {
   const std::vector<FoundItem> found = complete_recording(session, recording, box, !options.own_body_m.empty());
   if (!session.json) session.print({found_table(found)}, {});
   const sim::Sensors& sensors = recording.content.sensors;
-  const scenarios::MethodPointer chosen[] = {chosen_method(name, {sensors.robot, true})};
-  const scenarios::MethodInfo& info = chosen[0]->info;
+  const scenarios::Method method = with_prior_map(*chosen_method(name, {sensors.robot, true}), options.prior_map);
+  const scenarios::MethodInfo& info = method.info;
+  const scenarios::MethodPointer chosen[] = {scenarios::unowned(method)};
   const std::vector<scenarios::Method> methods = scenarios::with_parameters(chosen, parameter_texts(options, info));
   scenarios::OutputFolder folder(options.folder);
   Estimate estimate;
   const double run_s = run_with_progress(session, methods.front(), sensors, estimate);
   scenarios::write_estimate(options.folder, info.name, info.kind, estimate, scenarios::digest(sensors, nullptr));
-  if (!estimate.map.empty()) scenarios::write_map_pcd(options.folder / "map.pcd", estimate.map);
+  if (!estimate.map.empty()) {
+    scenarios::write_map_pcd(options.folder / "map.pcd", estimate.map);
+    scenarios::write_prior_map(options.folder / scenarios::kPriorMapName, estimate.map);
+  }
   if (!estimate.poses.empty()) write_replay(options.folder / "replay.html", recording, full_name(info), estimate);
   folder.keep();
 
   print_notes(session, recording, estimate);
+  if (!options.prior_map.map.empty()) session.note(localisation_text(options.prior_map, estimate));
   const nlohmann::json summary = summary_of(sensors, estimate, run_s);
   session.print({summary_table(summary)}, {{"folder", options.folder.string()},
                                            {"method", full_name(info)},
@@ -193,8 +202,9 @@ int run_odometry(const Session& session, const OdometryOptions& options) {
                                            {"summary", summary},
                                            {"health", estimate.health}});
   if (estimate.status.ok()) {
-    session.note(fmt::format("written: {} (trajectory.tum, map.ply, map.pcd, estimate.json, replay.html)",
-                             options.folder.string()));
+    session.note(
+        fmt::format("written: {} (trajectory.tum, map.ply, map.pcd, map.tumblemap, estimate.json, replay.html)",
+                    options.folder.string()));
     return kDone;
   }
   throw BadInput(options.input.path.string() + ": " + full_name(info) +
@@ -207,14 +217,19 @@ int run_odometry(const Session& session, const OdometryOptions& options) {
 Action declare_odometry(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<OdometryOptions>();
   declare_sensors(verb, options->input);
-  verb.add("-o,--output", options->folder, "folder for trajectory, map, health and replay page").required();
-  verb.add_flag("--live", options->live, "uses past data only, as on the robot: slam/tumble_live");
-  verb.add("--method", options->method, "another slam method ('tumble list methods') [slam/tumble]");
+  verb.add("-o,--output", options->folder, "writes trajectory, map, health and replay page to this folder").required();
+  verb.add_flag("--live", options->live, "uses past data only, as on the robot: runs slam/tumble_live");
+  verb.add("--method", options->method,
+           "runs this slam method ('tumble list methods') [default: slam/tumble; slam/tumble_lag with --map]");
+  declare_prior_map(verb, options->prior_map);
   verb.add("--own-body", options->own_body_m,
-           "X Y Z X Y Z: two opposite corners of a box around the robot in lidar axes, m; returns inside are dropped "
-           "[-0.5 -0.4 -0.27 0.5 0.4 0.23]")
+           "sets a box around the robot by two opposite corners X Y Z X Y Z in lidar axes, m; drops returns inside the "
+           "box [default: -0.5 -0.4 -0.27 0.5 0.4 0.23]")
       .words(6);
-  verb.add("--set", options->parameters, "METHOD.PARAMETER=NUMBER; repeat for more ('tumble list methods NAME')")
+  verb.add("--set", options->parameters,
+           "sets a parameter of the method: METHOD.PARAMETER=NUMBER; repeat the option for more parameters ('tumble "
+           "list "
+           "methods NAME' lists them)")
       .one_at_a_time();
   return [&session, options] { return run_odometry(session, *options); };
 }

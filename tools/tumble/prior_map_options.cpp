@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/tumble/prior_map_options.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <memory>
+#include <optional>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/methods/prior_map_file.hpp"
+#include "scenarios/methods/slam_registry.hpp"
+
+namespace tumble::tools {
+
+using scenarios::BadInput;
+
+namespace {
+
+/// Returns the prior map of the options.
+std::shared_ptr<const PriorMap> read_map_of(const PriorMapOptions& options) {
+  constexpr std::size_t kPose = 4, kWithSigmas = 6;
+  auto map = std::make_shared<PriorMap>();
+  map->points = scenarios::read_prior_map(options.map);
+  map->extend = !options.frozen;
+  const std::vector<double>& pose = options.pose;
+  if (pose.size() != 0 && pose.size() != kPose && pose.size() != kWithSigmas)
+    throw BadInput(fmt::format("--map-pose has {} numbers; it needs X Y Z HEADING or X Y Z HEADING SIGMA_M SIGMA_RAD",
+                               pose.size()));
+  if (!pose.empty()) {
+    map->T_MI = Eigen::Translation3d(pose[0], pose[1], pose[2]) * Eigen::AngleAxisd(pose[3], Eigen::Vector3d::UnitZ());
+    if (pose.size() == kWithSigmas) map->sigma_m = pose[4], map->sigma_rad = pose[5];
+  }
+  if (const Status status = check_prior_map(*map); !status.ok())
+    throw BadInput(options.map.string() + ": " + status.message());
+  return map;
+}
+
+}  // namespace
+
+void declare_prior_map(VerbOptions& verb, PriorMapOptions& options) {
+  verb.add(
+      "--map", options.map,
+      "localises 'slam/tumble_live' or 'slam/tumble_lag' in this map of an earlier run: map.tumblemap of an estimate, "
+      "or a PCD or PLY file");
+  verb.add(
+      "--map-pose", options.pose,
+      "states the IMU's pose in the map at the start: X Y Z HEADING [m, rad], then the standard deviations SIGMA_M "
+      "SIGMA_RAD [default: 0 0; without --map-pose, the program searches the whole map]");
+  verb.add_flag("--map-frozen", options.frozen, "keeps the map unchanged; by default, sweeps extend the map");
+}
+
+scenarios::Method with_prior_map(const scenarios::Method& method, const PriorMapOptions& options) {
+  if (options.map.empty()) {
+    if (!options.pose.empty() || options.frozen) throw BadInput("--map-pose and --map-frozen need --map");
+    return method;
+  }
+  std::optional<scenarios::Method> localised = scenarios::localised_in(method, read_map_of(options));
+  if (!localised)
+    throw BadInput("--map applies only to slam/tumble_live and slam/tumble_lag; '" + full_name(method.info) +
+                   "' does not localise itself in a prior map");
+  return *localised;
+}
+
+std::string localisation_text(const PriorMapOptions& options, const scenarios::Estimate& estimate) {
+  const std::string file = options.map.string();
+  const auto first = std::find_if(estimate.sweeps.begin(), estimate.sweeps.end(),
+                                  [](const SweepReport& sweep) { return sweep.in_prior_map; });
+  if (first == estimate.sweeps.end()) return file + ": not localised in this map; poses are in a local frame";
+  return fmt::format("{}: localised in this map; poses are in its frame from sweep {} of {} on", file,
+                     first - estimate.sweeps.begin() + 1, estimate.sweeps.size());
+}
+
+}  // namespace tumble::tools

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "scenarios/methods/method.hpp"
+#include "tools/tumble/verb_options.hpp"
+
+/// Options with which a verb localises a run in the map of an earlier run.
+namespace tumble::tools {
+
+struct PriorMapOptions {
+  std::filesystem::path map;
+  std::vector<double> pose;  ///< x y z [m] and heading [rad], with two standard deviations [m, rad]
+  bool frozen = false;
+};
+
+void declare_prior_map(VerbOptions& verb, PriorMapOptions& options);
+
+/// Returns `method` with the prior map of the options, if any. Throws BadInput.
+scenarios::Method with_prior_map(const scenarios::Method& method, const PriorMapOptions& options);
+
+/// States from which sweep on the poses are in the prior map.
+std::string localisation_text(const PriorMapOptions& options, const scenarios::Estimate& estimate);
+
+}  // namespace tumble::tools
