@@ -54,7 +54,7 @@ ImuSheet bmi088() {
 }
 
 ImuSheet icm20948() {
-  return {.rate_hz = 225.0,
+  return {.rate_hz = 200.0,
           .gyro_range_rad_s = 34.90658504,
           .accel_range_m_s2 = 156.9064,
           .gyro_noise_rad_s_sqrt_hz = 0.0002617994,
@@ -78,7 +78,7 @@ ImuSheet mti3() {
 }
 
 ImuSheet lsm6dso() {
-  return {.rate_hz = 208.0,
+  return {.rate_hz = 200.0,
           .gyro_range_rad_s = 34.90658504,
           .accel_range_m_s2 = 156.9064,
           .gyro_noise_rad_s_sqrt_hz = 6.632251e-05,
