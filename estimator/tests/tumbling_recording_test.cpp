@@ -10,8 +10,8 @@
 
 #include "thrown_body.hpp"
 #include "thrown_params.hpp"
+#include "tumble/odometry/detail/recording_estimate.hpp"
 #include "tumble/odometry/detail/waiting_input.hpp"
-#include "tumble/odometry/recording_estimate.hpp"
 #include "tumble/odometry/tumbling_odometry.hpp"
 
 namespace tumble {
@@ -25,27 +25,27 @@ TumblingOdometry::Params whole_params(const ThrownBody& body) {
   return params;
 }
 
-void add_all(const std::vector<ImuSample>& imu, const std::vector<ThrownBody::Sweep>& sweeps,
-             TumblingOdometry& odometry) {
+void record_all(const std::vector<ImuSample>& imu, const std::vector<ThrownBody::Sweep>& sweeps,
+                TumblingOdometry& odometry) {
   for (const ImuSample& sample : imu) ASSERT_TRUE(odometry.add_imu(sample).ok());
   for (const ThrownBody::Sweep& sweep : sweeps)
     ASSERT_TRUE(odometry.add_sweep(sweep.start_ns, sweep.end_ns, sweep.points).ok());
 }
 
-std::vector<TumblingOdometry::Sweep> take_all(TumblingOdometry& odometry) {
+std::vector<TumblingOdometry::Sweep> take_recorded(TumblingOdometry& odometry) {
   std::vector<TumblingOdometry::Sweep> out;
   while (std::optional<TumblingOdometry::Sweep> sweep = odometry.take()) out.push_back(std::move(*sweep));
   return out;
 }
 
-std::vector<TumblingOdometry::Sweep> estimate(const ThrownBody& body, const std::vector<ImuSample>& imu,
-                                              TumblingOdometry& odometry) {
-  add_all(imu, body.sweeps(), odometry);
+std::vector<TumblingOdometry::Sweep> estimate_recording(const ThrownBody& body, const std::vector<ImuSample>& imu,
+                                                        TumblingOdometry& odometry) {
+  record_all(imu, body.sweeps(), odometry);
   EXPECT_TRUE(odometry.finish().ok());
-  return take_all(odometry);
+  return take_recorded(odometry);
 }
 
-double error_m(const ThrownBody& body, const PoseState& pose) {
+double recorded_error_m(const ThrownBody& body, const PoseState& pose) {
   return (pose.p_WA_m - body.T_WI(seconds(pose.time_ns)).translation()).norm();
 }
 
@@ -53,14 +53,14 @@ TEST(TumblingRecording, EstimatesAThrowBeyondTheRail) {
   const ThrownBody body;
   TumblingOdometry odometry(whole_params(body));
   const std::vector<ImuSample> imu = body.imu();
-  const auto sweeps = estimate(body, imu, odometry);
+  const auto sweeps = estimate_recording(body, imu, odometry);
   ASSERT_EQ(sweeps.size(), body.sweeps().size());
   for (const TumblingOdometry::Sweep& sweep : sweeps) {
     EXPECT_TRUE(sweep.status.ok()) << sweep.status.message();
     EXPECT_EQ(sweep.report.pose.time_ns, sweep.report.trajectory.back().time_ns);
   }
   // the bound of the test with a lag: returns have no noise
-  EXPECT_LT(error_m(body, sweeps.back().report.pose), 0.02);
+  EXPECT_LT(recorded_error_m(body, sweeps.back().report.pose), 0.02);
   EXPECT_GT(odometry.mapper().map().size(), 1000u);
   EXPECT_TRUE(odometry.health().ok()) << odometry.health().message();
   const RecordingEstimate* const whole = odometry.recording();
@@ -77,7 +77,7 @@ TEST(TumblingRecording, ClippedRatesAreBetterThanTheReadings) {
   const ThrownBody body;
   TumblingOdometry odometry(whole_params(body));
   const std::vector<ImuSample> imu = body.imu();
-  (void)estimate(body, imu, odometry);
+  (void)estimate_recording(body, imu, odometry);
   const double to_s = body.rest_s + body.push_s + body.flight_s;
   double of_readings = 0.0, of_rates = 0.0;
   for (std::size_t k = 0; k < imu.size(); ++k) {
@@ -96,13 +96,13 @@ TEST(TumblingRecording, AnswersAfterFinishOnly) {
   const ThrownBody body;
   TumblingOdometry odometry(whole_params(body));
   const std::vector<ImuSample> imu = body.imu();
-  add_all(imu, body.sweeps(), odometry);
+  record_all(imu, body.sweeps(), odometry);
   PoseState pose;
   EXPECT_EQ(odometry.newest(pose).trouble, Trouble::empty);
   EXPECT_FALSE(odometry.take());
   EXPECT_EQ(odometry.recording(), nullptr);
   ASSERT_TRUE(odometry.finish().ok());
-  EXPECT_FALSE(take_all(odometry).empty());
+  EXPECT_FALSE(take_recorded(odometry).empty());
   ImuSample later = imu.back();
   later.time_ns += 10'000'000;
   EXPECT_EQ(odometry.add_imu(later).trouble, Trouble::out_of_range);
@@ -123,9 +123,9 @@ TEST(TumblingRecording, ALastSweepIsCutAtTheLastSample) {
     return imu;
   };
   TumblingOdometry most(whole_params(body)), little(whole_params(body));
-  EXPECT_EQ(estimate(body, until(0.7), most).size(), sweeps.size());
+  EXPECT_EQ(estimate_recording(body, until(0.7), most).size(), sweeps.size());
   EXPECT_EQ(most.recording()->mapped.unfinished_sweeps, 0u);
-  EXPECT_EQ(estimate(body, until(0.3), little).size(), sweeps.size() - 1);
+  EXPECT_EQ(estimate_recording(body, until(0.3), little).size(), sweeps.size() - 1);
   EXPECT_EQ(little.recording()->mapped.unfinished_sweeps, 1u);
 }
 
@@ -133,7 +133,7 @@ TEST(TumblingRecording, OneWrongItemCostsOneItem) {
   const ThrownBody body;
   const std::vector<ImuSample> clean = body.imu();
   TumblingOdometry reference(whole_params(body)), odometry(whole_params(body));
-  const PoseState expected = estimate(body, clean, reference).back().report.pose;
+  const PoseState expected = estimate_recording(body, clean, reference).back().report.pose;
   std::size_t refused = 0;
   for (std::size_t k = 0; k < clean.size(); ++k) {
     ImuSample sample = clean[k];
@@ -149,7 +149,7 @@ TEST(TumblingRecording, OneWrongItemCostsOneItem) {
   EXPECT_EQ(refused, 3u);
   EXPECT_EQ(odometry.rejected_readings(), 1u);
   EXPECT_EQ(odometry.recording()->rates.size(), clean.size() - 4);
-  const PoseState pose = take_all(odometry).back().report.pose;
+  const PoseState pose = take_recorded(odometry).back().report.pose;
   EXPECT_LT((pose.p_WA_m - expected.p_WA_m).norm(), 0.005);
 }
 
@@ -190,11 +190,11 @@ TEST(TumblingRecording, AGapEndsTheRecording) {
 TEST(TumblingRecording, SavesTheRecordedData) {
   const ThrownBody body;
   TumblingOdometry odometry(whole_params(body)), loaded(whole_params(body));
-  add_all(body.imu(), body.sweeps(), odometry);
+  record_all(body.imu(), body.sweeps(), odometry);
   ASSERT_TRUE(loaded.load(odometry.save()).ok());
   ASSERT_TRUE(odometry.finish().ok());
   ASSERT_TRUE(loaded.finish().ok());
-  const auto expected = take_all(odometry), found = take_all(loaded);
+  const auto expected = take_recorded(odometry), found = take_recorded(loaded);
   ASSERT_EQ(found.size(), expected.size());
   EXPECT_EQ(found.back().report.pose.p_WA_m, expected.back().report.pose.p_WA_m);
 }
@@ -208,7 +208,7 @@ TEST(TumblingRecording, ReportsAFrozenAxis) {
     imu[k].angular_velocity_rad_s += Eigen::Vector3d::Constant(noise = -noise) * double(k % 7);
     if (k > 130) imu[k].angular_velocity_rad_s.z() = 0.7;
   }
-  add_all(imu, body.sweeps(), odometry);
+  record_all(imu, body.sweeps(), odometry);
   (void)odometry.finish();
   ASSERT_NE(odometry.recording(), nullptr);
   const auto& all = odometry.recording()->findings.all;

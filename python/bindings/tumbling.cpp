@@ -18,7 +18,7 @@
 #include "results.hpp"
 #include "rig.hpp"
 #include "streams.hpp"
-#include "tumble/odometry/recording_estimate.hpp"
+#include "tumble/odometry/detail/recording_estimate.hpp"
 
 namespace tumble::python {
 

@@ -18,7 +18,7 @@
 #include "scenarios/methods/slam_conclusion.hpp"
 #include "scenarios/methods/slam_registry.hpp"
 #include "scenarios/methods/sweep_log.hpp"
-#include "tumble/odometry/recording_estimate.hpp"
+#include "tumble/odometry/detail/recording_estimate.hpp"
 #include "tumble/odometry/tumbling_odometry.hpp"
 
 namespace tumble::scenarios {
@@ -235,7 +235,8 @@ Estimate run(Output output, const Settings<TumblingOdometry::Params>& settings, 
   if (odometry.recording()) report_whole(*odometry.recording(), sensors, samples, estimate);
   if (!estimate.status.ok()) return estimate;
   const std::size_t left_out = sensors.imus.front().time_ns.size() - samples.size();
-  estimate.health["rejected_readings"] = static_cast<double>(left_out + odometry.rejected_readings());
+  const std::size_t rejected = left_out + odometry.rejected_readings();
+  if (output != Output::whole || rejected > 0) estimate.health["rejected_readings"] = static_cast<double>(rejected);
   if (odometry.early_sweeps() > 0) estimate.health["sweeps_before_imu"] = static_cast<double>(odometry.early_sweeps());
   if (output != Output::whole) report_stream(odometry, estimate);
   collector.conclude(odometry);

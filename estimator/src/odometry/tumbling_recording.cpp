@@ -4,7 +4,7 @@
 #include <memory>
 #include <utility>
 
-#include "tumble/odometry/recording_estimate.hpp"
+#include "tumble/odometry/detail/recording_estimate.hpp"
 #include "tumble/odometry/tumbling_odometry.hpp"
 #include "tumble/rolling/rolling_smoother.hpp"
 #include "tumbling_odometry_params.hpp"

@@ -169,8 +169,8 @@ class TumblingOdometry {
   std::optional<double> estimated_jitter_s() const;
   /// Returns the mapper, which provides the map and the calibration of the lidar.
   const LidarInertialOdometry& mapper() const;
-  /// Returns the rates of all samples, the checks and the passes of a whole recording (recording_estimate.hpp). Returns
-  /// null before finish() and without kWholeRecording.
+  /// Returns the rates of all samples, the checks and the passes of a whole recording (detail/recording_estimate.hpp).
+  /// Returns null before finish() and without kWholeRecording.
   const RecordingEstimate* recording() const { return whole_.get(); }
 
   /// Saves the complete state: map, calibration, SecondPass, and sweeps that take() has not yet returned. The saved
