@@ -74,7 +74,8 @@ std::optional<Eigen::Isometry3d> OdometryNode::mounting(const std::string& param
   if (frame == text("base_frame")) return Eigen::Isometry3d::Identity();
   try {
     const auto found = buffer_.lookupTransform(text("base_frame"), frame, tf2::TimePointZero).transform;
-    const auto &p = found.translation, &q = found.rotation;  // two types
+    const auto& p = found.translation;
+    const auto& q = found.rotation;
     return pose_of(frame, std::vector<double>{p.x, p.y, p.z, q.x, q.y, q.z, q.w});
   } catch (const tf2::TransformException& error) {
     RCLCPP_WARN_THROTTLE(get_logger(), *get_clock(), 5000, "waiting for TF: %s; or set %s", error.what(),

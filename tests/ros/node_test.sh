@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Runs the node of the Python package with ROS 2 from PyPI and compares it with the library.
+# Runs the node of the Python package with ROS 2 from PyPI and compares it with the library. Checks the C++ nodes for errors.
 #   node_test.sh TREE BUILD    BUILD has bin/tumble; the environment (400 MB) and what is compiled stay in BUILD/python and BUILD/ros_node
 # The nodes run in a network of their own where the kernel allows it, so that they meet no other ROS nodes.
 set -euo pipefail
@@ -14,6 +14,19 @@ pip -r "$tree/tests/ros/requirements.txt"
 wheel=$(echo "$build"/python/wheel/dist/*.whl)
 pip --force-reinstall --no-deps "$wheel"
 pip "$wheel[files]"
+
+# the C++ nodes have no errors against the real messages and the declarations of rclcpp that they use
+check() { g++ -std=c++20 -fsyntax-only -Wall -Werror -I "$work/stand_in" -I "$tree/ros/include" -I "$tree/estimator/include" -isystem /usr/include/eigen3 "${messages[@]}" "$1"; }
+messages=()
+for folder in "$environment"/include/*/; do messages+=(-isystem "$folder"); done
+for header in rclcpp/rclcpp.hpp rclcpp_components/register_node_macro.hpp tf2_ros/{buffer,transform_listener,transform_broadcaster}.h; do
+  mkdir -p "$work/stand_in/$(dirname "$header")"
+  printf '#include "%s"\n' "$tree/tests/ros/rclcpp_stand_in.hpp" >"$work/stand_in/$header"
+done
+for node in "$tree"/ros/nodes/*.cpp; do check "$node"; done
+sed 's/odometry.twist_B\[0\]/odometry.twist/' "$tree/ros/nodes/odometry_node.cpp" >"$work/wrong.cpp"  # negative control
+cp "$tree/ros/nodes/odometry_node.hpp" "$work"
+if check "$work/wrong.cpp" 2>/dev/null; then echo 'node_test: an error in a node is not found' >&2; exit 1; fi
 
 # a short tumble: 6 s of `hill`, 16 rings of 1800 columns at 10 Hz
 sed 's/^duration_s: 10$/duration_s: 6/' "$tree/scenarios/catalogue/hill.yaml" >"$work/hill.yaml"
