@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Trajectory of an MCAP file, with the readers of the harness: example_bag_map FILE.mcap prints t x y z qx qy qz qw.
 #include <cstdio>
+#include <exception>
 
 #include "scenarios/methods/method.hpp"
 #include "scenarios/recordings/bags/bag.hpp"
 
-int main(int, char** arguments) try {
+int main(int count, char** arguments) try {
   namespace scenarios = tumble::scenarios;
-  const scenarios::Imported bag = scenarios::import_mcap(arguments[1], {});
+  const scenarios::Imported bag = scenarios::import_mcap(count > 1 ? arguments[1] : "", {});
   const scenarios::MethodPointer method = scenarios::find_methods("slam/tumble").front();
   const scenarios::Estimate estimate = method->run(bag.sensors, {}, {});
   for (const auto& [time_ns, p, q, v, covariance] : estimate.poses)
