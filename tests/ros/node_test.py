@@ -249,12 +249,16 @@ def main(tumbled: pathlib.Path, rolled: pathlib.Path, folder: pathlib.Path) -> i
     node = rclpy.create_node("listener")
     executor = SingleThreadedExecutor()
     executor.add_node(node)
-    threading.Thread(target=executor.spin, daemon=True).start()
-    problems = tumble_problems(node, tumbled, folder) + roll_problems(node, rolled, folder)
+    spinning = threading.Thread(target=executor.spin)
+    spinning.start()
+    try:
+        problems = tumble_problems(node, tumbled, folder) + roll_problems(node, rolled, folder)
+    finally:
+        executor.shutdown()
+        spinning.join()
+        rclpy.shutdown()
     for problem in problems[:20]:
         print(f"node_test: {problem}", file=sys.stderr)
-    executor.shutdown()
-    rclpy.shutdown()
     return 1 if problems else 0
 
 
