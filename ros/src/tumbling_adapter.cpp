@@ -14,6 +14,8 @@ namespace {
 
 constexpr double kRatesKept_s = 2.0;  // longer than any lag between a sweep's end and its registration
 constexpr std::size_t kSamplesKept = 1 << 14;
+constexpr TimeNs kEarly_ns = 500'000'000;  // TumblingOdometry rejects sweeps a second ahead of the IMU
+constexpr std::size_t kEarlyMax = 32;
 
 TumblingParams mounted(const TumblingAdapterParams& params) {
   TumblingParams out = params.odometry;
@@ -47,6 +49,7 @@ Status TumblingAdapter::on_imu(const ImuSample& sample) {
   const Status status = imu_.count(odometry_.add_imu(sample));
   if (status.ok()) samples_.push_back(sample);
   if (samples_.size() > kSamplesKept) samples_.pop_front();
+  add_sweeps();
   publish_rate();
   publish_sweeps();
   if (odometry_.newest_ns() != before_ns && publisher_.wants(Output::odometry_imu)) publish_newest();
@@ -58,6 +61,27 @@ Status TumblingAdapter::on_imu(const ImuSample& sample) {
 Status TumblingAdapter::on_cloud(const PointCloudView& cloud) {
   TimedSweep sweep;
   if (Status status = reader_.read(cloud, sweep); !status.ok()) return clouds_.count(status);
+  if (!early_.empty() && sweep.end_ns < early_.back().end_ns) early_.clear();  // the clock stepped back
+  early_.push_back(std::move(sweep));
+  return add_sweeps();
+}
+
+bool TumblingAdapter::is_early(const TimedSweep& sweep) const {
+  const std::optional<TimeNs> newest_ns = odometry_.newest_ns();
+  return !newest_ns || sweep.end_ns - *newest_ns > kEarly_ns;
+}
+
+/// Adds the sweeps that wait no longer. Returns the status of the last one.
+Status TumblingAdapter::add_sweeps() {
+  Status status;
+  while (!early_.empty() && (early_.size() > kEarlyMax || !is_early(early_.front()))) {
+    status = add_sweep(std::move(early_.front()));
+    early_.pop_front();
+  }
+  return status;
+}
+
+Status TumblingAdapter::add_sweep(TimedSweep sweep) {
   const Status status = clouds_.count(odometry_.add_sweep(sweep.start_ns, sweep.end_ns, sweep.points));
   if (!status.ok()) return status;
   if (publisher_.wants(Output::points)) sweeps_.push_back(std::move(sweep));
@@ -74,6 +98,7 @@ void TumblingAdapter::reset(const Eigen::Isometry3d& T_OB) {
   odometry_.reset(T_OB * params_.T_BI);
   samples_.clear();
   rates_.clear();
+  early_.clear();
   sweeps_.clear();
   last_.reset();
 }

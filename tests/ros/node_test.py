@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs `python -m tumble.ros tumbling` as a process on one core, plays a recording to it, and compares what it publishes with the library.
+"""Runs `python -m tumble.ros` as a process on one core, plays recordings to it, and compares what it publishes with the library.
 
-node_test.py RECORDING FOLDER    FOLDER receives the logs. The node is killed between two plays; the second play must give the same.
+node_test.py TUMBLE ROLL FOLDER    recordings of the rig and of the sphere; FOLDER receives the logs. The node for the rig is killed between two
+                                   plays; the second play must give the same.
 """
 import json
 import pathlib
@@ -26,12 +27,16 @@ from tumble import _tumble
 from play import POINTS, messages
 
 HERE = pathlib.Path(__file__).parent
-NODE = "/tumbling_odometry"
 SHEETS = {"imu_sheet": "mti30", "lidar_sheet": "rs16"}
 
 
 def stamp_of(message) -> int:
     return message.header.stamp.sec * 1_000_000_000 + message.header.stamp.nanosec
+
+
+def sample_of(message) -> tuple:
+    w, f = message.angular_velocity, message.linear_acceleration
+    return stamp_of(message), w.x, w.y, w.z, f.x, f.y, f.z
 
 
 def pose_numbers(T: np.ndarray) -> list[float]:
@@ -48,17 +53,25 @@ def pose_numbers(T: np.ndarray) -> list[float]:
 class Expected:
     """The library's answer: the adapter in this process, given the messages in the order of their times."""
 
-    def __init__(self, recording, parameters: dict) -> None:
+    def __init__(self) -> None:
         self.poses, self.rates, self.sweeps = {}, {}, {}
-        lists = {key: parameters[key] for key in ("own_body", "T_base_imu", "T_base_lidar")}
-        adapter = _tumble.TumblingAdapter(self, {"lever_arm_m": parameters["lever_arm_m"]}, *SHEETS.values(), "", *lists.values())
-        for _, topic, message in messages(recording):
+
+    def tumble(self, recording, parameters: dict) -> "Expected":
+        lists = [parameters[key] for key in ("own_body", "T_base_imu", "T_base_lidar")]
+        adapter = _tumble.TumblingAdapter(self, {"lever_arm_m": parameters["lever_arm_m"]}, *SHEETS.values(), "", *lists)
+        for _, topic, message in messages(recording, ("imu", "points")):
             if topic == "imu":
-                w, f = message.angular_velocity, message.linear_acceleration
-                assert adapter.on_imu(stamp_of(message), w.x, w.y, w.z, f.x, f.y, f.z) == ""
+                assert adapter.on_imu(*sample_of(message)) == ""
             else:
                 fields = [(each.name, each.offset, each.datatype, each.count) for each in message.fields]
                 assert adapter.on_cloud(stamp_of(message), 1, message.width, fields, False, message.point_step, message.row_step, message.data) == ""
+        return self
+
+    def roll(self, recording, parameters: dict) -> "Expected":
+        adapter = _tumble.RollingAdapter(self, {"radius_m": parameters["radius_m"]}, parameters["imu_sheet"], [parameters["T_base_imu"]])
+        for _, _, message in messages(recording, ("imu",)):
+            assert adapter.on_imu(0, *sample_of(message)) == ""
+        return self
 
     def wants(self, output: str) -> bool:
         return output == "points"
@@ -79,25 +92,28 @@ class Expected:
 class Received:
     """Everything that the node publishes, and when."""
 
-    def __init__(self, node) -> None:
+    def __init__(self, node, name: str) -> None:
         self.poses, self.newest, self.rates, self.sweeps, self.maps, self.counts = {}, {}, {}, {}, [], {}
         quality = QoSProfile(depth=5000)
         self.subscriptions = [
-            node.create_subscription(Odometry, f"{NODE}/odom", lambda m: self.poses.setdefault(stamp_of(m), (m, time.monotonic())), quality),
-            node.create_subscription(Odometry, f"{NODE}/odom_imu", lambda m: self.newest.setdefault(stamp_of(m), (m, time.monotonic())), quality),
-            node.create_subscription(Imu, f"{NODE}/imu", lambda m: self.rates.setdefault(stamp_of(m), m), quality),
-            node.create_subscription(PointCloud2, f"{NODE}/points", lambda m: self.sweeps.setdefault(stamp_of(m), m.data.tobytes()), quality),
-            node.create_subscription(PointCloud2, f"{NODE}/map", self.maps.append, quality),
+            node.create_subscription(Odometry, f"{name}/odom", lambda m: self.poses.setdefault(stamp_of(m), (m, time.monotonic())), quality),
+            node.create_subscription(Odometry, f"{name}/odom_imu", lambda m: self.newest.setdefault(stamp_of(m), (m, time.monotonic())), quality),
+            node.create_subscription(Imu, f"{name}/imu", lambda m: self.rates.setdefault(stamp_of(m), m), quality),
+            node.create_subscription(PointCloud2, f"{name}/points", lambda m: self.sweeps.setdefault(stamp_of(m), m.data.tobytes()), quality),
+            node.create_subscription(PointCloud2, f"{name}/map", self.maps.append, quality),
             node.create_subscription(DiagnosticArray, "/diagnostics", self.diagnose, quality)]
 
     def diagnose(self, message) -> None:
         self.counts = {each.key: each.value for each in message.status[0].values}
-        self.finding = message.status[0].message
+
+    def close(self, node) -> None:
+        for subscription in self.subscriptions:
+            node.destroy_subscription(subscription)
 
 
-def start_node(parameters: dict, log: pathlib.Path) -> subprocess.Popen:
+def start_node(kind: str, parameters: dict, log: pathlib.Path) -> subprocess.Popen:
     words = [word for key, value in parameters.items() for word in ("-p", f"{key}:={json.dumps(value) if isinstance(value, list) else value}")]
-    command = ["taskset", "-c", "0", sys.executable, "-m", "tumble.ros", "tumbling", "--ros-args", *words]
+    command = ["taskset", "-c", "0", sys.executable, "-m", "tumble.ros", kind, "--ros-args", *words]
     with log.open("w") as file:
         return subprocess.Popen(command, stdout=file, stderr=subprocess.STDOUT)
 
@@ -119,6 +135,8 @@ def differences(expected: Expected, received: Received) -> list[str]:
                 and list(message.twist.covariance) == twist_covariance)
         if not same or message.header.frame_id != "odom" or message.child_frame_id != "base_link":
             out.append(f"odom at {stamp} ns differs: {[p.x, p.y, p.z]}, must be {position}")
+    if int(received.counts.get("imu messages", 0)) == 0:
+        out.append("diagnostics: no samples are counted")
     for stamp, (rate, covariance, force) in expected.rates.items():
         message = received.rates.get(stamp)
         if message is None:
@@ -137,8 +155,8 @@ def latency(sent: list, got: dict) -> str:
     return f"median {1e3 * np.median(waits):.1f} ms, largest {1e3 * max(waits):.1f} ms, n = {len(waits)}"
 
 
-def call(node, service: str) -> Trigger.Response:
-    client = node.create_client(Trigger, f"{NODE}/{service}")
+def call(node, name: str, service: str) -> Trigger.Response:
+    client = node.create_client(Trigger, f"{name}/{service}")
     assert client.wait_for_service(20.0), f"no service {service}"
     answer = client.call_async(Trigger.Request())
     deadline = time.monotonic() + 20.0
@@ -148,79 +166,101 @@ def call(node, service: str) -> Trigger.Response:
     return answer.result()
 
 
-def wait_for_node(node, process: subprocess.Popen) -> None:
+def wait_for_node(node, name: str, topics: tuple, process: subprocess.Popen) -> None:
     """Waits until the listener knows the publishers of the node. The player waits for the node's subscriptions."""
     deadline = time.monotonic() + 30.0
-    while any(node.count_publishers(f"{NODE}/{topic}") == 0 for topic in ("odom", "odom_imu", "imu", "points", "map")):
+    while any(node.count_publishers(f"{name}/{topic}") == 0 for topic in topics):
         assert process.poll() is None and time.monotonic() < deadline, "the node does not publish, see its log"
         time.sleep(0.1)
 
 
-def play(recording: pathlib.Path, folder: pathlib.Path, name: str) -> dict:
+def play(recording: pathlib.Path, folder: pathlib.Path, name: str, *topics: str) -> dict:
     sent = folder / f"{name}_sent.json"
-    subprocess.run([sys.executable, str(HERE / "play.py"), str(recording), str(sent)], check=True, timeout=120)
+    subprocess.run([sys.executable, str(HERE / "play.py"), str(recording), str(sent), *topics], check=True, timeout=120)
     return json.loads(sent.read_text())
 
 
-def main(recording: pathlib.Path, folder: pathlib.Path) -> int:
-    folder.mkdir(parents=True, exist_ok=True)
-    read = tumble.read(recording, truth=False)
+def tumble_problems(node, path: pathlib.Path, folder: pathlib.Path) -> list[str]:
+    """Plays the rig twice, with SIGKILL between the plays."""
+    name, recording, problems = "/tumbling_odometry", tumble.read(path, truth=False), []
     box = [x for corner in tumble.processing.RIG_BODY_L for x in corner]
-    parameters = {**SHEETS, "lever_arm_m": list(map(float, read.imus[0].lever_arm_m)), "own_body": box, "T_base_imu": [0.0] * 6 + [1.0],
-                  "T_base_lidar": pose_numbers(read.T_IL), "tf": "none",
-                  "map_file": str(folder / "map.ply"), "calibration_file": str(folder / "calibration.yaml")}
-    expected = Expected(read, parameters)
+    parameters = {**SHEETS, "lever_arm_m": list(map(float, recording.imus[0].lever_arm_m)), "own_body": box, "T_base_imu": [0.0] * 6 + [1.0],
+                  "T_base_lidar": pose_numbers(recording.T_IL), "tf": "none", "map_file": str(folder / "map.ply"),
+                  "calibration_file": str(folder / "calibration.yaml")}
+    expected = Expected().tumble(recording, parameters)
     assert len(expected.poses) > 20 and len(expected.rates) > 300, (len(expected.poses), len(expected.rates))
-    rclpy.init()
-    node = rclpy.create_node("listener")
-    executor = SingleThreadedExecutor()
-    executor.add_node(node)
-    threading.Thread(target=executor.spin, daemon=True).start()
-    problems = []
     for turn in ("first", "after_kill"):
-        received = Received(node)
-        process = start_node(parameters, folder / f"{turn}.log")
-        wait_for_node(node, process)
-        sent = play(recording, folder, turn)
-        found = differences(expected, received)
-        problems += [f"{turn}: {each}" for each in found]
+        received = Received(node, name)
+        process = start_node("tumbling", parameters, folder / f"{turn}.log")
+        wait_for_node(node, name, ("odom", "odom_imu", "imu", "points", "map"), process)
+        sent = play(path, folder, turn, "imu", "points")
+        problems += [f"{turn}: {each}" for each in differences(expected, received)]
         lost = [len(set(want) - set(got)) for want, got in ((expected.sweeps, received.sweeps), (expected.rates, received.rates))]
         print(f"{turn}: {len(sent['points'])} clouds of {POINTS} points and {len(sent['imu'])} samples sent; "
               f"of {len(expected.sweeps)} deskewed sweeps {lost[0]} are missing, of {len(expected.rates)} rates {lost[1]}")
         print(f"{turn}: latency of odom {latency(sent['points'], received.poses)}; of odom_imu {latency(sent['imu'], received.newest)}")
-        if process.poll() is not None:
-            problems.append(f"{turn}: the node has ended, see {folder / turn}.log")
-            break
         if turn == "first":
-            for service in ("save_map", "save_calibration"):
-                answer = call(node, service)
-                if not answer.success:
-                    problems.append(f"{service}: {answer.message}")
+            problems += [f"{service}: {answer.message}" for service in ("save_map", "save_calibration")
+                         if not (answer := call(node, name, service)).success]
             if not received.maps or received.maps[0].header.frame_id != "odom":
                 problems.append("no map")
             if not (folder / "map.ply").read_bytes().startswith(b"ply"):
                 problems.append("map.ply is no PLY file")
-        process.send_signal(signal.SIGKILL if turn == "first" else signal.SIGINT)
-        status = process.wait(20)
-        if turn == "after_kill" and status != 0:
-            problems.append(f"the node ended with {status} after Ctrl-C")
-        if (log := (folder / f"{turn}.log").read_text()):
-            problems.append(f"{turn}: the node reports {log[:300]}")
-        for subscription in received.subscriptions:
-            node.destroy_subscription(subscription)
+            process.send_signal(signal.SIGKILL)
+            process.wait(20)
+        else:
+            problems += ended_well(process, folder / f"{turn}.log")
+        received.close(node)
     # negative controls: another pose and a lost message are found
     if not problems:
-        stamp = next(iter(expected.poses))
-        received.poses[stamp][0].pose.pose.position.x += 1e-9
+        received.poses[next(iter(expected.poses))][0].pose.pose.position.x += 1e-9
         del received.rates[next(iter(expected.rates))]
         if len(differences(expected, received)) != 2:
             problems.append("a changed pose and a lost sample are not found")
+    return problems
+
+
+def roll_problems(node, path: pathlib.Path, folder: pathlib.Path) -> list[str]:
+    """Plays the first IMU of the sphere."""
+    name, recording = "/rolling_odometry", tumble.read(path, truth=False)
+    parameters = {"imu_sheet": "phidget1044", "radius_m": recording.sphere_radius_m, "T_base_imu": pose_numbers(recording.imus[0].T_BI), "tf": "none"}
+    expected = Expected().roll(recording, parameters)
+    assert len(expected.poses) > 1000, len(expected.poses)
+    received = Received(node, name)
+    process = start_node("rolling", parameters, folder / "rolling.log")
+    wait_for_node(node, name, ("odom", "odom_imu"), process)
+    play(path, folder, "rolling", "imu")
+    problems = [f"rolling: {each}" for each in differences(expected, received)] + ended_well(process, folder / "rolling.log")
+    print(f"rolling: {len(set(expected.poses) - set(received.poses))} of {len(expected.poses)} poses are missing")
+    received.close(node)
+    return problems
+
+
+def ended_well(process: subprocess.Popen, log: pathlib.Path) -> list[str]:
+    """Ends the node by Ctrl-C. A node without trouble ends with 0 and an empty log."""
+    process.send_signal(signal.SIGINT)
+    status = process.wait(20)
+    return [f"{log}: the node ended with {status} and reports {text[:300]}"] if (text := log.read_text()) or status != 0 else []
+
+
+def main(tumbled: pathlib.Path, rolled: pathlib.Path, folder: pathlib.Path) -> int:
+    folder.mkdir(parents=True, exist_ok=True)
+    rclpy.init()
+    node = rclpy.create_node("listener")
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    spinning = threading.Thread(target=executor.spin)
+    spinning.start()
+    try:
+        problems = tumble_problems(node, tumbled, folder) + roll_problems(node, rolled, folder)
+    finally:
+        executor.shutdown()
+        spinning.join()
+        rclpy.shutdown()
     for problem in problems[:20]:
         print(f"node_test: {problem}", file=sys.stderr)
-    executor.shutdown()
-    rclpy.shutdown()
     return 1 if problems else 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])))
+    sys.exit(main(*map(pathlib.Path, sys.argv[1:])))

@@ -28,13 +28,14 @@ sed 's/odometry.twist_B\[0\]/odometry.twist/' "$tree/ros/nodes/odometry_node.cpp
 cp "$tree/ros/nodes/odometry_node.hpp" "$work"
 if check "$work/wrong.cpp" 2>/dev/null; then echo 'node_test: an error in a node is not found' >&2; exit 1; fi
 
-# a short tumble: 6 s of `hill`, 16 rings of 1800 columns at 10 Hz
-sed 's/^duration_s: 10$/duration_s: 6/' "$tree/scenarios/catalogue/hill.yaml" >"$work/hill.yaml"
-grep -q '^duration_s: 6$' "$work/hill.yaml"
-[ -f "$work/hill.h5" ] || "$build/bin/tumble" record "$work/hill.yaml" --seed 1001 -o "$work/hill.h5" --quiet
+# 6 s of a tumble, with 16 rings of 1800 columns at 10 Hz, and of a rolling sphere
+for scenario in hill roll; do
+  sed 's/^duration_s: .*$/duration_s: 6/' "$tree/scenarios/catalogue/$scenario.yaml" >"$work/$scenario.yaml"
+  [ -f "$work/$scenario.h5" ] || "$build/bin/tumble" record "$work/$scenario.yaml" --seed 1001 -o "$work/$scenario.h5" --quiet
+done
 
 export ROS_DOMAIN_ID=77 RMW_IMPLEMENTATION=rmw_fastrtps_cpp ROS_LOG_DIR=$work/log PYTHONUNBUFFERED=1
-run=("$environment/bin/python" "$tree/tests/ros/node_test.py" "$work/hill.h5" "$work")
+run=("$environment/bin/python" "$tree/tests/ros/node_test.py" "$work/hill.h5" "$work/roll.h5" "$work")
 cd "$work"
 if unshare -rn true 2>/dev/null; then
   export ROS_AUTOMATIC_DISCOVERY_RANGE=SUBNET

@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """An independent publisher: plays a recording in real time as the drivers of an IMU and of a lidar would publish it.
 
-play.py RECORDING SENT    waits for a subscriber of each topic, publishes imu and points at their times, and writes to SENT when (monotonic
-                          clock, seconds) it sent the messages of each stamp. Uses nothing of tumble but its reader of recordings.
+play.py RECORDING SENT TOPIC...    waits for a subscriber of each topic (imu, points), publishes the messages at their times, and writes to SENT
+                                   when (monotonic clock, seconds) it sent the messages of each stamp. Uses nothing of tumble but its reader
+                                   of recordings.
 """
 import array
 import json
@@ -52,20 +53,22 @@ def cloud_message(sweep) -> PointCloud2:
     return out
 
 
-def messages(recording) -> list:
+def messages(recording, topics) -> list:
     """(time at which a driver has the message, topic, message): samples at their stamps, sweeps at their ends."""
     imu = recording.imus[0]
     out = [(int(imu.time_ns[k]), "imu", imu_message(imu, k)) for k in range(len(imu))]
-    out += [(int(sweep.end_ns), "points", cloud_message(sweep)) for sweep in recording.sweeps]
+    if "points" in topics:
+        out += [(int(sweep.end_ns), "points", cloud_message(sweep)) for sweep in recording.sweeps]
     return sorted(out, key=lambda each: each[0])
 
 
-def main(recording: str, sent: str) -> int:
-    queue = messages(tumble.read(recording, truth=False))
+def main(recording: str, sent: str, *topics: str) -> int:
+    queue = messages(tumble.read(recording, truth=False), topics)
     rclpy.init()
     node = rclpy.create_node("player")
-    publishers = {"imu": node.create_publisher(Imu, "imu", QoSProfile(depth=2000)),
-                  "points": node.create_publisher(PointCloud2, "points", QoSProfile(depth=20))}
+    publishers = {"imu": node.create_publisher(Imu, "imu", QoSProfile(depth=2000))}
+    if "points" in topics:
+        publishers["points"] = node.create_publisher(PointCloud2, "points", QoSProfile(depth=20))
     deadline = time.monotonic() + 60.0
     while any(each.get_subscription_count() == 0 for each in publishers.values()):
         if time.monotonic() > deadline:

@@ -118,6 +118,29 @@ TEST(TumblingAdapter, PublishesTheLibrarysResultsBitForBit) {
   EXPECT_FALSE(got.health.front().second.ok) << "no sweep yet";
 }
 
+TEST(TumblingAdapter, CloudsMayArriveSecondsBeforeTheImu) {
+  const ThrownBody body;
+  RecordedOutputs in_order, early;
+  TumblingAdapter expected(adapter_params(body), in_order), adapter(adapter_params(body), early);
+  play_to(expected, body, kEpoch_ns);
+  const auto sweeps = body.sweeps();
+  auto sweep = sweeps.begin();
+  for (ImuSample sample : test::noisy(body.imu(), body.rail_rad_s)) {
+    for (; sweep != sweeps.end() && sweep->end_ns <= sample.time_ns + 2'000'000'000; ++sweep) {
+      const test::CloudMessage cloud = test::ouster_cloud(sweep->points);
+      EXPECT_TRUE(adapter.on_cloud(cloud.view(sweep->start_ns + kEpoch_ns)).ok());
+    }
+    sample.time_ns += kEpoch_ns;
+    adapter.on_imu(sample);
+  }
+  ASSERT_EQ(early.sweeps.size(), in_order.sweeps.size());
+  for (std::size_t k = 0; k < early.sweeps.size(); ++k) {
+    EXPECT_EQ(early.sweeps[k].stamp_ns, in_order.sweeps[k].stamp_ns);
+    EXPECT_EQ(early.sweeps[k].T_OB.matrix(), in_order.sweeps[k].T_OB.matrix());
+  }
+  EXPECT_EQ(early.deskewed.size(), in_order.deskewed.size());
+}
+
 TEST(TumblingAdapter, RecoversTheSaturatedRate) {
   const ThrownBody body;
   RecordedOutputs got;

@@ -37,7 +37,8 @@ class TumblingAdapter {
   /// Processes an IMU sample in IMU axes. Returns the status of TumblingOdometry::add_imu().
   Status on_imu(const ImuSample& sample);
   /// Processes a point cloud in lidar axes. Returns the status of PointCloudReader::read() or of
-  /// TumblingOdometry::add_sweep().
+  /// TumblingOdometry::add_sweep(). A busy computer may deliver clouds seconds before the IMU samples of their times.
+  /// Such clouds wait, at most 32.
   Status on_cloud(const PointCloudView& cloud);
   /// Registers the sweeps that wait for later samples and publishes them, at the end of a recording.
   void finish();
@@ -50,6 +51,9 @@ class TumblingAdapter {
   const TumblingOdometry& odometry() const { return odometry_; }
 
  private:
+  bool is_early(const TimedSweep& sweep) const;
+  Status add_sweeps();
+  Status add_sweep(TimedSweep sweep);
   void publish_rate();
   void publish_sweeps();
   void publish_points(const SweepReport& report);
@@ -63,6 +67,7 @@ class TumblingAdapter {
   PointCloudReader reader_;
   std::deque<ImuSample> samples_;    ///< accepted samples whose rate is not smoothed yet
   std::deque<RateState> rates_;      ///< smoothed rates of the last seconds
+  std::deque<TimedSweep> early_;     ///< sweeps that wait for IMU samples
   std::deque<TimedSweep> sweeps_;    ///< sweeps that wait for their poses
   std::optional<SweepReport> last_;  ///< newest registered sweep, without its trajectory
   Rejections imu_, clouds_;
