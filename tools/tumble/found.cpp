@@ -91,7 +91,7 @@ class Found {
     const bool arm_stated = !options.lever_arm_m.empty() || !arm_m.isZero(0.0);
     add("lever arm of the IMU",
         arm_stated ? vector_text(arm_m) + " m from the centre of mass"
-                   : "0: IMU at the centre of mass. Affects rates beyond the gyro's range only",
+                   : "0: IMU at the centre of mass. Harmless unless the gyro clips; then tracking may fail",
         arm_stated ? kStated : kAssumed, "--lever-arm X Y Z");
     sim::LidarRecord& lidar = lidars().front();
     const bool pose_stated =

@@ -119,7 +119,8 @@ double imu_duration_s(const sim::ImuRecord& imu) {
 std::string health_text(const Estimate& estimate) {
   if (!estimate.status.ok()) return "failed";
   std::string text;
-  for (const scenarios::Doubt& doubt : estimate.doubts) text += (text.empty() ? "" : ", ") + row_of(doubt);
+  for (const scenarios::Doubt& doubt : estimate.doubts)
+    text += fmt::format("{}{} {:.6g}", text.empty() ? "" : ", ", row_of(doubt), doubt.value);
   return text.empty() ? "ok" : text;
 }
 
