@@ -11,7 +11,7 @@
 #include "arrays.hpp"
 #include "saving.hpp"
 #include "trouble.hpp"
-#include "tumble/mapping/prior_map.hpp"
+#include "tumble/mapping/detail/prior_map.hpp"
 #include "tumble/odometry/detail/saved_map.hpp"
 
 namespace tumble::python {

@@ -10,7 +10,7 @@
 #include "scenarios/recordings/clouds/cloud_file.hpp"
 #include "scenarios/recordings/replace_file.hpp"
 #include "scenarios/regular_file.hpp"
-#include "tumble/mapping/prior_map.hpp"
+#include "tumble/mapping/detail/prior_map.hpp"
 #include "tumble/odometry/detail/saved_map.hpp"
 
 namespace tumble::scenarios {

@@ -4,9 +4,9 @@
 #include "../common/imu_members.hpp"
 #include "../common/state_variant.hpp"
 #include "tumble/mapping/detail/localisation.hpp"
+#include "tumble/mapping/detail/prior_map.hpp"
 #include "tumble/mapping/detail/sweep_scale.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
-#include "tumble/mapping/prior_map.hpp"
 
 /// odometry_members.hpp lists the members of sweeps and reports, and members of the mapper's Params that are not
 /// Fields, as state_visitor.hpp describes.

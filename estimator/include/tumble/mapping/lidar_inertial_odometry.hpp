@@ -13,9 +13,9 @@
 #include "tumble/common/status.hpp"
 #include "tumble/mapping/calibration.hpp"
 #include "tumble/mapping/detail/odometer_reading.hpp"
+#include "tumble/mapping/detail/prior_map.hpp"
 #include "tumble/mapping/lidar.hpp"
 #include "tumble/mapping/odometry_params.hpp"
-#include "tumble/mapping/prior_map.hpp"
 #include "tumble/mapping/sweep_report.hpp"
 
 namespace tumble {
