@@ -77,7 +77,7 @@ class OdometryNode(Node):
         self.listener = tf2_ros.TransformListener(self.buffer, self) if tf2_ros else None
         self.broadcaster = tf2_ros.TransformBroadcaster(self) if tf2_ros else None
         self.odometry_publisher = self.create_publisher(Odometry, "~/odom", 10)
-        self.odometry_imu_publisher = self.create_publisher(Odometry, "~/odom_imu", 100)
+        self.odometry_imu_publisher = self.create_publisher(Odometry, "~/odom_imu", IMU_DEPTH)
         self.diagnostics_publisher = self.create_publisher(DiagnosticArray, "/diagnostics", 10)
         self.create_subscription(PoseWithCovarianceStamped, "initialpose", self.on_initial_pose, 1)
         self.create_service(Trigger, "~/reset", self.on_reset)
@@ -205,7 +205,7 @@ class TumblingNode(OdometryNode):
         sheets = self.text["imu_sheet"], self.text["lidar_sheet"]
         self.given = self.numbers(_tumble.TumblingAdapter.parameters(*sheets))
         latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-        self.imu_publisher = self.create_publisher(Imu, "~/imu", 100)
+        self.imu_publisher = self.create_publisher(Imu, "~/imu", IMU_DEPTH)
         self.points_publisher = self.create_publisher(PointCloud2, "~/points", 10)
         self.map_publisher = self.create_publisher(PointCloud2, "~/map", latched)
         self.create_service(Trigger, "~/save_map", self.on_save_map)
