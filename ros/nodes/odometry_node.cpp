@@ -18,7 +18,7 @@ OdometryNode::OdometryNode(const std::string& name, const rclcpp::NodeOptions& o
     }
   }
   odometry_publisher_ = create_publisher<nav_msgs::msg::Odometry>("~/odom", 10);
-  odometry_imu_publisher_ = create_publisher<nav_msgs::msg::Odometry>("~/odom_imu", 100);
+  odometry_imu_publisher_ = create_publisher<nav_msgs::msg::Odometry>("~/odom_imu", kImuDepth);
   diagnostics_publisher_ = create_publisher<diagnostic_msgs::msg::DiagnosticArray>("/diagnostics", 10);
   reset_ = create_service<Trigger>(
       "~/reset", [this](const Trigger::Request::SharedPtr, const Trigger::Response::SharedPtr& answer) {

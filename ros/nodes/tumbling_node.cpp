@@ -49,7 +49,7 @@ class TumblingNode : public OdometryNode {
     params_.time_field = text("time_field");
     imu_frame_ = text("imu_frame");
     lidar_frame_ = text("lidar_frame");
-    imu_publisher_ = create_publisher<sensor_msgs::msg::Imu>("~/imu", 100);
+    imu_publisher_ = create_publisher<sensor_msgs::msg::Imu>("~/imu", kImuDepth);
     points_publisher_ = create_publisher<sensor_msgs::msg::PointCloud2>("~/points", 10);
     map_publisher_ = create_publisher<sensor_msgs::msg::PointCloud2>("~/map", rclcpp::QoS(1).transient_local());
     save_map_ = saving("~/save_map", "map_file", [this] { return ply_of(adapter_->map()); });

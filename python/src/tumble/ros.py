@@ -18,6 +18,7 @@ import sys
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from geometry_msgs.msg import PoseWithCovarianceStamped, TransformStamped
@@ -77,7 +78,7 @@ class OdometryNode(Node):
         self.listener = tf2_ros.TransformListener(self.buffer, self) if tf2_ros else None
         self.broadcaster = tf2_ros.TransformBroadcaster(self) if tf2_ros else None
         self.odometry_publisher = self.create_publisher(Odometry, "~/odom", 10)
-        self.odometry_imu_publisher = self.create_publisher(Odometry, "~/odom_imu", 100)
+        self.odometry_imu_publisher = self.create_publisher(Odometry, "~/odom_imu", IMU_DEPTH)
         self.diagnostics_publisher = self.create_publisher(DiagnosticArray, "/diagnostics", 10)
         self.create_subscription(PoseWithCovarianceStamped, "initialpose", self.on_initial_pose, 1)
         self.create_service(Trigger, "~/reset", self.on_reset)
@@ -96,7 +97,7 @@ class OdometryNode(Node):
         """Declares the numbers of the library, and returns the values that are set. A number without default is NaN until it is set."""
         out: dict[str, Any] = {}
         for each in parameters:
-            default = [float(x) for x in each.default] if hasattr(each.default, "__len__") else each.default
+            default = list(map(float, each.default)) if isinstance(each.default, (tuple, np.ndarray)) else each.default
             described = ParameterDescriptor(description=f"{each.meaning} [{each.unit}]", read_only=True)
             if isinstance(default, float) and each.low <= default <= each.high:
                 described.floating_point_range = [FloatingPointRange(from_value=each.low, to_value=each.high)]
@@ -205,7 +206,7 @@ class TumblingNode(OdometryNode):
         sheets = self.text["imu_sheet"], self.text["lidar_sheet"]
         self.given = self.numbers(_tumble.TumblingAdapter.parameters(*sheets))
         latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-        self.imu_publisher = self.create_publisher(Imu, "~/imu", 100)
+        self.imu_publisher = self.create_publisher(Imu, "~/imu", IMU_DEPTH)
         self.points_publisher = self.create_publisher(PointCloud2, "~/points", 10)
         self.map_publisher = self.create_publisher(PointCloud2, "~/map", latched)
         self.create_service(Trigger, "~/save_map", self.on_save_map)
@@ -217,11 +218,11 @@ class TumblingNode(OdometryNode):
         """Creates the adapter when the mounting of both sensors is known."""
         if self.adapter is not None:
             return True
-        mounting = [self.mounting("T_base_imu", self.frames["imu"]), self.mounting("T_base_lidar", self.frames["lidar"])]
-        if None in mounting:
+        T_base_imu, T_base_lidar = self.mounting("T_base_imu", self.frames["imu"]), self.mounting("T_base_lidar", self.frames["lidar"])
+        if T_base_imu is None or T_base_lidar is None:
             return False
         self.adapter = _tumble.TumblingAdapter(self, self.given, self.text["imu_sheet"], self.text["lidar_sheet"], self.text["time_field"],
-                                               list(self.text["own_body"]), *mounting)
+                                               list(self.text["own_body"]), T_base_imu, T_base_lidar)
         return True
 
     def on_imu(self, message: Imu) -> None:
@@ -286,7 +287,7 @@ class RollingNode(OdometryNode):
         self.report(f"imu {unit + 1}", self.adapter.on_imu(unit, to_ns(message.header.stamp), w.x, w.y, w.z, f.x, f.y, f.z))
 
 
-NODES: dict[str, type[OdometryNode]] = {"tumbling": TumblingNode, "rolling": RollingNode}
+NODES: dict[str, type[TumblingNode] | type[RollingNode]] = {"tumbling": TumblingNode, "rolling": RollingNode}
 
 
 def main(words: Sequence[str]) -> int:

@@ -24,7 +24,7 @@ const char* to_string(SweepVerdict verdict);
 /// SweepReport contains the result of LidarInertialOdometry for one sweep.
 struct SweepReport {
   SweepVerdict verdict = SweepVerdict::rejected;
-  PoseState pose;                     ///< pose and velocity of the IMU at the end of the sweep, with covariance
+  PoseState pose;  ///< pose and velocity of the IMU at the end of the sweep, with covariance
   /// Covariance of the error of the velocity in IMU axes, R_IW v_WI_W, at the end of the sweep [m^2/s^2].
   Eigen::Matrix3d velocity_covariance_I_m2_s2 = Eigen::Matrix3d::Zero();
   std::vector<PoseState> trajectory;  ///< IMU poses within the sweep, corrected by the registration
